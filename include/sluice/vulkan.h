@@ -1,0 +1,191 @@
+/**
+ * Streams textures on a Vulkan device. Link `sluice-vulkan`; the only header that includes Vulkan.
+ *
+ * The application owns instance, device, queues and command buffers, and draws. A streamer owns the
+ * streamed images, the feedback, MinMip and texture table buffers, a manager (manager.h) and a tile
+ * loader (loader.h). Shaders use the functions of shaders/include/sluice.
+ *
+ * A frame:
+ *
+ *     sluiceBeginStreamingFrame(streamer, commandBuffer, timeStamp, &frame);
+ *     ... draw: shaders sample and write feedback ...
+ *     sluiceEndStreamingFrame(streamer, commandBuffer);
+ *     vkQueueSubmit: signal frame.semaphore with frame.signalValue
+ *
+ * Nothing here waits for the GPU, but for sluiceDestroyVulkanStreamer and
+ * sluiceWaitVulkanStreamerIdle. Thread safety: external on the streamer and, during
+ * sluiceBeginStreamingFrame, on the sparse queue.
+ */
+#ifndef SLUICE_VULKAN_H
+#define SLUICE_VULKAN_H
+
+#include <sluice/image.h>
+#include <sluice/manager.h>
+#include <sluice/replay.h>
+
+#ifndef VK_NO_PROTOTYPES
+#define SLUICE_UNDEF_VK_NO_PROTOTYPES
+#define VK_NO_PROTOTYPES
+#endif
+#include <vulkan/vulkan_core.h>
+#ifdef SLUICE_UNDEF_VK_NO_PROTOTYPES
+#undef VK_NO_PROTOTYPES
+#undef SLUICE_UNDEF_VK_NO_PROTOTYPES
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct SluiceVulkanStreamer SluiceVulkanStreamer;
+
+typedef enum SluiceResidencyMode {
+    SLUICE_RESIDENCY_MODE_AUTO = 0,  ///< what the device does best of those below
+    SLUICE_RESIDENCY_MODE_SPARSE = 1 ///< sparse residency images
+} SluiceResidencyMode;
+
+/** What a device can do for Sluice, and what is known to be odd about it. */
+typedef struct SluiceVulkanDeviceCapabilities {
+    bool sparse;                     ///< sparse residency 2D images and a queue that binds them
+    bool shaderResourceResidency;    ///< residency codes exist
+    bool shaderResourceMinLod;       ///< the LOD clamp operand exists
+    bool residencyNonResidentStrict; ///< reads of unbound texels are 0
+    uint32_t sparseQueueFamilyIndex; ///< the best family that binds: without graphics if there is one
+    uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
+    char deviceName[256];
+} SluiceVulkanDeviceCapabilities;
+
+SLUICE_API SluiceResult sluiceGetVulkanDeviceCapabilities(
+    VkInstance instance, VkPhysicalDevice physicalDevice,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceVulkanDeviceCapabilities *pCapabilities);
+
+/**
+ * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
+ * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). Fields that the caller set stay set.
+ * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
+ */
+SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
+    VkInstance instance, VkPhysicalDevice physicalDevice,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, const SluiceLogCallback *pLog,
+    VkPhysicalDeviceFeatures *pFeatures, VkPhysicalDeviceVulkan12Features *pVulkan12);
+
+/** Zero in any field asks for the default written beside it. */
+typedef struct SluiceVulkanStreamerCreateInfo {
+    VkInstance instance;             ///< required, as all handles down to device
+    VkPhysicalDevice physicalDevice;
+    VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
+    VkQueue sparseQueue;              ///< of a family with SPARSE_BINDING; may be the drawing queue
+    uint32_t sparseQueueFamilyIndex;
+    uint32_t queueFamilyIndex;        ///< of the queue that frames are submitted to
+    SluiceResidencyMode residencyMode;
+    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
+    SluiceLogCallback log;
+    uint32_t framesInFlight;          ///< 0: 3
+    uint32_t maxTextureCount;         ///< 0: 1024
+    uint32_t texturesPerFrame;        ///< feedback maps read back per frame; 0: 10
+    uint32_t tilesPerFrame;           ///< mapped and uploaded per frame at most; 0: 256
+    uint32_t maxLoadsInFlight;        ///< 0: 4 * tilesPerFrame
+    uint32_t loaderThreadCount;       ///< 0: as sluiceCreateTileLoader
+    uint32_t heapTileCapacity;        ///< 0: 256
+    uint32_t maxHeapCount;            ///< 0: as many as the device has memory for
+    uint32_t numExtraStandbyTiles;    ///< kept although unwanted
+    uint64_t feedbackTimeout;         ///< in the unit of the time stamps; a region lapses after it
+    uint64_t retryDelay;              ///< in the same unit, see manager.h
+    bool mapEverything;               ///< every tile is wanted always: the fully resident truth
+} SluiceVulkanStreamerCreateInfo;
+
+/**
+ * Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED if the device has no mode that was asked for;
+ *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ */
+SLUICE_API SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
+                                                   SluiceVulkanStreamer **pStreamer);
+
+/** Waits for the frames that were submitted, then releases everything. NULL is allowed. */
+SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
+
+typedef struct SluiceVulkanTextureCreateInfo {
+    SluiceImageSource *source; ///< required; must outlive the texture
+    SluiceTextureId primaryId; ///< SLUICE_NO_TEXTURE, or the texture whose feedback drives this one
+} SluiceVulkanTextureCreateInfo;
+
+typedef struct SluiceVulkanTexture {
+    SluiceTextureId textureId;
+    VkImage image;         ///< in VK_IMAGE_LAYOUT_GENERAL once a frame was begun after adding it
+    VkImageView imageView; ///< 2D, all levels
+    VkFormat format;
+    uint32_t width, height, mipLevelCount;
+    uint32_t tableIndex; ///< index in the texture table, for the shader functions
+} SluiceVulkanTexture;
+
+/**
+ * Creates the image of a source and starts to stream it. The format is the source's.
+ *
+ * Errors: NULL_POINTER; UNSUPPORTED if the device cannot stream that format or size; LIMIT_EXCEEDED
+ *         beyond maxTextureCount; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY,
+ *         VULKAN.
+ */
+SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
+                                               const SluiceVulkanTextureCreateInfo *pCreateInfo,
+                                               SluiceVulkanTexture *pTexture);
+
+/** The image is destroyed when the frames begun so far have completed; do not draw with it again. */
+SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
+                                                  SluiceTextureId textureId);
+
+/** The buffers that shaders need, as storage buffers; the same for the streamer's whole life. */
+typedef struct SluiceVulkanBuffers {
+    VkBuffer textureTable; ///< SluiceTextureEntry[maxTextureCount], read
+    VkBuffer feedback;     ///< uint[], read and written
+    VkBuffer minMip;       ///< uint[], read
+} SluiceVulkanBuffers;
+
+SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
+                                       SluiceVulkanBuffers *pBuffers);
+
+typedef struct SluiceStreamingFrame {
+    uint64_t frameIndex;     ///< from 1 on
+    VkSemaphore semaphore;   ///< timeline; the submission of the command buffer must
+    uint64_t signalValue;    ///< signal it with this value
+} SluiceStreamingFrame;
+
+/**
+ * Polls what has completed, feeds the manager, submits bindings, and records into `commandBuffer`,
+ * outside a render pass: uploads of texels that arrived, and then the MinMip maps that show them.
+ *
+ * The command buffer must be submitted, before that of the next frame, to a queue of
+ * queueFamilyIndex. Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are
+ * not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
+ */
+SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
+                                                  VkCommandBuffer commandBuffer, uint64_t timeStamp,
+                                                  SluiceStreamingFrame *pFrame);
+
+/** Records the resolve and readback of this frame's share of the feedback maps, outside a pass. */
+SLUICE_API SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer,
+                                                VkCommandBuffer commandBuffer);
+
+typedef struct SluiceVulkanStreamerStatistics {
+    SluiceStreamedTextureStatistics manager;
+    uint64_t bytesRead;     ///< texels delivered by sources
+    uint64_t bytesUploaded; ///< texels copied to images
+    uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
+    uint64_t bindCalls, bindRuns;
+    uint64_t feedbackMaps;      ///< read back and given to the manager
+    uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
+    uint64_t deviceMemorySize;  ///< bytes of heaps
+} SluiceVulkanStreamerStatistics;
+
+SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
+                                                  SluiceVulkanStreamerStatistics *pStatistics);
+
+/** The manager, to read from; to record it, begin before the first texture is added. */
+SLUICE_API SluiceStreamedTextureManager *
+sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer);
+
+#ifdef __cplusplus
+} /* extern "C" */
+#endif
+
+#endif /* SLUICE_VULKAN_H */
