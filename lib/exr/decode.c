@@ -5,6 +5,7 @@
 #include "image/half.h"
 #include "image/srgb.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 SluiceFormat slc_exr_natural_format(const struct slc_exr_file *file)
@@ -45,7 +46,11 @@ static exr_result_t decompress(struct slc_exr_decoder *decoder, const exr_chunk_
         if (result == EXR_ERR_SUCCESS)
             result = exr_decoding_choose_default_routines(context, 0, pipeline);
         pipeline->unpack_and_convert_fn = NULL;
+        decoder->decompress = pipeline->decompress_fn;
     }
+    /* Chunks that would not shrink are stored as they are; 3.1 decodes them all the same in B44. */
+    bool is_raw = info->packed_size == info->unpacked_size;
+    pipeline->decompress_fn = is_raw ? NULL : decoder->decompress;
     return result == EXR_ERR_SUCCESS ? exr_decoding_run(context, 0, pipeline) : result;
 }
 
@@ -159,16 +164,35 @@ static SluiceImageRegion intersect(const SluiceImageRegion *a, const SluiceImage
     return (SluiceImageRegion){a->mipLevel, x0, y0, is_empty ? 0 : x1 - x0, is_empty ? 0 : y1 - y0};
 }
 
+/*
+ * Up to 3.1 OpenEXRCore's decompressors also answer OUT_OF_MEMORY for bytes that make no sense. It
+ * is taken at its word only if what a chunk can need at most really cannot be had.
+ */
+static SluiceResult explain(const struct slc_exr_file *file, const exr_chunk_info_t *info,
+                            exr_result_t result)
+{
+    if (result != EXR_ERR_OUT_OF_MEMORY)
+        return slc_exr_result(file, result);
+    void *probe = malloc((size_t)(info->packed_size + 3 * info->unpacked_size) + (1u << 22));
+    SluiceResult answer = probe ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    free(probe);
+    return answer;
+}
+
 SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
                                   const struct slc_exr_chunk *chunk,
                                   const struct slc_exr_target *target)
 {
     struct slc_exr_file *file = decoder->file;
     exr_result_t result = decompress(decoder, &chunk->info);
-    if (result != EXR_ERR_SUCCESS)
-        return slc_exr_fail(file, slc_exr_result(file, result), "cannot decode the chunk at %llu: %s",
+    if (result != EXR_ERR_SUCCESS) {
+        SluiceResult answer = explain(file, &chunk->info, result);
+        return slc_exr_fail(file, answer, "cannot decode the chunk at %llu: %s",
                             (unsigned long long)chunk->info.data_offset,
-                            exr_get_default_error_message(result));
+                            answer == SLUICE_ERROR_CORRUPT_DATA
+                                ? "its bytes are damaged"
+                                : exr_get_default_error_message(result));
+    }
     const unsigned char *texels = decoder->pipeline.unpacked_buffer;
     SluiceImageRegion shared = intersect(&chunk->region, &target->region);
     size_t row_size = (size_t)chunk->region.width * file->texel_size;

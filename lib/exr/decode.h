@@ -8,6 +8,7 @@
 struct slc_exr_decoder {
     struct slc_exr_file *file;
     exr_decode_pipeline_t pipeline;
+    exr_result_t (*decompress)(exr_decode_pipeline_t *); ///< the library's for this file
     bool is_open;
 };
 

@@ -26,6 +26,14 @@ SluiceResult slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, 
     return result;
 }
 
+void slc_exr_printable(const char *text, char *printable, size_t size)
+{
+    size_t i = 0;
+    for (; text[i] && i + 1 < size; i++)
+        printable[i] = text[i] >= ' ' && text[i] <= '~' ? text[i] : '?';
+    printable[i] = '\0';
+}
+
 SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result)
 {
     switch (result) {
@@ -86,7 +94,9 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
     if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
         return;
     const struct slc_exr_file *file = user;
-    slc_log(&file->log, SLUICE_LOG_WARNING, "%s: OpenEXR: %s", file->path, message);
+    char printable[512];
+    slc_exr_printable(message, printable, sizeof printable);
+    slc_log(&file->log, SLUICE_LOG_WARNING, "%s: OpenEXR: %s", file->path, printable);
 }
 
 SluiceResult slc_exr_file_read(struct slc_exr_file *file, uint64_t offset, void *bytes, size_t size)

@@ -81,6 +81,9 @@ __attribute__((format(printf, 3, 4)))
 SluiceResult slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, const char *format,
                           ...);
 
+/** Copies as much of a file's own words as fits, with ? for what may not stand in a message. */
+void slc_exr_printable(const char *text, char *printable, size_t size);
+
 /** Fills the fields that describe the image from the open context. Errors are logged. */
 SluiceResult slc_exr_read_header(struct slc_exr_file *file);
 

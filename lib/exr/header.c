@@ -13,11 +13,13 @@ static bool is_one_of(const char *name, const char *letters)
 /* The channel names as far as they fit, for messages. */
 static void list_channels(const exr_attr_chlist_t *list, char *text, size_t size)
 {
+    char name[64];
     size_t used = 0;
     text[0] = '\0';
-    for (int32_t i = 0; i < list->num_channels && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "",
-                                 list->entries[i].name.str);
+    for (int32_t i = 0; i < list->num_channels && used < size; i++) {
+        slc_exr_printable(list->entries[i].name.str, name, sizeof name);
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", name);
+    }
 }
 
 /* Which letters are there, as a set of bits in the order of "RGBAY"; ~0 if there are others. */
@@ -90,8 +92,8 @@ static SluiceResult read_channels(struct slc_exr_file *file)
 {
     const exr_attr_chlist_t *list;
     exr_result_t result = exr_get_channels(file->context, 0, &list);
-    if (result != EXR_ERR_SUCCESS)
-        return slc_exr_fail(file, slc_exr_result(file, result), "has no channels");
+    if (result != EXR_ERR_SUCCESS || list->num_channels < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no channels");
     SluiceResult answer = check_names(file, list);
     file->widest = EXR_PIXEL_HALF;
     for (int i = 0; i < 4; i++)
