@@ -14,11 +14,11 @@
 
 /** One tile's new state. */
 struct slc_bind {
-    uint32_t image;             ///< index of the streamer's texture
+    uint32_t image; ///< index of the streamer's texture
     struct slc_tile_place place;
-    uint32_t heap_id;           ///< SLC_UNBIND: nothing
+    uint32_t heap_id; ///< SLC_UNBIND: nothing
     uint32_t slot;
-    uint32_t sequence;          ///< set by slc_bind_list_put; later ones win
+    uint32_t sequence; ///< set by slc_bind_list_put; later ones win
 };
 
 /** `count` tiles side by side in x; their slots follow each other, or they are unbound. */
@@ -30,8 +30,8 @@ struct slc_bind_run {
 };
 
 struct slc_bind_list {
-    struct slc_bind *binds;     ///< owned
-    struct slc_bind_run *runs;  ///< owned
+    struct slc_bind *binds;    ///< owned
+    struct slc_bind_run *runs; ///< owned
     uint32_t count, capacity, run_count;
 };
 

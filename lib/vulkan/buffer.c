@@ -33,10 +33,10 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
         return result;
     VkMemoryRequirements memory;
     vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
-    VkMemoryAllocateInfo allocate = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = memory.size,
-        .memoryTypeIndex = find_type(caps, memory.memoryTypeBits, kind)};
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = memory.size,
+                                     .memoryTypeIndex =
+                                         find_type(caps, memory.memoryTypeBits, kind)};
     VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (allocate.memoryTypeIndex != UINT32_MAX)
         status = vk->AllocateMemory(vk->device, &allocate, NULL, &buffer->memory);

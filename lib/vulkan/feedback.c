@@ -36,9 +36,8 @@ static SluiceResult want_everything(SluiceVulkanStreamer *s)
 {
     for (uint32_t i = share_of_frame(s); i > 0; i--) {
         const struct slc_texture *texture = &s->textures[next_primary(s)];
-        SluiceResult result =
-            give_map(s, texture->id, s->zero_map, texture->layout.feedbackWidth,
-                     texture->layout.feedbackHeight, s->time_stamp, UINT64_MAX);
+        SluiceResult result = give_map(s, texture->id, s->zero_map, texture->layout.feedbackWidth,
+                                       texture->layout.feedbackHeight, s->time_stamp, UINT64_MAX);
         if (result < 0)
             return result;
     }
@@ -68,9 +67,8 @@ static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands,
                     VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,
                     VkAccessFlags used)
 {
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask = written,
-                              .dstAccessMask = used};
+    VkMemoryBarrier memory = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER, .srcAccessMask = written, .dstAccessMask = used};
     s->vk.CmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
 }
 

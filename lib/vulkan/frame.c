@@ -8,9 +8,9 @@
 static SluiceResult poll_frames(SluiceVulkanStreamer *s)
 {
     uint64_t value = 0;
-    SluiceResult result = slc_vk_result(
-        &s->vk, s->vk.GetSemaphoreCounterValue(s->vk.device, s->semaphore, &value),
-        "vkGetSemaphoreCounterValue");
+    SluiceResult result =
+        slc_vk_result(&s->vk, s->vk.GetSemaphoreCounterValue(s->vk.device, s->semaphore, &value),
+                      "vkGetSemaphoreCounterValue");
     if (result == SLUICE_SUCCESS && value > s->completed_frame)
         s->completed_frame = value;
     return result;
@@ -41,8 +41,8 @@ static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
         if (count == 0)
             return SLUICE_SUCCESS;
         uint32_t asked = count;
-        SluiceResult result = sluiceGetTilesToUnmap(s->manager, SLUICE_ALL_TEXTURES, s->frame,
-                                                    &count, s->tiles);
+        SluiceResult result =
+            sluiceGetTilesToUnmap(s->manager, SLUICE_ALL_TEXTURES, s->frame, &count, s->tiles);
         if (result < 0)
             return slc_streamer_check(s, result, "sluiceGetTilesToUnmap");
         for (uint32_t i = 0; i < count; i++)

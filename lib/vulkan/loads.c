@@ -121,7 +121,8 @@ static SluiceResult submit_unit(SluiceVulkanStreamer *s, uint32_t index)
         read.priority = SLUICE_MAX_MIP_LEVELS;
         for (uint32_t i = 0; i < packed->rect_count; i++) {
             regions[i] = texture->packed.rects[packed->first_rect + i].region;
-            texels[i] = unit_memory(s, index) + texture->packed.rects[packed->first_rect + i].offset;
+            texels[i] =
+                unit_memory(s, index) + texture->packed.rects[packed->first_rect + i].offset;
         }
     }
     unit->state = SLC_UNIT_READING;
@@ -398,8 +399,7 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
         struct slc_unit *u = &s->units[unit];
         if (s->textures[u->texture].state == SLC_TEXTURE_REMOVED)
             slc_unit_free(s, unit);
-        else if (s->residency->interface->map(s->residency, u->texture, &u->tile) ==
-                 SLUICE_SUCCESS)
+        else if (s->residency->interface->map(s->residency, u->texture, &u->tile) == SLUICE_SUCCESS)
             slc_unit_list_append(s, &bound, unit);
         else
             slc_unit_list_append(s, &later, unit);
@@ -439,8 +439,7 @@ void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value)
 
 void slc_loads_recycle(SluiceVulkanStreamer *s)
 {
-    while (s->uploaded.first != SLC_NONE &&
-           s->units[s->uploaded.first].value <= s->completed_frame)
+    while (s->uploaded.first != SLC_NONE && s->units[s->uploaded.first].value <= s->completed_frame)
         slc_unit_free(s, slc_unit_list_pop(s, &s->uploaded));
 }
 

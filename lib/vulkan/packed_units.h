@@ -1,7 +1,8 @@
 /**
  * How the packed levels of a texture travel: cut into rectangles that fit into staging slots.
  *
- * A unit is what one slot holds and one read fills: several small levels, or a piece of a large one.
+ * A unit is what one slot holds and one read fills: several small levels, or a piece of a large
+ * one.
  */
 #ifndef SLC_VULKAN_PACKED_UNITS_H
 #define SLC_VULKAN_PACKED_UNITS_H

@@ -27,8 +27,7 @@ void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_v
 {
     slc_buffer_finish(&ring->buffer, vk);
     slc_free(cb, ring->slots, ring->slot_count, sizeof *ring->slots);
-    slc_free(cb, ring->items, (size_t)ring->slot_count * ring->items_per_slot,
-             sizeof *ring->items);
+    slc_free(cb, ring->items, (size_t)ring->slot_count * ring->items_per_slot, sizeof *ring->items);
     *ring = (struct slc_readback_ring){0};
 }
 
@@ -49,8 +48,7 @@ bool slc_readback_add(struct slc_readback_ring *ring, struct slc_readback_slot *
     uint64_t size = ((uint64_t)width * height + 3) & ~(uint64_t)3;
     if (slot->item_count == ring->items_per_slot || size > ring->slot_size - slot->used)
         return false;
-    slot->items[slot->item_count++] =
-        (struct slc_readback_item){id, slot->used, width, height};
+    slot->items[slot->item_count++] = (struct slc_readback_item){id, slot->used, width, height};
     *word = (uint32_t)((slot - ring->slots) * (ring->slot_size / 4)) + slot->used / 4;
     slot->used += (uint32_t)size;
     return true;

@@ -17,7 +17,7 @@ struct slc_readback_slot {
     uint64_t frame; ///< 0: empty
     uint64_t time_stamp;
     uint32_t item_count;
-    uint32_t used; ///< bytes
+    uint32_t used;                   ///< bytes
     struct slc_readback_item *items; ///< part of slc_readback_ring.items
 };
 
@@ -42,7 +42,8 @@ struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uin
 /** False if the map has no room in this slot. `*word` is its place in the whole buffer. */
 bool slc_readback_add(struct slc_readback_ring *ring, struct slc_readback_slot *slot,
                       SluiceTextureId id, uint32_t width, uint32_t height, uint32_t *word);
-/** The oldest slot whose frame is at most `completed_frame`, or NULL. Set its frame to 0 when read. */
+/** The oldest slot whose frame is at most `completed_frame`, or NULL. Set its frame to 0 when read.
+ */
 struct slc_readback_slot *slc_readback_oldest(struct slc_readback_ring *ring,
                                               uint64_t completed_frame);
 const uint8_t *slc_readback_map(const struct slc_readback_ring *ring,

@@ -34,8 +34,7 @@ void slc_region_arena_finish(struct slc_region_arena *arena, const SluiceAllocat
 static void remove_gap(struct slc_region_arena *arena, uint32_t at)
 {
     arena->gap_count--;
-    memmove(&arena->gaps[at], &arena->gaps[at + 1],
-            (arena->gap_count - at) * sizeof *arena->gaps);
+    memmove(&arena->gaps[at], &arena->gaps[at + 1], (arena->gap_count - at) * sizeof *arena->gaps);
 }
 
 bool slc_region_arena_take(struct slc_region_arena *arena, uint32_t count, uint32_t *first)
@@ -63,8 +62,7 @@ void slc_region_arena_give(struct slc_region_arena *arena, uint32_t first, uint3
     uint32_t at = 0;
     while (at < arena->gap_count && arena->gaps[at].first < first)
         at++;
-    bool joins_left =
-        at > 0 && arena->gaps[at - 1].first + arena->gaps[at - 1].count == first;
+    bool joins_left = at > 0 && arena->gaps[at - 1].first + arena->gaps[at - 1].count == first;
     bool joins_right = at < arena->gap_count && first + count == arena->gaps[at].first;
     if (joins_left && joins_right) {
         arena->gaps[at - 1].count += count + arena->gaps[at].count;

@@ -1,6 +1,7 @@
 /**
- * What makes texels resident: one interface, one implementation per file (residency_sparse.c: sparse
- * binding). The streamer decides nothing about memory and an implementation nothing about tiles.
+ * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
+ * sparse binding). The streamer decides nothing about memory and an implementation nothing about
+ * tiles.
  *
  * The protocol of a frame:
  *
@@ -36,7 +37,8 @@ struct slc_residency_interface {
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
 
     /** As SluiceHeapAllocator. */
-    SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size, uint32_t *heap_id);
+    SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
+                                  uint32_t *heap_id);
     void (*release_heap)(struct slc_residency *residency, uint32_t heap_id);
 
     /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
@@ -44,7 +46,8 @@ struct slc_residency_interface {
     /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
      *  place is not over. Ask again in the next frame. */
     SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
-    /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap times. */
+    /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
+     * times. */
     void (*unmap)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
                   uint64_t frame);
     /** How many unmaps may be collected. */
@@ -58,8 +61,9 @@ struct slc_residency_interface {
     uint64_t (*retire_limit)(const struct slc_residency *residency, uint64_t completed_frame);
 
     /** One image's texels from `buffer`; the streamer puts barriers around. */
-    void (*record_uploads)(struct slc_residency *residency, uint32_t index, VkCommandBuffer commands,
-                           VkBuffer buffer, uint32_t count, const VkBufferImageCopy *regions);
+    void (*record_uploads)(struct slc_residency *residency, uint32_t index,
+                           VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
+                           const VkBufferImageCopy *regions);
 };
 
 /** What is counted for the public statistics. */
@@ -74,7 +78,7 @@ struct slc_residency {
 };
 
 struct slc_residency_create_info {
-    const struct slc_vk *vk;     ///< outlives the residency, as what follows
+    const struct slc_vk *vk; ///< outlives the residency, as what follows
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     VkQueue sparse_queue;

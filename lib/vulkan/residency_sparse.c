@@ -1,6 +1,6 @@
 /*
- * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a timeline
- * semaphore that is only ever polled.
+ * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a
+ * timeline semaphore that is only ever polled.
  */
 #include "vulkan/residency.h"
 
@@ -47,8 +47,8 @@ struct sparse_residency {
     struct slc_tile_map pending_tiles;
 
     struct slc_bind_list list;
-    uint64_t list_first_frame;                ///< of the unmaps in the list
-    VkSparseImageMemoryBind *tile_binds;      ///< owned, as the next ones
+    uint64_t list_first_frame;           ///< of the unmaps in the list
+    VkSparseImageMemoryBind *tile_binds; ///< owned, as the next ones
     VkSparseMemoryBind *page_binds;
     VkSparseImageMemoryBindInfo *tile_infos;
     VkSparseImageOpaqueMemoryBindInfo *page_infos;
@@ -173,9 +173,9 @@ static SluiceResult update(struct slc_residency *residency, uint64_t completed_f
 {
     struct sparse_residency *s = sparse(residency);
     uint64_t value = 0;
-    SluiceResult result = slc_vk_result(
-        s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->semaphore, &value),
-        "vkGetSemaphoreCounterValue");
+    SluiceResult result =
+        slc_vk_result(s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->semaphore, &value),
+                      "vkGetSemaphoreCounterValue");
     if (result != SLUICE_SUCCESS)
         return result;
     s->completed_value = value;
@@ -234,11 +234,11 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
     const struct slc_sparse_layout *layout = &image->layout;
     uint64_t offset = (uint64_t)run->place.x * SLC_TILE_SIZE;
     bool bound = run->heap_id != SLC_UNBIND;
-    return (VkSparseMemoryBind){
-        .resourceOffset = layout->tail_offset + offset,
-        .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
-        .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
-        .memoryOffset = bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
+    return (VkSparseMemoryBind){.resourceOffset = layout->tail_offset + offset,
+                                .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
+                                .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
+                                .memoryOffset =
+                                    bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
 }
 
 /* The binds of one image: runs[0..count), all of it, and its metadata if that is not bound yet. */
@@ -278,13 +278,14 @@ static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
     if (s->list.count == 0 || s->batch_count == MAX_BATCHES)
         return SLUICE_SUCCESS;
     slc_bind_list_build_runs(&s->list);
-    /* Batches are ordered by semaphores only, and a later one may rebind what an earlier one unbinds. */
-    VkTimelineSemaphoreSubmitInfo timeline = {
-        .sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-        .waitSemaphoreValueCount = 1,
-        .pWaitSemaphoreValues = &s->submitted_value,
-        .signalSemaphoreValueCount = 1,
-        .pSignalSemaphoreValues = value};
+    /* Batches are ordered by semaphores only, and a later one may rebind what an earlier one
+     * unbinds. */
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .waitSemaphoreValueCount = 1,
+                                              .pWaitSemaphoreValues = &s->submitted_value,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = value};
     VkBindSparseInfo info = {.sType = VK_STRUCTURE_TYPE_BIND_SPARSE_INFO,
                              .pNext = &timeline,
                              .waitSemaphoreCount = 1,
@@ -300,9 +301,8 @@ static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
                 break;
         add_image(s, &info, &tile_count, &page_count, &s->list.runs[i], next - i);
     }
-    SluiceResult result =
-        slc_vk_result(s->vk, s->vk->QueueBindSparse(s->queue, 1, &info, VK_NULL_HANDLE),
-                      "vkQueueBindSparse");
+    SluiceResult result = slc_vk_result(
+        s->vk, s->vk->QueueBindSparse(s->queue, 1, &info, VK_NULL_HANDLE), "vkQueueBindSparse");
     if (result != SLUICE_SUCCESS)
         return result;
     s->submitted_value++;
@@ -326,8 +326,9 @@ static SluiceResult wait(struct slc_residency *residency)
                          "vkWaitSemaphores");
 }
 
-static void record_uploads(struct slc_residency *residency, uint32_t index, VkCommandBuffer commands,
-                           VkBuffer buffer, uint32_t count, const VkBufferImageCopy *regions)
+static void record_uploads(struct slc_residency *residency, uint32_t index,
+                           VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
+                           const VkBufferImageCopy *regions)
 {
     struct sparse_residency *s = sparse(residency);
     s->vk->CmdCopyBufferToImage(commands, buffer, s->images[index].image, VK_IMAGE_LAYOUT_GENERAL,
@@ -401,8 +402,7 @@ static SluiceResult create_semaphore(struct sparse_residency *s)
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                       .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    return slc_vk_result(s->vk,
-                         s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
+    return slc_vk_result(s->vk, s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
                          "vkCreateSemaphore");
 }
 
@@ -426,8 +426,8 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     if (result == SLUICE_SUCCESS) {
         s->memory_type = slc_sparse_memory_type(s->vk, s->caps);
         if (s->memory_type == UINT32_MAX) {
-            slc_log(&s->vk->log, SLUICE_LOG_ERROR, "%s has no device-local memory for sparse images",
-                    s->caps->public.deviceName);
+            slc_log(&s->vk->log, SLUICE_LOG_ERROR,
+                    "%s has no device-local memory for sparse images", s->caps->public.deviceName);
             result = SLUICE_ERROR_UNSUPPORTED;
         }
     }

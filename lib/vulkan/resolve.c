@@ -8,11 +8,11 @@ static SluiceResult create_layouts(struct slc_resolve *r, const struct slc_vk *v
 {
     VkDescriptorSetLayoutBinding bindings[2];
     for (uint32_t i = 0; i < 2; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding = i,
-            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-            .descriptorCount = 1,
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
+        bindings[i] =
+            (VkDescriptorSetLayoutBinding){.binding = i,
+                                           .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                           .descriptorCount = 1,
+                                           .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
     VkDescriptorSetLayoutCreateInfo set_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = 2,
@@ -51,8 +51,7 @@ static SluiceResult create_pipeline(struct slc_resolve *r, const struct slc_vk *
                   .pName = "main"},
         .layout = r->layout};
     result = slc_vk_result(
-        vk,
-        vk->CreateComputePipelines(vk->device, VK_NULL_HANDLE, 1, &info, NULL, &r->pipeline),
+        vk, vk->CreateComputePipelines(vk->device, VK_NULL_HANDLE, 1, &info, NULL, &r->pipeline),
         "vkCreateComputePipelines");
     vk->DestroyShaderModule(vk->device, module, NULL);
     return result;
@@ -79,7 +78,8 @@ static SluiceResult create_set(struct slc_resolve *r, const struct slc_vk *vk, V
                            "vkAllocateDescriptorSets");
     if (result != SLUICE_SUCCESS)
         return result;
-    VkDescriptorBufferInfo buffers[2] = {{feedback, 0, VK_WHOLE_SIZE}, {resolved, 0, VK_WHOLE_SIZE}};
+    VkDescriptorBufferInfo buffers[2] = {{feedback, 0, VK_WHOLE_SIZE},
+                                         {resolved, 0, VK_WHOLE_SIZE}};
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = r->set,
                                   .descriptorCount = 2,

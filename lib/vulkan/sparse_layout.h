@@ -1,4 +1,5 @@
-/** How a sparse image is cut into tiles and packed pages: pure arithmetic over what a driver says. */
+/** How a sparse image is cut into tiles and packed pages: pure arithmetic over what a driver says.
+ */
 #ifndef SLC_VULKAN_SPARSE_LAYOUT_H
 #define SLC_VULKAN_SPARSE_LAYOUT_H
 

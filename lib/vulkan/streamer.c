@@ -113,26 +113,26 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     uint64_t regions = s->regions.size;
-    SluiceResult result = slc_buffer_init(
-        &s->texture_table, &s->vk, &s->caps,
-        (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry), usage,
-        SLC_BUFFER_DEVICE);
-    if (result == SLUICE_SUCCESS)
-        result = slc_buffer_init(&s->feedback, &s->vk, &s->caps, regions * 4, usage,
-                                 SLC_BUFFER_DEVICE);
+    SluiceResult result =
+        slc_buffer_init(&s->texture_table, &s->vk, &s->caps,
+                        (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry),
+                        usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
         result =
-            slc_buffer_init(&s->min_mip, &s->vk, &s->caps, regions, usage, SLC_BUFFER_DEVICE);
+            slc_buffer_init(&s->feedback, &s->vk, &s->caps, regions * 4, usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
-        result = slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps,
-                                 regions * s->info.framesInFlight, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                 SLC_BUFFER_UPLOAD);
+        result = slc_buffer_init(&s->min_mip, &s->vk, &s->caps, regions, usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
-        result = slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb,
-                                        s->info.framesInFlight, s->info.texturesPerFrame,
-                                        (uint32_t)regions);
+        result =
+            slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps, regions * s->info.framesInFlight,
+                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
     if (result == SLUICE_SUCCESS)
-        result = slc_resolve_init(&s->resolve, &s->vk, s->feedback.buffer, s->readback.buffer.buffer);
+        result =
+            slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
+                                   s->info.texturesPerFrame, (uint32_t)regions);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_resolve_init(&s->resolve, &s->vk, s->feedback.buffer, s->readback.buffer.buffer);
     return result;
 }
 

@@ -96,14 +96,14 @@ struct SluiceVulkanStreamer {
     uint64_t manager_time; ///< the last time stamp that the manager got
     bool buffers_cleared;
 
-    struct slc_texture *textures;   ///< owned; maxTextureCount
-    uint32_t *by_manager_index;     ///< owned; low half of a texture id -> index in textures
-    uint32_t texture_high;          ///< textures from here on were never used
-    uint32_t *primaries;            ///< owned; textures whose feedback is read back
+    struct slc_texture *textures; ///< owned; maxTextureCount
+    uint32_t *by_manager_index;   ///< owned; low half of a texture id -> index in textures
+    uint32_t texture_high;        ///< textures from here on were never used
+    uint32_t *primaries;          ///< owned; textures whose feedback is read back
     uint32_t primary_count, primary_cursor;
-    uint32_t *new_textures;         ///< owned; added since the last frame
+    uint32_t *new_textures; ///< owned; added since the last frame
     uint32_t new_texture_count;
-    uint32_t *packed_queue;         ///< owned; textures whose packed levels are READY or MAPPING
+    uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
     uint32_t packed_queue_count;
     uint32_t removed_count;
     struct slc_region_arena regions;
@@ -111,13 +111,13 @@ struct SluiceVulkanStreamer {
     struct slc_unit *units; ///< owned; maxLoadsInFlight
     struct slc_unit_list free_units, arrived, binding, uploaded;
     uint32_t free_unit_count;
-    struct slc_tile_map tile_units;   ///< (texture, tile) -> unit, from READING to UPLOADED
+    struct slc_tile_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
     struct slc_buffer staging;
-    uint32_t *frame_units;            ///< owned; tilesPerFrame
-    VkBufferImageCopy *copies;        ///< owned
+    uint32_t *frame_units;     ///< owned; tilesPerFrame
+    VkBufferImageCopy *copies; ///< owned
     uint32_t copy_capacity;
-    SluiceTile *tiles;                ///< owned; tilesPerFrame
-    uint32_t *tile_indices;           ///< owned; tilesPerFrame
+    SluiceTile *tiles;      ///< owned; tilesPerFrame
+    uint32_t *tile_indices; ///< owned; tilesPerFrame
 
     struct slc_buffer texture_table, feedback, min_mip;
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
@@ -129,15 +129,14 @@ struct SluiceVulkanStreamer {
     SluiceVulkanStreamerStatistics counts; ///< but what others count
 };
 
-
-
 static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, SluiceTextureId id)
 {
     return &s->textures[s->by_manager_index[(uint32_t)id]];
 }
 
 /** Logs what the manager refuses although it should not; returns `result`. */
-SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result, const char *what);
+SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
+                                const char *what);
 
 /* loads.c: from tiles that are wanted to texels in staging slots */
 SluiceResult slc_loads_init(SluiceVulkanStreamer *s);
@@ -145,10 +144,11 @@ void slc_loads_finish(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_collect(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_start(SluiceVulkanStreamer *s);
-void slc_loads_bind(SluiceVulkanStreamer *s);                     ///< what arrived is given to the residency
-void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value);    ///< by the submission of that value
-void slc_loads_recycle(SluiceVulkanStreamer *s);                  ///< slots of completed frames
-void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t texture);   ///< of a texture that is being removed
+void slc_loads_bind(SluiceVulkanStreamer *s); ///< what arrived is given to the residency
+void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value); ///< by the submission of that value
+void slc_loads_recycle(SluiceVulkanStreamer *s);               ///< slots of completed frames
+void slc_loads_drop(SluiceVulkanStreamer *s,
+                    uint32_t texture); ///< of a texture that is being removed
 void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
 uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
 void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit);

@@ -59,9 +59,8 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
 {
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     texture->packed_first_unit = SLC_NONE;
-    SluiceResult result =
-        slc_packed_units_init(&texture->packed, &s->cb, desc,
-                              sluiceFormatTexelSize(texture->info.format), SLC_TILE_SIZE);
+    SluiceResult result = slc_packed_units_init(
+        &texture->packed, &s->cb, desc, sluiceFormatTexelSize(texture->info.format), SLC_TILE_SIZE);
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
@@ -76,8 +75,7 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
 static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *texture,
                                    SluiceTextureId primary)
 {
-    SluiceResult result =
-        sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
+    SluiceResult result = sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
     if (result != SLUICE_SUCCESS)
         return result;
     assert((uint32_t)texture->id < s->info.maxTextureCount);

@@ -1,4 +1,5 @@
-/** A fixed-size hash map from (texture, tile) to a number; open addressing, no allocation after init. */
+/** A fixed-size hash map from (texture, tile) to a number; open addressing, no allocation after
+ * init. */
 #ifndef SLC_VULKAN_TILE_MAP_H
 #define SLC_VULKAN_TILE_MAP_H
 

@@ -16,7 +16,8 @@ static VkBufferImageCopy copy_of(uint64_t offset, const SluiceImageRegion *regio
 }
 
 /* The copies of one unit; how many. */
-static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index, VkBufferImageCopy *copies)
+static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
+                            VkBufferImageCopy *copies)
 {
     const struct slc_unit *unit = &s->units[index];
     const struct slc_texture *texture = &s->textures[unit->texture];
