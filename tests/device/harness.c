@@ -139,10 +139,15 @@ static bool create_device(struct harness *h)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                           .pNext = &vulkan12};
-    VkPhysicalDeviceFeatures there;
-    h->GetPhysicalDeviceFeatures(h->physical_device, &there);
-    features.features.shaderResourceResidency = there.shaderResourceResidency;
-    features.features.samplerAnisotropy = there.samplerAnisotropy;
+    VkPhysicalDeviceVulkan12Features there12 = vulkan12;
+    VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                       .pNext = &there12};
+    h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
+    features.features.shaderResourceResidency = there.features.shaderResourceResidency;
+    features.features.samplerAnisotropy = there.features.samplerAnisotropy;
+    vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
+    h->anisotropy = there.features.samplerAnisotropy;
+    h->mirror_clamp = there12.samplerMirrorClampToEdge;
     if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, &log,
                                     &features.features, &vulkan12) != SLUICE_SUCCESS)
         return false;

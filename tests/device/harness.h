@@ -15,7 +15,7 @@
 /* clang-format off */
 #define HARNESS_INSTANCE_FUNCTIONS(X)                                                             \
     X(CreateDevice) X(DestroyInstance) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr)           \
-    X(GetPhysicalDeviceFeatures) X(GetPhysicalDeviceMemoryProperties)                             \
+    X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties)                             \
     X(GetPhysicalDeviceProperties) X(GetPhysicalDeviceQueueFamilyProperties)
 
 #define HARNESS_DEVICE_FUNCTIONS(X)                                                               \
@@ -30,7 +30,7 @@
     X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyDevice)                       \
     X(DestroyFramebuffer) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline)                  \
     X(DestroyPipelineLayout) X(DestroyRenderPass) X(DestroySampler) X(DestroyShaderModule)        \
-    X(DeviceWaitIdle) X(EndCommandBuffer) X(FreeMemory) X(GetBufferMemoryRequirements)            \
+    X(DeviceWaitIdle) X(EndCommandBuffer) X(FreeDescriptorSets) X(FreeMemory) X(GetBufferMemoryRequirements)            \
     X(GetDeviceQueue) X(GetImageMemoryRequirements) X(MapMemory) X(QueueSubmit)                   \
     X(ResetCommandBuffer) X(UpdateDescriptorSets) X(WaitSemaphores)
 /* clang-format on */
@@ -55,6 +55,7 @@ struct harness {
     uint32_t family;
     VkQueue queue, sparse_queue;
     SluiceVulkanDeviceCapabilities caps;
+    bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
     uint32_t frame_count;

@@ -37,6 +37,7 @@ static void create_layouts(struct prober *p)
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS * PROBE_MAX_TEXTURES},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, (BINDINGS - BUFFERS) * PROBE_MAX_TEXTURES}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
                                        .maxSets = PROBE_MAX_TEXTURES,
                                        .poolSizeCount = 2,
                                        .pPoolSizes = sizes};
@@ -88,6 +89,12 @@ void prober_finish(struct prober *p)
     h->DestroyDescriptorSetLayout(h->device, p->set_layout, NULL);
     harness_buffer_finish(h, &p->inputs);
     harness_buffer_finish(h, &p->outputs);
+}
+
+void prober_release(struct prober *p, struct probe_texture texture)
+{
+    assert_int_equal(p->h->DeviceWaitIdle(p->h->device), VK_SUCCESS);
+    assert_int_equal(p->h->FreeDescriptorSets(p->h->device, p->pool, 1, &texture.set), VK_SUCCESS);
 }
 
 VkSampler prober_sampler(struct prober *p, VkSamplerAddressMode u, VkSamplerAddressMode v,

@@ -33,9 +33,6 @@ struct prober {
         uint32_t u, v, anisotropy, nearest_mip;
     } sampler_keys[PROBE_MAX_SAMPLERS];
     uint32_t sampler_count;
-    uint32_t first, count; ///< of the current dispatch
-    uint32_t flags;
-    struct probe_texture texture;
 };
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer);
@@ -45,6 +42,9 @@ void prober_finish(struct prober *p);
 struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,
                                     VkSamplerAddressMode u, VkSamplerAddressMode v,
                                     float anisotropy);
+
+/** The set may be used again; no frame uses it any more once the device was waited for. */
+void prober_release(struct prober *p, struct probe_texture texture);
 
 VkSampler prober_sampler(struct prober *p, VkSamplerAddressMode u, VkSamplerAddressMode v,
                          float anisotropy, bool nearest_mip);

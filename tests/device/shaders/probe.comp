@@ -10,7 +10,7 @@ layout(std430, binding = 0) readonly buffer Table { SluiceTextureEntry entries[]
 layout(std430, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
 layout(std430, binding = 2) buffer Feedback { uint words[]; } feedback;
 layout(std430, binding = 3) readonly buffer Inputs { ProbeInput inputs[]; };
-layout(std430, binding = 4) writeonly buffer Outputs { ProbeOutput outputs[]; };
+layout(std430, binding = 4) buffer Outputs { ProbeOutput outputs[]; };
 layout(binding = 5) uniform sampler2D tex;
 layout(binding = 6) uniform sampler2D nearestMipTex;
 layout(push_constant) uniform Push { ProbeParams params; };
@@ -86,10 +86,8 @@ void main()
     }
 #ifdef PROBE_CODES
     if ((params.flags & PROBE_RESIDENCY) != 0u)
-        outputs[at].nonResident = sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
+        outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                          bias, anisotropy);
-#else
-    outputs[at].nonResident = 0u;
 #endif
     if ((params.flags & PROBE_FEEDBACK) != 0u)
         sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);

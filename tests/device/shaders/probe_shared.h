@@ -28,7 +28,7 @@ struct ProbeOutput {
     float color[4];
     uint missingLevels;
     uint level;
-    uint nonResident;
+    uint nonResident; /* summed over the dispatches */
     uint wantedLevel;
     float lod;
     uint footprint[6];
