@@ -20,7 +20,7 @@ void pattern_texel(enum pattern_kind kind, uint32_t level, uint32_t x, uint32_t 
         rgba[channel] = (float)(value & 255) / 255.0f;
     }
     if (kind == PATTERN_LEVEL) {
-        rgba[0] = (float)level / 16.0f;
+        rgba[0] = (float)(level + 1) / 16.0f;
         rgba[3] = 1.0f;
     }
 }

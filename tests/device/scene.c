@@ -40,12 +40,8 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
         CHECK_OK(sluiceWaitVulkanStreamerIdle(scene->streamer));
     if (texture->owns)
         sluiceDestroyImageSource(texture->source);
-    *texture = (struct scene_texture){.used = true,
-                                      .source = source,
-                                      .owns = true,
-                                      .u = u,
-                                      .v = v,
-                                      .anisotropy = anisotropy};
+    *texture = (struct scene_texture){
+        .used = true, .source = source, .owns = true, .u = u, .v = v, .anisotropy = anisotropy};
     CHECK_OK(sluiceGetImageInfo(source, &texture->info));
     SluiceVulkanTextureCreateInfo info = {
         .source = source, .primaryId = primary, .addressModeU = u, .addressModeV = v};
@@ -98,7 +94,8 @@ void scene_aim(struct scene *scene, uint32_t index, uint32_t count, const struct
         inputs[i] = (struct ProbeInput){
             .uv = {(float)(aim->left + draw() * aim->width),
                    (float)(aim->top + draw() * aim->height)},
-            .dx = {(float)(cos(angle) * scale * ratio / w), (float)(sin(angle) * scale * ratio / h)},
+            .dx = {(float)(cos(angle) * scale * ratio / w),
+                   (float)(sin(angle) * scale * ratio / h)},
             .dy = {(float)(-sin(angle) * scale / w), (float)(cos(angle) * scale / h)},
             .lodBias = aim->bias,
             .maxAnisotropy = texture->anisotropy};
@@ -149,6 +146,27 @@ uint64_t scene_non_resident(struct scene *scene)
         count += out->nonResident;
     }
     return count;
+}
+
+void scene_check_levels(const struct scene *scene)
+{
+    for (uint32_t t = 0; t < SCENE_TEXTURES; t++)
+        for (uint32_t i = 0; i < scene->textures[t].sample_count; i++) {
+            const struct ProbeOutput *out = &scene_outputs(scene, t)[i];
+            const struct ProbeInput *inputs = scene->prober.inputs.mapped;
+            const struct ProbeInput *in = &inputs[t * SCENE_SAMPLES + i];
+            if (out->level == SLUICE_MIP_UNTOUCHED ||
+                pattern_level(out->color) >= (float)out->level - 0.02f)
+                continue;
+            fail_msg("texture %u (%ux%u, modes %d %d): shows level %g, allowed %u, wanted %u, lod "
+                     "%g; uv %.9g %.9g, dx %.9g %.9g, dy %.9g %.9g, bias %g, anisotropy %g",
+                     t, scene->textures[t].info.width, scene->textures[t].info.height,
+                     (int)scene->textures[t].u, (int)scene->textures[t].v,
+                     (double)pattern_level(out->color), out->level, out->wantedLevel,
+                     (double)out->lod, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
+                     (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
+                     (double)in->maxAnisotropy);
+        }
 }
 
 uint32_t scene_missing(const struct scene *scene)

@@ -60,6 +60,11 @@ void scene_settle(struct scene *scene, uint32_t frame_count);
 void scene_clear_outputs(struct scene *scene);
 /** Waits for the device; samples of all textures that touched what is not resident. */
 uint64_t scene_non_resident(struct scene *scene);
+/**
+ * Fails the test if a sample of PATTERN_LEVEL shows a finer level than it was allowed to, which is
+ * also what texels that are not resident look like. Independent of residency codes.
+ */
+void scene_check_levels(const struct scene *scene);
 /** Samples of all textures that are coarser than they should be. */
 uint32_t scene_missing(const struct scene *scene);
 

@@ -9,9 +9,9 @@
 #include <string.h>
 
 static const SluiceFormat formats[] = {
-    SLUICE_FORMAT_R8_UNORM,     SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB,
-    SLUICE_FORMAT_R16_SFLOAT,   SLUICE_FORMAT_R16G16_SFLOAT,  SLUICE_FORMAT_R16G16B16A16_SFLOAT,
-    SLUICE_FORMAT_R32_SFLOAT,   SLUICE_FORMAT_R32G32_SFLOAT,  SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+    SLUICE_FORMAT_R8_UNORM,   SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB,
+    SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R16G16_SFLOAT,  SLUICE_FORMAT_R16G16B16A16_SFLOAT,
+    SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32_SFLOAT,  SLUICE_FORMAT_R32G32B32A32_SFLOAT,
 };
 #define FORMATS (sizeof formats / sizeof formats[0])
 
@@ -21,15 +21,15 @@ static void settled_sample_shows_the_level_that_was_wanted(void **state)
 {
     struct scene scene;
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
-    uint32_t t = scene_add(
-        &scene, pattern_source(PATTERN_LEVEL, 2048, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    uint32_t t =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     srand(1);
     scene_aim(&scene, t, SCENE_SAMPLES, &everywhere);
     scene_settle(&scene, 14);
     for (uint32_t i = 0; i < SCENE_SAMPLES; i++) {
         const struct ProbeOutput *out = &scene_outputs(&scene, t)[i];
         assert_int_equal(out->missingLevels, 0);
-        assert_float_equal(out->color[0] * 16, out->lod, 0.15);
+        assert_float_equal(pattern_level(out->color), out->lod, 0.15);
     }
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);
@@ -41,8 +41,8 @@ static void picture_gets_sharper_frame_by_frame(void **state)
     struct scene scene;
     scene_init(&scene, *state,
                (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100, .tilesPerFrame = 8});
-    uint32_t t = scene_add(
-        &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    uint32_t t =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     const struct scene_aim fine = {0, 0, 1, 1, 0.2, 0.3, 0, 0};
     scene_aim(&scene, t, 64, &fine);
     uint32_t levels[64], steps = 0;
@@ -88,8 +88,8 @@ struct fetch {
 static void record_fetch(void *user, VkCommandBuffer commands)
 {
     struct fetch *fetch = user;
-    prober_record(&fetch->scene->prober, commands,
-                  fetch->scene->textures[fetch->texture].probe, 0, fetch->count, PROBE_FETCH);
+    prober_record(&fetch->scene->prober, commands, fetch->scene->textures[fetch->texture].probe, 0,
+                  fetch->count, PROBE_FETCH);
 }
 
 static void fetch_and_check(struct fetch *fetch)
@@ -116,8 +116,8 @@ static void fetch_all(struct scene *scene, uint32_t index, uint32_t stride)
                 bool edge = x % 64 == 0 || x % 64 == 63 || y % 64 == 0 || y % 64 == 63;
                 if (width * height > 4096 && ++n % (edge ? stride : 16 * stride) != 0)
                     continue;
-                prober_inputs(&scene->prober)[fetch.count++] = (struct ProbeInput){
-                    .uv = {(float)x, (float)y}, .lodBias = (float)level};
+                prober_inputs(&scene->prober)[fetch.count++] =
+                    (struct ProbeInput){.uv = {(float)x, (float)y}, .lodBias = (float)level};
                 if (fetch.count == PROBE_CAPACITY)
                     fetch_and_check(&fetch);
             }
@@ -150,19 +150,19 @@ static void settled_colours_are_those_of_a_resident_texture(void **state)
     static struct ProbeOutput truth[PROBE_CAPACITY];
     for (int streamed = 0; streamed < 2; streamed++) {
         struct scene scene;
-        scene_init(&scene, *state,
-                   (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000,
-                                                    .mapEverything = !streamed});
+        scene_init(
+            &scene, *state,
+            (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .mapEverything = !streamed});
         srand(2);
         const uint32_t sizes[][2] = {{1024, 1024}, {1000, 600}, {777, 1311}, {2048, 100}};
         for (uint32_t i = 0; i < 12; i++) {
             float anisotropy = i % 3 == 2 ? 8.0f : 1.0f;
-            uint32_t t = scene_add_as(
-                &scene,
-                pattern_source(PATTERN_HASH, sizes[i % 4][0], sizes[i % 4][1], formats[i % FORMATS]),
-                i % 5, (i + 2) % 4, anisotropy, SLUICE_NO_TEXTURE);
-            const struct scene_aim aim = {-0.5, -0.5, 2, 2, -1, 9, i % 2 ? 10 : 0,
-                                          i % 4 == 3 ? -0.75f : 0.0f};
+            uint32_t t = scene_add_as(&scene,
+                                      pattern_source(PATTERN_HASH, sizes[i % 4][0], sizes[i % 4][1],
+                                                     formats[i % FORMATS]),
+                                      i % 5, (i + 2) % 4, anisotropy, SLUICE_NO_TEXTURE);
+            const struct scene_aim aim = {
+                -0.5, -0.5, 2, 2, -1, 9, i % 2 ? 10 : 0, i % 4 == 3 ? -0.75f : 0.0f};
             scene_aim(&scene, t, SCENE_SAMPLES, &aim);
         }
         scene_settle(&scene, 20);
@@ -183,8 +183,8 @@ static void tiles_nobody_wants_any_more_are_unmapped_and_come_back_right(void **
 {
     struct scene scene;
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 3});
-    uint32_t t = scene_add(
-        &scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    uint32_t t =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     const struct scene_aim left = {0.02, 0.02, 0.4, 0.9, 0.3, 0.4, 0, 0};
     const struct scene_aim right = {0.55, 0.02, 0.4, 0.9, 0.3, 0.4, 0, 0};
     SluiceVulkanStreamerStatistics stats;
@@ -193,7 +193,7 @@ static void tiles_nobody_wants_any_more_are_unmapped_and_come_back_right(void **
         scene_settle(&scene, 16);
         assert_int_equal(scene_missing(&scene), 0);
         for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
-            assert_float_equal(scene_outputs(&scene, t)[i].color[0] * 16,
+            assert_float_equal(pattern_level(scene_outputs(&scene, t)[i].color),
                                scene_outputs(&scene, t)[i].lod, 0.15);
         sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
         /* half of level 0 is 128 tiles, of level 1 32, and so on */
@@ -209,8 +209,8 @@ static void followers_get_what_their_primary_wants(void **state)
 {
     struct scene scene;
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
-    uint32_t primary = scene_add(
-        &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    uint32_t primary =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     uint32_t follower = scene_add_as(
         &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R16G16B16A16_SFLOAT), 0, 0,
         1, scene.textures[primary].texture.textureId);
@@ -224,7 +224,7 @@ static void followers_get_what_their_primary_wants(void **state)
     scene_settle(&scene, 16);
     assert_int_equal(scene_missing(&scene), 0);
     for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
-        assert_float_equal(scene_outputs(&scene, follower)[i].color[0] * 16,
+        assert_float_equal(pattern_level(scene_outputs(&scene, follower)[i].color),
                            scene_outputs(&scene, follower)[i].lod, 0.15);
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);

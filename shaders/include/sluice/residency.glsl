@@ -54,7 +54,7 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     vec2 axis = vec2(0.0);
     if (maxAnisotropy > 1.0) {
         taps = 9u;
-        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, maxAnisotropy);
+        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, 0.0, maxAnisotropy);
     }
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {
