@@ -209,7 +209,8 @@ static uint32_t model_frame(struct model *m, uint64_t time)
     fake->bind_count = fake->copy_count = fake->destroyed_count = fake->bind_calls = 0;
     fake->published = false;
     fake->frame_value = advance(fake->frame_value, m->frame);
-    fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
+    if (rand() % 4 == 0) /* slow at times, so that batches pile up */
+        fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
     if (rand() % 2)
         CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
     SluiceStreamingFrame frame;
@@ -254,7 +255,7 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = heap_capacity,
                                            .maxHeapCount = heaps,
-                                           .feedbackTimeout = 6,
+                                           .feedbackTimeout = 2,
                                            .maxRegionCount = 1 << 14};
     fake_vulkan_fill(&m->fake, &info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
@@ -263,8 +264,9 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
         model_add(m);
     uint64_t shown = 0;
     for (uint64_t step = 1; step <= 1500; step++) {
-        if (step % 20 == 0)
-            m->window++;
+        /* back and forth: tiles are wanted again just after they were given up */
+        if (step % 3 == 0)
+            m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
         if (step % 50 == 0)
             remove_any(m);
         shown += model_frame(m, step);
