@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 3 };
+enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
 
 struct tile {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
