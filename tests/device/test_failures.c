@@ -387,6 +387,8 @@ static void begin_refuses_time_that_goes_back_and_too_many_frames(void **state)
         CHECK_OK(sluiceBeginStreamingFrame(scene.streamer, commands, ++h->time, &frame));
         assert_int_equal(frame.frameIndex, 2 + i);
         CHECK_OK(sluiceEndStreamingFrame(scene.streamer, commands));
+        CHECK_RESULT(sluiceEndStreamingFrame(scene.streamer, commands),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
     }
     CHECK_RESULT(sluiceBeginStreamingFrame(scene.streamer, commands, ++h->time, &frame),
                  SLUICE_NOT_READY);
