@@ -62,8 +62,8 @@ struct call {
     uint32_t keep, heap, tile;
     SluiceMinMipRect rect;
     size_t pitch, size;
-    /** The allocator refuses the allocations [refuse_from, refuse_until) of this call. */
-    uint64_t refuse_from, refuse_until;
+    /** So many allocations of this call succeed, then none; UINT64_MAX: all do. */
+    uint64_t refuse_after;
     /* Not cleared between calls. */
     uint8_t map[CALL_MAX_MAP];
     uint32_t indices[CALL_MAX_INDICES];
@@ -90,6 +90,8 @@ struct outcome {
     struct heap_answer answers[CALL_MAX_ROOM];
 };
 
+/** Makes the call and fills in what it answered, but for the heap allocator's answers. */
+void call_make(SluiceStreamedTextureManager *manager, const struct call *call, struct outcome *out);
 const char *call_kind_name(enum call_kind kind);
 /** One line, but for feedback maps, which follow row by row. */
 void call_print(FILE *file, const struct call *call);
