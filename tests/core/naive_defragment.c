@@ -1,11 +1,6 @@
 /* Which moves are made is up to the manager; here is what every one of them must keep to. */
 #include "core/naive_manager.h"
 
-static uint32_t used_slots(const struct naive_manager *n, const struct naive_heap *heap)
-{
-    return n->capacity - naive_count_slots(n, heap, NAIVE_SLOT_FREE);
-}
-
 /* The living tile that a move names, if it is where the move says; NULL with a complaint. */
 static struct naive_tile *moved_tile(struct naive_manager *n, const SluiceTileMove *m, uint32_t i)
 {
@@ -36,7 +31,8 @@ static void make_move(struct naive_manager *n, const struct call *call, const Sl
         return;
     }
     const struct naive_heap *from = naive_find_heap(n, tile->heap);
-    if (from == to || used_slots(n, from) > used_slots(n, to))
+    if (from == to || naive_count_slots(n, from, NAIVE_SLOT_USED) >
+                          naive_count_slots(n, to, NAIVE_SLOT_USED))
         naive_complain(n, "move %u leads from heap %u to %u, which is not fuller", i, from->id,
                        to->id);
     naive_retire_slot(n, tile, call->retire);
