@@ -65,11 +65,12 @@ static SluiceStreamedTextureDesc random_desc(struct choice *c)
 void call_sequence_desc(struct call_sequence *s, SluiceStreamedTextureDesc *desc)
 {
     const uint32_t most = choice_once_in(&s->choice, 12) ? 400 : s->max_tiles;
+    const uint32_t least = choice_once_in(&s->choice, 3) ? 1 : most / 4;
     for (int i = 0; i < 16; i++) {
         SluiceStreamedTextureLayout l;
         *desc = random_desc(&s->choice);
-        if (naive_layout(desc, &l) == SLUICE_SUCCESS && l.tileCount <= most &&
-            l.feedbackWidth * l.feedbackHeight <= most)
+        if (naive_layout(desc, &l) == SLUICE_SUCCESS && l.tileCount >= least &&
+            l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= 400)
             return;
     }
     *desc = (SluiceStreamedTextureDesc){8, 8, 2, 2, 0, 4, 4, 0, 0};

@@ -35,7 +35,7 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
 void call_sequence_start(struct call_sequence *s, struct choice choice)
 {
     static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64};
-    static const uint32_t tiles[] = {4, 16, 30, 60};
+    static const uint32_t tiles[] = {6, 30, 80, 160};
     static const uint64_t times[] = {0, 1, (uint64_t)1 << 63, UINT64_MAX, UINT64_MAX - 100};
     static const uint64_t timeouts[] = {0, 1, 5, 30, 200, (uint64_t)1 << 40, UINT64_MAX};
     memset(s, 0, offsetof(struct call_sequence, last_map));
@@ -49,7 +49,7 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->starving = choice_once_in(c, 2) ? 0 : choice_range(c, 3, 30);
     s->refusing = choice_once_in(c, 3) ? 0 : choice_range(c, 1, 8);
     s->max_tiles = tiles[choice_below(c, 4)];
-    s->max_textures = choice_range(c, 1, 7);
+    s->max_textures = choice_range(c, 1, 8);
     s->small_rooms = choice_once_in(c, 3);
     s->time = choice_once_in(c, 3) ? choice_u64(c) : times[choice_below(c, 5)];
     s->timeout = timeouts[choice_below(c, 7)];
@@ -335,6 +335,16 @@ static void make_trim(struct call_sequence *s, struct call *call)
     call->keep = choice_once_in(&s->choice, 3) ? 0 : choice_below(&s->choice, 30);
 }
 
+static uint32_t any_tile(struct call_sequence *s, struct naive_manager *n, SluiceTextureId id)
+{
+    SluiceResult ignored;
+    const struct naive_texture *t = naive_find(n, id, &ignored);
+    uint32_t count = t ? t->layout.tileCount : 1;
+    if (mistake(s))
+        return choice_once_in(&s->choice, 2) ? count : UINT32_MAX;
+    return choice_below(&s->choice, count);
+}
+
 static void fill_in(struct call_sequence *s, struct naive_manager *n, struct call *call)
 {
     struct choice *c = &s->choice;
@@ -347,6 +357,8 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
     case CALL_SET_PRIMARY:
         call->texture = any_id(s, n);
         call->primary = any_id(s, n);
+        for (int i = 0; i < 4 && call->primary == call->texture && !mistake(s); i++)
+            call->primary = any_id(s, n);
         if (call->kind == CALL_SET_PRIMARY && choice_once_in(c, 6))
             call->primary = SLUICE_NO_TEXTURE;
         call->time = any_time(s, n);
@@ -374,7 +386,7 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
             call->texture = SLUICE_ALL_TEXTURES;
         call->retire = any_retire(s, n);
         call->room = any_room(s);
-        call->tile = choice_below(c, 70);
+        call->tile = any_tile(s, n, call->texture);
         break;
     }
 }
@@ -385,7 +397,9 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
     memset(call, 0, offsetof(struct call, map));
     call->kind = any_kind(s);
     uint32_t tiles;
-    if (count_textures(n, &tiles) == 0 && choice_below(c, 4) > 0)
+    const uint32_t textures = count_textures(n, &tiles);
+    if ((textures == 0 && choice_below(c, 4) > 0) ||
+        (textures < s->max_textures && choice_once_in(c, 6)))
         call->kind = CALL_ADD_TEXTURE;
     call->refuse_after = UINT64_MAX;
     fill_in(s, n, call);

@@ -28,6 +28,8 @@ struct differential {
     uint32_t heaps[MAX_HEAPS];
     struct published published[64];
     uint64_t coverage[CALL_KIND_COUNT][64]; ///< by result + 32
+    uint64_t entries[CALL_KIND_COUNT];      ///< of all lists that were handed out
+    uint64_t restored, textures, tiles, calls;
     bool failed;
     char message[512];
 };
@@ -199,6 +201,8 @@ static size_t row_bytes(const struct call *c)
 static void compare_outcomes(struct differential *d)
 {
     const struct outcome *a = &d->seen, *b = &d->expected;
+    if (d->call.null != NULL_SECOND && a->result >= 0)
+        d->entries[d->call.kind] += a->count + d->call.count;
     if (a->result != b->result)
         fail(d, "the result is %s, expected %s", sluiceResultString(a->result),
              sluiceResultString(b->result));
@@ -274,6 +278,9 @@ static void compare_states(struct differential *d)
         compare_minmip(d, t);
     }
     naive_statistics(&d->naive, &b);
+    d->calls++;
+    d->textures += b.textureCount;
+    d->tiles += b.tileCount;
     if (sluiceGetStatistics(d->manager, &a) != SLUICE_SUCCESS)
         fail(d, "sluiceGetStatistics failed");
     compare_statistics(d, &a, &b);
@@ -396,6 +403,7 @@ static void defragment_to_the_end(struct differential *d, FILE *log)
 
 static void finish(struct differential *d)
 {
+    d->restored += d->naive.totals.restoredTotal;
     sluiceDestroyStreamedTextureManager(d->manager);
     d->manager = NULL;
     if (d->heap_count)
@@ -438,10 +446,14 @@ void differential_print_coverage(const struct differential *d, FILE *file)
 {
     for (int kind = 0; kind < CALL_KIND_COUNT; kind++) {
         fprintf(file, "# %s:", call_kind_name((enum call_kind)kind));
+        if (d->entries[kind])
+            fprintf(file, " %" PRIu64 " entries,", d->entries[kind]);
         for (int r = 0; r < 64; r++)
             if (d->coverage[kind][r])
                 fprintf(file, " %s %" PRIu64, sluiceResultString((SluiceResult)(r - 32)),
                         d->coverage[kind][r]);
         fprintf(file, "\n");
-    }
+    }    const double calls = d->calls ? (double)d->calls : 1;
+    fprintf(file, "# %" PRIu64 " tiles restored; on average %.1f textures, %.1f tiles\n",
+            d->restored, (double)d->textures / calls, (double)d->tiles / calls);
 }
