@@ -31,7 +31,7 @@ static uint32_t random_region(struct choice *c, uint32_t tile)
 static uint32_t full_chain(uint32_t width, uint32_t height)
 {
     uint32_t levels = 1;
-    while ((width | height) >> levels)
+    while ((uint64_t)(width | height) >> levels)
         levels++;
     return levels;
 }
