@@ -53,8 +53,8 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
 
 void call_sequence_start(struct call_sequence *s, struct choice choice)
 {
-    static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64};
-    static const uint32_t tiles[] = {6, 30, 80, 160};
+    static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64, 65, 200};
+    static const uint32_t tiles[] = {6, 30, 80, 160, 160, 700};
     static const uint64_t times[] = {0, 1, (uint64_t)1 << 63, UINT64_MAX, UINT64_MAX - 100};
     static const uint64_t timeouts[] = {0, 1, 5, 30, 200, (uint64_t)1 << 40, UINT64_MAX};
     memset(s, 0, offsetof(struct call_sequence, last_map));
@@ -218,7 +218,7 @@ static void make_add(struct call_sequence *s, const struct naive_manager *n, str
     const bool full = count_textures(n, &tiles) >= s->max_textures;
     if (naive_layout(&call->desc, &l) != SLUICE_SUCCESS)
         return;
-    if (full || l.tileCount > 400 || (uint64_t)l.feedbackWidth * l.feedbackHeight > 400 ||
+    if (full || l.tileCount > 1000 || (uint64_t)l.feedbackWidth * l.feedbackHeight > 1000 ||
         tiles + l.tileCount > CALL_MAX_ROOM)
         call->kind = CALL_LAYOUT;
 }
