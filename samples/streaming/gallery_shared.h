@@ -2,7 +2,7 @@
 #ifndef GALLERY_SHARED_H
 #define GALLERY_SHARED_H
 
-#include <sluice/shared/types.h>
+#include "sluice/shared/types.h"
 
 #define GALLERY_NO_TEXTURE 0xffffffffu
 #define GALLERY_LIGHTS_PER_DRAW 3

@@ -66,7 +66,7 @@ static float half_to_float(uint16_t half)
 {
     int exponent = half >> 10 & 31;
     float magnitude = exponent == 0 ? ldexpf((float)(half & 1023), -24)
-                                    : ldexpf((float)(half & 1023 | 1024), exponent - 25);
+                                    : ldexpf((float)((half & 1023) | 1024), exponent - 25);
     return exponent == 31 ? NAN : half & 0x8000 ? -magnitude : magnitude;
 }
 
