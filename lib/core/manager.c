@@ -57,17 +57,18 @@ sluiceCreateStreamedTextureManager(const SluiceStreamedTextureManagerCreateInfo 
     m->info.pAllocator = pCreateInfo->pAllocator ? &m->given : NULL;
     m->cb = (SluiceAllocationCallbacks){m, count_allocate, count_free};
     m->host_memory_size = sizeof *m;
-    m->node_end = 1;
-    m->decay_end = 1;
     m->dirty_first = m->dirty_last = SLC_NONE;
     result = slc_tile_heaps_init(&m->heaps, &m->cb, &pCreateInfo->heapAllocator,
                                  pCreateInfo->heapTileCapacity, pCreateInfo->tileSize);
     if (result != SLUICE_SUCCESS)
         goto fail;
-    if (!slc_reserve_nodes(m, 1)) { /* so that room is never below the first index */
+    /* Index 0 of both pools stands for none. */
+    if (!slc_reserve_nodes(m, 1) || !slc_reserve_decays(m, 1)) {
         result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         goto fail;
     }
+    m->node_end = 1;
+    m->decay_end = 1;
     *pManager = m;
     return SLUICE_SUCCESS;
 

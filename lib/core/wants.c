@@ -65,7 +65,7 @@ SluiceResult slc_make_state(slc_manager *m, struct slc_texture *t)
     return SLUICE_SUCCESS;
 }
 
-static bool reserve_decays(slc_manager *m, uint64_t count)
+bool slc_reserve_decays(slc_manager *m, uint64_t count)
 {
     uint64_t have = (uint64_t)m->free_decay_count + (m->decay_room - m->decay_end);
     if (count <= have)
@@ -103,7 +103,7 @@ static bool reserve_changes(slc_manager *m, uint64_t count)
 SluiceResult slc_wants_reserve(slc_manager *m, const struct slc_wants_need *need)
 {
     if (need->changes >= UINT32_MAX || !slc_reserve_nodes(m, need->nodes) ||
-        !reserve_decays(m, need->decays) || !reserve_changes(m, need->changes))
+        !slc_reserve_decays(m, need->decays) || !reserve_changes(m, need->changes))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     return SLUICE_SUCCESS;
 }

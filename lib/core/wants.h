@@ -20,6 +20,8 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
 
 /** Makes the per-tile and per-region memory if it is not there yet. */
 SluiceResult slc_make_state(slc_manager *m, struct slc_texture *t);
+/** Makes sure that `count` decays can be taken. */
+bool slc_reserve_decays(slc_manager *m, uint64_t count);
 /** Adds what merging next_asked can need. */
 void slc_wants_add_need(const struct slc_texture *t, struct slc_wants_need *need);
 
