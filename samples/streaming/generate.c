@@ -109,6 +109,7 @@ static bool write_picture(const struct pattern_image *image, const char *path,
     SluiceResult result = pattern_create_source(image, SLUICE_FORMAT_R16G16B16A16_SFLOAT, &source);
     SluiceExrWriteInfo info = {.pPath = path,
                                .threadCount = thread_count,
+                               .opaque = true,
                                .log = {NULL, print_log},
                                .pUserData = generation,
                                .pfnProgress = note_progress};

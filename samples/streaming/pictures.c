@@ -127,11 +127,24 @@ static SluiceResult measure_exposure(struct picture *picture)
     return result;
 }
 
-static SluiceResult open_picture(const char *path, enum pixel_format pixels, struct picture *picture)
+static bool fits(const SluiceImageInfo *info, const struct picture_limits *limits)
+{
+    uint64_t bytes = (uint64_t)info->width * info->height * sluiceFormatTexelSize(info->format);
+    return info->width <= limits->max_size && info->height <= limits->max_size &&
+           bytes + bytes / 3 <= limits->max_bytes;
+}
+
+static SluiceResult open_picture(const char *path, enum pixel_format pixels,
+                                 const struct picture_limits *limits, struct picture *picture)
 {
     memset(picture, 0, sizeof *picture);
     picture->exposure = 1.0f;
     SluiceResult result = open_in_format(path, pixels, &picture->color, &picture->info);
+    if (result == SLUICE_SUCCESS && !fits(&picture->info, limits)) {
+        fprintf(stderr, "%s: %u x %u texels are more than the device can address\n", path,
+                picture->info.width, picture->info.height);
+        result = SLUICE_ERROR_UNSUPPORTED;
+    }
     if (result == SLUICE_SUCCESS)
         result = measure_exposure(picture);
     picture->grey = picture->info.format == SLUICE_FORMAT_R16_SFLOAT;
@@ -169,14 +182,14 @@ static bool create_reliefs(struct picture_list *list)
 }
 
 static bool open_files(const struct file_list *files, enum pixel_format pixels,
-                       struct picture_list *list)
+                       const struct picture_limits *limits, struct picture_list *list)
 {
     list->pictures = calloc(files->count ? files->count : 1, sizeof *list->pictures);
     if (!list->pictures)
         return false;
     for (size_t i = 0; i < files->count; i++) {
         struct picture *picture = &list->pictures[list->count];
-        SluiceResult result = open_picture(files->paths[i], pixels, picture);
+        SluiceResult result = open_picture(files->paths[i], pixels, limits, picture);
         if (result == SLUICE_SUCCESS) {
             list->count++;
             continue;
@@ -204,14 +217,15 @@ static bool collect_generated(const struct settings *settings, struct file_list 
     return true;
 }
 
-bool pictures_open(const struct settings *settings, struct picture_list *list)
+bool pictures_open(const struct settings *settings, const struct picture_limits *limits,
+                   struct picture_list *list)
 {
     struct file_list files = {0};
     bool collected = settings->images.count > 0 || collect_generated(settings, &files);
     for (size_t i = 0; collected && i < settings->images.count; i++)
         collected = files_collect(settings->images.items[i], ".exr", &files);
     *list = (struct picture_list){0};
-    bool opened = collected && open_files(&files, (enum pixel_format)settings->format, list);
+    bool opened = collected && open_files(&files, (enum pixel_format)settings->format, limits, list);
     files_finish(&files);
     if (!opened)
         pictures_close(list);

@@ -23,8 +23,15 @@ struct picture_list {
     uint32_t refused; ///< files that could not be opened; the reasons were printed
 };
 
+/** What the device can hold of one image. */
+struct picture_limits {
+    uint32_t max_size;  ///< texels in a direction
+    uint64_t max_bytes; ///< with all levels
+};
+
 /** Generates first if the settings name no images. Says on stderr what is wrong. */
-bool pictures_open(const struct settings *settings, struct picture_list *list);
+bool pictures_open(const struct settings *settings, const struct picture_limits *limits,
+                   struct picture_list *list);
 void pictures_close(struct picture_list *list);
 
 #endif /* SAMPLES_STREAMING_PICTURES_H */
