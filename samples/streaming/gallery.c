@@ -4,14 +4,16 @@
 
 #include "../common/progress.h"
 
-static const struct pattern_image parquet = {"parquet", 4096, 4096, pattern_parquet, 1};
-static const struct pattern_image wallpaper = {"wallpaper", 2048, 2048, pattern_wallpaper, 1};
-
 static bool open_surroundings(struct gallery *gallery)
 {
     const SluiceFormat format = SLUICE_FORMAT_R8G8B8A8_SRGB;
-    if (pattern_create_source(&parquet, format, &gallery->floor) == SLUICE_SUCCESS &&
-        pattern_create_source(&wallpaper, format, &gallery->wall) == SLUICE_SUCCESS &&
+    uint32_t scale = gallery->settings.generate_scale;
+    gallery->floor_pattern =
+        (struct pattern_image){"parquet", 4096 / scale, 4096 / scale, pattern_parquet, 1};
+    gallery->wall_pattern =
+        (struct pattern_image){"wallpaper", 2048 / scale, 2048 / scale, pattern_wallpaper, 1};
+    if (pattern_create_source(&gallery->floor_pattern, format, &gallery->floor) == SLUICE_SUCCESS &&
+        pattern_create_source(&gallery->wall_pattern, format, &gallery->wall) == SLUICE_SUCCESS &&
         room_build(&gallery->pictures, &gallery->room))
         return true;
     fprintf(stderr, "out of memory\n");

@@ -31,7 +31,7 @@ vec2 lampLight(GalleryLight lamp, vec3 position, vec3 normal, vec3 toEye, float 
     vec3 l = toLamp * inversesqrt(squared);
     float cone = clamp((dot(-l, toVec3(lamp.direction)) - lamp.cosOuter) /
                        (lamp.cosInner - lamp.cosOuter), 0.0, 1.0);
-    float strength = cone * cone * (3.0 - 2.0 * cone) * 7.5 / squared;
+    float strength = cone * cone * (3.0 - 2.0 * cone) * 6.6 / squared;
     float diffuse = max(dot(normal, l), 0.0) * strength;
     if (shine == 0.0 || diffuse == 0.0)
         return vec2(diffuse, 0.0);

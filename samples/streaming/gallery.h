@@ -9,6 +9,7 @@ struct gallery {
     struct gpu gpu;
     struct picture_list pictures;
     struct room room;
+    struct pattern_image floor_pattern, wall_pattern;
     SluiceImageSource *floor, *wall;
     struct target target;
     struct renderer renderer;

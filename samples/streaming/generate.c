@@ -14,11 +14,11 @@
 /* In hanging order. About 105 million texels, 1.1 GB as half floats with all levels. */
 static const struct pattern_image pictures[GENERATED_COUNT] = {
     {"coast", 8192, 3072, pattern_coast, 1},
-    {"mandelbrot", 4097, 4099, pattern_mandelbrot, 2},
-    {"guilloche", 4099, 2050, pattern_guilloche, 1},
-    {"glass", 2400, 4100, pattern_glass, 1},
-    {"julia", 6000, 3000, pattern_julia, 2},
     {"chart", 4096, 4096, pattern_chart, 1},
+    {"guilloche", 4099, 2050, pattern_guilloche, 1},
+    {"mandelbrot", 4097, 4099, pattern_mandelbrot, 2},
+    {"julia", 6000, 3000, pattern_julia, 2},
+    {"glass", 2400, 4100, pattern_glass, 1},
     {"nebula", 4500, 2251, pattern_nebula, 1},
 };
 

@@ -56,22 +56,30 @@ void pattern_parquet(float u, float v, float footprint, float rgb[3])
     rgb[0] = 0.30f * light, rgb[1] = 0.165f * light, rgb[2] = 0.080f * light;
 }
 
-/* A muted damask: mirrored leaves, a slightly brighter weave on a darker one. */
+/** 1 inside a flower of four petals around (0, 0), 0 outside. */
+static float flower(float x, float y, float size, float depth, float footprint)
+{
+    float squared = x * x + y * y + 1e-9f, radius = sqrtf(squared);
+    float c = x * x / squared; /* of the angle, squared: cos 4a = 8 c^2 - 8 c + 1 */
+    float edge = size * (1.0f + depth * (8.0f * c * c - 8.0f * c + 1.0f));
+    return noise_clamp((edge - radius) / (footprint + 0.004f) + 0.5f, 0.0f, 1.0f);
+}
+
+/* A muted damask: flowers in a diamond lattice, a shade brighter than the weave they are in. */
 void pattern_wallpaper(float u, float v, float footprint, float rgb[3])
 {
-    float x = u * 4.0f, y = v * 4.0f;
-    int32_t column = noise_floor(x), row = noise_floor(y);
-    float fx = fabsf(x - (float)column - 0.5f) * 2.0f, fy = (y - (float)row - 0.5f) * 2.0f;
-    if ((column + row) & 1)
-        fy = -fy;
-    float leaf = sinf(4.2f * fx + 2.0f * cosf(3.1416f * fy)) * cosf(3.1416f * fy * (1.0f + 0.5f * fx));
-    leaf += 0.6f * sinf(9.0f * fx * fy) * cosf(1.5708f * fy);
-    float ornament = noise_smoothstep(0.25f, 0.25f + 0.05f + 8.0f * footprint, leaf) *
-                     cosf(1.5708f * fy) * (1.0f - fx * fx);
+    float x = u * 4.0f, y = v * 4.0f, size = footprint * 4.0f;
+    float fx = x - floorf(x) - 0.5f, fy = y - floorf(y) - 0.5f;
+    float gx = 0.5f - fabsf(fx), gy = 0.5f - fabsf(fy); /* to the nearest corner */
+    float ornament = flower(fx, fy, 0.24f, 0.30f, size) - flower(fx, fy, 0.17f, 0.30f, size) +
+                     flower(fx, fy, 0.10f, -0.35f, size) + flower(gx, gy, 0.16f, -0.35f, size) -
+                     flower(gx, gy, 0.08f, 0.2f, size);
+    float lattice = fabsf(fabsf(fx) + fabsf(fy) - 0.5f);
+    ornament = fmaxf(ornament, noise_line(lattice, 0.012f, size * 1.5f));
     float weave = sinf(NOISE_TAU * 384.0f * u) * sinf(NOISE_TAU * 384.0f * v) *
                   noise_visible(384.0f, footprint);
     float plaster = repeating_octaves(u, v, 8, 7, 0.62f, footprint, 71);
-    float light = 0.74f + 0.20f * ornament + 0.06f * weave + 0.07f * plaster;
+    float light = 0.78f + 0.11f * ornament + 0.06f * weave + 0.04f * plaster;
     rgb[0] = 0.155f * light, rgb[1] = 0.225f * light, rgb[2] = 0.215f * light;
 }
 

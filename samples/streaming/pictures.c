@@ -103,7 +103,7 @@ static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat fo
         return 1.0f;
     /* The geometric mean alone makes a dark picture with a few lights far too bright. */
     double mean = 0.5 * (sum / used) + 0.5 * exp2(log_sum / used);
-    return mean > 0.45 ? (float)(0.45 / mean) : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0) : 1.0f;
+    return mean > 0.34 ? (float)(0.34 / mean) : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0) : 1.0f;
 }
 
 static SluiceResult measure_exposure(struct picture *picture)

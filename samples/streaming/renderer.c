@@ -12,10 +12,10 @@ static bool create_layouts(struct renderer *renderer)
 {
     VkDevice device = renderer->gpu->device;
     VkDescriptorSetLayoutBinding frame_bindings[6], texture_bindings[4];
-    for (uint32_t i = 0; i < 6; i++)
+    for (uint32_t i = 0; i < 6; i++) /* alike, so that one write fills all */
         frame_bindings[i] = (VkDescriptorSetLayoutBinding){
             i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-            VK_SHADER_STAGE_FRAGMENT_BIT | (i == 0 ? VK_SHADER_STAGE_VERTEX_BIT : 0), NULL};
+            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     for (uint32_t i = 0; i < 4; i++)
         texture_bindings[i] = (VkDescriptorSetLayoutBinding){
             i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};

@@ -44,7 +44,7 @@ struct room {
 };
 
 #define ROOM_FLOOR_REPEAT 3.2f ///< metres that the floor's texture covers
-#define ROOM_WALL_REPEAT 2.4f
+#define ROOM_WALL_REPEAT 1.8f
 
 /** False if out of memory. */
 bool room_build(const struct picture_list *pictures, struct room *room);

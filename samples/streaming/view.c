@@ -15,10 +15,10 @@ static void print_log(void *user_data, SluiceLogSeverity severity, const char *m
         fprintf(stderr, "%s\n", message);
 }
 
-/** Prints "what: SLUICE_..." and returns false unless it is a success or news. */
+/** Prints "what: SLUICE_..." and returns false unless it is a success. */
 static bool check(SluiceResult result, const char *what)
 {
-    if (result >= SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS)
         return true;
     fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
     return false;
@@ -342,7 +342,10 @@ static bool submit(const struct view *view, struct view_slot *slot,
 bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
                struct view_frame *out)
 {
-    struct view_slot *slot = &view->slots[view->frame_index % VIEW_FRAMES_IN_FLIGHT];
+    uint32_t slot_index = view->frame_index % VIEW_FRAMES_IN_FLIGHT;
+    struct view_slot *slot = &view->slots[slot_index];
+    if (!view_wait(view, slot_index))
+        return false;
     double start = clock_seconds();
     write_frame_data(view, camera, slot->frame.mapped);
 

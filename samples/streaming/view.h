@@ -54,8 +54,8 @@ bool view_create(const struct view_request *request, const char *record_path, st
 bool view_destroy(struct view *view);
 
 /**
- * Records and submits one frame into slot frame_index % VIEW_FRAMES_IN_FLIGHT, whose earlier frame
- * must have been waited for. `time_stamp` is in microseconds.
+ * Records and submits one frame into slot frame_index % VIEW_FRAMES_IN_FLIGHT, once the earlier frame
+ * there is over. `time_stamp` is in microseconds.
  */
 bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
                struct view_frame *frame);
