@@ -42,6 +42,7 @@ void pattern_coast(float u, float v, float footprint, float rgb[3])
 /** Iterates z^2 + c; returns a smooth count, or -1 inside, and how near the orbit came to 0. */
 static float escape_time(float zx, float zy, float cx, float cy, int limit, float *nearest)
 {
+    float old_x = zx, old_y = zy;
     *nearest = 1e9f;
     for (int i = 0; i < limit; i++) {
         float xx = zx * zx, yy = zy * zy, size = xx + yy;
@@ -51,6 +52,10 @@ static float escape_time(float zx, float zy, float cx, float cy, int limit, floa
             *nearest = size;
         zy = 2.0f * zx * zy + cy;
         zx = xx - yy + cx;
+        if (zx == old_x && zy == old_y) /* a cycle never escapes */
+            return -1.0f;
+        if ((i & (i + 1)) == 0)
+            old_x = zx, old_y = zy;
     }
     return -1.0f;
 }
@@ -78,8 +83,8 @@ void pattern_mandelbrot(float u, float v, float footprint, float rgb[3])
 {
     static const float phase[3] = {0.55f, 0.62f, 0.72f};
     (void)footprint;
-    float cx = -0.7436f + (u - 0.5f) * 0.0115f, cy = 0.1318f + (v - 0.5f) * 0.0115f, nearest;
-    float count = escape_time(0.0f, 0.0f, cx, cy, 600, &nearest);
+    float cx = -0.7451f + (u - 0.5f) * 0.0115f, cy = 0.1318f + (v - 0.5f) * 0.0115f, nearest;
+    float count = escape_time(0.0f, 0.0f, cx, cy, 500, &nearest);
     if (count < 0.0f) {
         rgb[0] = rgb[1] = rgb[2] = 0.004f;
         return;
