@@ -34,7 +34,10 @@ SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manag
                                              const SluiceAllocationCallbacks *pAllocator,
                                              SluiceRecorder **pRecorder);
 
-/** The same into a file. `pPath` is complete or, after an error, absent. */
+/**
+ * The same into a file, which is written as `pPath` with ".partial" appended and gets its name when
+ * the recording ends: `pPath` is complete or, after an error, as it was before. Errors: also IO.
+ */
 SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager,
                                                    const char *pPath,
                                                    const SluiceAllocationCallbacks *pAllocator,
@@ -59,6 +62,9 @@ typedef struct SluiceReplayInfo {
     uint32_t tilesPerFrame;     ///< answered per frame at most; 0: 256
     uint32_t latency;           ///< frames from handed out to answered
     uint64_t timeoutMicros;     ///< 0: 1 000 000
+    /* For both: */
+    /** NULL, or a file to record what is played into, as sluiceBeginRecordingToFile does. */
+    const char *pRecordPath;
 } SluiceReplayInfo;
 
 typedef struct SluiceReplayResult {
@@ -67,6 +73,9 @@ typedef struct SluiceReplayResult {
     uint64_t eventCount;
     uint64_t errorOffset;   ///< byte offset of what is wrong, after CORRUPT_DATA
     SluiceStreamedTextureStatistics statistics; ///< at the end
+    /** The first call, counted from 1, that was decided otherwise than recorded; 0: none. */
+    uint64_t divergedEvent;
+    uint64_t divergedOffset; ///< byte offset of that call in the trace
 } SluiceReplayResult;
 
 /**
