@@ -1,5 +1,5 @@
-/* "SLTRACE1" traces, made here from the description in docs/replay.md. */
 #include "damage.h"
+#include "feedback_scene.h"
 #include "lines.h"
 #include "random_app.h"
 
@@ -9,76 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAMES 12
 #define HEADER 64
 #define TEXTURE 40
-
-static void put(const SluiceRecordWriter *out, uint64_t value, int size)
-{
-    uint8_t bytes[8];
-    for (int i = 0; i < size; i++)
-        bytes[i] = (uint8_t)(value >> (8 * i));
-    CHECK_OK(out->pfnWrite(out->pUserData, bytes, (size_t)size));
-}
-
-static void put_texture(const SluiceRecordWriter *out, uint32_t size, uint32_t primary)
-{
-    uint32_t levels = 0, regular = 0, tiles = 0;
-    for (; size >> levels; levels++) {
-        uint32_t across = ((size >> levels) + 127) / 128;
-        if (size >> levels < 128)
-            continue;
-        regular++;
-        tiles += across * across;
-    }
-    put(out, size, 4);
-    put(out, size, 4);
-    put(out, 128, 2);
-    put(out, 128, 2);
-    put(out, levels, 1);
-    put(out, regular, 1);
-    put(out, levels - regular, 1);
-    put(out, 1, 1);
-    put(out, primary, 4);
-    put(out, 128, 2);
-    put(out, 128, 2);
-    put(out, size / 128, 2);
-    put(out, size / 128, 2);
-    put(out, 65536, 4);
-    put(out, tiles, 4);
-    put(out, 0, 4);
-}
-
-/* Textures 0 (512), 1 (1024, follows 0) and 2 (256); a window that moves and then stands. */
-static void make_trace(struct trace_buffer *trace)
-{
-    SluiceRecordWriter out = trace_buffer_writer(trace);
-    CHECK_OK(out.pfnWrite(out.pUserData, "SLTRACE1", 8));
-    put(&out, 3, 4);
-    put(&out, FRAMES, 4);
-    for (int i = 0; i < 12; i++)
-        put(&out, 0, 4);
-    put_texture(&out, 512, 0);
-    put_texture(&out, 1024, 0);
-    put_texture(&out, 256, 2);
-    for (uint32_t frame = 0; frame < FRAMES; frame++) {
-        uint32_t row = frame < 6 ? frame / 2 : 3;
-        put(&out, frame * 100000, 8);
-        put(&out, 2, 4);
-        put(&out, 0, 4);
-        put(&out, 6, 4); /* three pairs: untouched rows, one of level 0, untouched ones */
-        put(&out, 4 * row, 1);
-        put(&out, 255, 1);
-        put(&out, 4, 1);
-        put(&out, 0, 1);
-        put(&out, 4 * (3 - row), 1);
-        put(&out, 255, 1);
-        put(&out, 2, 4);
-        put(&out, 2, 4);
-        put(&out, 4, 1);
-        put(&out, frame < 6 ? 1 : 255, 1);
-    }
-}
 
 static SluiceReplayInfo replay_info(const struct trace_buffer *trace)
 {
@@ -94,7 +26,7 @@ static void feedback_that_stands_still_ends_with_what_it_wants(void **state)
     (void)state;
     struct trace_buffer trace;
     SluiceReplayResult result;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     const SluiceReplayInfo info = replay_info(&trace);
     CHECK_OK(sluiceReplay(&info, &result));
     const SluiceStreamedTextureStatistics *s = &result.statistics;
@@ -115,7 +47,7 @@ static void cap_and_latency_change_the_decisions(void **state)
     (void)state;
     struct trace_buffer trace;
     SluiceReplayResult plain, capped, late, again;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     CHECK_OK(sluiceReplay(&info, &plain));
     CHECK_OK(sluiceReplay(&info, &again));
@@ -152,7 +84,7 @@ static void recorded_run_has_the_same_decisions(void **state)
     struct trace_buffer trace, recorded;
     struct lines first = {0}, second = {0};
     SluiceReplayResult a, b;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     info.pRecordPath = path;
     info.pUserData = &first;
@@ -175,7 +107,7 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     for (size_t cut = 0; cut < trace.size; cut++) {
         uint8_t *copy = malloc(cut + 1);
         assert_non_null(copy);
@@ -193,7 +125,7 @@ static void changed_bytes_are_found_or_played(void **state)
     (void)state;
     struct trace_buffer trace;
     uint32_t corrupt = 0, played = 0;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     for (size_t at = 0; at < trace.size; at++) {
         const uint8_t was = trace.data[at];
         for (uint32_t value = 0; value < 256; value += at % 3 + 24) {
@@ -236,7 +168,7 @@ static void contradictions_are_named_at_their_record(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct trace_buffer trace;
         SluiceReplayResult result;
-        make_trace(&trace);
+        make_feedback_scene(&trace);
         trace.data[cases[i].offset] = cases[i].value;
         CHECK_RESULT(play_damaged(trace.data, trace.size, &result), SLUICE_ERROR_CORRUPT_DATA);
         assert_int_equal(result.errorOffset, cases[i].expected);
@@ -249,7 +181,7 @@ static void replay_without_memory_says_so_and_leaks_nothing(void **state)
     (void)state;
     struct trace_buffer trace;
     SluiceReplayResult result;
-    make_trace(&trace);
+    make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     SluiceResult status = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint64_t n = 0; status != SLUICE_SUCCESS; n++) {

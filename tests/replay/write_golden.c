@@ -2,6 +2,7 @@
  * Writes the recordings of tests/data: write_golden FOLDER. Run by `ninja update-golden-replays`
  * only; each scene is a few calls that show one thing.
  */
+#include "feedback_scene.h"
 #include "random_app.h"
 
 #include "support/test.h"
@@ -244,6 +245,20 @@ static void record_random(const char *folder)
     random_app_finish(&app);
 }
 
+/* The one that has feedback only. */
+static void write_feedback_scene(const char *folder)
+{
+    char path[1024];
+    struct trace_buffer trace;
+    make_feedback_scene(&trace);
+    snprintf(path, sizeof path, "%s/frame_loop.trace", folder);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(trace.data, 1, trace.size, file), trace.size);
+    assert_int_equal(fclose(file), 0);
+    trace_buffer_free(&trace);
+}
+
 static const char *folder_argument;
 
 static void write_all(void **state)
@@ -256,6 +271,7 @@ static void write_all(void **state)
     record(folder_argument, "sets", play_sets, 16, true);
     record(folder_argument, "defragment", play_defragment, 4, false);
     record_random(folder_argument);
+    write_feedback_scene(folder_argument);
 }
 
 int main(int argc, char **argv)
