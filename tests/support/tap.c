@@ -3,7 +3,6 @@
 
 #include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #if defined(__GLIBC__)
@@ -65,25 +64,15 @@ static ssize_t filter_write(void *cookie, const char *text, size_t size)
     return (ssize_t)size;
 }
 
-static int filter_close(void *cookie)
-{
-    free(cookie);
-    return 0;
-}
-
 void tap_filter_stdout(void)
 {
-    struct filter *filter = calloc(1, sizeof *filter);
-    if (filter == NULL)
+    static struct filter filter; /* used until the program has ended */
+    cookie_io_functions_t functions = {.write = filter_write};
+    FILE *stream = fopencookie(&filter, "w", functions);
+    if (stream == NULL)
         return;
-    filter->out = stdout;
-    FILE *stream = fopencookie(
-        filter, "w", (cookie_io_functions_t){.write = filter_write, .close = filter_close});
-    if (stream == NULL) {
-        free(filter);
-        return;
-    }
     setvbuf(stream, NULL, _IONBF, 0);
+    filter.out = stdout;
     stdout = stream;
 }
 
