@@ -13,8 +13,9 @@ package_is_installed() {
 # clang recommends its sanitizer runtimes, and they are named after its version.
 clang_runtime_package() {
     local version
-    version=$({ dpkg-query -W -f='${Depends}' clang 2>/dev/null || apt-cache show clang 2>/dev/null; } |
-        sed -n 's/.*clang-\([0-9][0-9]*\).*/\1/p' | head -n 1)
+    version=$({
+        dpkg-query -W -f='Depends: ${Depends}\n' clang 2>/dev/null || apt-cache show clang 2>/dev/null
+    } | sed -n 's/^Depends:.*\bclang-\([0-9][0-9]*\)\b.*/\1/p' | head -n 1)
     [ -n "$version" ] && say "libclang-rt-$version-dev"
 }
 
