@@ -17,7 +17,7 @@ files() {
         local pattern
         local -a names=()
         for pattern; do names+=(-o -path "./$pattern"); done
-        find . -name '.git' -prune -o -path './build*' -prune -o -type f \( "${names[@]:1}" \) -print
+        find . -name '.git' -prune -o -path './build*' -prune -o -path './subprojects/*-[0-9]*' -prune -o -type f \( "${names[@]:1}" \) -print
     fi
 }
 

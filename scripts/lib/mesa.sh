@@ -50,12 +50,13 @@ ensure_mesa() {
     say "Mesa is $(mesa_version) now."
 }
 
-lavapipe_icd() {
-    local file
+# Joined by colons: there may be one per architecture, and the loader passes over the foreign ones.
+lavapipe_icds() {
+    local file list=''
     for file in /usr/share/vulkan/icd.d/lvp_icd*.json /etc/vulkan/icd.d/lvp_icd*.json; do
-        [ -f "$file" ] && { say "$file"; return 0; }
+        [ -f "$file" ] && list=$list${list:+:}$file
     done
-    return 1
+    [ -n "$list" ] && say "$list"
 }
 
 has_gpu() {
@@ -70,7 +71,7 @@ has_gpu() {
 select_lavapipe() {
     local icd
     [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
-    icd=$(lavapipe_icd) || { warn "no lavapipe here"; return 0; }
+    icd=$(lavapipe_icds) || { warn "no lavapipe here"; return 0; }
     export VK_DRIVER_FILES=$icd VK_ICD_FILENAMES=$icd
 }
 
