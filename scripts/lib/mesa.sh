@@ -33,7 +33,7 @@ ensure_mesa() {
     mesa_is_recent && return 0
     [ "$1" = no ] && { mesa_give_up "nothing may be installed"; return 0; }
     suite=$(mesa_later_suite) || { mesa_give_up "no later suite known for $distribution"; return 0; }
-    can_be_root || { mesa_give_up "run as root or with sudo to install it"; return 0; }
+    become_root || { mesa_give_up "run as root or with sudo to install it"; return 0; }
 
     title "Mesa $(mesa_version) has no sparse residency: taking a later one from $suite"
     if ! distribution_targets | grep -q "|$suite|"; then

@@ -35,20 +35,21 @@ missing_packages() {
     done
 }
 
-# Runs as root: directly, or through sudo, which may ask for the password if there is a terminal.
-as_root() {
+# become_root finds out once how: directly, or through sudo, which may ask for the password where
+# there is a terminal. as_root then asks nothing.
+root_command=unknown
+become_root() {
+    [ "$root_command" = unknown ] || return 0
     if [ "$(id -u)" -eq 0 ]; then
-        "$@"
-    elif command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
-        sudo "$@"
+        root_command=''
+    elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }; }; then
+        root_command=sudo
     else
-        return 126
+        return 1
     fi
 }
 
-can_be_root() {
-    [ "$(id -u)" -eq 0 ] || { command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; }
-}
+as_root() { ${root_command:+"$root_command"} "$@"; }
 
 apt_get() {
     as_root env DEBIAN_FRONTEND=noninteractive NEEDRESTART_MODE=a apt-get \
@@ -125,7 +126,7 @@ ensure_packages() {
         warn "not installed: $missing"
     elif [ -n "$missing" ]; then
         title "Installing what is missing"
-        can_be_root || die "run this as root or with sudo; not installed: $missing"
+        become_root || die "run this as root or with sudo; not installed: $missing"
         apt_update
         ensure_universe || warn "universe cannot be had from the machine's own sources"
         missing=$(missing_packages "$1")

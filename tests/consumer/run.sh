@@ -104,7 +104,17 @@ subproject() {
         meson test -C "$work/sub"
 }
 
-echo 1..9
+# What `meson dist` packs is complete: it configures and builds on its own.
+release_archive() {
+    local archive
+    meson dist -C "$build" --no-tests --allow-dirty --formats=gztar || return 1
+    archive=$(find "$build/meson-dist" -name '*.tar.gz' | head -n 1)
+    [ -n "$archive" ] && mkdir "$work/unpacked" && tar -xzf "$archive" -C "$work/unpacked" &&
+        meson setup "$work/dist" "$work"/unpacked/* -Dtests=false -Dsamples=disabled &&
+        ninja -C "$work/dist"
+}
+
+echo 1..10
 check installs install_copy
 check pkg_config_file_is_installed find_installed
 find_installed && relocate
@@ -115,4 +125,10 @@ check compiler_builds_against_the_installed_copy plain main.c "${CC:-cc}" -std=c
 check cpp_compiler_builds_against_the_installed_copy plain main.cpp "${CXX:-c++}" -std=c++11 -Wall -Wextra -Werror
 check static_program_needs_only_libc plain_static
 check meson_subproject_builds subproject
+if git -C "$root" rev-parse HEAD >/dev/null 2>&1; then
+    check release_archive_is_complete release_archive
+else
+    number=$((number + 1))
+    echo "ok $number - release_archive_is_complete # SKIP there is no git, or no repository"
+fi
 exit $status
