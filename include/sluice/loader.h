@@ -14,15 +14,15 @@ extern "C" {
 typedef struct SluiceTileLoader SluiceTileLoader;
 
 typedef struct SluiceTileLoaderCreateInfo {
-    uint32_t threadCount;    ///< 0: one less than there are processors, at least 1
+    uint32_t threadCount;     ///< 0: one less than there are processors, at least 1
     uint32_t requestCapacity; ///< reads not yet collected, at most; 0: 1024
     const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
 } SluiceTileLoaderCreateInfo;
 
 /** One or more regions that are read as one: the packed levels of a texture, or one tile. */
 typedef struct SluiceTileRead {
-    SluiceImageSource *source; ///< must live until the read is collected
-    uint32_t regionCount;      ///< 1 to SLUICE_MAX_READ_REGIONS
+    SluiceImageSource *source;         ///< must live until the read is collected
+    uint32_t regionCount;              ///< 1 to SLUICE_MAX_READ_REGIONS
     const SluiceImageRegion *pRegions; ///< copied
     /** Where each region goes, tightly packed rows; must stay writable until collected. */
     void *const *ppTexels;
