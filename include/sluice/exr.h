@@ -22,11 +22,13 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * Format delivered, UNDEFINED for what fits the file: R16_SFLOAT or R32_SFLOAT for one channel,
      * R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT for more, by the widest channel. Conversion to
      * half saturates at +-65504; to 8 bits clamps to [0, 1], sRGB encodes; NaN becomes 0. Float
-     * formats keep infinities and NaN as they are in the file; chains built here treat NaN as 0.
+     * formats keep infinities and NaN as they are in the file, and so do half ones where the file
+     * has halves; chains built here treat NaN as 0.
      */
     SluiceFormat format;
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
-    SluiceLogCallback log;                       ///< what is wrong with a file, and where
+    /** NULL: malloc and free. What OpenEXRCore needs itself is always from malloc. */
+    const SluiceAllocationCallbacks *pAllocator;
+    SluiceLogCallback log; ///< what is wrong with a file, and where
     uint64_t maxImageSize; ///< bytes of level 0 beyond which a file is refused; 0: 2^34
 } SluiceExrImageSourceCreateInfo;
 
@@ -72,8 +74,9 @@ typedef struct SluiceExrWriteInfo {
  * them. The file is written under another name beside `pPath` and renamed when it is complete.
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for tiles of more than 2^24 texels; UNSUPPORTED beyond
- * 2^20 texels in a direction; LIMIT_EXCEEDED beyond 2^31 tiles; IO; OUT_OF_HOST_MEMORY; CANCELLED;
- *         and whatever but success the source answers, NOT_READY among it. No file is left then.
+ *         2^20 texels in a direction; LIMIT_EXCEEDED beyond 2^31 tiles; IO; OUT_OF_HOST_MEMORY;
+ *         CANCELLED; and whatever but success the source answers, NOT_READY among it. No file is
+ *         left then.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo,

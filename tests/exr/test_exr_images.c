@@ -55,7 +55,7 @@ static SluiceImageSource *open_image(const char *name, SluiceFormat format, Slui
 {
     char path[1024];
     if (!find_image(name, path))
-        skip();
+        SKIP_TEST("%s is not there; SLUICE_TEST_DATA says where the data folder is", path);
     SluiceExrImageSourceCreateInfo create = {.pPath = path, .format = format};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
