@@ -73,11 +73,10 @@ typedef struct SluiceExrWriteInfo {
  * a few tiles per thread and 8 bytes per tile of the file. The allocator is called from all of
  * them. The file is written under another name beside `pPath` and renamed when it is complete.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for tiles of more than 2^24 texels; UNSUPPORTED beyond
- *         2^20 texels in a direction; LIMIT_EXCEEDED beyond 2^31 tiles; IO; OUT_OF_HOST_MEMORY;
- *         CANCELLED; and whatever but success the source answers, NOT_READY among it. No file is
- *         left then.
- * Thread safety: any thread.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for tiles of more than 2^24 texels and sources without a
+ *         full chain; UNSUPPORTED beyond 2^20 texels in a direction; LIMIT_EXCEEDED beyond 2^31
+ * tiles; IO; OUT_OF_HOST_MEMORY; CANCELLED; and whatever but success the source answers, NOT_READY
+ * among it. No file is left then. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo,
                                            SluiceImageSource *source);

@@ -57,7 +57,8 @@ SLUICE_API SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const Slu
 
 /**
  * Asks for a read to be dropped. It is collected all the same: as CANCELLED if it had not begun or
- * had regions left, otherwise as if nothing had been said. Unknown and collected tickets are ignored. Thread safety: any thread.
+ * had regions left, otherwise as if nothing had been said. Unknown and collected tickets are
+ * ignored. Thread safety: any thread.
  */
 SLUICE_API void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket);
 

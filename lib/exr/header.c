@@ -289,9 +289,10 @@ static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, 
 }
 
 /*
- * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly (docs/decisions/0010-what-openexrcore-is-trusted-with.md), so
- * that for them the table of chunks is looked up here. It follows the headers: attributes up to an
- * empty name, in multi-part files one header after the other up to an empty one.
+ * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly
+ * (docs/decisions/0010-what-openexrcore-is-trusted-with.md), so that for them the table of chunks
+ * is looked up here. It follows the headers: attributes up to an empty name, in multi-part files
+ * one header after the other up to an empty one.
  */
 static SluiceResult find_chunk_table(struct slc_exr_file *file)
 {

@@ -402,10 +402,15 @@ static SluiceResult prepare(struct writer *writer)
     SluiceResult result = sluiceGetImageInfo(writer->source, &writer->image);
     if (result != SLUICE_SUCCESS)
         return result;
-    writer->channel_count = slc_format_channel_count(writer->image.format);
+    const SluiceImageInfo *image = &writer->image;
+    writer->channel_count = slc_format_channel_count(image->format);
+    if (writer->channel_count == 0 || image->width == 0 || image->height == 0 ||
+        image->mipLevelCount != slc_mip_count(slc_max_u32(image->width, image->height)))
+        return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT,
+                    "the source has no texels, an unknown format or not all levels");
     if (writer->channel_count == 4 && info->opaque)
         writer->channel_count = 3;
-    if (writer->image.width > 1u << 20 || writer->image.height > 1u << 20)
+    if (image->width > 1u << 20 || image->height > 1u << 20)
         return fail(writer, SLUICE_ERROR_UNSUPPORTED,
                     "images have at most 2^20 texels in either direction");
     count_tiles(writer);

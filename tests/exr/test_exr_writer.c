@@ -358,6 +358,30 @@ static void every_refused_allocation_is_a_result_and_leaves_nothing(void **state
     folder_finish(&folder);
 }
 
+struct wrong_source {
+    SluiceImageSource base;
+    uint32_t number;
+};
+
+static SluiceResult get_wrong_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    static const SluiceImageInfo wrong[] = {{0, 4, 3, SLUICE_FORMAT_R8_UNORM, "empty"},
+                                            {4, 4, 1, SLUICE_FORMAT_R8_UNORM, "few levels"},
+                                            {4, 4, 3, SLUICE_FORMAT_UNDEFINED, "no format"}};
+    *info = wrong[((struct wrong_source *)source)->number];
+    return SLUICE_SUCCESS;
+}
+
+static void sources_without_a_full_chain_are_refused(void **state)
+{
+    (void)state;
+    static const SluiceImageSourceInterface interface = {get_wrong_info, NULL, NULL};
+    struct wrong_source source = {{&interface}, 0};
+    SluiceExrWriteInfo info = {.pPath = "/no such folder/x.exr"};
+    for (; source.number < 3; source.number++)
+        CHECK_RESULT(sluiceWriteExrFile(&info, &source.base), SLUICE_ERROR_INVALID_ARGUMENT);
+}
+
 static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
@@ -392,6 +416,7 @@ int main(void)
         cmocka_unit_test(failures_of_the_source_are_passed_on_and_leave_no_file),
         cmocka_unit_test(a_full_disk_is_an_io_error_and_leaves_no_file),
         cmocka_unit_test(every_refused_allocation_is_a_result_and_leaves_nothing),
+        cmocka_unit_test(sources_without_a_full_chain_are_refused),
         cmocka_unit_test(wrong_arguments_are_refused),
     };
     return RUN_TESTS(tests);
