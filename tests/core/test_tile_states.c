@@ -81,16 +81,16 @@ static void wanted_again_before_the_cancel_list_is_read_goes_on_loading(void **s
     fixture_close(&f);
 }
 
-/* Tile 0 was listed for cancelling and is wanted again. */
-static SluiceTextureId cancel_and_want_again(struct fixture *f)
+/* Tile 0 was listed for cancelling and is wanted again; takes three units of time. */
+static SluiceTextureId cancel_and_want_again(struct fixture *f, uint64_t time)
 {
     SluiceTextureId id = fixture_add_small(f);
-    fixture_feed_region(f, id, 0, 0, 0, 0);
+    fixture_feed_region(f, id, 0, 0, time, 0);
     CHECK_OK(fixture_to_map(f, id));
-    pass(f, id, 1);
+    pass(f, id, time + 1);
     CHECK_OK(fixture_to_cancel(f, id));
     assert_int_equal(f->count, 3);
-    fixture_feed_region(f, id, 0, 0, 2, 0);
+    fixture_feed_region(f, id, 0, 0, time + 2, 0);
     CHECK_STATE(f, id, 0, CANCELLED);
     CHECK_OK(fixture_to_cancel(f, id));
     assert_int_equal(f->count, 0);
@@ -103,17 +103,17 @@ static void wanted_again_after_the_listing_waits_for_the_answer(void **state)
     struct fixture f;
     uint32_t tile = 0;
     fixture_open(&f, 16, false);
-    SluiceTextureId id = cancel_and_want_again(&f);
+    SluiceTextureId id = cancel_and_want_again(&f, 0);
     CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
     CHECK_STATE(&f, id, 0, REQUESTED);
-    id = cancel_and_want_again(&f); /* answered as mapped: it came in time */
+    id = cancel_and_want_again(&f, 10); /* answered as mapped: it came in time */
     map_one(&f, id, tile);
     CHECK_STATE(&f, id, 0, MAPPED);
-    id = cancel_and_want_again(&f);
-    CHECK_OK(sluiceReportFailedTiles(f.manager, id, 1, &tile, 2));
+    id = cancel_and_want_again(&f, 20);
+    CHECK_OK(sluiceReportFailedTiles(f.manager, id, 1, &tile, 22));
     CHECK_STATE(&f, id, 0, FAILED);
-    id = cancel_and_want_again(&f); /* and unwanted once more: forgotten */
-    pass(&f, id, 3);
+    id = cancel_and_want_again(&f, 30); /* and unwanted once more: forgotten */
+    pass(&f, id, 33);
     CHECK_OK(fixture_to_cancel(&f, id));
     assert_int_equal(f.count, 0);
     CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
