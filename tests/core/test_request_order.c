@@ -1,7 +1,5 @@
 #include "core/fixture.h"
 
-#include <string.h>
-
 /* 512x256 in 128x128: level 0 is 4x2 (0 to 7), level 1 is 2x1 (8, 9), 10 is packed. */
 static SluiceTextureId add_wide(struct fixture *f)
 {
