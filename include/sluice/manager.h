@@ -286,8 +286,8 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
 /**
  * Hands out tiles to load: reserves a slot for each and makes it ALLOCATED.
  *
- * Packed tiles come first, then coarser levels before finer ones, within a level the tile under
- * which the finest level is wanted, then the one that was requested earliest. `textureId` restricts
+ * Packed tiles come first, then coarser levels before finer ones, within a level the tile whose
+ * region misses the most levels, then the one that was requested earliest. `textureId` restricts
  * the list to one texture; with SLUICE_ALL_TEXTURES it covers all, and idle ones cost nothing.
  *
  * With `pTiles` NULL, writes how many are REQUESTED and changes nothing. Otherwise `*pTileCount` is
@@ -350,6 +350,7 @@ SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *man
 /**
  * These CANCELLED tiles were not loaded and never mapped: their slots come back once `retireValue`
  * has completed (0: at once; a bind or copy that was already recorded names its frame's value).
+ * ALLOCATED tiles may be given back in the same way; wanted ones are REQUESTED again.
  * Errors: as sluiceUpdateTilesMapping, and TIME_BACKWARDS.
  */
 SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,

@@ -37,23 +37,23 @@ enum slc_call_kind {
 struct slc_call {
     enum slc_call_kind kind;
     SluiceResult result;
-    SluiceTextureId texture_id;  ///< also the follower of MATCH_PRIMARY and SET_PRIMARY
-    SluiceTextureId primary_id;  ///< MATCH_PRIMARY, SET_PRIMARY
-    uint64_t time_stamp;         ///< UPDATE_FEEDBACK, MATCH_PRIMARY, REPORT_FAILED
-    uint64_t timeout;            ///< UPDATE_FEEDBACK, MATCH_PRIMARY
-    uint64_t retire_value;       ///< where the call takes one
+    SluiceTextureId texture_id; ///< also the follower of MATCH_PRIMARY and SET_PRIMARY
+    SluiceTextureId primary_id; ///< MATCH_PRIMARY, SET_PRIMARY
+    uint64_t time_stamp;        ///< UPDATE_FEEDBACK, MATCH_PRIMARY, REPORT_FAILED
+    uint64_t timeout;           ///< UPDATE_FEEDBACK, MATCH_PRIMARY
+    uint64_t retire_value;      ///< where the call takes one
     const SluiceStreamedTextureManagerConfig *config; ///< SET_CONFIG
     const SluiceStreamedTextureDesc *desc;            ///< ADD_TEXTURE
     const SluiceFeedbackDesc *feedback;               ///< UPDATE_FEEDBACK
     uint32_t keep_count;                              ///< TRIM_STANDBY
     uint32_t heap_id;                                 ///< RELEASE_HEAP, HEAP_ANSWER
-    uint32_t room;  ///< of the list calls: *pCount on entry
-    bool query;     ///< of the list calls: the array was NULL
+    uint32_t room;                                    ///< of the list calls: *pCount on entry
+    bool query;                                       ///< of the list calls: the array was NULL
     uint32_t count; ///< list calls: *pCount on return; answers: number of tile_indices
-    const uint32_t *tile_indices;    ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELLED
-    const SluiceTile *tiles;         ///< out: GET_TILES_TO_*, GET_GIVEN_UP
-    const SluiceTileMove *moves;     ///< out: DEFRAGMENT
-    const SluiceMinMipRect *rects;   ///< out: GET_MINMIP_UPDATES
+    const uint32_t *tile_indices;  ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELLED
+    const SluiceTile *tiles;       ///< out: GET_TILES_TO_*, GET_GIVEN_UP
+    const SluiceTileMove *moves;   ///< out: DEFRAGMENT
+    const SluiceMinMipRect *rects; ///< out: GET_MINMIP_UPDATES
 };
 
 struct slc_observer {
@@ -64,6 +64,9 @@ struct slc_observer {
 
 /** A zeroed observer switches off. One at a time. */
 void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_observer observer);
+
+/** Whether a changing call was made, or an observer is there. */
+bool slc_manager_is_used(const SluiceStreamedTextureManager *manager);
 
 /** Read only; what the player needs to make an equal manager. */
 const SluiceStreamedTextureManagerCreateInfo *

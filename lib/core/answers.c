@@ -1,0 +1,240 @@
+/* What the application answers to tiles that were handed out. */
+#include "core/internal.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+
+/** Marks a node while an answer is checked, so that a tile that stands twice is seen. */
+#define NODE_SEEN 128
+
+typedef void (*answer_function)(slc_manager *m, uint32_t node, uint64_t value);
+
+static bool is_in_flight(const struct slc_node *n)
+{
+    return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELLED;
+}
+
+static SluiceResult check_tile(slc_manager *m, const struct slc_texture *t, uint32_t tile)
+{
+    if (tile >= t->tile_count)
+        return SLUICE_ERROR_UNKNOWN_TILE;
+    uint32_t node = slc_find_node(m, t, tile);
+    if (!node || !is_in_flight(&m->nodes[node]) || m->nodes[node].flags & NODE_SEEN)
+        return SLUICE_ERROR_INVALID_TILE_STATE;
+    m->nodes[node].flags |= NODE_SEEN;
+    return SLUICE_SUCCESS;
+}
+
+/** All tiles are handed out and stand in the list once, or nothing happens. */
+static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
+                                const uint32_t *tiles)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    uint32_t checked = 0;
+    while (checked < count && result == SLUICE_SUCCESS)
+        result = check_tile(m, t, tiles[checked++]);
+    if (result != SLUICE_SUCCESS)
+        checked--;
+    for (uint32_t i = 0; i < checked; i++)
+        m->nodes[slc_find_node(m, t, tiles[i])].flags &= (uint8_t)~NODE_SEEN;
+    return result;
+}
+
+static SluiceResult check_answer(slc_manager *m, SluiceTextureId id, uint32_t count,
+                                 const uint32_t *tiles, struct slc_texture **t)
+{
+    if (count > 0 && !tiles)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_find_texture(m, id, t);
+    return result == SLUICE_SUCCESS ? check_tiles(m, *t, count, tiles) : result;
+}
+
+static bool is_wanted(const struct slc_node *n)
+{
+    return n->state == SLUICE_TILE_STATE_ALLOCATED || n->flags & SLC_NODE_WANTED;
+}
+
+static void answer_mapped(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = &m->nodes[node];
+    n->failures = 0;
+    slc_node_set_state(m, node,
+                       is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
+    m->mapped_total++;
+}
+
+static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
+{
+    m->failed_total++;
+    slc_node_free_slot(m, node);
+    if (!is_wanted(&m->nodes[node])) {
+        slc_node_release(m, node);
+        return;
+    }
+    slc_node_fail(m, node, time);
+    const struct slc_node *n = &m->nodes[node];
+    if (n->state == SLUICE_TILE_STATE_GIVEN_UP)
+        m->given_up_reports[m->report_end++] =
+            (struct slc_given_up){slc_texture_id(slc_texture_at(m, n->texture)), n->tile};
+}
+
+/** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
+static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
+{
+    bool wanted = is_wanted(&m->nodes[node]);
+    uint32_t tile = m->nodes[node].tile, level = m->nodes[node].level;
+    uint32_t failures = m->nodes[node].failures;
+    struct slc_texture *t = slc_texture_at(m, m->nodes[node].texture);
+    slc_node_retire(m, node, retire_value);
+    m->cancelled_total++;
+    if (!wanted)
+        return;
+    slc_tile_wanted(m, t, tile, level, 0);
+    m->nodes[slc_find_node(m, t, tile)].failures = failures;
+}
+
+/** Room for the reports of `count` tiles that may be given up. */
+static bool reserve_reports(slc_manager *m, uint32_t count)
+{
+    uint32_t waiting = m->report_end - m->report_first;
+    if ((uint64_t)m->report_end + count <= m->report_room)
+        return true;
+    uint64_t room = (uint64_t)waiting + count + waiting / 2 + 16;
+    if (room > UINT32_MAX)
+        return false;
+    struct slc_given_up *reports = slc_alloc(&m->cb, (size_t)room, sizeof *reports);
+    if (!reports)
+        return false;
+    for (uint32_t i = 0; i < waiting; i++)
+        reports[i] = m->given_up_reports[m->report_first + i];
+    slc_free(&m->cb, m->given_up_reports, m->report_room, sizeof *reports);
+    m->given_up_reports = reports;
+    m->report_first = 0;
+    m->report_end = waiting;
+    m->report_room = (uint32_t)room;
+    return true;
+}
+
+static SluiceResult update_mapping(slc_manager *m, SluiceTextureId id, uint32_t count,
+                                   const uint32_t *tiles)
+{
+    struct slc_texture *t;
+    SluiceResult result = check_answer(m, id, count, tiles, &t);
+    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < count; i++)
+        answer_mapped(m, slc_find_node(m, t, tiles[i]));
+    return result;
+}
+
+static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t count,
+                                  const uint32_t *tiles, uint64_t time)
+{
+    struct slc_texture *t;
+    SluiceResult result = check_answer(m, id, count, tiles, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_time_is_backwards(m, time))
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    if (!reserve_reports(m, count))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    slc_advance_time(m, time);
+    for (uint32_t i = 0; i < count; i++)
+        answer_failed(m, slc_find_node(m, t, tiles[i]), time);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_t count,
+                                     const uint32_t *tiles, uint64_t retire_value)
+{
+    struct slc_texture *t;
+    SluiceResult result = check_answer(m, id, count, tiles, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_retire_is_backwards(m, retire_value))
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    if (!slc_reserve_nodes(m, count))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (retire_value)
+        m->last_retire = retire_value;
+    for (uint32_t i = 0; i < count; i++)
+        answer_cancelled(m, slc_find_node(m, t, tiles[i]), retire_value);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *manager,
+                                      SluiceTextureId textureId, uint32_t tileCount,
+                                      const uint32_t *pTileIndices)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_UPDATE_MAPPING,
+                            .texture_id = textureId,
+                            .count = tileCount,
+                            .tile_indices = pTileIndices,
+                            .result = update_mapping(manager, textureId, tileCount, pTileIndices)};
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
+                                     SluiceTextureId textureId, uint32_t tileCount,
+                                     const uint32_t *pTileIndices, uint64_t timeStamp)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {
+        .kind = SLC_CALL_REPORT_FAILED,
+        .texture_id = textureId,
+        .count = tileCount,
+        .tile_indices = pTileIndices,
+        .time_stamp = timeStamp,
+        .result = report_failed(manager, textureId, tileCount, pTileIndices, timeStamp)};
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
+                                        SluiceTextureId textureId, uint32_t tileCount,
+                                        const uint32_t *pTileIndices, uint64_t retireValue)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {
+        .kind = SLC_CALL_REPORT_CANCELLED,
+        .texture_id = textureId,
+        .count = tileCount,
+        .tile_indices = pTileIndices,
+        .retire_value = retireValue,
+        .result = report_cancelled(manager, textureId, tileCount, pTileIndices, retireValue)};
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+static void retry_list(slc_manager *m, struct slc_list *list, const struct slc_texture *scope,
+                       bool forget)
+{
+    for (uint32_t node = list->head, next; node; node = next) {
+        next = m->nodes[node].next;
+        if (scope && m->nodes[node].texture != scope->index)
+            continue;
+        if (forget)
+            m->nodes[node].failures = 0;
+        slc_node_request_again(m, node);
+    }
+}
+
+SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *manager,
+                                    SluiceTextureId textureId)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_texture *scope;
+    struct slc_call call = {.kind = SLC_CALL_RETRY_FAILED,
+                            .texture_id = textureId,
+                            .result = slc_find_scope(manager, textureId, &scope)};
+    if (call.result == SLUICE_SUCCESS) {
+        retry_list(manager, &manager->failed, scope, false);
+        retry_list(manager, &manager->given_up, scope, true);
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}

@@ -1,0 +1,179 @@
+#include "core/check.h"
+
+#include "core/internal.h"
+
+/* Each function answers NULL or the first thing that is wrong. */
+#define REQUIRE(condition)                                                                         \
+    do {                                                                                           \
+        if (!(condition))                                                                          \
+            return #condition;                                                                     \
+    } while (0)
+
+static bool has_slot(uint8_t state)
+{
+    return state == SLUICE_TILE_STATE_ALLOCATED || state == SLUICE_TILE_STATE_CANCELLED ||
+           state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY ||
+           state == SLC_NODE_RETIRING;
+}
+
+static const char *check_list(const slc_manager *m, const struct slc_list *list, uint8_t state)
+{
+    uint32_t count = 0, previous = 0;
+    for (uint32_t node = list->head; node; node = m->nodes[node].next) {
+        REQUIRE(m->nodes[node].prev == previous);
+        REQUIRE(m->nodes[node].state == state);
+        REQUIRE(count < m->node_end);
+        previous = node;
+        count++;
+    }
+    REQUIRE(list->tail == previous);
+    REQUIRE(list->count == count);
+    return NULL;
+}
+
+static const char *check_requests(const slc_manager *m)
+{
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < SLC_REQUEST_CLASSES; c++) {
+        REQUIRE((m->requests.deficits[c] != 0) == (m->requests.classes >> c & 1));
+        for (uint32_t d = 0; d <= SLUICE_MAX_MIP_LEVELS; d++) {
+            const struct slc_list *list = &m->requests.lists[c][d];
+            const char *wrong = check_list(m, list, SLUICE_TILE_STATE_REQUESTED);
+            if (wrong)
+                return wrong;
+            REQUIRE((list->count > 0) == (m->requests.deficits[c] >> d & 1));
+            count += list->count;
+        }
+    }
+    REQUIRE(count == m->requests.count);
+    REQUIRE(count == m->state_counts[SLUICE_TILE_STATE_REQUESTED]);
+    return NULL;
+}
+
+static const char *check_lists(const slc_manager *m)
+{
+    const struct {
+        const struct slc_list *list;
+        uint8_t state;
+    } lists[] = {
+        {&m->standby, SLUICE_TILE_STATE_STANDBY},     {&m->unmapping, SLUICE_TILE_STATE_STANDBY},
+        {&m->cancelled, SLUICE_TILE_STATE_CANCELLED}, {&m->failed, SLUICE_TILE_STATE_FAILED},
+        {&m->given_up, SLUICE_TILE_STATE_GIVEN_UP},   {&m->retiring, SLC_NODE_RETIRING},
+    };
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        const char *wrong = check_list(m, lists[i].list, lists[i].state);
+        if (wrong)
+            return wrong;
+    }
+    REQUIRE(m->standby.count <= m->config.numExtraStandbyTiles);
+    REQUIRE(m->standby.count + m->unmapping.count == m->state_counts[SLUICE_TILE_STATE_STANDBY]);
+    REQUIRE(m->failed.count == m->state_counts[SLUICE_TILE_STATE_FAILED]);
+    REQUIRE(m->given_up.count == m->state_counts[SLUICE_TILE_STATE_GIVEN_UP]);
+    return check_requests(m);
+}
+
+static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
+{
+    const struct slc_node *n = &m->nodes[node];
+    REQUIRE(n->texture == t->index);
+    REQUIRE(n->tile < t->tile_count);
+    REQUIRE(slc_find_node(m, t, n->tile) == node);
+    REQUIRE(n->level == slc_tile_place(t, n->tile).level);
+    REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
+    REQUIRE(has_slot(n->state) == (n->heap != SLC_NONE));
+    if (n->heap != SLC_NONE)
+        REQUIRE(m->heaps.heaps[n->heap].nodes[n->slot] == node);
+    bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
+    if (n->state == SLUICE_TILE_STATE_CANCELLED && n->flags & SLC_NODE_WANTED)
+        wanted = true;
+    if (n->tile < t->regular_tile_count)
+        REQUIRE(wanted == (t->state->want_counts[n->tile] > 0));
+    else
+        REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
+    return NULL;
+}
+
+static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
+{
+    uint32_t requested = 0, resident_packed = 0, count = 0;
+    for (uint32_t node = t->first_node; node; node = m->nodes[node].texture_next) {
+        const char *wrong = check_node(m, t, node);
+        if (wrong)
+            return wrong;
+        uint8_t state = m->nodes[node].state;
+        requested += state == SLUICE_TILE_STATE_REQUESTED;
+        if (m->nodes[node].tile >= t->regular_tile_count)
+            resident_packed +=
+                state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
+        count++;
+    }
+    REQUIRE(requested == t->requested_count);
+    REQUIRE(resident_packed == t->packed_resident);
+    *nodes += count;
+    if (!t->state)
+        return NULL;
+    uint32_t with_node = 0;
+    for (uint32_t i = 0; i < t->regular_tile_count; i++) {
+        with_node += t->state->nodes[i] != 0;
+        if (t->state->want_counts[i] > 0)
+            REQUIRE(t->state->nodes[i] != 0);
+    }
+    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
+        with_node += t->packed_nodes[i] != 0;
+    REQUIRE(with_node == count);
+    return NULL;
+}
+
+static const char *check_heaps(const slc_manager *m)
+{
+    uint64_t free_total = 0;
+    uint32_t live = 0;
+    for (uint32_t i = 0; i < m->heaps.end; i++) {
+        const struct slc_tile_heap *h = &m->heaps.heaps[i];
+        if (h->free_count == SLC_HEAP_DEAD)
+            continue;
+        uint32_t used = 0, retiring = 0;
+        for (uint32_t slot = 0; slot < m->heaps.capacity; slot++) {
+            uint32_t node = h->nodes[slot];
+            if (!node)
+                continue;
+            REQUIRE(m->nodes[node].heap == i && m->nodes[node].slot == slot);
+            used++;
+            retiring += m->nodes[node].state == SLC_NODE_RETIRING;
+        }
+        REQUIRE(used + h->free_count == m->heaps.capacity);
+        REQUIRE(retiring == h->retiring_count);
+        free_total += h->free_count;
+        live++;
+    }
+    REQUIRE(free_total == m->heaps.free_total);
+    REQUIRE(live == m->heaps.live_count);
+    return NULL;
+}
+
+const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
+{
+    const slc_manager *m = manager;
+    const char *wrong = check_lists(m);
+    if (!wrong)
+        wrong = check_heaps(m);
+    uint64_t nodes = 0, tiles = 0;
+    uint32_t textures = 0;
+    for (uint32_t i = 0; i < m->texture_end && !wrong; i++) {
+        const struct slc_texture *t = slc_texture_at(m, i);
+        if (!t->live)
+            continue;
+        wrong = check_texture(m, t, &nodes);
+        tiles += t->tile_count;
+        textures++;
+    }
+    if (wrong)
+        return wrong;
+    REQUIRE(textures == m->texture_count && tiles == m->tile_count);
+    uint64_t states = 0;
+    for (uint32_t s = 0; s < 8; s++)
+        states += m->state_counts[s];
+    REQUIRE(states == nodes);
+    REQUIRE(nodes + m->retiring.count + m->free_node_count + 1 == m->node_end);
+    return NULL;
+}

@@ -1,0 +1,98 @@
+#include "core/wants.h"
+
+static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
+                                   const SluiceFeedbackDesc *f, uint64_t time,
+                                   struct slc_texture **t)
+{
+    if (!f || !f->pMinMip)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_find_texture(m, id, t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (f->width != (*t)->feedback_width || f->height != (*t)->feedback_height)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
+}
+
+static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
+                           uint64_t time, uint64_t timeout)
+{
+    struct slc_texture *t;
+    SluiceResult result = check_feedback(m, id, feedback, time, &t);
+    struct slc_wants_need need = {0};
+    if (result == SLUICE_SUCCESS)
+        result = slc_wants_prepare(m, t, feedback, &need);
+    for (uint32_t f = result == SLUICE_SUCCESS ? t->first_follower : SLC_NONE;
+         f != SLC_NONE && result == SLUICE_SUCCESS; f = slc_texture_at(m, f)->next_follower)
+        result = slc_wants_prepare_follower(m, t, true, slc_texture_at(m, f), &need);
+    if (result == SLUICE_SUCCESS)
+        result = slc_wants_reserve(m, &need);
+    if (result != SLUICE_SUCCESS)
+        return result;
+
+    slc_advance_time(m, time);
+    slc_wants_commit(m, t, time, timeout);
+    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
+        slc_wants_commit(m, slc_texture_at(m, f), time, timeout);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureManager *manager,
+                                             SluiceTextureId textureId,
+                                             const SluiceFeedbackDesc *pFeedback,
+                                             uint64_t timeStamp, uint64_t timeout)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_UPDATE_FEEDBACK,
+                            .texture_id = textureId,
+                            .feedback = pFeedback,
+                            .time_stamp = timeStamp,
+                            .timeout = timeout,
+                            .result = update(manager, textureId, pFeedback, timeStamp, timeout)};
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceTextureId follower_id,
+                          uint64_t time, uint64_t timeout)
+{
+    struct slc_texture *p, *t;
+    SluiceResult result = slc_find_texture(m, primary_id, &p);
+    if (result == SLUICE_SUCCESS)
+        result = slc_find_texture(m, follower_id, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (p == t)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (slc_time_is_backwards(m, time))
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    struct slc_wants_need need = {0};
+    if (p->has_map) {
+        result = slc_wants_prepare_follower(m, p, false, t, &need);
+        if (result == SLUICE_SUCCESS)
+            result = slc_wants_reserve(m, &need);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    slc_advance_time(m, time);
+    if (p->has_map)
+        slc_wants_commit(m, t, time, timeout);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *manager,
+                                       SluiceTextureId primaryId, SluiceTextureId followerId,
+                                       uint64_t timeStamp, uint64_t timeout)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_MATCH_PRIMARY,
+                            .texture_id = followerId,
+                            .primary_id = primaryId,
+                            .time_stamp = timeStamp,
+                            .timeout = timeout,
+                            .result = match(manager, primaryId, followerId, timeStamp, timeout)};
+    slc_notify(manager, &call);
+    return call.result;
+}

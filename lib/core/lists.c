@@ -1,0 +1,373 @@
+/* The calls that hand out tiles. */
+#include "core/internal.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+
+#include <stdlib.h>
+
+static bool in_scope(const slc_manager *m, const struct slc_texture *scope, uint32_t node)
+{
+    return !scope || m->nodes[node].texture == scope->index;
+}
+
+static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list,
+                               const struct slc_texture *scope)
+{
+    if (!scope)
+        return list->count;
+    uint32_t count = 0;
+    for (uint32_t node = list->head; node; node = m->nodes[node].next)
+        count += in_scope(m, scope, node);
+    return count;
+}
+
+/* To map ------------------------------------------------------------------------------------ */
+
+/** A free slot for the node, from a new heap if need be. */
+static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
+{
+    struct slc_node *n = &m->nodes[node];
+    if (slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
+        return SLUICE_SUCCESS;
+    uint32_t limit = m->config.maxHeapCount;
+    if (*refused || (limit && m->heaps.live_count >= limit))
+        return SLUICE_BUDGET_REACHED;
+    struct slc_call call = {.kind = SLC_CALL_HEAP_ANSWER};
+    SluiceResult result = slc_tile_heaps_add(&m->heaps, &call.result, &call.heap_id);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return result;
+    slc_notify(m, &call);
+    *refused = result != SLUICE_SUCCESS;
+    if (*refused)
+        return SLUICE_BUDGET_REACHED;
+    slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot);
+    return SLUICE_SUCCESS;
+}
+
+/** Makes room for `unserved` requests out of what is on standby. */
+static void list_standby_for(slc_manager *m, uint32_t unserved)
+{
+    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
+    if (unserved <= coming)
+        return;
+    uint32_t needed = (uint32_t)(unserved - coming);
+    slc_list_standby(m, m->standby.count > needed ? m->standby.count - needed : 0);
+}
+
+struct request_key {
+    uint32_t rank; ///< class and deficit, greater first
+    uint32_t node;
+    uint64_t order;
+};
+
+static int by_request_order(const void *a, const void *b)
+{
+    const struct request_key *x = a, *y = b;
+    if (x->rank != y->rank)
+        return x->rank > y->rank ? -1 : 1;
+    return x->order < y->order ? -1 : x->order > y->order;
+}
+
+/** The texture's requests in order; the caller frees `requested_count` keys. */
+static struct request_key *sort_requests(const slc_manager *m, const struct slc_texture *t)
+{
+    struct request_key *keys = slc_alloc(&m->cb, t->requested_count, sizeof *keys);
+    if (!keys)
+        return NULL;
+    uint32_t count = 0;
+    for (uint32_t node = t->first_node; node; node = m->nodes[node].texture_next) {
+        const struct slc_node *n = &m->nodes[node];
+        if (n->state != SLUICE_TILE_STATE_REQUESTED)
+            continue;
+        uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+        keys[count++] = (struct request_key){class << 8 | n->deficit, node, n->order};
+    }
+    assert(count == t->requested_count);
+    qsort(keys, count, sizeof *keys, by_request_order);
+    return keys;
+}
+
+static uint32_t requests_in_scope(const slc_manager *m, const struct slc_texture *scope)
+{
+    return scope ? scope->requested_count : m->requests.count;
+}
+
+static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
+                             const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
+{
+    uint32_t room = *count, written = 0;
+    bool refused = false;
+    SluiceResult result = SLUICE_SUCCESS;
+    while (written < room && requests_in_scope(m, scope) > 0) {
+        uint32_t node = scope ? keys[written].node : slc_first_request(m);
+        result = take_slot(m, node, &refused);
+        if (result != SLUICE_SUCCESS)
+            break;
+        slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
+        tiles[written++] = slc_node_tile(m, node);
+    }
+    m->handed_out_total += written;
+    *count = written;
+    uint32_t left = requests_in_scope(m, scope);
+    if (result == SLUICE_BUDGET_REACHED)
+        list_standby_for(m, slc_min_u32(left, room - written));
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written > 0)
+        result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
+    return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;
+}
+
+static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_t *count,
+                                     SluiceTile *tiles)
+{
+    struct slc_texture *scope;
+    SluiceResult result = slc_find_scope(m, id, &scope);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t requests = requests_in_scope(m, scope);
+    if (!tiles) {
+        *count = requests;
+        return SLUICE_SUCCESS;
+    }
+    if (!scope || requests == 0)
+        return hand_out(m, scope, NULL, count, tiles);
+    struct request_key *keys = sort_requests(m, scope);
+    if (!keys)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = hand_out(m, scope, keys, count, tiles);
+    slc_free(&m->cb, keys, requests, sizeof *keys);
+    return result;
+}
+
+/* The other lists --------------------------------------------------------------------------- */
+
+typedef void (*take_function)(slc_manager *m, uint32_t node, uint64_t retire_value);
+
+/** Hands out a list from its head, as far as it is in scope. */
+static SluiceResult take_list(slc_manager *m, struct slc_list *list,
+                              const struct slc_texture *scope, uint64_t retire_value,
+                              take_function take, uint32_t *count, SluiceTile *tiles)
+{
+    if (!tiles) {
+        *count = count_in_scope(m, list, scope);
+        return SLUICE_SUCCESS;
+    }
+    uint32_t room = *count, written = 0;
+    uint32_t node = list->head;
+    while (node) {
+        uint32_t next = m->nodes[node].next;
+        if (in_scope(m, scope, node)) {
+            if (written == room)
+                break;
+            tiles[written++] = slc_node_tile(m, node);
+            take(m, node, retire_value);
+        }
+        node = next;
+    }
+    *count = written;
+    return node ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+}
+
+static void take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
+{
+    slc_node_retire(m, node, retire_value);
+    m->unmapped_total++;
+}
+
+static void take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
+{
+    (void)retire_value;
+    slc_list_remove(m, &m->cancelled, node);
+    m->nodes[node].flags |= SLC_NODE_LISTED;
+}
+
+static SluiceResult get_tiles_to_unmap(slc_manager *m, SluiceTextureId id, uint64_t retire_value,
+                                       uint32_t *count, SluiceTile *tiles)
+{
+    struct slc_texture *scope;
+    SluiceResult result = slc_find_scope(m, id, &scope);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (slc_retire_is_backwards(m, retire_value))
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    if (tiles && retire_value)
+        m->last_retire = retire_value;
+    return take_list(m, &m->unmapping, scope, retire_value, take_unmapped, count, tiles);
+}
+
+static SluiceResult get_tiles_to_cancel(slc_manager *m, SluiceTextureId id, uint32_t *count,
+                                        SluiceTile *tiles)
+{
+    struct slc_texture *scope;
+    SluiceResult result = slc_find_scope(m, id, &scope);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    return take_list(m, &m->cancelled, scope, 0, take_cancelled, count, tiles);
+}
+
+static SluiceResult get_given_up_tiles(slc_manager *m, uint32_t *count, SluiceTile *tiles)
+{
+    uint32_t waiting = m->report_end - m->report_first;
+    if (!tiles) {
+        *count = waiting;
+        return SLUICE_SUCCESS;
+    }
+    uint32_t written = slc_min_u32(*count, waiting);
+    for (uint32_t i = 0; i < written; i++) {
+        struct slc_given_up g = m->given_up_reports[m->report_first + i];
+        struct slc_place p = slc_tile_place(slc_texture_at(m, (uint32_t)g.texture_id), g.tile);
+        tiles[i] = (SluiceTile){g.texture_id, g.tile, p.level, p.x, p.y, 0, 0};
+    }
+    m->report_first += written;
+    if (m->report_first == m->report_end)
+        m->report_first = m->report_end = 0;
+    *count = written;
+    return written < waiting ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+}
+
+/* Entry points ------------------------------------------------------------------------------ */
+
+SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
+                                 uint32_t *pTileCount, SluiceTile *pTiles)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_MAP,
+                            .texture_id = textureId,
+                            .query = !pTiles,
+                            .tiles = pTiles};
+    if (!pTileCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pTileCount;
+        call.result = get_tiles_to_map(manager, textureId, pTileCount, pTiles);
+        call.count = *pTileCount;
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
+                                   uint64_t retireValue, uint32_t *pTileCount, SluiceTile *pTiles)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_UNMAP,
+                            .texture_id = textureId,
+                            .retire_value = retireValue,
+                            .query = !pTiles,
+                            .tiles = pTiles};
+    if (!pTileCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pTileCount;
+        call.result = get_tiles_to_unmap(manager, textureId, retireValue, pTileCount, pTiles);
+        call.count = *pTileCount;
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *manager,
+                                    SluiceTextureId textureId, uint32_t *pTileCount,
+                                    SluiceTile *pTiles)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_CANCEL,
+                            .texture_id = textureId,
+                            .query = !pTiles,
+                            .tiles = pTiles};
+    if (!pTileCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pTileCount;
+        call.result = get_tiles_to_cancel(manager, textureId, pTileCount, pTiles);
+        call.count = *pTileCount;
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceGetGivenUpTiles(SluiceStreamedTextureManager *manager, uint32_t *pTileCount,
+                                   SluiceTile *pTiles)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_GET_GIVEN_UP, .query = !pTiles, .tiles = pTiles};
+    if (!pTileCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pTileCount;
+        call.result = get_given_up_tiles(manager, pTileCount, pTiles);
+        call.count = *pTileCount;
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+SluiceResult sluiceTrimStandbyTiles(SluiceStreamedTextureManager *manager, uint32_t keepTileCount)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    slc_list_standby(manager, keepTileCount);
+    struct slc_call call = {.kind = SLC_CALL_TRIM_STANDBY, .keep_count = keepTileCount};
+    slc_notify(manager, &call);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCompleteRetireValue(SluiceStreamedTextureManager *manager, uint64_t retireValue)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_COMPLETE_RETIRE, .retire_value = retireValue};
+    if (retireValue < manager->completed_retire && retireValue != 0) {
+        call.result = SLUICE_ERROR_TIME_BACKWARDS;
+    } else if (retireValue != 0) {
+        manager->completed_retire = retireValue;
+        slc_collect_retired(manager);
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}
+
+/* Heaps ------------------------------------------------------------------------------------- */
+
+SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, uint32_t *pHeapCount,
+                                 uint32_t *pHeapIds)
+{
+    if (!manager || !pHeapCount)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_tile_heaps *h = &manager->heaps;
+    uint32_t room = *pHeapCount, found = 0;
+    for (uint32_t i = 0; i < h->end; i++) {
+        if (h->heaps[i].free_count != h->capacity)
+            continue;
+        if (pHeapIds && found < room)
+            pHeapIds[found] = h->heaps[i].id;
+        found++;
+    }
+    *pHeapCount = pHeapIds ? slc_min_u32(found, room) : found;
+    return pHeapIds && found > room ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+}
+
+static SluiceResult release_heap(slc_manager *m, uint32_t heap_id)
+{
+    uint32_t heap = slc_tile_heaps_find(&m->heaps, heap_id);
+    if (heap == UINT32_MAX)
+        return SLUICE_ERROR_UNKNOWN_HEAP;
+    if (m->heaps.heaps[heap].free_count != m->heaps.capacity)
+        return SLUICE_ERROR_HEAP_IN_USE;
+    slc_tile_heaps_release(&m->heaps, heap);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceReleaseHeap(SluiceStreamedTextureManager *manager, uint32_t heapId)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {
+        .kind = SLC_CALL_RELEASE_HEAP, .heap_id = heapId, .result = release_heap(manager, heapId)};
+    slc_notify(manager, &call);
+    return call.result;
+}

@@ -1,0 +1,255 @@
+#include "core/internal.h"
+
+#include "base/checked.h"
+
+#include <string.h>
+
+/*
+ * A texel of the map is one tile of level 0; the tiles over it form a chain to the coarsest regular
+ * level. A tile counts only if every coarser one of its chain does, so a change shows in the area
+ * under the tile only if its parent counts, and below it as far as resident tiles go down.
+ */
+
+uint8_t slc_min_mip_floor(const struct slc_texture *t)
+{
+    bool packed = t->desc.packedTileCount > 0 && t->packed_resident == t->desc.packedTileCount;
+    return packed ? (uint8_t)t->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
+}
+
+static bool is_resident(const slc_manager *m, const struct slc_texture *t, struct slc_place p)
+{
+    uint32_t node = t->state->nodes[slc_tile_index(t, p)];
+    return node && (m->nodes[node].state == SLUICE_TILE_STATE_MAPPED ||
+                    m->nodes[node].state == SLUICE_TILE_STATE_STANDBY);
+}
+
+/** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
+static struct slc_tile_range children(const struct slc_texture *t, uint32_t level,
+                                      struct slc_tile_range r)
+{
+    const struct slc_level *here = &t->levels[level], *fine = &t->levels[level - 1];
+    return (struct slc_tile_range){
+        r.x0 * 2,
+        r.y0 * 2,
+        r.x1 + 1 == here->width ? fine->width - 1 : slc_min_u32(r.x1 * 2 + 1, fine->width - 1),
+        r.y1 + 1 == here->height ? fine->height - 1 : slc_min_u32(r.y1 * 2 + 1, fine->height - 1),
+    };
+}
+
+static struct slc_tile_range area(const struct slc_texture *t, struct slc_place p)
+{
+    struct slc_tile_range r = {p.x, p.y, p.x, p.y};
+    for (uint32_t level = p.level; level > 0; level--)
+        r = children(t, level, r);
+    return r;
+}
+
+static void dirty_list_append(slc_manager *m, struct slc_texture *t)
+{
+    t->dirty = true;
+    t->dirty_next = SLC_NONE;
+    t->dirty_prev = m->dirty_last;
+    if (m->dirty_last != SLC_NONE)
+        slc_texture_at(m, m->dirty_last)->dirty_next = t->index;
+    else
+        m->dirty_first = t->index;
+    m->dirty_last = t->index;
+    m->dirty_count++;
+}
+
+static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_range r)
+{
+    if (!t->dirty) {
+        dirty_list_append(m, t);
+        t->dirty_x0 = r.x0, t->dirty_y0 = r.y0;
+        t->dirty_x1 = r.x1 + 1, t->dirty_y1 = r.y1 + 1;
+        return;
+    }
+    t->dirty_x0 = slc_min_u32(t->dirty_x0, r.x0);
+    t->dirty_y0 = slc_min_u32(t->dirty_y0, r.y0);
+    t->dirty_x1 = slc_max_u32(t->dirty_x1, r.x1 + 1);
+    t->dirty_y1 = slc_max_u32(t->dirty_y1, r.y1 + 1);
+}
+
+void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t)
+{
+    mark_dirty(m, t, (struct slc_tile_range){0, 0, t->min_mip_width - 1, t->min_mip_height - 1});
+}
+
+void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
+{
+    if (!t->dirty)
+        return;
+    if (t->dirty_prev != SLC_NONE)
+        slc_texture_at(m, t->dirty_prev)->dirty_next = t->dirty_next;
+    else
+        m->dirty_first = t->dirty_next;
+    if (t->dirty_next != SLC_NONE)
+        slc_texture_at(m, t->dirty_next)->dirty_prev = t->dirty_prev;
+    else
+        m->dirty_last = t->dirty_prev;
+    t->dirty = false;
+    m->dirty_count--;
+}
+
+static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
+{
+    for (uint32_t y = r.y0; y <= r.y1; y++)
+        memset(t->state->min_mip + (size_t)y * t->min_mip_width + r.x0, value, r.x1 - r.x0 + 1);
+}
+
+/** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
+static void show(const slc_manager *m, struct slc_texture *t, struct slc_place p)
+{
+    fill(t, area(t, p), (uint8_t)p.level);
+    if (p.level == 0)
+        return;
+    struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+    for (uint32_t y = c.y0; y <= c.y1; y++)
+        for (uint32_t x = c.x0; x <= c.x1; x++) {
+            struct slc_place child = {p.level - 1, x, y};
+            if (is_resident(m, t, child))
+                show(m, t, child);
+        }
+}
+
+/** The value over a tile that is not resident itself; false if a coarser one is missing. */
+static bool value_above(const slc_manager *m, const struct slc_texture *t, struct slc_place p,
+                        uint8_t *value)
+{
+    uint32_t coarsest = t->desc.regularMipCount - 1;
+    *value = p.level == coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
+    if (t->packed_resident < t->desc.packedTileCount)
+        return false;
+    while (p.level < coarsest) {
+        p = slc_parent_place(t, p);
+        if (!is_resident(m, t, p))
+            return false;
+    }
+    return true;
+}
+
+static void show_everything(const slc_manager *m, struct slc_texture *t)
+{
+    struct slc_tile_range all = {0, 0, t->min_mip_width - 1, t->min_mip_height - 1};
+    fill(t, all, slc_min_mip_floor(t));
+    if (t->desc.regularMipCount == 0 || t->packed_resident < t->desc.packedTileCount)
+        return;
+    const struct slc_level *top = &t->levels[t->desc.regularMipCount - 1];
+    for (uint32_t y = 0; y < top->height; y++)
+        for (uint32_t x = 0; x < top->width; x++) {
+            struct slc_place p = {t->desc.regularMipCount - 1, x, y};
+            if (is_resident(m, t, p))
+                show(m, t, p);
+        }
+}
+
+static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
+{
+    bool before = t->packed_resident == t->desc.packedTileCount;
+    t->packed_resident += resident ? 1u : UINT32_MAX;
+    if (before == (t->packed_resident == t->desc.packedTileCount))
+        return;
+    if (t->state)
+        show_everything(m, t);
+    slc_min_mip_dirty_all(m, t);
+}
+
+void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, bool resident)
+{
+    if (tile >= t->regular_tile_count) {
+        packed_changed(m, t, resident);
+        return;
+    }
+    struct slc_place p = slc_tile_place(t, tile);
+    uint8_t above;
+    if (!value_above(m, t, p, &above))
+        return;
+    if (resident)
+        show(m, t, p);
+    else
+        fill(t, area(t, p), above);
+    mark_dirty(m, t, area(t, p));
+}
+
+static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,
+                      uint8_t *out)
+{
+    for (uint32_t y = 0; y < r->height; y++) {
+        uint8_t *row = out + y * row_pitch;
+        if (t->state)
+            memcpy(row, t->state->min_mip + (size_t)(r->y + y) * t->min_mip_width + r->x, r->width);
+        else
+            memset(row, slc_min_mip_floor(t), r->width);
+    }
+}
+
+SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
+                                   const SluiceMinMipRect *pRect, size_t rowPitch, size_t size,
+                                   uint8_t *pMinMip)
+{
+    if (!manager || !pRect || !pMinMip)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_texture *t;
+    SluiceResult result = slc_find_texture(manager, pRect->textureId, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= t->min_mip_width ||
+        pRect->y >= t->min_mip_height || pRect->width > t->min_mip_width - pRect->x ||
+        pRect->height > t->min_mip_height - pRect->y)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    size_t rows, needed;
+    if (rowPitch < pRect->width || !slc_mul_size(pRect->height - 1, rowPitch, &rows) ||
+        !slc_add_size(rows, pRect->width, &needed) || size < needed)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    copy_rect(t, pRect, rowPitch, pMinMip);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
+                                   SluiceTextureId textureId, size_t rowPitch, size_t size,
+                                   uint8_t *pMinMip)
+{
+    if (!manager || !pMinMip)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_texture *t;
+    SluiceResult result = slc_find_texture(manager, textureId, &t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceMinMipRect whole = {textureId, 0, 0, t->min_mip_width, t->min_mip_height};
+    return sluiceWriteMinMipRect(manager, &whole, rowPitch, size, pMinMip);
+}
+
+static SluiceResult get_updates(slc_manager *m, uint32_t *count, SluiceMinMipRect *rects)
+{
+    uint32_t room = *count, written = 0;
+    if (!rects) {
+        *count = m->dirty_count;
+        return SLUICE_SUCCESS;
+    }
+    while (m->dirty_first != SLC_NONE && written < room) {
+        struct slc_texture *t = slc_texture_at(m, m->dirty_first);
+        rects[written++] = (SluiceMinMipRect){slc_texture_id(t), t->dirty_x0, t->dirty_y0,
+                                              t->dirty_x1 - t->dirty_x0, t->dirty_y1 - t->dirty_y0};
+        slc_min_mip_forget(m, t);
+    }
+    *count = written;
+    return m->dirty_count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *manager, uint32_t *pRectCount,
+                                    SluiceMinMipRect *pRects)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_call call = {.kind = SLC_CALL_GET_MINMIP_UPDATES, .query = !pRects, .rects = pRects};
+    if (!pRectCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pRectCount;
+        call.result = get_updates(manager, pRectCount, pRects);
+        call.count = *pRectCount;
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}

@@ -1,0 +1,401 @@
+#include "core/internal.h"
+
+#include "base/alloc.h"
+
+/* Lists ------------------------------------------------------------------------------------- */
+
+void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node)
+{
+    m->nodes[node].prev = list->tail;
+    m->nodes[node].next = 0;
+    if (list->tail)
+        m->nodes[list->tail].next = node;
+    else
+        list->head = node;
+    list->tail = node;
+    list->count++;
+}
+
+void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node)
+{
+    const struct slc_node *n = &m->nodes[node];
+    if (n->prev)
+        m->nodes[n->prev].next = n->next;
+    else
+        list->head = n->next;
+    if (n->next)
+        m->nodes[n->next].prev = n->prev;
+    else
+        list->tail = n->prev;
+    list->count--;
+}
+
+/** Behind the last node that is not due later. */
+static void insert_by_due(slc_manager *m, struct slc_list *list, uint32_t node)
+{
+    uint32_t after = list->tail;
+    while (after && (int64_t)(m->nodes[after].order - m->nodes[node].order) > 0)
+        after = m->nodes[after].prev;
+    if (after == list->tail) {
+        slc_list_append(m, list, node);
+        return;
+    }
+    uint32_t before = after ? m->nodes[after].next : list->head;
+    m->nodes[node].prev = after;
+    m->nodes[node].next = before;
+    m->nodes[before].prev = node;
+    if (after)
+        m->nodes[after].next = node;
+    else
+        list->head = node;
+    list->count++;
+}
+
+static uint32_t request_class(const slc_manager *m, const struct slc_node *n)
+{
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    return packed ? SLC_PACKED_CLASS : n->level;
+}
+
+static void request_append(slc_manager *m, uint32_t node)
+{
+    struct slc_requests *r = &m->requests;
+    struct slc_node *n = &m->nodes[node];
+    uint32_t class = request_class(m, n);
+    n->order = r->next_sequence++;
+    slc_list_append(m, &r->lists[class][n->deficit], node);
+    r->deficits[class] |= 1u << n->deficit;
+    r->classes |= 1u << class;
+    r->count++;
+    slc_texture_at(m, n->texture)->requested_count++;
+}
+
+static void request_remove(slc_manager *m, uint32_t node)
+{
+    struct slc_requests *r = &m->requests;
+    struct slc_node *n = &m->nodes[node];
+    uint32_t class = request_class(m, n);
+    struct slc_list *list = &r->lists[class][n->deficit];
+    slc_list_remove(m, list, node);
+    if (list->count == 0)
+        r->deficits[class] &= ~(1u << n->deficit);
+    if (r->deficits[class] == 0)
+        r->classes &= ~(1u << class);
+    r->count--;
+    slc_texture_at(m, n->texture)->requested_count--;
+}
+
+uint32_t slc_first_request(const slc_manager *m)
+{
+    const struct slc_requests *r = &m->requests;
+    if (!r->classes)
+        return 0;
+    uint32_t class = 31u - (uint32_t)__builtin_clz(r->classes);
+    uint32_t deficit = 31u - (uint32_t)__builtin_clz(r->deficits[class]);
+    return r->lists[class][deficit].head;
+}
+
+/** Takes the node out of the list that its state keeps it in, if any. */
+static void leave_list(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = &m->nodes[node];
+    switch ((SluiceTileState)n->state) {
+    case SLUICE_TILE_STATE_FREE:
+    case SLUICE_TILE_STATE_ALLOCATED:
+    case SLUICE_TILE_STATE_MAPPED: break;
+    case SLUICE_TILE_STATE_REQUESTED: request_remove(m, node); break;
+    case SLUICE_TILE_STATE_STANDBY:
+        slc_list_remove(m, n->flags & SLC_NODE_LISTED ? &m->unmapping : &m->standby, node);
+        break;
+    case SLUICE_TILE_STATE_CANCELLED:
+        if (!(n->flags & SLC_NODE_LISTED))
+            slc_list_remove(m, &m->cancelled, node);
+        break;
+    case SLUICE_TILE_STATE_FAILED: slc_list_remove(m, &m->failed, node); break;
+    case SLUICE_TILE_STATE_GIVEN_UP: slc_list_remove(m, &m->given_up, node); break;
+    }
+    n->flags = 0;
+}
+
+static void enter_list(slc_manager *m, uint32_t node)
+{
+    switch ((SluiceTileState)m->nodes[node].state) {
+    case SLUICE_TILE_STATE_FREE:
+    case SLUICE_TILE_STATE_ALLOCATED:
+    case SLUICE_TILE_STATE_MAPPED: break;
+    case SLUICE_TILE_STATE_REQUESTED: request_append(m, node); break;
+    case SLUICE_TILE_STATE_STANDBY: slc_list_append(m, &m->standby, node); break;
+    case SLUICE_TILE_STATE_CANCELLED: slc_list_append(m, &m->cancelled, node); break;
+    case SLUICE_TILE_STATE_FAILED: insert_by_due(m, &m->failed, node); break;
+    case SLUICE_TILE_STATE_GIVEN_UP: slc_list_append(m, &m->given_up, node); break;
+    }
+}
+
+/* Nodes ------------------------------------------------------------------------------------- */
+
+bool slc_reserve_nodes(slc_manager *m, uint64_t count)
+{
+    uint64_t have = (uint64_t)m->free_node_count + (m->node_room - m->node_end);
+    if (count <= have)
+        return true;
+    uint64_t room = (uint64_t)m->node_room * 2;
+    if (room < m->node_room + (count - have))
+        room = m->node_room + (count - have);
+    if (room < 256)
+        room = 256;
+    if (room >= UINT32_MAX)
+        return false;
+    struct slc_node *nodes =
+        slc_regrow(&m->cb, m->nodes, m->node_room, (size_t)room, sizeof *nodes);
+    if (!nodes)
+        return false;
+    m->nodes = nodes;
+    m->node_room = (uint32_t)room;
+    return true;
+}
+
+static uint32_t *node_cell(const slc_manager *m, const struct slc_texture *t, uint32_t tile)
+{
+    (void)m;
+    if (tile >= t->regular_tile_count)
+        return &t->packed_nodes[tile - t->regular_tile_count];
+    return t->state ? &t->state->nodes[tile] : NULL;
+}
+
+uint32_t slc_find_node(const slc_manager *m, const struct slc_texture *t, uint32_t tile)
+{
+    const uint32_t *cell = node_cell(m, t, tile);
+    return cell ? *cell : 0;
+}
+
+static uint32_t pop_node(slc_manager *m)
+{
+    uint32_t node = m->free_node;
+    if (node) {
+        m->free_node = m->nodes[node].next;
+        m->free_node_count--;
+        return node;
+    }
+    assert(m->node_end < m->node_room); /* reserved before */
+    return m->node_end++;
+}
+
+static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level)
+{
+    uint32_t node = pop_node(m);
+    m->nodes[node] = (struct slc_node){
+        .texture = t->index,
+        .tile = tile,
+        .texture_next = t->first_node,
+        .heap = SLC_NONE,
+        .level = (uint8_t)level,
+        .state = SLUICE_TILE_STATE_FREE,
+    };
+    if (t->first_node)
+        m->nodes[t->first_node].texture_prev = node;
+    t->first_node = node;
+    *node_cell(m, t, tile) = node;
+    m->state_counts[SLUICE_TILE_STATE_FREE]++;
+    return node;
+}
+
+static void recycle_node(slc_manager *m, uint32_t node)
+{
+    m->nodes[node].next = m->free_node;
+    m->nodes[node].texture = SLC_NONE;
+    m->nodes[node].state = SLUICE_TILE_STATE_FREE;
+    m->free_node = node;
+    m->free_node_count++;
+}
+
+/** Ends what ties a node to its tile; list and slot stay as they are. */
+static void detach_node(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = &m->nodes[node];
+    struct slc_texture *t = slc_texture_at(m, n->texture);
+    *node_cell(m, t, n->tile) = 0;
+    if (n->texture_prev)
+        m->nodes[n->texture_prev].texture_next = n->texture_next;
+    else
+        t->first_node = n->texture_next;
+    if (n->texture_next)
+        m->nodes[n->texture_next].texture_prev = n->texture_prev;
+}
+
+static bool is_resident(uint8_t state)
+{
+    return state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
+}
+
+void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state)
+{
+    struct slc_node *n = &m->nodes[node];
+    uint8_t old = n->state;
+    leave_list(m, node);
+    m->state_counts[old]--;
+    n->state = (uint8_t)state;
+    m->state_counts[state]++;
+    enter_list(m, node);
+    if (is_resident(old) != is_resident(n->state))
+        slc_min_mip_changed(m, slc_texture_at(m, n->texture), n->tile, is_resident(n->state));
+    if (state == SLUICE_TILE_STATE_STANDBY)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
+}
+
+void slc_node_request_again(slc_manager *m, uint32_t node)
+{
+    leave_list(m, node); /* before the deficit changes: a REQUESTED one is listed by it */
+    m->state_counts[m->nodes[node].state]--;
+    m->nodes[node].state = SLUICE_TILE_STATE_REQUESTED;
+    m->nodes[node].deficit = 0;
+    m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
+    enter_list(m, node);
+}
+
+void slc_node_release(slc_manager *m, uint32_t node)
+{
+    assert(m->nodes[node].heap == SLC_NONE);
+    slc_node_set_state(m, node, SLUICE_TILE_STATE_FREE);
+    m->state_counts[SLUICE_TILE_STATE_FREE]--;
+    detach_node(m, node);
+    recycle_node(m, node);
+}
+
+void slc_node_free_slot(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = &m->nodes[node];
+    if (n->heap != SLC_NONE)
+        slc_tile_heaps_give(&m->heaps, n->heap, n->slot);
+    n->heap = SLC_NONE;
+}
+
+void slc_node_retire(slc_manager *m, uint32_t node, uint64_t retire_value)
+{
+    if (m->nodes[node].heap == SLC_NONE || retire_value <= m->completed_retire) {
+        slc_node_free_slot(m, node);
+        slc_node_release(m, node);
+        return;
+    }
+    slc_node_set_state(m, node, SLUICE_TILE_STATE_FREE);
+    m->state_counts[SLUICE_TILE_STATE_FREE]--;
+    detach_node(m, node);
+    struct slc_node *n = &m->nodes[node];
+    n->texture = SLC_NONE;
+    n->state = SLC_NODE_RETIRING;
+    n->order = retire_value;
+    m->heaps.heaps[n->heap].retiring_count++;
+    slc_list_append(m, &m->retiring, node);
+}
+
+void slc_node_retire_slot(slc_manager *m, uint32_t heap, uint32_t slot, uint64_t retire_value)
+{
+    uint32_t node = pop_node(m);
+    m->nodes[node] = (struct slc_node){.texture = SLC_NONE,
+                                       .heap = heap,
+                                       .slot = slot,
+                                       .state = SLC_NODE_RETIRING,
+                                       .order = retire_value};
+    m->heaps.heaps[heap].nodes[slot] = node;
+    m->heaps.heaps[heap].retiring_count++;
+    slc_list_append(m, &m->retiring, node);
+}
+
+void slc_collect_retired(slc_manager *m)
+{
+    /* Values never decrease, so the list is in their order. */
+    while (m->retiring.head && m->nodes[m->retiring.head].order <= m->completed_retire) {
+        uint32_t node = m->retiring.head;
+        slc_list_remove(m, &m->retiring, node);
+        m->heaps.heaps[m->nodes[node].heap].retiring_count--;
+        slc_node_free_slot(m, node);
+        recycle_node(m, node);
+    }
+}
+
+void slc_list_standby(slc_manager *m, uint32_t keep)
+{
+    while (m->standby.count > keep) {
+        uint32_t node = m->standby.head;
+        slc_list_remove(m, &m->standby, node);
+        m->nodes[node].flags |= SLC_NODE_LISTED;
+        slc_list_append(m, &m->unmapping, node);
+    }
+}
+
+SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
+{
+    const struct slc_node *n = &m->nodes[node];
+    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    struct slc_place place = slc_tile_place(t, n->tile);
+    bool placed = n->heap != SLC_NONE;
+    return (SluiceTile){
+        .textureId = slc_texture_id(t),
+        .tileIndex = n->tile,
+        .mipLevel = place.level,
+        .x = place.x,
+        .y = place.y,
+        .heapId = placed ? m->heaps.heaps[n->heap].id : 0,
+        .slot = placed ? n->slot : 0,
+    };
+}
+
+/* What wants do to a tile ------------------------------------------------------------------- */
+
+void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level,
+                     uint32_t deficit)
+{
+    uint32_t node = slc_find_node(m, t, tile);
+    if (!node) {
+        node = take_node(m, t, tile, level);
+        m->nodes[node].deficit = (uint8_t)deficit;
+        slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);
+        return;
+    }
+    struct slc_node *n = &m->nodes[node];
+    if (n->state == SLUICE_TILE_STATE_STANDBY) {
+        slc_node_set_state(m, node, SLUICE_TILE_STATE_MAPPED);
+        m->restored_total++;
+    } else {
+        assert(n->state == SLUICE_TILE_STATE_CANCELLED);
+        if (n->flags & SLC_NODE_LISTED)
+            n->flags |= SLC_NODE_WANTED;
+        else
+            slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
+    }
+}
+
+void slc_tile_unwanted(slc_manager *m, struct slc_texture *t, uint32_t tile)
+{
+    uint32_t node = slc_find_node(m, t, tile);
+    assert(node);
+    switch (m->nodes[node].state) {
+    case SLUICE_TILE_STATE_ALLOCATED:
+        m->nodes[node].failures = 0;
+        slc_node_set_state(m, node, SLUICE_TILE_STATE_CANCELLED);
+        break;
+    case SLUICE_TILE_STATE_MAPPED: slc_node_set_state(m, node, SLUICE_TILE_STATE_STANDBY); break;
+    case SLUICE_TILE_STATE_CANCELLED: m->nodes[node].flags &= (uint8_t)~SLC_NODE_WANTED; break;
+    default: slc_node_release(m, node); break; /* REQUESTED, FAILED, GIVEN_UP */
+    }
+}
+
+void slc_node_fail(slc_manager *m, uint32_t node, uint64_t time)
+{
+    struct slc_node *n = &m->nodes[node];
+    uint32_t limit = m->config.maxLoadAttempts ? m->config.maxLoadAttempts : 5;
+    const uint64_t longest = UINT64_C(1) << 62;
+    uint64_t delay = m->config.retryDelay < longest ? m->config.retryDelay : longest;
+    for (uint32_t i = 0; i < n->failures && delay < longest && delay; i++)
+        delay = delay * 2 < longest ? delay * 2 : longest;
+    n->failures++;
+    if (n->failures >= limit) {
+        slc_node_set_state(m, node, SLUICE_TILE_STATE_GIVEN_UP);
+        return;
+    }
+    leave_list(m, node); /* the due time is where the node will stand, so it is set in between */
+    m->state_counts[n->state]--;
+    n->state = SLUICE_TILE_STATE_FAILED;
+    m->state_counts[SLUICE_TILE_STATE_FAILED]++;
+    n->order = time + delay;
+    enter_list(m, node);
+}
