@@ -231,19 +231,19 @@ static uint64_t run_from(uint64_t start, uint64_t unit)
 {
     struct fixture f;
     fixture_open(&f, 4, false);
-    f.heaps.limit = 5;
+    f.heaps.limit = 6;
     fixture_configure(&f, 6, 0, 3, 2 * unit);
     SluiceStreamedTextureDesc desc = full_chain(1025, 516, 128, 128);
     SluiceTextureId ids[3] = {fixture_add(&f, &desc), fixture_add_small(&f),
                               fixture_add(&f, &desc)};
     uint64_t h = 1, random = 5;
     uint32_t loading = 0;
-    SluiceTile loads[20];
+    SluiceTile loads[24];
     for (uint64_t frame = 0; frame < 300; frame++) {
         uint64_t time = start + frame * unit;
         uint8_t map[64];
         for (uint32_t i = 0; i < 64; i++)
-            map[i] = next_random(&random) % 3 ? SLUICE_MIP_UNTOUCHED : next_random(&random) % 5;
+            map[i] = next_random(&random) % 20 ? SLUICE_MIP_UNTOUCHED : next_random(&random) % 5;
         fixture_feed_map(&f, ids[frame % 3], map, time, 7 * unit);
         CHECK_OK(fixture_to_cancel(&f, SLUICE_ALL_TEXTURES));
         h = hash_list(h, &f);
