@@ -1,0 +1,206 @@
+#include "exr/decode.h"
+
+#include "base/checked.h"
+#include "image/convert.h"
+#include "image/half.h"
+#include "image/srgb.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+SluiceFormat slc_exr_natural_format(const struct slc_exr_file *file)
+{
+    bool is_half = file->widest == EXR_PIXEL_HALF;
+    if (file->channel_count == 1)
+        return is_half ? SLUICE_FORMAT_R16_SFLOAT : SLUICE_FORMAT_R32_SFLOAT;
+    return is_half ? SLUICE_FORMAT_R16G16B16A16_SFLOAT : SLUICE_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+void slc_exr_decoder_init(struct slc_exr_decoder *decoder, struct slc_exr_file *file)
+{
+    exr_decode_pipeline_t empty = EXR_DECODE_PIPELINE_INITIALIZER;
+    *decoder = (struct slc_exr_decoder){.file = file, .pipeline = empty};
+}
+
+void slc_exr_decoder_finish(struct slc_exr_decoder *decoder)
+{
+    if (decoder->is_open)
+        exr_decoding_destroy(decoder->file->context, &decoder->pipeline);
+    decoder->is_open = false;
+}
+
+/*
+ * OpenEXRCore reads and decompresses; its unpacking is left out. It offers none that saturates,
+ * clamps or encodes, and would unpack whole chunks where a region needs a corner of one.
+ */
+static exr_result_t decompress(struct slc_exr_decoder *decoder, const exr_chunk_info_t *info)
+{
+    exr_const_context_t context = decoder->file->context;
+    exr_decode_pipeline_t *pipeline = &decoder->pipeline;
+    exr_result_t result;
+    if (decoder->is_open) {
+        result = exr_decoding_update(context, 0, info, pipeline);
+    } else {
+        result = exr_decoding_initialize(context, 0, info, pipeline);
+        decoder->is_open = result == EXR_ERR_SUCCESS;
+        if (result == EXR_ERR_SUCCESS)
+            result = exr_decoding_choose_default_routines(context, 0, pipeline);
+        pipeline->unpack_and_convert_fn = NULL;
+        decoder->decompress = pipeline->decompress_fn;
+    }
+    /* Chunks that would not shrink are stored as they are; 3.1 decodes them all the same in B44. */
+    bool is_raw = info->packed_size == info->unpacked_size;
+    pipeline->decompress_fn = is_raw ? NULL : decoder->decompress;
+    return result == EXR_ERR_SUCCESS ? exr_decoding_run(context, 0, pipeline) : result;
+}
+
+/* One channel of `count` texels of a row, in the file's bytes. */
+static void load_span(exr_pixel_type_t type, const unsigned char *source, float *values,
+                      uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (type == EXR_PIXEL_HALF) {
+            uint32_t half = source[2 * i] | (uint32_t)source[2 * i + 1] << 8;
+            values[i] = slc_float_from_half((uint16_t)half);
+            continue;
+        }
+        const unsigned char *bytes = source + 4 * (size_t)i;
+        uint32_t bits = bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+                        (uint32_t)bytes[3] << 24;
+        values[i] = type == EXR_PIXEL_UINT ? (float)bits : slc_float_from_bits(bits);
+    }
+}
+
+static void store_span(uint32_t component_size, bool encode, const float *values, char *result,
+                       size_t stride, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, result += stride) {
+        if (component_size == 4) {
+            memcpy(result, &values[i], 4);
+        } else if (component_size == 2) {
+            uint16_t half = slc_half_from_float(values[i]);
+            memcpy(result, &half, 2);
+        } else {
+            uint8_t step =
+                encode ? slc_srgb_from_linear(values[i]) : slc_unorm8_from_float(values[i]);
+            memcpy(result, &step, 1);
+        }
+    }
+}
+
+/* The common case, and the one in which infinities and NaN stay as they are. */
+static void copy_half_span(const unsigned char *source, char *result, size_t stride, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, result += stride) {
+        uint16_t half = (uint16_t)(source[2 * i] | (uint32_t)source[2 * i + 1] << 8);
+        memcpy(result, &half, 2);
+    }
+}
+
+/* How one component of the target is filled. */
+struct component {
+    uint32_t size;
+    bool encode; ///< to sRGB
+    size_t stride;
+};
+
+static void convert_span(exr_pixel_type_t type, const unsigned char *source,
+                         const struct component *component, char *result, uint32_t count)
+{
+    enum { BATCH = 64 };
+    float values[BATCH];
+    uint32_t size = type == EXR_PIXEL_HALF ? 2 : 4;
+    if (type == EXR_PIXEL_HALF && component->size == 2) {
+        copy_half_span(source, result, component->stride, count);
+        return;
+    }
+    for (uint32_t done = 0; done < count; done += BATCH) {
+        uint32_t step = slc_min_u32(BATCH, count - done);
+        load_span(type, source + (size_t)done * size, values, step);
+        store_span(component->size, component->encode, values, result + done * component->stride,
+                   component->stride, step);
+    }
+}
+
+static void fill_span(float value, const struct component *component, char *result, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, result += component->stride)
+        store_span(component->size, component->encode, &value, result, component->stride, 1);
+}
+
+/* The channel that a component comes from, -1 for none. One to one, names do not matter. */
+static int32_t find_channel(const struct slc_exr_file *file, uint32_t component_count, uint32_t c)
+{
+    return component_count == 1 && file->channel_count == 1 ? 0 : file->rgba[c];
+}
+
+/* The part of a row that chunk and target share: every component from its channel. */
+static void deliver_row(const struct slc_exr_file *file, const unsigned char *row,
+                        const SluiceImageRegion *chunk, const SluiceImageRegion *shared,
+                        const struct slc_exr_target *target, char *result)
+{
+    uint32_t component_count = slc_format_channel_count(target->format);
+    size_t texel_size = sluiceFormatTexelSize(target->format);
+    struct component component = {(uint32_t)texel_size / component_count, false, texel_size};
+    for (uint32_t c = 0; c < component_count; c++, result += component.size) {
+        component.encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB && c < 3;
+        int32_t index = find_channel(file, component_count, c);
+        if (index < 0) {
+            fill_span(c == 3 ? 1.0f : 0.0f, &component, result, shared->width);
+            continue;
+        }
+        const struct slc_exr_channel *channel = &file->channels[index];
+        const unsigned char *source = row + (size_t)chunk->width * channel->offset +
+                                      (size_t)(shared->x - chunk->x) * channel->size;
+        convert_span(channel->type, source, &component, result, shared->width);
+    }
+}
+
+static SluiceImageRegion intersect(const SluiceImageRegion *a, const SluiceImageRegion *b)
+{
+    uint32_t x0 = slc_max_u32(a->x, b->x), x1 = slc_min_u32(a->x + a->width, b->x + b->width);
+    uint32_t y0 = slc_max_u32(a->y, b->y), y1 = slc_min_u32(a->y + a->height, b->y + b->height);
+    bool is_empty = x1 <= x0 || y1 <= y0;
+    return (SluiceImageRegion){a->mipLevel, x0, y0, is_empty ? 0 : x1 - x0, is_empty ? 0 : y1 - y0};
+}
+
+/*
+ * Up to 3.1 OpenEXRCore's decompressors also answer OUT_OF_MEMORY for bytes that make no sense. It
+ * is taken at its word only if what a chunk can need at most really cannot be had.
+ */
+static SluiceResult explain(const struct slc_exr_file *file, const exr_chunk_info_t *info,
+                            exr_result_t result)
+{
+    if (result != EXR_ERR_OUT_OF_MEMORY)
+        return slc_exr_result(file, result);
+    void *probe = malloc((size_t)(info->packed_size + 3 * info->unpacked_size) + (1u << 22));
+    SluiceResult answer = probe ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    free(probe);
+    return answer;
+}
+
+SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
+                                  const struct slc_exr_chunk *chunk,
+                                  const struct slc_exr_target *target)
+{
+    struct slc_exr_file *file = decoder->file;
+    exr_result_t result = decompress(decoder, &chunk->info);
+    if (result != EXR_ERR_SUCCESS) {
+        SluiceResult answer = explain(file, &chunk->info, result);
+        return slc_exr_fail(file, answer, "cannot decode the chunk at %llu: %s",
+                            (unsigned long long)chunk->info.data_offset,
+                            answer == SLUICE_ERROR_CORRUPT_DATA
+                                ? "its bytes are damaged"
+                                : exr_get_default_error_message(result));
+    }
+    const unsigned char *texels = decoder->pipeline.unpacked_buffer;
+    SluiceImageRegion shared = intersect(&chunk->region, &target->region);
+    size_t row_size = (size_t)chunk->region.width * file->texel_size;
+    size_t result_texel = sluiceFormatTexelSize(target->format);
+    for (uint32_t y = shared.y; y < shared.y + shared.height; y++)
+        deliver_row(file, texels + (y - chunk->region.y) * row_size, &chunk->region, &shared,
+                    target,
+                    target->texels + (y - target->region.y) * target->pitch +
+                        (shared.x - target->region.x) * result_texel);
+    return SLUICE_SUCCESS;
+}

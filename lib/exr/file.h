@@ -1,0 +1,94 @@
+/**
+ * One OpenEXR file open for reading, its header checked and understood: what the rest of this layer
+ * knows of a file. Constant once it is open, so any number of threads may read through it.
+ *
+ * Only the first part of a file is looked at.
+ */
+#ifndef SLC_EXR_FILE_H
+#define SLC_EXR_FILE_H
+
+#include <sluice/image.h>
+
+#include <openexr.h>
+
+#include <stdatomic.h>
+
+/** Largest width and height; a texture cannot be larger either. */
+#define SLC_EXR_MAX_SIZE (1u << 20)
+/** Of R, G, B, A or Y, A. */
+#define SLC_EXR_MAX_CHANNELS 4
+
+enum slc_exr_layout {
+    SLC_EXR_SCANLINES,
+    SLC_EXR_ONE_LEVEL, ///< tiles of level 0 alone
+    SLC_EXR_MIPMAP,
+    SLC_EXR_RIPMAP
+};
+
+struct slc_exr_channel {
+    exr_pixel_type_t type;
+    uint32_t size;   ///< bytes per texel: 2 or 4
+    uint32_t offset; ///< bytes per texel of the channels before it in the file
+};
+
+struct slc_exr_file {
+    SluiceAllocationCallbacks allocator;
+    SluiceLogCallback log;
+    char *path;
+    int descriptor;
+    uint64_t size;
+    atomic_bool system_failed; ///< a read failed for another reason than the file's end
+    exr_context_t context;
+
+    enum slc_exr_layout layout;
+    exr_compression_t compression;
+    uint32_t width, height;
+    int32_t first_line;                 ///< the y that the file gives to the first row
+    uint32_t chunk_width, chunk_height; ///< of the tiles, or of the blocks of lines
+    int32_t chunk_count;
+    int32_t level_count_x, level_count_y; ///< in the file
+    uint64_t chunk_table_offset;          ///< for rip maps only
+    bool is_multipart;
+
+    uint32_t channel_count;
+    struct slc_exr_channel channels[SLC_EXR_MAX_CHANNELS]; ///< in the file's order
+    int32_t rgba[4];     ///< index of the channel that R, G, B and A come from, -1: none
+    uint32_t texel_size; ///< bytes of all channels
+    exr_pixel_type_t widest;
+};
+
+/**
+ * Opens a file and checks its header. Errors as sluiceCreateExrImageSource has them; each one is
+ * logged once, with the path and what to do.
+ */
+SluiceResult slc_exr_file_open(struct slc_exr_file *file, const char *path,
+                               const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log);
+
+/** Also after a failed open. */
+void slc_exr_file_close(struct slc_exr_file *file);
+
+/** Reads `size` bytes at `offset`. Errors: IO; CORRUPT_DATA at the end of the file. Logged. */
+SluiceResult slc_exr_file_read(struct slc_exr_file *file, uint64_t offset, void *bytes,
+                               size_t size);
+
+/** What a result of OpenEXRCore is in ours, for reading. */
+SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result);
+
+/** Logs an error with the path in front and returns `result`. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+SluiceResult
+slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, const char *format, ...);
+
+/** Copies as much of a file's own words as fits, with ? for what may not stand in a message. */
+void slc_exr_printable(const char *text, char *printable, size_t size);
+
+/** Fills the fields that describe the image from the open context. Errors are logged. */
+SluiceResult slc_exr_read_header(struct slc_exr_file *file);
+
+/** Size of a level of the file. Levels beyond those of one direction repeat its last. */
+SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level, uint32_t *width,
+                                uint32_t *height);
+
+#endif /* SLC_EXR_FILE_H */

@@ -1,0 +1,338 @@
+#include "exr/file.h"
+
+#include "base/checked.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool is_one_of(const char *name, const char *letters)
+{
+    return strlen(name) == 1 && strchr(letters, name[0]);
+}
+
+/* The channel names as far as they fit, for messages. */
+static void list_channels(const exr_attr_chlist_t *list, char *text, size_t size)
+{
+    char name[64];
+    size_t used = 0;
+    text[0] = '\0';
+    for (int32_t i = 0; i < list->num_channels && used < size; i++) {
+        slc_exr_printable(list->entries[i].name.str, name, sizeof name);
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", name);
+    }
+}
+
+/* Which letters are there, as a set of bits in the order of "RGBAY"; ~0 if there are others. */
+static uint32_t find_letters(const exr_attr_chlist_t *list)
+{
+    static const char letters[] = "RGBAY";
+    uint32_t found = 0;
+    for (int32_t i = 0; i < list->num_channels; i++) {
+        const char *name = list->entries[i].name.str;
+        if (!is_one_of(name, letters))
+            return ~0u;
+        found |= 1u << (strchr(letters, name[0]) - letters);
+    }
+    return found;
+}
+
+static SluiceResult check_names(const struct slc_exr_file *file, const exr_attr_chlist_t *list)
+{
+    enum { A = 8, Y = 16 };
+    char names[256];
+    list_channels(list, names, sizeof names);
+    for (int32_t i = 0; i < list->num_channels; i++)
+        if (strcmp(list->entries[i].name.str, "RY") == 0 ||
+            strcmp(list->entries[i].name.str, "BY") == 0)
+            return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                                "has luminance-chroma channels (%s), which are not read; "
+                                "convert the file to R, G, B",
+                                names);
+    uint32_t found = find_letters(list);
+    bool is_rgb = found != 0 && !(found & Y);
+    bool is_grey = found != ~0u && (found & ~(uint32_t)A) == Y;
+    if (is_rgb || is_grey)
+        return SLUICE_SUCCESS;
+    return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                        "has the channels %s; any of R, G, B, A, or Y with or without A, are "
+                        "read; write the wanted ones to a file of their own under such names",
+                        names);
+}
+
+static SluiceResult read_channel(struct slc_exr_file *file, const exr_attr_chlist_entry_t *entry)
+{
+    uint32_t index = file->channel_count;
+    if (index == SLC_EXR_MAX_CHANNELS)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has a channel name twice");
+    if (entry->x_sampling != 1 || entry->y_sampling != 1)
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                            "channel %s is subsampled %d x %d, which is not read; convert the file "
+                            "to full resolution",
+                            entry->name.str, entry->x_sampling, entry->y_sampling);
+    if (entry->pixel_type != EXR_PIXEL_UINT && entry->pixel_type != EXR_PIXEL_HALF &&
+        entry->pixel_type != EXR_PIXEL_FLOAT)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "channel %s has the unknown type %d",
+                            entry->name.str, (int)entry->pixel_type);
+    struct slc_exr_channel *channel = &file->channels[index];
+    channel->type = entry->pixel_type;
+    channel->size = entry->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    channel->offset = file->texel_size;
+    file->texel_size += channel->size;
+    if (channel->size == 4)
+        file->widest = EXR_PIXEL_FLOAT;
+    file->channel_count++;
+    if (entry->name.str[0] == 'Y')
+        file->rgba[0] = file->rgba[1] = file->rgba[2] = (int32_t)index;
+    else
+        file->rgba[strchr("RGBA", entry->name.str[0]) - "RGBA"] = (int32_t)index;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_channels(struct slc_exr_file *file)
+{
+    const exr_attr_chlist_t *list;
+    exr_result_t result = exr_get_channels(file->context, 0, &list);
+    if (result != EXR_ERR_SUCCESS || list->num_channels < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no channels");
+    SluiceResult answer = check_names(file, list);
+    file->widest = EXR_PIXEL_HALF;
+    for (int i = 0; i < 4; i++)
+        file->rgba[i] = -1;
+    for (int32_t i = 0; answer == SLUICE_SUCCESS && i < list->num_channels; i++)
+        answer = read_channel(file, &list->entries[i]);
+    return answer;
+}
+
+static SluiceResult read_size(struct slc_exr_file *file)
+{
+    exr_attr_box2i_t window;
+    exr_result_t result = exr_get_data_window(file->context, 0, &window);
+    if (result != EXR_ERR_SUCCESS)
+        return slc_exr_fail(file, slc_exr_result(file, result), "has no data window");
+    int64_t width = (int64_t)window.max.x - window.min.x + 1;
+    int64_t height = (int64_t)window.max.y - window.min.y + 1;
+    if (width < 1 || height < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has an empty data window");
+    if (width > SLC_EXR_MAX_SIZE || height > SLC_EXR_MAX_SIZE)
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                            "is %lld x %lld texels, at most %u in either direction are read",
+                            (long long)width, (long long)height, SLC_EXR_MAX_SIZE);
+    file->width = (uint32_t)width;
+    file->height = (uint32_t)height;
+    file->first_line = window.min.y;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_tiling(struct slc_exr_file *file)
+{
+    uint32_t width, height;
+    exr_tile_level_mode_t mode;
+    exr_tile_round_mode_t rounding;
+    exr_result_t result =
+        exr_get_tile_descriptor(file->context, 0, &width, &height, &mode, &rounding);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_get_tile_levels(file->context, 0, &file->level_count_x, &file->level_count_y);
+    if (result != EXR_ERR_SUCCESS || width == 0 || height == 0 || file->level_count_x < 1 ||
+        file->level_count_y < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no valid tile description");
+    file->layout = mode == EXR_TILE_ONE_LEVEL       ? SLC_EXR_ONE_LEVEL
+                   : mode == EXR_TILE_MIPMAP_LEVELS ? SLC_EXR_MIPMAP
+                                                    : SLC_EXR_RIPMAP;
+    file->chunk_width = width;
+    file->chunk_height = height;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_lines_per_chunk(struct slc_exr_file *file)
+{
+    int32_t lines = 0;
+    exr_result_t result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
+    if (result != EXR_ERR_SUCCESS || lines < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no valid compression");
+    file->layout = SLC_EXR_SCANLINES;
+    file->level_count_x = file->level_count_y = 1;
+    file->chunk_width = file->width;
+    file->chunk_height = (uint32_t)lines;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_layout(struct slc_exr_file *file)
+{
+    exr_storage_t storage;
+    exr_result_t result = exr_get_storage(file->context, 0, &storage);
+    if (result != EXR_ERR_SUCCESS)
+        return slc_exr_fail(file, slc_exr_result(file, result), "has no storage type");
+    switch (storage) {
+    case EXR_STORAGE_SCANLINE: return read_lines_per_chunk(file);
+    case EXR_STORAGE_TILED: return read_tiling(file);
+    case EXR_STORAGE_DEEP_SCANLINE:
+    case EXR_STORAGE_DEEP_TILED:
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                            "has deep data%s, which is not read; flatten it to an ordinary image",
+                            file->is_multipart ? " in its first part" : "");
+    default:
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED, "has the unknown storage type %d",
+                            (int)storage);
+    }
+}
+
+static SluiceResult check_compression(struct slc_exr_file *file)
+{
+    exr_result_t result = exr_get_compression(file->context, 0, &file->compression);
+    if (result != EXR_ERR_SUCCESS)
+        return slc_exr_fail(file, slc_exr_result(file, result), "has no compression type");
+    int major, minor, patch;
+    const char *extra;
+    exr_get_library_version(&major, &minor, &patch, &extra);
+    bool is_dwa =
+        file->compression == EXR_COMPRESSION_DWAA || file->compression == EXR_COMPRESSION_DWAB;
+    if (is_dwa && (major < 3 || (major == 3 && minor < 2)))
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                            "is DWA compressed, which OpenEXRCore %d.%d.%d does not decode; use "
+                            "3.2 or newer, or compress the file otherwise",
+                            major, minor, patch);
+    return SLUICE_SUCCESS;
+}
+
+/* What any chunk needs in memory, and how much more the image is than its file could hold. */
+static SluiceResult check_plausibility(struct slc_exr_file *file)
+{
+    uint64_t texels = (uint64_t)slc_min_u32(file->chunk_width, file->width) *
+                      slc_min_u32(file->chunk_height, file->height);
+    if (texels * file->texel_size > 1u << 30)
+        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                            "has tiles of %u x %u texels, which need more than 1 GiB each; use "
+                            "smaller ones",
+                            file->chunk_width, file->chunk_height);
+    /* The strongest compression there is, DWA of a constant, stays well below 65536 : 1. */
+    uint64_t image = (uint64_t)file->width * file->height * file->texel_size;
+    if (image / 65536 > file->size)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
+                            "says it is %u x %u texels, which a file of %llu bytes cannot hold",
+                            file->width, file->height, (unsigned long long)file->size);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_chunk_count(struct slc_exr_file *file)
+{
+    exr_result_t result = exr_get_chunk_count(file->context, 0, &file->chunk_count);
+    if (result != EXR_ERR_SUCCESS || file->chunk_count < 1 ||
+        (uint64_t)file->chunk_count > file->size / sizeof(uint64_t))
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
+                            "says it has %d chunks, which a file of %llu bytes cannot hold",
+                            file->chunk_count, (unsigned long long)file->size);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level, uint32_t *width,
+                                uint32_t *height)
+{
+    if (file->layout == SLC_EXR_SCANLINES) {
+        *width = file->width;
+        *height = file->height;
+        return SLUICE_SUCCESS;
+    }
+    int32_t x = (int32_t)slc_min_u32(level, (uint32_t)file->level_count_x - 1);
+    int32_t y = (int32_t)slc_min_u32(level, (uint32_t)file->level_count_y - 1);
+    int32_t level_width = 0, level_height = 0;
+    exr_result_t result = exr_get_level_sizes(file->context, 0, x, y, &level_width, &level_height);
+    if (result != EXR_ERR_SUCCESS || level_width < 1 || level_height < 1)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no size for level %u", level);
+    *width = (uint32_t)level_width;
+    *height = (uint32_t)level_height;
+    return SLUICE_SUCCESS;
+}
+
+/* Rounding down gives Vulkan's sizes, rounding up one more at times; less would be unreadable. */
+static SluiceResult check_levels(struct slc_exr_file *file)
+{
+    uint32_t level_count = 1;
+    if (file->layout == SLC_EXR_MIPMAP || file->layout == SLC_EXR_RIPMAP)
+        level_count = slc_mip_count(slc_max_u32(file->width, file->height));
+    for (uint32_t level = 0; level < level_count; level++) {
+        uint32_t width = 0, height = 0;
+        SluiceResult result = slc_exr_level_size(file, level, &width, &height);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        if (width < slc_mip_size(file->width, level) || height < slc_mip_size(file->height, level))
+            return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
+                                "level %u is %u x %u texels, too few", level, width, height);
+    }
+    return SLUICE_SUCCESS;
+}
+
+/* Moves *offset behind one attribute of a header; *last tells that there was no more. */
+static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, bool *last)
+{
+    /* name, type, both ended by a zero, and a size; names have at most 255 bytes */
+    unsigned char bytes[256 + 256 + 4] = {0};
+    uint64_t rest = *offset < file->size ? file->size - *offset : 0;
+    size_t size = rest < sizeof bytes ? (size_t)rest : sizeof bytes;
+    SluiceResult result = slc_exr_file_read(file, *offset, bytes, size);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *last = size > 0 && bytes[0] == 0;
+    if (*last) {
+        *offset += 1;
+        return SLUICE_SUCCESS;
+    }
+    const unsigned char *type = memchr(bytes, 0, size);
+    const unsigned char *value =
+        type ? memchr(type + 1, 0, size - (size_t)(type + 1 - bytes)) : NULL;
+    if (!value || (size_t)(value + 5 - bytes) > size)
+        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has a broken attribute at %llu",
+                            (unsigned long long)*offset);
+    uint32_t length =
+        value[1] | (uint32_t)value[2] << 8 | (uint32_t)value[3] << 16 | (uint32_t)value[4] << 24;
+    *offset += (uint64_t)(value + 5 - bytes) + length;
+    return SLUICE_SUCCESS;
+}
+
+/*
+ * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly
+ * (docs/decisions/0010-what-openexrcore-is-trusted-with.md), so that for them the table of chunks
+ * is looked up here. It follows the headers: attributes up to an empty name, in multi-part files
+ * one header after the other up to an empty one.
+ */
+static SluiceResult find_chunk_table(struct slc_exr_file *file)
+{
+    uint64_t offset = 8; /* magic number, version and flags */
+    bool last = false;
+    while (!last) {
+        SluiceResult result = skip_attribute(file, &offset, &last);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        if (!last || !file->is_multipart)
+            continue;
+        unsigned char next;
+        result = slc_exr_file_read(file, offset, &next, 1);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        last = next == 0;
+        offset += last;
+    }
+    file->chunk_table_offset = offset;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_multipart_flag(struct slc_exr_file *file)
+{
+    unsigned char bytes[8];
+    SluiceResult result = slc_exr_file_read(file, 0, bytes, sizeof bytes);
+    file->is_multipart = result == SLUICE_SUCCESS && (bytes[5] & 0x10);
+    return result;
+}
+
+SluiceResult slc_exr_read_header(struct slc_exr_file *file)
+{
+    static SluiceResult (*const steps[])(struct slc_exr_file *) = {
+        read_multipart_flag, read_size,    read_layout,        read_channels,
+        check_compression,   check_levels, check_plausibility, check_chunk_count,
+    };
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        SluiceResult result = steps[i](file);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    return file->layout == SLC_EXR_RIPMAP ? find_chunk_table(file) : SLUICE_SUCCESS;
+}

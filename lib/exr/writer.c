@@ -1,0 +1,438 @@
+#include <sluice/exr.h>
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "exr/write_file.h"
+#include "image/convert.h"
+#include "image/half.h"
+
+#include <openexr.h>
+#include <pthread.h>
+#include <string.h>
+
+/* A tile, in the order in which tiles are taken and written: level by level, row by row. */
+struct tile {
+    uint64_t index;
+    SluiceImageRegion region;
+    uint32_t x, y; ///< among the tiles of its level
+};
+
+struct writer {
+    SluiceExrWriteInfo info;
+    SluiceAllocationCallbacks allocator;
+    SluiceImageSource *source;
+    SluiceImageInfo image;
+    uint32_t channel_count;
+    uint64_t tile_count, texel_count;
+    struct slc_write_file file;
+    exr_context_t context;
+
+    pthread_mutex_t mutex; ///< around what follows and around every write
+    pthread_cond_t turn;   ///< another tile has been written, or writing has failed
+    struct tile next;      ///< to be taken
+    uint64_t written_count, written_texels;
+    SluiceResult result; ///< the first failure
+};
+
+/* What one thread needs for one tile. */
+struct tile_buffers {
+    char *texels; ///< in the source's format
+    char *packed; ///< as the file has them: per row each channel by itself, A, B, G, R
+    size_t texels_size, packed_size;
+};
+
+static SluiceResult fail(const struct writer *writer, SluiceResult result, const char *what)
+{
+    slc_log(&writer->info.log, SLUICE_LOG_ERROR, "%s: %s", writer->info.pPath, what);
+    return result;
+}
+
+static SluiceResult library_result(const struct writer *writer, exr_result_t result)
+{
+    if (result == EXR_ERR_SUCCESS)
+        return SLUICE_SUCCESS;
+    if (result == EXR_ERR_OUT_OF_MEMORY)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (writer->file.has_failed) /* already logged */
+        return SLUICE_ERROR_IO;
+    return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT, exr_get_default_error_message(result));
+}
+
+static int64_t on_write(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
+                        uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context;
+    (void)error;
+    struct slc_write_file *file = user;
+    return slc_write_file_put(file, buffer, size, offset) ? (int64_t)size : -1;
+}
+
+/* Results say enough, and the context may be locked where this is called. */
+static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context;
+    (void)code;
+    (void)message;
+}
+
+/* Channels have to be added by name, and are stored so. */
+static const char *const *channel_names(uint32_t count)
+{
+    static const char *const names[5][5] = {
+        {NULL}, {"Y"}, {"G", "R"}, {"B", "G", "R"}, {"A", "B", "G", "R"}};
+    return names[count];
+}
+
+/* Which component of RGBA the channel of a place in the file comes from. */
+static uint32_t channel_component(uint32_t channel_count, uint32_t channel)
+{
+    return channel_count - 1 - channel;
+}
+
+static exr_result_t define_image(struct writer *writer)
+{
+    exr_context_t context = writer->context;
+    int part;
+    exr_result_t result = exr_add_part(context, NULL, EXR_STORAGE_TILED, &part);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_initialize_required_attr_simple(
+            context, part, (int32_t)writer->image.width, (int32_t)writer->image.height,
+            writer->info.uncompressed ? EXR_COMPRESSION_NONE : EXR_COMPRESSION_ZIP);
+    if (result == EXR_ERR_SUCCESS)
+        result =
+            exr_set_tile_descriptor(context, part, writer->info.tileWidth, writer->info.tileHeight,
+                                    EXR_TILE_MIPMAP_LEVELS, EXR_TILE_ROUND_DOWN);
+    const char *const *names = channel_names(writer->channel_count);
+    for (uint32_t i = 0; i < writer->channel_count && result == EXR_ERR_SUCCESS; i++)
+        result = exr_add_channel(context, part, names[i], EXR_PIXEL_HALF,
+                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
+}
+
+static exr_result_t start_context(struct writer *writer)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = on_error;
+    init.user_data = &writer->file;
+    init.write_fn = on_write;
+    init.zip_level = 4; /* twice as fast as 6 for files that are a few percent larger */
+    exr_result_t result =
+        exr_start_write(&writer->context, writer->info.pPath, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (result != EXR_ERR_SUCCESS) {
+        writer->context = NULL;
+        return result;
+    }
+    return define_image(writer);
+}
+
+/* Of half sources the bits, so that infinities and NaN survive; of others the nearest half. */
+static void convert_texels(SluiceFormat format, const char *texels, uint16_t (*halves)[4],
+                           uint32_t count)
+{
+    enum { BATCH = 64 };
+    uint32_t texel_size = sluiceFormatTexelSize(format);
+    uint32_t channels = slc_format_channel_count(format);
+    if (texel_size == 2 * channels) {
+        for (uint32_t i = 0; i < count; i++)
+            memcpy(halves[i], texels + (size_t)i * texel_size, texel_size);
+        return;
+    }
+    float rgba[4 * BATCH];
+    for (uint32_t done = 0; done < count; done += BATCH) {
+        uint32_t step = slc_min_u32(BATCH, count - done);
+        slc_texels_to_rgba(format, texels + (size_t)done * texel_size, rgba, step);
+        for (uint32_t i = 0; i < 4 * step; i++)
+            halves[done + i / 4][i % 4] = slc_half_from_float(rgba[i]);
+    }
+}
+
+static void pack_tile(const struct writer *writer, const struct tile *tile, const char *texels,
+                      char *packed)
+{
+    enum { BATCH = 64 };
+    uint16_t halves[BATCH][4];
+    uint32_t width = tile->region.width, channels = writer->channel_count;
+    size_t texel_size = sluiceFormatTexelSize(writer->image.format);
+    for (uint32_t y = 0; y < tile->region.height; y++, packed += (size_t)2 * channels * width)
+        for (uint32_t x = 0; x < width; x += BATCH) {
+            uint32_t count = slc_min_u32(BATCH, width - x);
+            convert_texels(writer->image.format, texels + ((size_t)y * width + x) * texel_size,
+                           halves, count);
+            for (uint32_t c = 0; c < channels; c++) {
+                uint32_t component = channel_component(channels, c);
+                unsigned char *out = (unsigned char *)packed + 2 * ((size_t)c * width + x);
+                for (uint32_t i = 0; i < count; i++, out += 2) {
+                    out[0] = (unsigned char)(halves[i][component] & 0xFF);
+                    out[1] = (unsigned char)(halves[i][component] >> 8);
+                }
+            }
+        }
+}
+
+static SluiceResult make_tile(struct writer *writer, const struct tile *tile,
+                              const struct tile_buffers *buffers)
+{
+    size_t pitch = (size_t)tile->region.width * sluiceFormatTexelSize(writer->image.format);
+    SluiceResult result =
+        sluiceReadImageRegion(writer->source, &tile->region, buffers->texels, pitch);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    pack_tile(writer, tile, buffers->texels, buffers->packed);
+    return SLUICE_SUCCESS;
+}
+
+static exr_chunk_info_t describe_chunk(const struct writer *writer, const struct tile *tile)
+{
+    /* By hand: up to 3.1, exr_write_tile_chunk_info gives the last tiles of NPOT levels below the
+     * first the full tile's size. */
+    return (exr_chunk_info_t){
+        .idx = (int32_t)tile->index,
+        .start_x = (int32_t)tile->x,
+        .start_y = (int32_t)tile->y,
+        .width = (int32_t)tile->region.width,
+        .height = (int32_t)tile->region.height,
+        .level_x = (uint8_t)tile->region.mipLevel,
+        .level_y = (uint8_t)tile->region.mipLevel,
+        .type = EXR_STORAGE_TILED,
+        .compression = EXR_COMPRESSION_ZIP,
+        .unpacked_size =
+            (uint64_t)tile->region.width * tile->region.height * 2 * writer->channel_count,
+    };
+}
+
+/* Runs the library's encoder up to compressed bytes; the writing comes when it is our turn. */
+static exr_result_t compress_tile(struct writer *writer, const struct tile *tile,
+                                  const char *packed, exr_encode_pipeline_t *pipeline)
+{
+    exr_chunk_info_t info = describe_chunk(writer, tile);
+    exr_result_t result = exr_encoding_initialize(writer->context, 0, &info, pipeline);
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    size_t plane = (size_t)2 * tile->region.width;
+    for (int c = 0; c < pipeline->channel_count; c++) {
+        exr_coding_channel_info_t *channel = &pipeline->channels[c];
+        channel->encode_from_ptr = (const uint8_t *)packed + (size_t)c * plane;
+        channel->user_bytes_per_element = 2;
+        channel->user_data_type = EXR_PIXEL_HALF;
+        channel->user_pixel_stride = 2;
+        channel->user_line_stride = (int32_t)(plane * writer->channel_count);
+    }
+    result = exr_encoding_choose_default_routines(writer->context, 0, pipeline);
+    pipeline->yield_until_ready_fn = NULL;
+    pipeline->write_fn = NULL;
+    return result == EXR_ERR_SUCCESS ? exr_encoding_run(writer->context, 0, pipeline) : result;
+}
+
+static void advance(struct writer *writer, struct tile *tile)
+{
+    uint32_t level = tile->region.mipLevel;
+    uint32_t width = slc_mip_size(writer->image.width, level);
+    uint32_t height = slc_mip_size(writer->image.height, level);
+    tile->index++;
+    if (++tile->x * (uint64_t)writer->info.tileWidth < width)
+        return;
+    tile->x = 0;
+    if (++tile->y * (uint64_t)writer->info.tileHeight < height)
+        return;
+    tile->y = 0;
+    tile->region.mipLevel++;
+}
+
+/* Holding the mutex; false if there is nothing left to do. */
+static bool take_tile(struct writer *writer, struct tile *tile)
+{
+    if (writer->result != SLUICE_SUCCESS || writer->next.index == writer->tile_count)
+        return false;
+    *tile = writer->next;
+    SluiceImageRegion *region = &tile->region;
+    region->x = tile->x * writer->info.tileWidth;
+    region->y = tile->y * writer->info.tileHeight;
+    region->width = slc_min_u32(writer->info.tileWidth,
+                                slc_mip_size(writer->image.width, region->mipLevel) - region->x);
+    region->height = slc_min_u32(writer->info.tileHeight,
+                                 slc_mip_size(writer->image.height, region->mipLevel) - region->y);
+    advance(writer, &writer->next);
+    return true;
+}
+
+/* Holding the mutex. Tiles go to the file in order, so that readers find neighbours together. */
+static SluiceResult put_tile(struct writer *writer, const struct tile *tile, const void *bytes,
+                             uint64_t size)
+{
+    int level = (int)tile->region.mipLevel;
+    exr_result_t result = exr_write_tile_chunk(writer->context, 0, (int)tile->x, (int)tile->y,
+                                               level, level, bytes, size);
+    if (result != EXR_ERR_SUCCESS)
+        return library_result(writer, result);
+    writer->written_count++;
+    writer->written_texels += (uint64_t)tile->region.width * tile->region.height;
+    if (writer->info.pfnProgress &&
+        !writer->info.pfnProgress(writer->info.pUserData, writer->written_texels,
+                                  writer->texel_count))
+        return SLUICE_ERROR_CANCELLED;
+    return SLUICE_SUCCESS;
+}
+
+/* Makes a tile without the mutex, then waits for its turn with it. */
+static void write_tile(struct writer *writer, const struct tile *tile,
+                       const struct tile_buffers *buffers)
+{
+    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    const void *bytes = buffers->packed;
+    uint64_t size = (uint64_t)tile->region.width * tile->region.height * 2 * writer->channel_count;
+    bool compresses = !writer->info.uncompressed;
+    exr_result_t encoding = EXR_ERR_SUCCESS;
+    SluiceResult result = make_tile(writer, tile, buffers);
+    if (result == SLUICE_SUCCESS && compresses) {
+        encoding = compress_tile(writer, tile, buffers->packed, &pipeline);
+        bytes = pipeline.compressed_buffer;
+        size = pipeline.compressed_bytes;
+    }
+    pthread_mutex_lock(&writer->mutex);
+    while (writer->written_count != tile->index && writer->result == SLUICE_SUCCESS)
+        pthread_cond_wait(&writer->turn, &writer->mutex);
+    if (writer->result == SLUICE_SUCCESS) {
+        if (result == SLUICE_SUCCESS)
+            result = library_result(writer, encoding);
+        if (result == SLUICE_SUCCESS)
+            result = put_tile(writer, tile, bytes, size);
+        writer->result = result;
+    }
+    if (compresses)
+        exr_encoding_destroy(writer->context, &pipeline);
+    pthread_cond_broadcast(&writer->turn);
+}
+
+static void report(struct writer *writer, SluiceResult result)
+{
+    pthread_mutex_lock(&writer->mutex);
+    if (writer->result == SLUICE_SUCCESS)
+        writer->result = result;
+    pthread_cond_broadcast(&writer->turn);
+    pthread_mutex_unlock(&writer->mutex);
+}
+
+static void *worker_main(void *argument)
+{
+    struct writer *writer = argument;
+    const SluiceAllocationCallbacks *cb = &writer->allocator;
+    size_t texels = (size_t)writer->info.tileWidth * writer->info.tileHeight;
+    struct tile_buffers buffers = {
+        .texels_size = texels * sluiceFormatTexelSize(writer->image.format),
+        .packed_size = texels * 2 * writer->channel_count,
+    };
+    buffers.texels = slc_alloc(cb, buffers.texels_size, 1);
+    buffers.packed = slc_alloc(cb, buffers.packed_size, 1);
+    if (buffers.texels && buffers.packed) {
+        struct tile tile;
+        pthread_mutex_lock(&writer->mutex);
+        while (take_tile(writer, &tile)) {
+            pthread_mutex_unlock(&writer->mutex);
+            write_tile(writer, &tile, &buffers); /* returns with the mutex */
+        }
+        pthread_mutex_unlock(&writer->mutex);
+    } else {
+        report(writer, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    }
+    slc_free(cb, buffers.texels, buffers.texels_size, 1);
+    slc_free(cb, buffers.packed, buffers.packed_size, 1);
+    return NULL;
+}
+
+/* The calling thread works, too; threads that cannot be had are done without. */
+static SluiceResult run_workers(struct writer *writer)
+{
+    uint32_t extra = writer->info.threadCount - 1, started = 0;
+    pthread_t *threads = NULL;
+    if (extra > 0) {
+        threads = slc_alloc(&writer->allocator, extra, sizeof *threads);
+        if (!threads)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    while (started < extra && pthread_create(&threads[started], NULL, worker_main, writer) == 0)
+        started++;
+    worker_main(writer);
+    for (uint32_t i = 0; i < started; i++)
+        pthread_join(threads[i], NULL);
+    slc_free(&writer->allocator, threads, extra, sizeof *threads);
+    return writer->result;
+}
+
+static SluiceResult write_image(struct writer *writer)
+{
+    SluiceResult result = slc_write_file_open(&writer->file, writer->info.pPath, &writer->allocator,
+                                              &writer->info.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = library_result(writer, start_context(writer));
+    if (result == SLUICE_SUCCESS)
+        result = run_workers(writer);
+    if (writer->context) {
+        exr_result_t finished = exr_finish(&writer->context);
+        if (result == SLUICE_SUCCESS)
+            result = library_result(writer, finished);
+    }
+    SluiceResult closed = slc_write_file_finish(&writer->file, result == SLUICE_SUCCESS);
+    return result == SLUICE_SUCCESS ? closed : result;
+}
+
+static void count_tiles(struct writer *writer)
+{
+    for (uint32_t level = 0; level < writer->image.mipLevelCount; level++) {
+        uint32_t width = slc_mip_size(writer->image.width, level);
+        uint32_t height = slc_mip_size(writer->image.height, level);
+        writer->texel_count += (uint64_t)width * height;
+        writer->tile_count += (uint64_t)slc_div_up_u32(width, writer->info.tileWidth) *
+                              slc_div_up_u32(height, writer->info.tileHeight);
+    }
+}
+
+static SluiceResult prepare(struct writer *writer)
+{
+    SluiceExrWriteInfo *info = &writer->info;
+    if (info->tileWidth == 0)
+        info->tileWidth = 128;
+    if (info->tileHeight == 0)
+        info->tileHeight = 128;
+    if (info->threadCount == 0)
+        info->threadCount = 1;
+    if ((uint64_t)info->tileWidth * info->tileHeight > 1u << 24)
+        return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT, "tiles have at most 2^24 texels");
+    SluiceResult result = sluiceGetImageInfo(writer->source, &writer->image);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const SluiceImageInfo *image = &writer->image;
+    writer->channel_count = slc_format_channel_count(image->format);
+    if (writer->channel_count == 0 || image->width == 0 || image->height == 0 ||
+        image->mipLevelCount != slc_mip_count(slc_max_u32(image->width, image->height)))
+        return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT,
+                    "the source has no texels, an unknown format or not all levels");
+    if (writer->channel_count == 4 && info->opaque)
+        writer->channel_count = 3;
+    if (image->width > 1u << 20 || image->height > 1u << 20)
+        return fail(writer, SLUICE_ERROR_UNSUPPORTED,
+                    "images have at most 2^20 texels in either direction");
+    count_tiles(writer);
+    if (writer->tile_count > INT32_MAX)
+        return fail(writer, SLUICE_ERROR_LIMIT_EXCEEDED,
+                    "there would be more than 2^31 tiles; use larger ones");
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo, SluiceImageSource *source)
+{
+    if (!pInfo || !source || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    struct writer writer = {
+        .info = *pInfo, .allocator = slc_allocator(pInfo->pAllocator), .source = source};
+    SluiceResult result = prepare(&writer);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    pthread_mutex_init(&writer.mutex, NULL);
+    pthread_cond_init(&writer.turn, NULL);
+    result = write_image(&writer);
+    pthread_mutex_destroy(&writer.mutex);
+    pthread_cond_destroy(&writer.turn);
+    return result;
+}

@@ -1,0 +1,41 @@
+/** A full mip chain in memory, its levels made by an area-weighted box filter. */
+#ifndef SLC_IMAGE_MIP_H
+#define SLC_IMAGE_MIP_H
+
+#include <sluice/image.h>
+
+#define SLC_MAX_MIP_LEVELS 32
+
+/** Levels one after the other, finest first, rows tightly packed. */
+struct slc_mip_chain {
+    SluiceFormat format;
+    uint32_t width, height;
+    uint32_t level_count;
+    size_t offsets[SLC_MAX_MIP_LEVELS]; ///< of each level, in bytes
+    size_t size;                        ///< of all levels, in bytes
+    char *texels;
+};
+
+/** Room for all levels; what it holds is undefined. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
+                                SluiceFormat format, uint32_t width, uint32_t height);
+
+void slc_mip_chain_finish(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb);
+
+static inline char *slc_mip_chain_level(const struct slc_mip_chain *chain, uint32_t level)
+{
+    return chain->texels + chain->offsets[level];
+}
+
+/**
+ * Makes every level from the stored one above it, each texel the mean of the area that it covers
+ * (in linear light for sRGB formats), NaN counting as 0. Only levels below the first can hold fewer
+ * infinities than the file: half formats saturate. Errors: OUT_OF_HOST_MEMORY.
+ */
+SluiceResult slc_mip_chain_build(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb);
+
+/** Copies a region that lies inside its level. */
+void slc_mip_chain_read(const struct slc_mip_chain *chain, const SluiceImageRegion *region,
+                        void *texels, size_t row_pitch);
+
+#endif /* SLC_IMAGE_MIP_H */

@@ -1,0 +1,124 @@
+#include "image/convert.h"
+#include "image/half.h"
+#include "image/srgb.h"
+#include "support/test.h"
+
+#include <math.h>
+
+static const SluiceFormat all_formats[] = {
+    SLUICE_FORMAT_R8_UNORM,   SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB,
+    SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R16G16_SFLOAT,  SLUICE_FORMAT_R16G16B16A16_SFLOAT,
+    SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32_SFLOAT,  SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+};
+
+static long double encode(long double x)
+{
+    return x <= 0.0031308L ? 12.92L * x : 1.055L * powl(x, 1 / 2.4L) - 0.055L;
+}
+
+static long double decode(long double c)
+{
+    return c <= 0.04045L ? c / 12.92L : powl((c + 0.055L) / 1.055L, 2.4L);
+}
+
+static void srgb_decodes_as_the_standard_says(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        assert_true(slc_srgb_to_linear[i] == (float)decode(i / 255.0L));
+}
+
+static void every_srgb_value_survives_a_round_trip(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        assert_int_equal(slc_srgb_from_linear(slc_srgb_to_linear[i]), i);
+}
+
+static void srgb_encodes_to_the_nearest_value(void **state)
+{
+    (void)state;
+    uint32_t random = 7;
+    for (int i = 0; i < 200000; i++) {
+        random = random * 1664525u + 1013904223u;
+        float x = (float)(random >> 8) * 0x1p-24f;
+        if (i % 2)
+            x *= x * x; /* more of the dark ones */
+        uint8_t result = slc_srgb_from_linear(x);
+        assert_true(fabsl(encode(x) * 255 - result) <= 0.5L + 1e-12L);
+    }
+    assert_int_equal(slc_srgb_from_linear(NAN), 0);
+    assert_int_equal(slc_srgb_from_linear(-INFINITY), 0);
+    assert_int_equal(slc_srgb_from_linear(INFINITY), 255);
+    assert_int_equal(slc_srgb_from_linear(1.0f), 255);
+    assert_int_equal(slc_srgb_from_linear(0.0f), 0);
+}
+
+static void unorm_rounds_to_the_nearest_step_and_clamps(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 255; i++) {
+        float middle = (i + 0.5f) / 255.0f;
+        assert_int_equal(slc_unorm8_from_float(nextafterf(middle, 0.0f) - 1e-7f), i);
+        assert_int_equal(slc_unorm8_from_float(nextafterf(middle, 1.0f) + 1e-7f), i + 1);
+        assert_int_equal(slc_unorm8_from_float((float)i / 255.0f), i);
+    }
+    assert_int_equal(slc_unorm8_from_float(nextafterf(0.5f / 255.0f, 0.0f)), 0);
+    assert_int_equal(slc_unorm8_from_float(NAN), 0);
+    assert_int_equal(slc_unorm8_from_float(-1.0f), 0);
+    assert_int_equal(slc_unorm8_from_float(INFINITY), 255);
+}
+
+/* What a format can hold comes back; what it lacks is black and opaque. */
+static void texels_survive_a_round_trip_in_every_format(void **state)
+{
+    (void)state;
+    const float given[2][4] = {{0.0f, 1.0f, 0.2f, 0.6f}, {1.0f, 0.4f, 0.0f, 0.8f}};
+    for (size_t f = 0; f < sizeof all_formats / sizeof all_formats[0]; f++) {
+        SluiceFormat format = all_formats[f];
+        unsigned char texels[2 * 16 + 1];
+        texels[2 * sluiceFormatTexelSize(format)] = 0xA5;
+        slc_texels_from_rgba(format, given[0], texels, 2);
+        assert_int_equal(texels[2 * sluiceFormatTexelSize(format)], 0xA5);
+        float back[2][4];
+        slc_texels_to_rgba(format, texels, back[0], 2);
+        for (uint32_t i = 0; i < 2; i++)
+            for (uint32_t c = 0; c < 4; c++) {
+                float expected = given[i][c];
+                if (c >= slc_format_channel_count(format))
+                    expected = c == 3 ? 1.0f : 0.0f;
+                assert_true(fabsf(back[i][c] - expected) <= 0.005f);
+            }
+    }
+}
+
+static void infinities_and_nan_follow_the_header(void **state)
+{
+    (void)state;
+    const float given[4] = {NAN, INFINITY, -INFINITY, 70000.0f};
+    uint16_t half[4];
+    slc_texels_from_rgba(SLUICE_FORMAT_R16G16B16A16_SFLOAT, given, half, 1);
+    assert_int_equal(half[0], 0);
+    assert_int_equal(half[1], 0x7BFF);
+    assert_int_equal(half[2], 0xFBFF);
+    assert_int_equal(half[3], 0x7BFF);
+    uint8_t bytes[4];
+    slc_texels_from_rgba(SLUICE_FORMAT_R8G8B8A8_SRGB, given, bytes, 1);
+    assert_memory_equal(bytes, ((uint8_t[4]){0, 255, 0, 255}), 4);
+    float wide[4];
+    slc_texels_from_rgba(SLUICE_FORMAT_R32G32B32A32_SFLOAT, given, wide, 1);
+    assert_memory_equal(wide, given, sizeof given);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(srgb_decodes_as_the_standard_says),
+        cmocka_unit_test(every_srgb_value_survives_a_round_trip),
+        cmocka_unit_test(srgb_encodes_to_the_nearest_value),
+        cmocka_unit_test(unorm_rounds_to_the_nearest_step_and_clamps),
+        cmocka_unit_test(texels_survive_a_round_trip_in_every_format),
+        cmocka_unit_test(infinities_and_nan_follow_the_header),
+    };
+    return RUN_TESTS(tests);
+}

@@ -1,0 +1,175 @@
+#include <sluice/image.h>
+
+#include "base/checked.h"
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Tells where it was asked: every texel of every level has its own colour. */
+static void mark(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                 uint32_t height, float rgba[4])
+{
+    (void)user;
+    rgba[0] = (float)(x + y * width);
+    rgba[1] = (float)level;
+    rgba[2] = (float)width;
+    rgba[3] = (float)height;
+}
+
+static SluiceImageSource *create_marked(uint32_t width, uint32_t height)
+{
+    SluiceProceduralImage image = {NULL, mark};
+    SluiceImageInfo info = {width, height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT, "marked"};
+    SluiceImageSource *source = NULL;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+    return source;
+}
+
+static void procedural_regions_hold_the_texels_they_name(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = create_marked(301, 77);
+    SluiceImageInfo info;
+    CHECK_OK(sluiceGetImageInfo(source, &info));
+    assert_int_equal(info.mipLevelCount, 9);
+    assert_string_equal(info.pName, "marked");
+    for (uint32_t level = 0; level < info.mipLevelCount; level++) {
+        uint32_t width = slc_mip_size(301, level), height = slc_mip_size(77, level);
+        SluiceImageRegion region = {level, width / 3, height / 3, width - width / 3,
+                                    height - height / 3};
+        size_t pitch = (region.width + 5) * 16;
+        char *texels = malloc(pitch * region.height);
+        memset(texels, 0x77, pitch * region.height);
+        CHECK_OK(sluiceReadImageRegion(source, &region, texels, pitch));
+        for (uint32_t y = 0; y < region.height; y++) {
+            for (uint32_t x = 0; x < region.width; x++) {
+                float rgba[4], expected[4];
+                memcpy(rgba, texels + y * pitch + x * 16, 16);
+                mark(NULL, level, region.x + x, region.y + y, width, height, expected);
+                assert_memory_equal(rgba, expected, 16);
+            }
+            assert_int_equal(texels[y * pitch + region.width * 16], 0x77);
+        }
+        free(texels);
+    }
+    sluiceDestroyImageSource(source);
+}
+
+static void regions_that_leave_their_level_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = create_marked(20, 10);
+    char texels[20 * 10 * 16];
+    const SluiceImageRegion bad[] = {
+        {0, 0, 0, 0, 1},  {0, 0, 0, 1, 0},  {0, 20, 0, 1, 1},         {0, 0, 10, 1, 1},
+        {0, 1, 0, 20, 1}, {0, 0, 1, 1, 10}, {0, UINT32_MAX, 0, 2, 1}, {0, 1, 0, UINT32_MAX, 1},
+        {1, 10, 0, 1, 1}, {4, 0, 1, 1, 1},  {5, 0, 0, 1, 1},          {UINT32_MAX, 0, 0, 1, 1}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        CHECK_RESULT(sluiceReadImageRegion(source, &bad[i], texels, sizeof texels),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+    SluiceImageRegion good = {0, 0, 0, 20, 10};
+    CHECK_RESULT(sluiceReadImageRegion(source, &good, texels, 20 * 16 - 1),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceReadImageRegion(source, &good, texels, 20 * 16));
+    CHECK_RESULT(sluiceReadImageRegion(NULL, &good, texels, 320), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceReadImageRegion(source, NULL, texels, 320), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceReadImageRegion(source, &good, NULL, 320), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceGetImageInfo(source, NULL), SLUICE_ERROR_NULL_POINTER);
+    sluiceDestroyImageSource(source);
+    sluiceDestroyImageSource(NULL);
+}
+
+static void wrong_descriptions_are_refused(void **state)
+{
+    (void)state;
+    SluiceProceduralImage image = {NULL, mark};
+    const SluiceImageInfo bad[] = {
+        {0, 1, 0, SLUICE_FORMAT_R8_UNORM, "a"},  {1, 0, 0, SLUICE_FORMAT_R8_UNORM, "a"},
+        {4, 4, 2, SLUICE_FORMAT_R8_UNORM, "a"},  {4, 4, 4, SLUICE_FORMAT_R8_UNORM, "a"},
+        {4, 4, 0, SLUICE_FORMAT_UNDEFINED, "a"}, {4, 4, 0, (SluiceFormat)99, "a"}};
+    SluiceImageSource *source = NULL;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &bad[i], NULL, &source),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(sluiceCreateMemoryImageSource("", &bad[i], NULL, &source),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+    }
+    assert_null(source);
+}
+
+static void memory_levels_are_what_was_given_and_its_means(void **state)
+{
+    (void)state;
+    const uint8_t texels[4][4] = {
+        {0, 4, 8, 12}, {4, 8, 12, 16}, {100, 0, 0, 100}, {0, 100, 100, 0}};
+    SluiceImageInfo info = {4, 4, 3, SLUICE_FORMAT_R8_UNORM, NULL};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &source));
+    uint8_t read[16];
+    CHECK_OK(sluiceReadImageRegion(source, &(SluiceImageRegion){0, 1, 1, 2, 3}, read, 2));
+    assert_memory_equal(read, ((uint8_t[]){8, 12, 0, 0, 100, 100}), 6);
+    CHECK_OK(sluiceReadImageRegion(source, &(SluiceImageRegion){1, 0, 0, 2, 2}, read, 2));
+    assert_memory_equal(read, ((uint8_t[]){4, 12, 50, 50}), 4);
+    CHECK_OK(sluiceReadImageRegion(source, &(SluiceImageRegion){2, 0, 0, 1, 1}, read, 1));
+    assert_int_equal(read[0], 29);
+    sluiceDestroyImageSource(source);
+}
+
+static void creation_survives_every_refused_allocation(void **state)
+{
+    (void)state;
+    SluiceProceduralImage image = {NULL, mark};
+    SluiceImageInfo info = {3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
+    for (int kind = 0; kind < 2; kind++) {
+        SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+            struct failing_allocator a;
+            SluiceImageSource *source = NULL;
+            assert_true(n < 100);
+            failing_allocator_init(&a, n);
+            result = kind ? sluiceCreateMemoryImageSource("0123456789abcdef", &info, &a.callbacks,
+                                                          &source)
+                          : sluiceCreateProceduralImageSource(&image, &info, &a.callbacks, &source);
+            if (result != SLUICE_SUCCESS) {
+                CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+                assert_null(source);
+            }
+            sluiceDestroyImageSource(source);
+            assert_int_equal(a.live_bytes, 0);
+        }
+    }
+}
+
+static void null_pointers_are_refused(void **state)
+{
+    (void)state;
+    SluiceProceduralImage image = {NULL, mark}, empty = {NULL, NULL};
+    SluiceImageInfo info = {3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
+    SluiceImageSource *source = NULL;
+    SluiceAllocationCallbacks half = {0};
+    const SluiceResult expected = SLUICE_ERROR_NULL_POINTER;
+    CHECK_RESULT(sluiceCreateProceduralImageSource(NULL, &info, NULL, &source), expected);
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&empty, &info, NULL, &source), expected);
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&image, NULL, NULL, &source), expected);
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, NULL), expected);
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, &half, &source), expected);
+    CHECK_RESULT(sluiceCreateMemoryImageSource(NULL, &info, NULL, &source), expected);
+    CHECK_RESULT(sluiceCreateMemoryImageSource("", NULL, NULL, &source), expected);
+    CHECK_RESULT(sluiceCreateMemoryImageSource("", &info, NULL, NULL), expected);
+    CHECK_RESULT(sluiceCreateMemoryImageSource("", &info, &half, &source), expected);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(procedural_regions_hold_the_texels_they_name),
+        cmocka_unit_test(regions_that_leave_their_level_are_refused),
+        cmocka_unit_test(wrong_descriptions_are_refused),
+        cmocka_unit_test(memory_levels_are_what_was_given_and_its_means),
+        cmocka_unit_test(creation_survives_every_refused_allocation),
+        cmocka_unit_test(null_pointers_are_refused),
+    };
+    return RUN_TESTS(tests);
+}
