@@ -100,11 +100,11 @@ static void put_feedback(struct slc_bytes *out, const struct slc_call *call)
         put_map(out, feedback->pMinMip, (size_t)feedback->width * feedback->height);
 }
 
-/* Whether the manager looked at the list: only then is it known to be as long as it says. */
+/* A list for a texture that is not there may come with any count; else the manager looked at it. */
 static bool indices_were_read(SluiceResult result)
 {
-    return result >= SLUICE_SUCCESS || result == SLUICE_ERROR_UNKNOWN_TILE ||
-           result == SLUICE_ERROR_INVALID_TILE_STATE;
+    return result != SLUICE_ERROR_UNKNOWN_TEXTURE && result != SLUICE_ERROR_STALE_TEXTURE &&
+           result != SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 static void put_indices(struct slc_bytes *out, const struct slc_call *call)
