@@ -166,15 +166,17 @@ slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_tw
 
 static inline struct slc_twin_vec2 slc_twin_half_axis(const struct SluiceTextureEntry *entry,
                                                       struct slc_twin_vec2 dx,
-                                                      struct slc_twin_vec2 dy, float max_anisotropy)
+                                                      struct slc_twin_vec2 dy, float lod_bias,
+                                                      float max_anisotropy)
 {
     if (!(max_anisotropy > 1.0f))
         return (struct slc_twin_vec2){0.0f, 0.0f};
     float w = (float)entry->width, h = (float)entry->height;
     float x2 = dx.x * w * (dx.x * w) + dx.y * h * (dx.y * h);
     float y2 = dy.x * w * (dy.x * w) + dy.y * h * (dy.y * h);
+    float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
     struct slc_twin_vec2 major = x2 >= y2 ? dx : dy;
-    return (struct slc_twin_vec2){0.5f * major.x, 0.5f * major.y};
+    return (struct slc_twin_vec2){0.5f * scale * major.x, 0.5f * scale * major.y};
 }
 
 /* feedback.glsl: what one sample marks */
@@ -195,9 +197,9 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
     struct slc_twin_wants wants;
     wants.level =
         slc_twin_finest_level(lod, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    wants.regions =
-        slc_twin_compute_footprint(entry, uv, slc_twin_half_axis(entry, dx, dy, max_anisotropy),
-                                   slc_twin_coarsest_level(lod, entry->mipLevelCount));
+    wants.regions = slc_twin_compute_footprint(
+        entry, uv, slc_twin_half_axis(entry, dx, dy, lod_bias, max_anisotropy),
+        slc_twin_coarsest_level(lod, entry->mipLevelCount));
     return wants;
 }
 

@@ -13,6 +13,7 @@
 #define SLUICE_FOOTPRINT_GLSL
 
 #include "buffers.glsl"
+#include "lod.glsl"
 
 /* Texels of the coarser level: half a texel for the bilinear filter, and room for fixed-point uv. */
 #define SLUICE_APRON 0.5625
@@ -94,15 +95,19 @@ bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
     return all(equal(footprint.x.xx, footprint.x.yz)) && all(equal(footprint.y.xx, footprint.y.yz));
 }
 
-/** Half of the longer derivative, 0 without anisotropy. */
-vec2 sluiceHalfAxis(SluiceTextureEntry entry, vec2 dx, vec2 dy, float maxAnisotropy)
+/**
+ * Half of the longer derivative, 0 without anisotropy. A positive LOD bias makes it longer: some
+ * devices scale the footprint with it, and so do explicit derivatives that hold the bias.
+ */
+vec2 sluiceHalfAxis(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
         return vec2(0.0);
     vec2 size = vec2(entry.width, entry.height);
     vec2 tx = dx * size;
     vec2 ty = dy * size;
-    return 0.5 * (dot(tx, tx) >= dot(ty, ty) ? dx : dy);
+    float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
+    return 0.5 * scale * (dot(tx, tx) >= dot(ty, ty) ? dx : dy);
 }
 
 #endif

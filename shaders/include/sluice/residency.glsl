@@ -12,10 +12,27 @@
 
 #include "sample.glsl"
 
-/** 1 if a texel that the LINEAR filter needs at this place and level is not resident, 0 if not. */
-uint sluiceProbeNonResident(sampler2D nearestMipTex, vec2 uv, float level)
+/* A coordinate whose filter stays inside the image; false if there is none, on a single texel. */
+bool sluiceStayInside(inout float coordinate, uint size)
+{
+    coordinate = clamp(coordinate, 0.75 / float(size), 1.0 - 0.75 / float(size));
+    return size > 1u;
+}
+
+/**
+ * 1 if a texel that the LINEAR filter needs at this place and level is not resident, 0 if not.
+ * Border colours are no memory, and drivers do not agree on whether they are resident: where the
+ * address mode is CLAMP_TO_BORDER the nearest place inside is asked for.
+ */
+uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, vec2 uv, float level)
 {
     vec4 texel;
+    if (entry.addressModeU == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        !sluiceStayInside(uv.x, max(entry.width >> uint(level), 1u)))
+        return 0u;
+    if (entry.addressModeV == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        !sluiceStayInside(uv.y, max(entry.height >> uint(level), 1u)))
+        return 0u;
     return sparseTexelsResidentARB(sparseTextureLodARB(nearestMipTex, uv, level, texel)) ? 0u : 1u;
 }
 
@@ -37,13 +54,13 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     vec2 axis = vec2(0.0);
     if (maxAnisotropy > 1.0) {
         taps = 9u;
-        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, maxAnisotropy);
+        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, 0.0, maxAnisotropy);
     }
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {
         vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : vec2(0.0));
-        count += sluiceProbeNonResident(nearestMipTex, at, fine);
-        count += sluiceProbeNonResident(nearestMipTex, at, coarse);
+        count += sluiceProbeNonResident(nearestMipTex, entry, at, fine);
+        count += sluiceProbeNonResident(nearestMipTex, entry, at, coarse);
     }
     return count;
 }

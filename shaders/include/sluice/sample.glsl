@@ -92,7 +92,8 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.dx = s.clamped ? vec2(0.0) : dx * biasScale;
     s.dy = s.clamped ? vec2(0.0) : dy * biasScale;
 
-    vec2 halfAxis = s.clamped ? vec2(0.0) : sluiceHalfAxis(entry, dx, dy, maxAnisotropy);
+    vec2 halfAxis = s.clamped ? vec2(0.0)
+                              : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
     uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
     uint tries = 0u;
     for (;; tries++) {
