@@ -309,7 +309,7 @@ static void errors_are_named_in_the_documented_order(void **state)
     CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &(uint32_t){0}, 50));
     const uint8_t map[4] = {0};
     const SluiceFeedbackDesc none = {NULL, 7, 7, 0, 0}, wrong = {map, 2, 1, 0, 0};
-    const uint32_t beyond[] = {1, 1, 6}, twice[] = {1, 1};
+    const uint32_t beyond[] = {1, 6}, twice[] = {1, 1};
     SluiceStreamedTextureManager *m = f.manager;
     CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, stale, &none, 1, 1), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, stale, &wrong, 1, 1),
@@ -317,7 +317,7 @@ static void errors_are_named_in_the_documented_order(void **state)
     CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, id, &wrong, 1, 1), SLUICE_ERROR_SIZE_MISMATCH);
     CHECK_RESULT(sluiceMatchPrimaryTexture(m, stale, stale, 1, 1), SLUICE_ERROR_STALE_TEXTURE);
     CHECK_RESULT(sluiceReportFailedTiles(m, stale, 1, NULL, 1), SLUICE_ERROR_NULL_POINTER);
-    CHECK_RESULT(sluiceReportFailedTiles(m, id, 3, beyond, 1), SLUICE_ERROR_UNKNOWN_TILE);
+    CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, beyond, 1), SLUICE_ERROR_UNKNOWN_TILE);
     CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
     CHECK_RESULT(sluiceReportFailedTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceReportCancelledTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
