@@ -104,7 +104,7 @@ static void every_damaged_file_gives_an_error_or_an_image(void **state)
     (void)state;
     char folder[1024], path[2048];
     if (!find_image("Damaged", folder))
-        skip();
+        SKIP_TEST("no sample files (SLUICE_TEST_DATA)");
     DIR *directory = opendir(folder);
     assert_non_null(directory);
     int count = 0;
@@ -192,7 +192,7 @@ static void an_error_of_the_system_is_told_from_damage(void **state)
 {
     (void)state;
     if (access("/proc/self/mem", R_OK) != 0)
-        skip();
+        SKIP_TEST("/proc/self/mem cannot be opened");
     SluiceExrImageSourceCreateInfo create = {.pPath = "/proc/self/mem"};
     SluiceImageSource *source;
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_IO);

@@ -55,7 +55,7 @@ static SluiceImageSource *open_image(const char *name, SluiceFormat format, Slui
 {
     char path[1024];
     if (!find_image(name, path))
-        skip();
+        SKIP_TEST("no sample files (SLUICE_TEST_DATA)");
     SluiceExrImageSourceCreateInfo create = {.pPath = path, .format = format};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
