@@ -104,7 +104,7 @@ static void every_damaged_file_gives_an_error_or_an_image(void **state)
     (void)state;
     char folder[1024], path[2048];
     if (!find_image("Damaged", folder))
-        SKIP_TEST("no sample files (SLUICE_TEST_DATA)");
+        SKIP_TEST("%s is not there; SLUICE_TEST_DATA says where the data folder is", folder);
     DIR *directory = opendir(folder);
     assert_non_null(directory);
     int count = 0;
@@ -124,7 +124,7 @@ static void every_damaged_file_gives_an_error_or_an_image(void **state)
 static void a_file_cut_at_any_byte_is_an_error(void **state)
 {
     (void)state;
-    static const char *const names[] = {"scan_zip.exr", "mip_zip.exr", "scan_piz.exr",
+    static const char *const names[] = {"scan_zip.exr", "mip_zip.exr",   "scan_piz.exr",
                                         "rip_wide.exr", "one_level.exr", "mip_one_texel.exr"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct scratch scratch;
@@ -143,9 +143,9 @@ static void a_file_cut_at_any_byte_is_an_error(void **state)
 static void any_changed_byte_gives_an_error_or_an_image(void **state)
 {
     (void)state;
-    static const char *const names[] = {"scan_zip.exr",  "scan_pxr24.exr", "mip_one_texel.exr",
-                                        "scan_piz.exr",  "mip_b44.exr",    "scan_rle.exr",
-                                        "rip_wide.exr",  "mip_mixed.exr",  "multi_part.exr",
+    static const char *const names[] = {"scan_zip.exr",   "scan_pxr24.exr", "mip_one_texel.exr",
+                                        "scan_piz.exr",   "mip_b44.exr",    "scan_rle.exr",
+                                        "rip_wide.exr",   "mip_mixed.exr",  "multi_part.exr",
                                         "scan_depth.exr", "deep.exr"};
     enum { LIMIT = 1200 }; /* the header, the table and the first chunks */
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -192,7 +192,7 @@ static void an_error_of_the_system_is_told_from_damage(void **state)
 {
     (void)state;
     if (access("/proc/self/mem", R_OK) != 0)
-        SKIP_TEST("/proc/self/mem cannot be opened");
+        SKIP_TEST("there is no /proc/self/mem to make reading fail");
     SluiceExrImageSourceCreateInfo create = {.pPath = "/proc/self/mem"};
     SluiceImageSource *source;
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_IO);
@@ -210,11 +210,11 @@ static void absurd_sizes_are_refused_before_anything_is_allocated(void **state)
         at++;
     at += sizeof name + 4;
     static const int32_t windows[][4] = {
-        {0, 0, 1 << 19, 1 << 19},           /* more than the file can hold */
-        {0, 0, 1 << 20, 3},                 /* wider than any texture */
-        {-2147483647, -5, 2147483647, 5},   /* a width beyond 32 bits */
-        {5, 5, 4, 9},                       /* nothing */
-        {1000000000, 0, 1000000001, 20},    /* small, but far away: only the chunks are wrong */
+        {0, 0, 1 << 19, 1 << 19},         /* more than the file can hold */
+        {0, 0, 1 << 20, 3},               /* wider than any texture */
+        {-2147483647, -5, 2147483647, 5}, /* a width beyond 32 bits */
+        {5, 5, 4, 9},                     /* nothing */
+        {1000000000, 0, 1000000001, 20},  /* small, but far away: only the chunks are wrong */
     };
     for (size_t i = 0; i < sizeof windows / sizeof windows[0]; i++) {
         assert_int_equal(pwrite(scratch.descriptor, windows[i], 16, (off_t)at), 16);

@@ -55,7 +55,7 @@ static SluiceImageSource *open_image(const char *name, SluiceFormat format, Slui
 {
     char path[1024];
     if (!find_image(name, path))
-        SKIP_TEST("no sample files (SLUICE_TEST_DATA)");
+        SKIP_TEST("%s is not there; SLUICE_TEST_DATA says where the data folder is", path);
     SluiceExrImageSourceCreateInfo create = {.pPath = path, .format = format};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
@@ -104,8 +104,8 @@ static void compare_region(const struct image *image, const SluiceImageRegion *r
         for (uint32_t x = 0; x < region->width; x++)
             for (uint32_t c = 0; c < count; c++) {
                 size_t at = ((size_t)y * region->width + x) * count + c;
-                uint32_t bits = size == 4 ? ((const uint32_t *)texels)[at]
-                                          : ((const uint16_t *)texels)[at];
+                uint32_t bits =
+                    size == 4 ? ((const uint32_t *)texels)[at] : ((const uint16_t *)texels)[at];
                 uint32_t expected =
                     expected_bits(level, count, (int)c, region->x + x, region->y + y);
                 if (bits != expected)

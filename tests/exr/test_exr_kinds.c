@@ -15,7 +15,7 @@ enum layout { BUILT, MIP, RIP };
 
 struct kind {
     const char *name;
-    SluiceResult result; ///< of opening
+    SluiceResult result;          ///< of opening
     const char *channels, *types; ///< letters; h half, f float, u uint
     enum layout layout;
     uint32_t width, height;
@@ -166,8 +166,7 @@ static void every_kind_opens_or_is_refused_as_documented(void **state)
         CHECK_OK(sluiceGetImageInfo(source, &info));
         assert_int_equal(info.width, kinds[i].width);
         assert_int_equal(info.height, kinds[i].height);
-        assert_int_equal(info.mipLevelCount,
-                         slc_mip_count(slc_max_u32(info.width, info.height)));
+        assert_int_equal(info.mipLevelCount, slc_mip_count(slc_max_u32(info.width, info.height)));
         assert_int_equal(info.format, natural_format(&kinds[i]));
         sluiceDestroyImageSource(source);
     }
@@ -177,11 +176,10 @@ static void every_texel_of_every_level_is_what_was_written(void **state)
 {
     (void)state;
     static const SluiceFormat formats[] = {
-        SLUICE_FORMAT_UNDEFINED,           SLUICE_FORMAT_R8_UNORM,
-        SLUICE_FORMAT_R8G8B8A8_UNORM,      SLUICE_FORMAT_R8G8B8A8_SRGB,
-        SLUICE_FORMAT_R16_SFLOAT,          SLUICE_FORMAT_R16G16_SFLOAT,
-        SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT,
-        SLUICE_FORMAT_R32G32_SFLOAT,       SLUICE_FORMAT_R32G32B32A32_SFLOAT};
+        SLUICE_FORMAT_UNDEFINED,           SLUICE_FORMAT_R8_UNORM,   SLUICE_FORMAT_R8G8B8A8_UNORM,
+        SLUICE_FORMAT_R8G8B8A8_SRGB,       SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R16G16_SFLOAT,
+        SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32_SFLOAT,
+        SLUICE_FORMAT_R32G32B32A32_SFLOAT};
     for (int i = 0; i < KIND_COUNT; i++)
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
             if (kinds[i].result != SLUICE_SUCCESS || kinds[i].is_lossy)

@@ -170,8 +170,8 @@ static void our_own_reader_gives_back_the_same_texels(void **state)
     (void)state;
     struct folder folder;
     folder_init(&folder);
-    SluiceImageSource *source =
-        create_source(211, 99, SLUICE_FORMAT_R16G16B16A16_SFLOAT, false), *read;
+    SluiceImageSource *source = create_source(211, 99, SLUICE_FORMAT_R16G16B16A16_SFLOAT, false),
+                      *read;
     SluiceExrWriteInfo info = {.pPath = folder.file, .tileWidth = 32, .tileHeight = 64};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     SluiceExrImageSourceCreateInfo create = {.pPath = folder.file};
@@ -193,8 +193,7 @@ static void wide_values_saturate_and_nan_becomes_zero(void **state)
     (void)state;
     struct folder folder;
     folder_init(&folder);
-    SluiceImageSource *source =
-        create_source(40, 24, SLUICE_FORMAT_R32G32B32A32_SFLOAT, true);
+    SluiceImageSource *source = create_source(40, 24, SLUICE_FORMAT_R32G32B32A32_SFLOAT, true);
     SluiceExrWriteInfo info = {.pPath = folder.file};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     check_file(folder.file, source, "RGBA"); /* expects slc_half_from_float of each */
@@ -245,8 +244,11 @@ static void progress_rises_to_the_total(void **state)
     struct progress progress = {0};
     folder_init(&folder);
     SluiceImageSource *source = create_source(100, 100, SLUICE_FORMAT_R8_UNORM, false);
-    SluiceExrWriteInfo info = {.pPath = folder.file, .tileWidth = 16, .tileHeight = 16,
-                               .threadCount = 3, .pUserData = &progress,
+    SluiceExrWriteInfo info = {.pPath = folder.file,
+                               .tileWidth = 16,
+                               .tileHeight = 16,
+                               .threadCount = 3,
+                               .pUserData = &progress,
                                .pfnProgress = on_progress};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     assert_int_equal(progress.total, 10000 + 2500 + 625 + 144 + 36 + 9 + 1);
@@ -266,8 +268,10 @@ static void stopping_leaves_what_was_there_before(void **state)
     SluiceImageSource *source = create_source(300, 300, SLUICE_FORMAT_R8_UNORM, false);
     for (uint32_t threads = 1; threads <= 3; threads += 2) {
         struct progress progress = {.stop_at = 50000};
-        SluiceExrWriteInfo info = {.pPath = folder.file, .threadCount = threads,
-                                   .pUserData = &progress, .pfnProgress = on_progress};
+        SluiceExrWriteInfo info = {.pPath = folder.file,
+                                   .threadCount = threads,
+                                   .pUserData = &progress,
+                                   .pfnProgress = on_progress};
         CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_CANCELLED);
         assert_int_equal(count_files(&folder), 1);
     }
@@ -313,8 +317,7 @@ static void a_full_disk_is_an_io_error_and_leaves_no_file(void **state)
     struct folder folder;
     struct rlimit old, low;
     folder_init(&folder);
-    SluiceImageSource *source =
-        create_source(200, 200, SLUICE_FORMAT_R16G16B16A16_SFLOAT, false);
+    SluiceImageSource *source = create_source(200, 200, SLUICE_FORMAT_R16G16B16A16_SFLOAT, false);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
     signal(SIGXFSZ, SIG_IGN);
     static const rlim_t limits[] = {0, 100, 400, 5000, 150000, 300000};
@@ -355,6 +358,30 @@ static void every_refused_allocation_is_a_result_and_leaves_nothing(void **state
     folder_finish(&folder);
 }
 
+struct wrong_source {
+    SluiceImageSource base;
+    uint32_t number;
+};
+
+static SluiceResult get_wrong_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    static const SluiceImageInfo wrong[] = {{0, 4, 3, SLUICE_FORMAT_R8_UNORM, "empty"},
+                                            {4, 4, 1, SLUICE_FORMAT_R8_UNORM, "few levels"},
+                                            {4, 4, 3, SLUICE_FORMAT_UNDEFINED, "no format"}};
+    *info = wrong[((struct wrong_source *)source)->number];
+    return SLUICE_SUCCESS;
+}
+
+static void sources_without_a_full_chain_are_refused(void **state)
+{
+    (void)state;
+    static const SluiceImageSourceInterface interface = {get_wrong_info, NULL, NULL};
+    struct wrong_source source = {{&interface}, 0};
+    SluiceExrWriteInfo info = {.pPath = "/no such folder/x.exr"};
+    for (; source.number < 3; source.number++)
+        CHECK_RESULT(sluiceWriteExrFile(&info, &source.base), SLUICE_ERROR_INVALID_ARGUMENT);
+}
+
 static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
@@ -389,6 +416,7 @@ int main(void)
         cmocka_unit_test(failures_of_the_source_are_passed_on_and_leave_no_file),
         cmocka_unit_test(a_full_disk_is_an_io_error_and_leaves_no_file),
         cmocka_unit_test(every_refused_allocation_is_a_result_and_leaves_nothing),
+        cmocka_unit_test(sources_without_a_full_chain_are_refused),
         cmocka_unit_test(wrong_arguments_are_refused),
     };
     return RUN_TESTS(tests);
