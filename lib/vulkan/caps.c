@@ -33,10 +33,8 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                           .pNext = &features12};
-    VkPhysicalDeviceDriverProperties driver = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-    VkPhysicalDeviceProperties2 properties = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    VkPhysicalDeviceProperties2 properties = {.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     vk->GetPhysicalDeviceFeatures2(vk->physical_device, &features);
     vk->GetPhysicalDeviceProperties2(vk->physical_device, &properties);
     vk->GetPhysicalDeviceMemoryProperties(vk->physical_device, &caps->memory);
@@ -52,7 +50,6 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     out->sparse = vulkan12 && features.features.sparseBinding &&
                   features.features.sparseResidencyImage2D &&
                   find_sparse_family(vk, &out->sparseQueueFamilyIndex);
-    caps->limit_anisotropy = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
 }
 
 uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,

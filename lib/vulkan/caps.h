@@ -1,4 +1,4 @@
-/** What a device can do, and the odd ways of known drivers. */
+/** What a device can do. */
 #ifndef SLC_VULKAN_CAPS_H
 #define SLC_VULKAN_CAPS_H
 
@@ -8,8 +8,6 @@ struct slc_caps {
     SluiceVulkanDeviceCapabilities public;
     VkPhysicalDeviceMemoryProperties memory;
     bool timeline_semaphore;
-    /** Anisotropic samplers go below the LOD of their limit, see docs/drivers.md. */
-    bool limit_anisotropy;
 };
 
 /** Needs only the instance functions. */

@@ -249,8 +249,7 @@ void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index)
         destroy_parts(s, index);
 }
 
-static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s,
-                                             const struct slc_texture *texture)
+static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
     return (struct SluiceTextureEntry){
@@ -266,8 +265,7 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s,
         .minMipOffset = texture->region_first,
         .addressModeU = (uint)texture->address_modes[0],
         .addressModeV = (uint)texture->address_modes[1],
-        .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
-                 (s->caps.limit_anisotropy ? SLUICE_TEXTURE_FLAG_LIMIT_ANISOTROPY : 0u),
+        .flags = texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u,
     };
 }
 
@@ -276,7 +274,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     for (uint32_t i = 0; i < s->new_texture_count; i++) {
         uint32_t index = s->new_textures[i];
         const struct slc_texture *texture = &s->textures[index];
-        struct SluiceTextureEntry entry = table_entry(s, texture);
+        struct SluiceTextureEntry entry = table_entry(texture);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
         if (s->buffers_cleared) /* else the whole buffer has just been filled */

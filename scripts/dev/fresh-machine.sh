@@ -13,7 +13,8 @@
 #   --help
 #
 # Needs root and debootstrap; for another distribution than the machine's own also its keyring and
-# --mirror. Sample files in ../shared beside the checkout are shown there, read-only.
+# --mirror. Sample files in ../shared beside the checkout (or where SLUICE_SHARED says) are shown
+# there, read-only.
 
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -98,7 +99,7 @@ inside() {
             mount --bind -o ro "$shared" "$system/root/work/shared"
         fi
         exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"
-    ' inside "$system" "$SLUICE_ROOT/../shared" "$@" </dev/null
+    ' inside "$system" "${SLUICE_SHARED:-$SLUICE_ROOT/../shared}" "$@" </dev/null
 }
 
 if [ "$keep" = no ] || [ ! -d "$system/etc" ]; then

@@ -22,6 +22,9 @@ static inline float pattern_level(const float color[4])
     return color[0] * 16.0f - 1.0f;
 }
 
+/** Of pattern_level: eight bits are steps of 1/16 level, half of that off. */
+#define PATTERN_LEVEL_ERROR 0.035f
+
 /** How far a fetched channel may be off. */
 float pattern_tolerance(SluiceFormat format);
 uint32_t pattern_channel_count(SluiceFormat format);

@@ -156,7 +156,7 @@ void scene_check_levels(const struct scene *scene)
             const struct ProbeInput *inputs = scene->prober.inputs.mapped;
             const struct ProbeInput *in = &inputs[t * SCENE_SAMPLES + i];
             if (out->level == SLUICE_MIP_UNTOUCHED ||
-                pattern_level(out->color) >= (float)out->level - 0.02f)
+                pattern_level(out->color) >= (float)out->level - PATTERN_LEVEL_ERROR)
                 continue;
             fail_msg("texture %u (%ux%u, modes %d %d): shows level %g, allowed %u, wanted %u, lod "
                      "%g; uv %.9g %.9g, dx %.9g %.9g, dy %.9g %.9g, bias %g, anisotropy %g",

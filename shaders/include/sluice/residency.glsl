@@ -48,7 +48,7 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return 0u;
     float last = float(entry.mipLevelCount - 1u);
-    float fine = floor(clamp(s.lod - (s.clamped ? 0.0 : sluiceLodMargin(maxAnisotropy)), 0.0, last));
+    float fine = floor(clamp(s.lod - (s.plain ? sluiceLodMargin(maxAnisotropy) : 0.0), 0.0, last));
     float coarse = ceil(clamp(s.lod, 0.0, last));
     uint taps = 1u;
     vec2 axis = vec2(0.0);

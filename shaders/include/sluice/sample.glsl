@@ -23,14 +23,17 @@
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
+/* A footprint this much smaller than a texel is a point. */
+#define SLUICE_LOD_POINT -16.0
+
 /** What may be sampled. */
 struct SluiceSampling {
     vec2 uv;            /* as given; 0 where not finite */
-    vec2 dx, dy;        /* for textureGrad: LOD bias included, coarsened if `clamped` */
+    vec2 dx, dy;        /* for textureGrad: LOD bias included, coarsened where need be */
     float lod;          /* what the sampler will choose, about */
     uint wantedLevel;   /* the finest level that would be touched if all were there */
     uint level;         /* the finest level that may be touched; SLUICE_MIP_UNTOUCHED: none */
-    bool clamped;       /* texture() would touch what is not there */
+    bool plain;         /* texture() touches only what is there, and may be used instead */
 };
 
 uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
@@ -82,29 +85,32 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     vec2 size = vec2(entry.width, entry.height);
     float margin = sluiceLodMargin(maxAnisotropy);
     SluiceSampling s;
-    s.clamped = !(sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy));
+    bool clamped = !(sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy));
     s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
-    s.lod = s.clamped ? SLUICE_LOD_LIMIT
-                      : sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    s.lod = clamped ? SLUICE_LOD_LIMIT
+                    : sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
     s.level = s.wantedLevel;
     float biasScale = exp2(clamp(lodBias, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT));
-    s.dx = s.clamped ? vec2(0.0) : dx * biasScale;
-    s.dy = s.clamped ? vec2(0.0) : dy * biasScale;
+    s.dx = clamped ? vec2(0.0) : dx * biasScale;
+    s.dy = clamped ? vec2(0.0) : dy * biasScale;
+    /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
+    s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
+    float scale = s.plain ? 0.0 : exp2(SLUICE_LOD_POINT);
 
-    vec2 halfAxis = s.clamped ? vec2(0.0)
-                              : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
+    vec2 halfAxis =
+        clamped ? vec2(0.0) : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
     uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
-    uint tries = 0u;
-    for (;; tries++) {
+    for (uint tries = 0u;; tries++) {
         uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfAxis, coarsest));
         if (there == SLUICE_MIP_UNTOUCHED) {
             s.level = SLUICE_MIP_UNTOUCHED;
+            s.plain = false;
             return s;
         }
         if (there <= s.level)
             break;
-        s.clamped = true;
+        clamped = true;
         s.level = tries < SLUICE_CLAMP_STEPS ? there : max(entry.regularMipCount, there);
         coarsest = min(s.level + 1u, entry.mipLevelCount - 1u);
         if (tries >= SLUICE_CLAMP_STEPS)
@@ -112,9 +118,12 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         if (maxAnisotropy > 1.0)
             halfAxis = max(abs(halfAxis), vec2(0.5 * exp2(float(s.level))) / size);
     }
-    if (s.clamped) {
+    if (clamped) {
+        s.plain = false;
         s.lod = float(s.level) + margin;
-        float scale = exp2(s.lod);
+        scale = exp2(s.lod);
+    }
+    if (!s.plain) {
         s.dx = sluiceLengthen(s.dx, size, scale, vec2(1.0, 0.0));
         s.dy = sluiceLengthen(s.dy, size, scale, vec2(0.0, 1.0));
     }
@@ -161,7 +170,7 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
     /* The quad decides as one, because implicit derivatives need all of it. */
-    if (!sluiceAnyInQuad(s.clamped || s.level == SLUICE_MIP_UNTOUCHED))
+    if (!sluiceAnyInQuad(!s.plain))
         return texture(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;

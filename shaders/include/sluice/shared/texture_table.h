@@ -23,8 +23,6 @@
 
 /* A level's size is not the next finer one's halved, so tiles of a level do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
-/* The device's anisotropic LOD is wrong beyond the sampler's limit: shorten the footprint before. */
-#define SLUICE_TEXTURE_FLAG_LIMIT_ANISOTROPY 2
 
 struct SluiceTextureEntry {
     uint width;           /* texels of level 0; level l has max(1, size >> l) */
