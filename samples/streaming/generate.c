@@ -54,11 +54,11 @@ bool generate_folder(const char *cache, uint32_t scale, char *path, size_t size)
     const char *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     int length;
     if (cache)
-        length = snprintf(path, size, "%s/gallery-1", cache);
+        length = snprintf(path, size, "%s/gallery-2", cache);
     else if (xdg && *xdg)
-        length = snprintf(path, size, "%s/sluice/gallery-1", xdg);
+        length = snprintf(path, size, "%s/sluice/gallery-2", xdg);
     else
-        length = snprintf(path, size, "%s/.cache/sluice/gallery-1", home ? home : ".");
+        length = snprintf(path, size, "%s/.cache/sluice/gallery-2", home ? home : ".");
     if (length > 0 && (size_t)length < size && scale != 1)
         length += snprintf(path + length, size - (size_t)length, "-of-%u", scale);
     return length > 0 && (size_t)length < size && files_make_folders(path);
@@ -108,6 +108,8 @@ static bool write_picture(const struct pattern_image *image, const char *path,
     SluiceImageSource *source = NULL;
     SluiceResult result = pattern_create_source(image, SLUICE_FORMAT_R16G16B16A16_SFLOAT, &source);
     SluiceExrWriteInfo info = {.pPath = path,
+                               .tileWidth = 128, /* the GPU's tile: each is read once */
+                               .tileHeight = 64,
                                .threadCount = thread_count,
                                .opaque = true,
                                .log = {NULL, print_log},

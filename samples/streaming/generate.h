@@ -20,7 +20,7 @@ SluiceResult pattern_create_source(const struct pattern_image *image, SluiceForm
 
 #define GENERATED_COUNT 7
 
-/** "$cache/gallery-1", or the user's cache folder for NULL. False if there is no such folder. */
+/** "$cache/gallery-2", or the user's cache folder for NULL. False if there is no such folder. */
 bool generate_folder(const char *cache, uint32_t scale, char *path, size_t size);
 
 /**
