@@ -63,8 +63,8 @@ static bool collect_folder(const char *folder, const char *suffix, struct file_l
         char path[4096];
         struct stat info;
         int length = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        bool usable = entries[i]->d_name[0] != '.' && (size_t)length < sizeof path &&
-                      stat(path, &info) == 0;
+        bool usable =
+            entries[i]->d_name[0] != '.' && (size_t)length < sizeof path && stat(path, &info) == 0;
         if (usable && enough_memory && S_ISDIR(info.st_mode))
             enough_memory = collect_folder(path, suffix, list);
         else if (usable && enough_memory && has_suffix(path, suffix))

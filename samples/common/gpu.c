@@ -33,10 +33,9 @@ bool gpu_check(VkResult result, const char *what)
     return false;
 }
 
-static VKAPI_ATTR VkBool32 VKAPI_CALL
-note_validation_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                        VkDebugUtilsMessageTypeFlagsEXT types,
-                        const VkDebugUtilsMessengerCallbackDataEXT *data, void *user_data)
+static VKAPI_ATTR VkBool32 VKAPI_CALL note_validation_message(
+    VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT types,
+    const VkDebugUtilsMessengerCallbackDataEXT *data, void *user_data)
 {
     struct gpu *gpu = user_data;
     (void)types;
@@ -158,6 +157,13 @@ static bool contains_ignoring_case(const char *text, const char *part)
     return length == 0;
 }
 
+/** By a part of its name or of its type: "cpu" finds lavapipe. */
+static bool is_called(const VkPhysicalDeviceProperties *properties, const char *wanted)
+{
+    return contains_ignoring_case(properties->deviceName, wanted) ||
+           contains_ignoring_case(device_type_string(properties->deviceType), wanted);
+}
+
 static int device_rank(VkPhysicalDeviceType type)
 {
     switch (type) {
@@ -182,8 +188,7 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
     for (uint32_t i = 0; i < count; i++) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(devices[i], &properties);
-        if (by_index ? i != wanted_index
-                     : wanted && !contains_ignoring_case(properties.deviceName, wanted))
+        if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
             continue;
         SluiceVulkanDeviceCapabilities capabilities;
         if (!can_stream(gpu->instance, devices[i], &capabilities))
@@ -196,8 +201,9 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         gpu->capabilities = capabilities;
     }
     if (best_rank < 0)
-        fprintf(stderr, "no Vulkan device%s%s can stream: it needs sparse residency images (for "
-                        "Mesa's lavapipe: version 25 or later); see --list-devices\n",
+        fprintf(stderr,
+                "no Vulkan device%s%s can stream: it needs sparse residency images (for "
+                "Mesa's lavapipe: version 25 or later); see --list-devices\n",
                 wanted ? " like " : "", wanted ? wanted : "");
     return best_rank >= 0;
 }
@@ -246,11 +252,11 @@ static bool create_device(struct gpu *gpu)
     VkDeviceQueueCreateInfo queues[2];
     uint32_t queue_count = gpu->family == gpu->sparse_family ? 1 : 2;
     for (uint32_t i = 0; i < queue_count; i++)
-        queues[i] = (VkDeviceQueueCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-            .queueFamilyIndex = i == 0 ? gpu->family : gpu->sparse_family,
-            .queueCount = 1,
-            .pQueuePriorities = &priority};
+        queues[i] =
+            (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = i == 0 ? gpu->family : gpu->sparse_family,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &features,
                                .queueCreateInfoCount = queue_count,
@@ -323,11 +329,10 @@ static bool allocate(const struct gpu *gpu, const VkMemoryRequirements *requirem
                      VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted,
                      VkDeviceMemory *memory)
 {
-    VkMemoryAllocateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = requirements->size,
-        .memoryTypeIndex =
-            find_memory_type(gpu, requirements->memoryTypeBits, needed, needed | wanted)};
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .allocationSize = requirements->size,
+                                 .memoryTypeIndex = find_memory_type(
+                                     gpu, requirements->memoryTypeBits, needed, needed | wanted)};
     return gpu_check(vkAllocateMemory(gpu->device, &info, NULL, memory), "vkAllocateMemory");
 }
 
@@ -413,9 +418,8 @@ void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image)
 
 VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size)
 {
-    VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                     .codeSize = size,
-                                     .pCode = words};
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = words};
     VkShaderModule module = VK_NULL_HANDLE;
     gpu_check(vkCreateShaderModule(gpu->device, &info, NULL, &module), "vkCreateShaderModule");
     return module;

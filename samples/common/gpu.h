@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 
 struct gpu_request {
-    const char *device; ///< an index of --list-devices or a part of a name; NULL: the best one
+    const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
     bool validation;    ///< with synchronization validation
 };
 

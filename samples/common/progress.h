@@ -1,4 +1,5 @@
-/** A progress bar on stderr: a line that is redrawn on a terminal, a line now and then elsewhere. */
+/** A progress bar on stderr: a line that is redrawn on a terminal, a line now and then elsewhere.
+ */
 #ifndef SAMPLES_COMMON_PROGRESS_H
 #define SAMPLES_COMMON_PROGRESS_H
 
@@ -6,8 +7,8 @@
 #include <stdint.h>
 
 struct progress {
-    const char *what;  ///< borrowed
-    const char *unit;  ///< borrowed; "texels" and the like
+    const char *what; ///< borrowed
+    const char *unit; ///< borrowed; "texels" and the like
     uint64_t total;
     double start, last_shown;
     bool terminal;

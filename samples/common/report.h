@@ -21,8 +21,8 @@ struct report_plot {
     const char *title, *unit;
     size_t value_count, series_count;
     const struct report_series *series;
-    double maximum;       ///< of the axis; 0: the largest value
-    double mark;          ///< a vertical line at this frame, unless negative
+    double maximum; ///< of the axis; 0: the largest value
+    double mark;    ///< a vertical line at this frame, unless negative
     const char *mark_name;
 };
 

@@ -9,7 +9,7 @@
 struct target {
     uint32_t width, height;
     VkSampleCountFlagBits samples;
-    struct gpu_image color; ///< what is copied out
+    struct gpu_image color;        ///< what is copied out
     struct gpu_image multisampled; ///< only with more than one sample
     struct gpu_image depth;
     VkRenderPass pass;

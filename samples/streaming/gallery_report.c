@@ -100,7 +100,8 @@ static void add_plot(struct report *report, const struct measure *measure, const
 static void add_plots(struct report *report, const struct measure *measure, bool compared)
 {
     static const struct plot_line psnr[] = {{"PSNR to everything resident", psnr_value}};
-    static const struct plot_line tiles[] = {{"resident", resident_value}, {"wanted", wanted_value}};
+    static const struct plot_line tiles[] = {{"resident", resident_value},
+                                             {"wanted", wanted_value}};
     static const struct plot_line flow[] = {{"mapped", mapped_value}, {"unmapped", unmapped_value}};
     static const struct plot_line bytes[] = {{"uploaded", uploaded_value}};
     static const struct plot_line missing[] = {{"pixels coarser than wanted", missing_value}};

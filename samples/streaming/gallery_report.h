@@ -5,7 +5,7 @@
 #include "measure.h"
 
 struct gallery_report_info {
-    const char *folder;        ///< report.html is written here, the pictures are found here
+    const char *folder; ///< report.html is written here, the pictures are found here
     const char *command_line;
     const char *device_name;
     const struct picture_list *pictures;

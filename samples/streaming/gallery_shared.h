@@ -26,7 +26,8 @@ struct GalleryFrame {
     float viewProjection[16]; /* column by column */
     float eye[3];
     float feedbackProbability;
-    float roomSize[3]; /* width, height, length; the room is centred in x, from 0 up, from 0 to -z */
+    float
+        roomSize[3]; /* width, height, length; the room is centred in x, from 0 up, from 0 to -z */
     float lodBias;
     float maxAnisotropy;
     uint feedbackSeed;

@@ -95,7 +95,8 @@ static struct pattern_image scaled(const struct pattern_image *image, uint32_t s
 static uint64_t chain_texels(const struct pattern_image *image)
 {
     uint64_t sum = 0;
-    for (uint32_t w = image->width, h = image->height;; w = w > 1 ? w / 2 : 1, h = h > 1 ? h / 2 : 1) {
+    for (uint32_t w = image->width, h = image->height;;
+         w = w > 1 ? w / 2 : 1, h = h > 1 ? h / 2 : 1) {
         sum += (uint64_t)w * h;
         if (w == 1 && h == 1)
             return sum;

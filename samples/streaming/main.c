@@ -67,8 +67,9 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
     record->counts = view_counts(&gallery->streamed, slot);
     record->psnr = NAN;
     if (compare) {
-        uint32_t truth_slot = (gallery->truth.frame_index - (gallery->streamed.frame_index - frame)) %
-                              VIEW_FRAMES_IN_FLIGHT;
+        uint32_t truth_slot =
+            (gallery->truth.frame_index - (gallery->streamed.frame_index - frame)) %
+            VIEW_FRAMES_IN_FLIGHT;
         if (!view_wait(&gallery->truth, truth_slot) ||
             sluiceComputePsnr8(view_pixels(&gallery->streamed, slot),
                                view_pixels(&gallery->truth, truth_slot), gallery->target.width,
@@ -118,12 +119,14 @@ static bool walk_through(struct walk *walk)
         double now = clock_seconds();
         walk->measure->frames[frame].frame_seconds = now - submitted;
         submitted = now;
-        if (settings->deterministic && (!view_wait(&walk->gallery->streamed, frame % VIEW_FRAMES_IN_FLIGHT) ||
-                                        !view_settle(&walk->gallery->streamed)))
+        if (settings->deterministic &&
+            (!view_wait(&walk->gallery->streamed, frame % VIEW_FRAMES_IN_FLIGHT) ||
+             !view_settle(&walk->gallery->streamed)))
             return false;
         progress_update(&progress, frame + 1);
     }
-    uint32_t left = settings->frames < VIEW_FRAMES_IN_FLIGHT ? settings->frames : VIEW_FRAMES_IN_FLIGHT;
+    uint32_t left =
+        settings->frames < VIEW_FRAMES_IN_FLIGHT ? settings->frames : VIEW_FRAMES_IN_FLIGHT;
     for (uint32_t frame = settings->frames - left; frame < settings->frames; frame++)
         if (!collect_frame(walk, frame))
             return false;
@@ -162,8 +165,8 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
         .written_count = walk->written_count,
         .compared = settings->compare,
     };
-    bool written = measure_write_csv(walk->measure, csv_path) &&
-                   gallery_report_write(&report, walk->measure);
+    bool written =
+        measure_write_csv(walk->measure, csv_path) && gallery_report_write(&report, walk->measure);
     free(command_line);
     if (settings->json)
         measure_print_json(figures, figure_count);

@@ -5,14 +5,14 @@
 #include "settings.h"
 #include "view.h"
 
-#define MEASURE_SHARP_DB 60.0   ///< "the same picture"
-#define MEASURE_EQUAL_DB 999.0  ///< stands for infinity where only numbers may be written
+#define MEASURE_SHARP_DB 60.0  ///< "the same picture"
+#define MEASURE_EQUAL_DB 999.0 ///< stands for infinity where only numbers may be written
 
 struct frame_record {
     double frame_seconds; ///< since the frame before was submitted
     double host_seconds;  ///< of the application's thread
     double gpu_seconds;
-    double psnr;          ///< to the fully resident picture; NaN without a comparison
+    double psnr; ///< to the fully resident picture; NaN without a comparison
     SluiceVulkanStreamerStatistics statistics;
     struct GalleryCounts counts;
 };
@@ -21,9 +21,9 @@ struct measure {
     const struct settings *settings; ///< borrowed
     struct frame_record *frames;     ///< owned
     uint32_t frame_count;
-    uint32_t rest_frame; ///< the first in which the camera stands still
-    bool counting;       ///< counts are valid
-    uint64_t tile_count; ///< of all textures
+    uint32_t rest_frame;  ///< the first in which the camera stands still
+    bool counting;        ///< counts are valid
+    uint64_t tile_count;  ///< of all textures
     uint64_t truth_bytes; ///< that the fully resident pictures take; 0 without a comparison
 };
 

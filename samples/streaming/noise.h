@@ -79,7 +79,8 @@ static inline struct noise_sum noise_octaves(float x, float y, float frequency, 
         float weight = amplitude * noise_visible(frequency, footprint), dx, dy;
         if (weight == 0.0f)
             break;
-        sum.value += weight * noise_value(x * frequency, y * frequency, seed + (uint32_t)i, &dx, &dy);
+        sum.value +=
+            weight * noise_value(x * frequency, y * frequency, seed + (uint32_t)i, &dx, &dy);
         sum.dx += weight * frequency * dx;
         sum.dy += weight * frequency * dy;
     }

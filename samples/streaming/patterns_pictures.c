@@ -11,7 +11,8 @@ static void mix_into(float rgb[3], const float other[3], float share)
         rgb[i] += (other[i] - rgb[i]) * share;
 }
 
-/* An archipelago from above: warped noise as height, coloured by height, lit from the north-west. */
+/* An archipelago from above: warped noise as height, coloured by height, lit from the north-west.
+ */
 void pattern_coast(float u, float v, float footprint, float rgb[3])
 {
     static const float deep[3] = {0.01f, 0.04f, 0.11f}, shallow[3] = {0.05f, 0.32f, 0.36f};
@@ -65,7 +66,8 @@ void pattern_julia(float u, float v, float footprint, float rgb[3])
     static const float phase[3] = {0.02f, 0.11f, 0.22f};
     (void)footprint;
     float nearest;
-    float count = escape_time((u - 1.0f) * 1.72f, (v - 0.5f) * 1.72f, -0.79f, 0.152f, 320, &nearest);
+    float count =
+        escape_time((u - 1.0f) * 1.72f, (v - 0.5f) * 1.72f, -0.79f, 0.152f, 320, &nearest);
     if (count < 0.0f) {
         float depth = sqrtf(sqrtf(nearest));
         rgb[0] = 0.03f + 0.9f * depth;
@@ -111,8 +113,8 @@ static int digits_ink(uint32_t number, int count, float x, float y)
 }
 
 /*
- * A test chart that has more to tell the nearer one comes: each field is framed and numbered, and is
- * cut into 4 x 4 fields that are framed and numbered again, six times over.
+ * A test chart that has more to tell the nearer one comes: each field is framed and numbered, and
+ * is cut into 4 x 4 fields that are framed and numbered again, six times over.
  */
 void pattern_chart(float u, float v, float footprint, float rgb[3])
 {
@@ -248,22 +250,24 @@ static float engraved_lines(float dx, float dy, float petals, float bend, float 
                      noise_visible(0.5f * stretch, footprint));
 }
 
-/* Security printing: three systems of engraved lines over each other, finer ones inside the lines. */
+/* Security printing: three systems of engraved lines over each other, finer ones inside the lines.
+ */
 void pattern_guilloche(float u, float v, float footprint, float rgb[3])
 {
     static const float inks[3][3] = {
         {0.02f, 0.19f, 0.15f}, {0.38f, 0.04f, 0.07f}, {0.03f, 0.07f, 0.35f}};
     static const float centres[3][2] = {{0.5f, 0.5f}, {1.0f, 0.5f}, {1.5f, 0.5f}};
-    rgb[0] = 0.80f, rgb[1] = 0.77f, rgb[2] = 0.66f;
+    rgb[0] = 0.72f, rgb[1] = 0.68f, rgb[2] = 0.54f;
     for (int layer = 0; layer < 3; layer++) {
         float dx = u - centres[layer][0], dy = v - centres[layer][1];
         float line = engraved_lines(dx, dy, 8.0f + 4.0f * (float)layer, 0.16f, 26.0f, footprint);
         float fine = engraved_lines(dy, dx, 36.0f, 0.04f, 300.0f, footprint);
         float fade = 1.0f - noise_smoothstep(0.2f, 0.8f, sqrtf(dx * dx + dy * dy));
-        mix_into(rgb, inks[layer], line * (0.45f + 0.55f * fine) * (0.1f + 0.9f * fade));
+        mix_into(rgb, inks[layer], line * (0.6f + 0.4f * fine) * (0.35f + 0.65f * fade));
     }
     static const float border[3] = {0.02f, 0.10f, 0.09f};
     float edge = fminf(fminf(u, 1.9995f - u), fminf(v, 1.0f - v));
-    float waves = engraved_lines(edge, 0.03f * sinf(40.0f * (u + v)), 2.0f, 0.2f, 110.0f, footprint);
+    float waves =
+        engraved_lines(edge, 0.03f * sinf(40.0f * (u + v)), 2.0f, 0.2f, 110.0f, footprint);
     mix_into(rgb, border, waves * noise_line(edge, 0.07f, footprint));
 }

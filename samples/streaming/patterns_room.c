@@ -10,7 +10,8 @@ static float repeating_noise(float x, float y, int32_t period, uint32_t seed)
     float u = fx * fx * (3.0f - 2.0f * fx), v = fy * fy * (3.0f - 2.0f * fy);
     int32_t x0 = ((ix % period) + period) % period, y0 = ((iy % period) + period) % period;
     int32_t x1 = (x0 + 1) % period, y1 = (y0 + 1) % period;
-    float top = noise_mix(noise_unit(noise_hash(x0, y0, seed)), noise_unit(noise_hash(x1, y0, seed)), u);
+    float top =
+        noise_mix(noise_unit(noise_hash(x0, y0, seed)), noise_unit(noise_hash(x1, y0, seed)), u);
     float bottom =
         noise_mix(noise_unit(noise_hash(x0, y1, seed)), noise_unit(noise_hash(x1, y1, seed)), u);
     return 2.0f * noise_mix(top, bottom, v) - 1.0f;

@@ -80,8 +80,10 @@ static float texel_luminance(const uint8_t *texel, SluiceFormat format)
         return 0.2126f * half_to_float(half[0]) + 0.7152f * half_to_float(half[1]) +
                0.0722f * half_to_float(half[2]);
     default: /* sRGB bytes, roughly decoded */
-        return powf((0.2126f * (float)texel[0] + 0.7152f * (float)texel[1] +
-                     0.0722f * (float)texel[2]) / 255.0f, 2.2f);
+        return powf(
+            (0.2126f * (float)texel[0] + 0.7152f * (float)texel[1] + 0.0722f * (float)texel[2]) /
+                255.0f,
+            2.2f);
     }
 }
 
@@ -103,7 +105,9 @@ static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat fo
         return 1.0f;
     /* The geometric mean alone makes a dark picture with a few lights far too bright. */
     double mean = 0.5 * (sum / used) + 0.5 * exp2(log_sum / used);
-    return mean > 0.34 ? (float)(0.34 / mean) : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0) : 1.0f;
+    return mean > 0.34   ? (float)(0.34 / mean)
+           : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0)
+                         : 1.0f;
 }
 
 static SluiceResult measure_exposure(struct picture *picture)
@@ -225,7 +229,8 @@ bool pictures_open(const struct settings *settings, const struct picture_limits 
     for (size_t i = 0; collected && i < settings->images.count; i++)
         collected = files_collect(settings->images.items[i], ".exr", &files);
     *list = (struct picture_list){0};
-    bool opened = collected && open_files(&files, (enum pixel_format)settings->format, limits, list);
+    bool opened =
+        collected && open_files(&files, (enum pixel_format)settings->format, limits, list);
     files_finish(&files);
     if (!opened)
         pictures_close(list);

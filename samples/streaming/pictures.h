@@ -11,8 +11,8 @@ struct picture {
     char *path;               ///< owned
     SluiceImageSource *color; ///< owned
     SluiceImageInfo info;
-    float exposure;           ///< factor that brings the picture to a middle brightness
-    bool grey;                ///< one channel, to be shown as grey
+    float exposure;            ///< factor that brings the picture to a middle brightness
+    bool grey;                 ///< one channel, to be shown as grey
     SluiceImageSource *relief; ///< owned; height of canvas and paint, half the picture's size
     struct pattern_image relief_pattern;
 };

@@ -48,17 +48,17 @@ static bool create_layouts(struct renderer *renderer)
 static bool create_sampler(const struct gpu *gpu, VkSamplerAddressMode address, bool probe,
                            uint32_t anisotropy, VkSampler *sampler)
 {
-    VkSamplerCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-        .magFilter = VK_FILTER_LINEAR,
-        .minFilter = VK_FILTER_LINEAR,
-        .mipmapMode = probe ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR,
-        .addressModeU = address,
-        .addressModeV = address,
-        .addressModeW = address,
-        .anisotropyEnable = !probe && anisotropy > 1,
-        .maxAnisotropy = (float)anisotropy,
-        .maxLod = VK_LOD_CLAMP_NONE};
+    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                .magFilter = VK_FILTER_LINEAR,
+                                .minFilter = VK_FILTER_LINEAR,
+                                .mipmapMode = probe ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                    : VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                .addressModeU = address,
+                                .addressModeV = address,
+                                .addressModeW = address,
+                                .anisotropyEnable = !probe && anisotropy > 1,
+                                .maxAnisotropy = (float)anisotropy,
+                                .maxLod = VK_LOD_CLAMP_NONE};
     return gpu_check(vkCreateSampler(gpu->device, &info, NULL, sampler), "vkCreateSampler");
 }
 
@@ -102,9 +102,13 @@ static bool create_pipeline(struct renderer *renderer, const struct target *targ
 {
     const VkPipelineShaderStageCreateInfo stages[] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-         .stage = VK_SHADER_STAGE_VERTEX_BIT, .module = vertex, .pName = "main"},
+         .stage = VK_SHADER_STAGE_VERTEX_BIT,
+         .module = vertex,
+         .pName = "main"},
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-         .stage = VK_SHADER_STAGE_FRAGMENT_BIT, .module = fragment, .pName = "main"},
+         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+         .module = fragment,
+         .pName = "main"},
     };
     const VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
@@ -117,7 +121,8 @@ static bool create_pipeline(struct renderer *renderer, const struct target *targ
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
     const VkPipelineViewportStateCreateInfo viewport = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1, .scissorCount = 1};
+        .viewportCount = 1,
+        .scissorCount = 1};
     const VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
         .cullMode = VK_CULL_MODE_BACK_BIT,
@@ -128,29 +133,38 @@ static bool create_pipeline(struct renderer *renderer, const struct target *targ
         .rasterizationSamples = target->samples};
     const VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE,
+        .depthTestEnable = VK_TRUE,
+        .depthWriteEnable = VK_TRUE,
         .depthCompareOp = VK_COMPARE_OP_LESS};
     const VkPipelineColorBlendAttachmentState attachment = {.colorWriteMask =
                                                                 writes_color ? 0xf : 0};
     const VkPipelineColorBlendStateCreateInfo blend = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 1, .pAttachments = &attachment};
+        .attachmentCount = 1,
+        .pAttachments = &attachment};
     static const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT,
                                                     VK_DYNAMIC_STATE_SCISSOR};
     const VkPipelineDynamicStateCreateInfo dynamic = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-        .dynamicStateCount = 2, .pDynamicStates = dynamic_states};
-    const VkGraphicsPipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-        .stageCount = 2, .pStages = stages,
-        .pVertexInputState = &input, .pInputAssemblyState = &assembly,
-        .pViewportState = &viewport, .pRasterizationState = &raster,
-        .pMultisampleState = &multisample, .pDepthStencilState = &depth,
-        .pColorBlendState = &blend, .pDynamicState = &dynamic,
-        .layout = renderer->pipeline_layout, .renderPass = target->pass};
-    return gpu_check(vkCreateGraphicsPipelines(renderer->gpu->device, VK_NULL_HANDLE, 1, &info,
-                                               NULL, pipeline),
-                     "vkCreateGraphicsPipelines");
+        .dynamicStateCount = 2,
+        .pDynamicStates = dynamic_states};
+    const VkGraphicsPipelineCreateInfo info = {.sType =
+                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                               .stageCount = 2,
+                                               .pStages = stages,
+                                               .pVertexInputState = &input,
+                                               .pInputAssemblyState = &assembly,
+                                               .pViewportState = &viewport,
+                                               .pRasterizationState = &raster,
+                                               .pMultisampleState = &multisample,
+                                               .pDepthStencilState = &depth,
+                                               .pColorBlendState = &blend,
+                                               .pDynamicState = &dynamic,
+                                               .layout = renderer->pipeline_layout,
+                                               .renderPass = target->pass};
+    return gpu_check(
+        vkCreateGraphicsPipelines(renderer->gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
+        "vkCreateGraphicsPipelines");
 }
 
 static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting)
@@ -293,7 +307,7 @@ void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, Vk
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
         const struct renderer_surface *surface = surface_of(part, surfaces);
-        VkPipeline pipeline = renderer->pipelines[!surface    ? RENDERER_PLAIN
+        VkPipeline pipeline = renderer->pipelines[!surface   ? RENDERER_PLAIN
                                                   : counting ? RENDERER_COUNT
                                                              : RENDERER_SURFACE];
         if (pipeline != bound)

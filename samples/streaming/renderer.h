@@ -10,13 +10,13 @@
 enum renderer_pass { RENDERER_PLAIN, RENDERER_SURFACE, RENDERER_COUNT, RENDERER_PASS_COUNT };
 
 struct renderer {
-    const struct gpu *gpu;    ///< borrowed
-    const struct room *room;  ///< borrowed
+    const struct gpu *gpu;   ///< borrowed
+    const struct room *room; ///< borrowed
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
     VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the counting one only where it was asked for
-    VkSampler clamp, repeat;         ///< as drawn
-    VkSampler probe_clamp, probe_repeat; ///< nearest between levels, for the counting pass
+    VkSampler clamp, repeat;                   ///< as drawn
+    VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
     struct gpu_buffer vertices, lights;
 };
 

@@ -15,7 +15,7 @@
 #define FRAME_DEPTH 0.075f
 #define LAMP_DISTANCE 1.9f
 
-static const float gold[3] = {0.50f, 0.33f, 0.12f};
+static const float gold[3] = {0.34f, 0.21f, 0.075f};
 static const float dark_wood[3] = {0.045f, 0.030f, 0.022f};
 static const float white[3] = {0.62f, 0.61f, 0.58f};
 static const float brass[3] = {0.42f, 0.33f, 0.17f};
@@ -71,8 +71,7 @@ static void add_quad(struct room *room, const struct vec3 corners[4], const floa
     if (!vertices)
         return;
     struct vec3 along = vec3_normalize(vec3_sub(corners[1], corners[0]));
-    struct vec3 normal =
-        vec3_normalize(vec3_cross(along, vec3_sub(corners[3], corners[0])));
+    struct vec3 normal = vec3_normalize(vec3_cross(along, vec3_sub(corners[3], corners[0])));
     for (int i = 0; i < 6; i++) {
         struct vec3 p = corners[order[i]];
         vertices[i] = (struct room_vertex){
@@ -90,8 +89,8 @@ static const float no_uv[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 static void add_box(struct room *room, struct vec3 low, struct vec3 high)
 {
     const struct vec3 c[8] = {
-        {low.x, low.y, high.z},  {high.x, low.y, high.z},  {high.x, high.y, high.z},
-        {low.x, high.y, high.z}, {low.x, low.y, low.z},    {high.x, low.y, low.z},
+        {low.x, low.y, high.z},  {high.x, low.y, high.z}, {high.x, high.y, high.z},
+        {low.x, high.y, high.z}, {low.x, low.y, low.z},   {high.x, low.y, low.z},
         {high.x, high.y, low.z}, {low.x, high.y, low.z},
     };
     static const int faces[6][4] = {{0, 1, 2, 3}, {5, 4, 7, 6}, {4, 0, 3, 7},
@@ -219,8 +218,8 @@ static void set_wall_lights(const struct room *room, struct room_part *part, int
 {
     for (int32_t i = 0; i < GALLERY_LIGHTS_PER_DRAW; i++) {
         int32_t index = 1 + 2 * (bay + i - 1) + (left ? 0 : 1);
-        part->lights[i] = index >= 1 && index < (int32_t)room->place_count ? (uint32_t)index
-                                                                             : GALLERY_NO_TEXTURE;
+        part->lights[i] =
+            index >= 1 && index < (int32_t)room->place_count ? (uint32_t)index : GALLERY_NO_TEXTURE;
     }
 }
 
@@ -230,7 +229,8 @@ static void add_side_wall(struct room *room, bool left, int32_t bay, float from,
     float begin = left ? from : to, end = left ? to : from;
     const struct vec3 corners[4] = {
         {x, 0, begin}, {x, 0, end}, {x, ROOM_HEIGHT, end}, {x, ROOM_HEIGHT, begin}};
-    float u0 = (left ? -begin : begin) / ROOM_WALL_REPEAT, u1 = (left ? -end : end) / ROOM_WALL_REPEAT;
+    float u0 = (left ? -begin : begin) / ROOM_WALL_REPEAT,
+          u1 = (left ? -end : end) / ROOM_WALL_REPEAT;
     const float top = 0.0f, bottom = ROOM_HEIGHT / ROOM_WALL_REPEAT;
     const float uv[4][2] = {{u0, bottom}, {u1, bottom}, {u1, top}, {u0, top}};
     struct room_part *part = begin_part(room, ROOM_WALL, white, 0);
@@ -262,7 +262,8 @@ static void add_end_wall(struct room *room, bool far)
 static void add_floor(struct room *room, int32_t bay, float from, float to)
 {
     float half = 0.5f * ROOM_WIDTH;
-    const struct vec3 corners[4] = {{-half, 0, from}, {half, 0, from}, {half, 0, to}, {-half, 0, to}};
+    const struct vec3 corners[4] = {
+        {-half, 0, from}, {half, 0, from}, {half, 0, to}, {-half, 0, to}};
     const float u = half / ROOM_FLOOR_REPEAT;
     const float v0 = -from / ROOM_FLOOR_REPEAT, v1 = -to / ROOM_FLOOR_REPEAT;
     const float uv[4][2] = {{-u, v0}, {u, v0}, {u, v1}, {-u, v1}};
@@ -345,7 +346,8 @@ static void add_everything(struct room *room, int32_t bay_count)
     add_skirting_and_benches(room);
     for (int32_t bay = -1; bay <= bay_count; bay++) {
         float from = bay < 0 ? 0.0f : -ENTRANCE_LENGTH - (float)bay * BAY_LENGTH;
-        float to = bay == bay_count ? -room->length : -ENTRANCE_LENGTH - (float)(bay + 1) * BAY_LENGTH;
+        float to =
+            bay == bay_count ? -room->length : -ENTRANCE_LENGTH - (float)(bay + 1) * BAY_LENGTH;
         add_side_wall(room, true, bay, from, to);
         add_side_wall(room, false, bay, from, to);
         add_floor(room, bay, from, to);

@@ -35,7 +35,7 @@ struct room {
     float width, height, length; ///< x from -width/2 to width/2, z from 0 to -length
     struct room_place *places;   ///< owned; one per picture
     uint32_t place_count;
-    struct GalleryLight *lights; ///< owned; one per picture
+    struct GalleryLight *lights;  ///< owned; one per picture
     struct room_vertex *vertices; ///< owned; triangles
     uint32_t vertex_count, vertex_capacity;
     struct room_part *parts; ///< owned; pictures first, because they hide the most

@@ -76,11 +76,10 @@ static bool allocate_sets(const struct view *view, VkDescriptorSetLayout layout,
                           VkDescriptorSet *sets)
 {
     for (uint32_t i = 0; i < count; i++) {
-        VkDescriptorSetAllocateInfo info = {
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-            .descriptorPool = view->descriptor_pool,
-            .descriptorSetCount = 1,
-            .pSetLayouts = &layout};
+        VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                            .descriptorPool = view->descriptor_pool,
+                                            .descriptorSetCount = 1,
+                                            .pSetLayouts = &layout};
         if (!gpu_check(vkAllocateDescriptorSets(view->request.gpu->device, &info, &sets[i]),
                        "vkAllocateDescriptorSets"))
             return false;
@@ -99,9 +98,9 @@ static bool create_descriptor_pool(struct view *view)
                                        .maxSets = VIEW_FRAMES_IN_FLIGHT + surface_count,
                                        .poolSizeCount = 2,
                                        .pPoolSizes = sizes};
-    return gpu_check(vkCreateDescriptorPool(view->request.gpu->device, &info, NULL,
-                                            &view->descriptor_pool),
-                     "vkCreateDescriptorPool");
+    return gpu_check(
+        vkCreateDescriptorPool(view->request.gpu->device, &info, NULL, &view->descriptor_pool),
+        "vkCreateDescriptorPool");
 }
 
 /** A texture without a relief: floor and walls. */
@@ -147,8 +146,7 @@ static bool create_surfaces(struct view *view)
     if (!view->surfaces)
         return false;
     for (uint32_t i = 0; i < count; i++)
-        if (!allocate_sets(view, request->renderer->texture_layout, 1,
-                           &view->surfaces[i].textures))
+        if (!allocate_sets(view, request->renderer->texture_layout, 1, &view->surfaces[i].textures))
             return false;
     if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
         !create_tiled_surface(view, request->wall, &view->surfaces[1]))
@@ -194,8 +192,9 @@ static bool create_slots(struct view *view)
     for (uint32_t i = 0; i < VIEW_FRAMES_IN_FLIGHT; i++)
         if (!create_slot(view, &view->slots[i]))
             return false;
-    return gpu_check(vkCreateQueryPool(view->request.gpu->device, &queries, NULL, &view->timestamps),
-                     "vkCreateQueryPool");
+    return gpu_check(
+        vkCreateQueryPool(view->request.gpu->device, &queries, NULL, &view->timestamps),
+        "vkCreateQueryPool");
 }
 
 bool view_create(const struct view_request *request, const char *record_path, struct view *view)
@@ -316,17 +315,18 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
         return false;
 
     target_copy_out(request->target, commands, slot->pixels.buffer);
-    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps, query + 1);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
+                        query + 1);
     return true;
 }
 
 static bool submit(const struct view *view, struct view_slot *slot,
                    const SluiceStreamingFrame *frame)
 {
-    VkTimelineSemaphoreSubmitInfo timeline = {
-        .sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-        .signalSemaphoreValueCount = 1,
-        .pSignalSemaphoreValues = &frame->signalValue};
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = &frame->signalValue};
     VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                          .pNext = &timeline,
                          .commandBufferCount = 1,

@@ -39,8 +39,8 @@ struct view_frame {
 
 struct view {
     struct view_request request;
-    SluiceVulkanStreamer *streamer;  ///< owned
-    SluiceRecorder *recorder;        ///< owned
+    SluiceVulkanStreamer *streamer; ///< owned
+    SluiceRecorder *recorder;       ///< owned
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct view_slot slots[VIEW_FRAMES_IN_FLIGHT];
@@ -54,8 +54,8 @@ bool view_create(const struct view_request *request, const char *record_path, st
 bool view_destroy(struct view *view);
 
 /**
- * Records and submits one frame into slot frame_index % VIEW_FRAMES_IN_FLIGHT, once the earlier frame
- * there is over. `time_stamp` is in microseconds.
+ * Records and submits one frame into slot frame_index % VIEW_FRAMES_IN_FLIGHT, once the earlier
+ * frame there is over. `time_stamp` is in microseconds.
  */
 bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
                struct view_frame *frame);

@@ -21,8 +21,8 @@ static struct vec3 spot(const struct room_place *place, float x, float y, float 
     return vec3_add(p, vec3_scale(place->normal, z));
 }
 
-/* Up to the first picture on the left until its finest level shows, past the next ones, up to one on
- * the right, and to rest beside the last but one on the left, seen along the wall. */
+/* Up to the first picture on the left until its finest level shows, past the next ones, up to one
+ * on the right, and to rest beside the last but one on the left, seen along the wall. */
 static void make_stations(const struct room *room, struct station stations[STATION_COUNT])
 {
     const struct room_place *first = place_of(room, 1), *second = place_of(room, 2);
@@ -36,7 +36,8 @@ static void make_stations(const struct room *room, struct station stations[STATI
         {0.46f, {spot(first, 0.9f, 0.05f, 2.3f), spot(second, 0.2f, 0.0f, 0.0f)}},
         {0.60f, {spot(right, -0.2f, 0.0f, 2.2f), spot(right, 0.0f, 0.0f, 0.0f)}},
         {0.74f, {spot(right, 0.3f, -0.2f, 0.45f), spot(right, 0.2f, -0.25f, 0.0f)}},
-        {0.87f, {spot(far_left, -0.7f, 0.1f, 3.4f), vec3_mix(last->center, far_left->center, 0.3f)}},
+        {0.87f,
+         {spot(far_left, -0.7f, 0.1f, 3.4f), vec3_mix(last->center, far_left->center, 0.3f)}},
         {1.00f, {spot(far_left, -1.15f, 0.0f, 1.35f), spot(far_left, 0.55f, -0.04f, 0.1f)}},
     };
     for (int i = 0; i < STATION_COUNT; i++)
@@ -53,7 +54,10 @@ struct camera walk_camera(const struct room *room, float progress)
     const struct station *a = &stations[next - 1], *b = &stations[next];
     float t = (progress - a->at) / (b->at - a->at);
     t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
-    t = t * t * t * (t * (6.0f * t - 15.0f) + 10.0f); /* comes to a halt at each station */
+    /* Comes gently to a halt at each station; stops short at the last, which is harder to follow.
+     */
+    t = next < STATION_COUNT - 1 ? t * t * t * (t * (6.0f * t - 15.0f) + 10.0f)
+                                 : t * t * (2.0f - t);
     return (struct camera){vec3_mix(a->camera.eye, b->camera.eye, t),
                            vec3_mix(a->camera.target, b->camera.target, t)};
 }
