@@ -349,9 +349,13 @@ bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFl
     vkGetBufferMemoryRequirements(gpu->device, buffer->buffer, &requirements);
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    bool readback = usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    if (allocate(gpu, &requirements, host, readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0,
-                 &buffer->memory) &&
+    /* Read by the host: cached. Used by shaders, atomics among them: beside them if possible. */
+    VkMemoryPropertyFlags wanted = 0;
+    if (usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT)
+        wanted = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    else if (usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)
+        wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    if (allocate(gpu, &requirements, host, wanted, &buffer->memory) &&
         gpu_check(vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0),
                   "vkBindBufferMemory") &&
         gpu_check(vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),
