@@ -90,9 +90,12 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t heapTileCapacity;        ///< 0: 256
     uint32_t maxHeapCount;            ///< 0: as many as the device has memory for
     uint32_t numExtraStandbyTiles;    ///< kept although unwanted
-    uint64_t feedbackTimeout;         ///< in the unit of the time stamps; a region lapses after it
+    /** In the unit of the time stamps: a region that no map asked for that long is no longer wanted.
+     *  0: only a texture's newest map counts, which no stochastic feedback should be used with. */
+    uint64_t feedbackTimeout;
     uint64_t retryDelay;              ///< in the same unit, see manager.h
     bool mapEverything;               ///< every tile is wanted always: the fully resident truth
+    uint32_t maxRegionCount; ///< feedback regions, one per tile of level 0, of all textures; 0: 2^20
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -102,12 +105,26 @@ typedef struct SluiceVulkanStreamerCreateInfo {
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
                                                    SluiceVulkanStreamer **pStreamer);
 
-/** Waits for the frames that were submitted, then releases everything. NULL is allowed. */
+/**
+ * Waits for the device (vkDeviceWaitIdle) and for the reads under way, then releases everything.
+ * NULL is allowed. Thread safety: external on the streamer and on all queues of the device.
+ */
 SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
 
+/**
+ * Waits until no read is under way and every binding submitted so far is over; frames are not waited
+ * for. For tests, offline rendering and shutdown: the next frame then sees all that was asked for.
+ * Errors: NULL_POINTER, VULKAN, DEVICE_LOST.
+ */
+SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
+
 typedef struct SluiceVulkanTextureCreateInfo {
-    SluiceImageSource *source; ///< required; must outlive the texture
+    /** Required; must outlive the texture and, when that is removed, the reads of it that are still
+     *  under way: sluiceWaitVulkanStreamerIdle or sluiceDestroyVulkanStreamer end them. */
+    SluiceImageSource *source;
     SluiceTextureId primaryId; ///< SLUICE_NO_TEXTURE, or the texture whose feedback drives this one
+    /** Of the samplers that it is sampled with; zero is VK_SAMPLER_ADDRESS_MODE_REPEAT. */
+    VkSamplerAddressMode addressModeU, addressModeV;
 } SluiceVulkanTextureCreateInfo;
 
 typedef struct SluiceVulkanTexture {
@@ -122,9 +139,10 @@ typedef struct SluiceVulkanTexture {
 /**
  * Creates the image of a source and starts to stream it. The format is the source's.
  *
- * Errors: NULL_POINTER; UNSUPPORTED if the device cannot stream that format or size; LIMIT_EXCEEDED
- *         beyond maxTextureCount; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY,
- *         VULKAN.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode; UNKNOWN_TEXTURE and
+ *         STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
+ *         size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what the source says;
+ *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
@@ -154,15 +172,21 @@ typedef struct SluiceStreamingFrame {
  * Polls what has completed, feeds the manager, submits bindings, and records into `commandBuffer`,
  * outside a render pass: uploads of texels that arrived, and then the MinMip maps that show them.
  *
- * The command buffer must be submitted, before that of the next frame, to a queue of
+ * The command buffer must be submitted, before that of the next frame, to the same queue of
  * queueFamilyIndex. Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are
  * not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
+ *
+ * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
+ *         changed. OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST: the streamer can only be destroyed.
  */
 SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                                   VkCommandBuffer commandBuffer, uint64_t timeStamp,
                                                   SluiceStreamingFrame *pFrame);
 
-/** Records the resolve and readback of this frame's share of the feedback maps, outside a pass. */
+/**
+ * Records the resolve and readback of this frame's share of the feedback maps, outside a pass. Binds
+ * a compute pipeline and its descriptor set 0. Errors: NULL_POINTER.
+ */
 SLUICE_API SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer,
                                                 VkCommandBuffer commandBuffer);
 

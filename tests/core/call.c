@@ -36,6 +36,13 @@ const char *call_kind_name(enum call_kind kind)
     return names[kind];
 }
 
+bool call_is_list(enum call_kind kind)
+{
+    return kind == CALL_TILES_TO_MAP || kind == CALL_GIVEN_UP || kind == CALL_TILES_TO_CANCEL ||
+           kind == CALL_TILES_TO_UNMAP || kind == CALL_DEFRAGMENT || kind == CALL_EMPTY_HEAPS ||
+           kind == CALL_MINMIP_UPDATES;
+}
+
 static SluiceResult make_list_call(SluiceStreamedTextureManager *m, const struct call *c,
                                    struct outcome *out)
 {
@@ -46,15 +53,13 @@ static SluiceResult make_list_call(SluiceStreamedTextureManager *m, const struct
     case CALL_TILES_TO_MAP: return sluiceGetTilesToMap(m, c->texture, count, tiles);
     case CALL_GIVEN_UP: return sluiceGetGivenUpTiles(m, count, tiles);
     case CALL_TILES_TO_CANCEL: return sluiceGetTilesToCancel(m, c->texture, count, tiles);
-    case CALL_TILES_TO_UNMAP:
-        return sluiceGetTilesToUnmap(m, c->texture, c->retire, count, tiles);
+    case CALL_TILES_TO_UNMAP: return sluiceGetTilesToUnmap(m, c->texture, c->retire, count, tiles);
     case CALL_DEFRAGMENT:
         return sluiceDefragmentTiles(m, c->retire, count,
                                      c->null == NULL_SECOND ? NULL : out->moves);
     case CALL_EMPTY_HEAPS:
         return sluiceGetEmptyHeaps(m, count, c->null == NULL_SECOND ? NULL : out->heaps);
-    default:
-        return sluiceGetMinMipUpdates(m, count, c->null == NULL_SECOND ? NULL : out->rects);
+    default: return sluiceGetMinMipUpdates(m, count, c->null == NULL_SECOND ? NULL : out->rects);
     }
 }
 
@@ -86,8 +91,7 @@ static SluiceResult make_add(SluiceStreamedTextureManager *m, const struct call 
                                     c->null == NULL_SECOND ? NULL : &out->texture);
 }
 
-static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c,
-                         struct outcome *out)
+static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c, struct outcome *out)
 {
     const bool first = c->null == NULL_FIRST, second = c->null == NULL_SECOND;
     switch (c->kind) {
@@ -131,8 +135,7 @@ static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c,
     return SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
-void call_make(SluiceStreamedTextureManager *manager, const struct call *call,
-               struct outcome *out)
+void call_make(SluiceStreamedTextureManager *manager, const struct call *call, struct outcome *out)
 {
     out->count = 0;
     out->texture = SLUICE_NO_TEXTURE;
@@ -179,7 +182,9 @@ void call_print(FILE *file, const struct call *c)
             c->timeout, c->retire, c->room);
     fprintf(file, " keep %" PRIu32 " heap %" PRIu32 " tile %" PRIu32, c->keep, c->heap, c->tile);
     if (c->kind == CALL_WRITE_MINMIP || c->kind == CALL_WRITE_RECT)
-        fprintf(file, " rect %" PRIx64 " %" PRIu32 ",%" PRIu32 " %" PRIu32 "x%" PRIu32 " pitch %zu size %zu",
+        fprintf(file,
+                " rect %" PRIx64 " %" PRIu32 ",%" PRIu32 " %" PRIu32 "x%" PRIu32
+                " pitch %zu size %zu",
                 c->rect.textureId, c->rect.x, c->rect.y, c->rect.width, c->rect.height, c->pitch,
                 c->size);
     if (c->refuse_after != UINT64_MAX)

@@ -36,7 +36,8 @@ enum call_kind {
     CALL_KIND_COUNT
 };
 
-/** Which pointer of a call is NULL. `second` is the array of a list call, which makes it a query. */
+/** Which pointer of a call is NULL. `second` is the array of a list call, which makes it a query.
+ */
 enum call_null { NULL_NONE, NULL_MANAGER, NULL_FIRST, NULL_SECOND };
 
 /** Room of the arrays that calls are made with; the same number of heap answers per call. */
@@ -92,6 +93,8 @@ struct outcome {
 
 /** Makes the call and fills in what it answered, but for the heap allocator's answers. */
 void call_make(SluiceStreamedTextureManager *manager, const struct call *call, struct outcome *out);
+/** Whether it takes a count in and out, and an array. */
+bool call_is_list(enum call_kind kind);
 const char *call_kind_name(enum call_kind kind);
 /** One line, but for feedback maps, which follow row by row. */
 void call_print(FILE *file, const struct call *call);

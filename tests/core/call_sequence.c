@@ -4,15 +4,32 @@
 
 /* How often each call is made, relative to the others. */
 static const uint32_t base_weights[CALL_KIND_COUNT] = {
-    [CALL_SET_CONFIG] = 2,       [CALL_ADD_TEXTURE] = 6,    [CALL_REMOVE_TEXTURE] = 2,
-    [CALL_FEEDBACK] = 40,        [CALL_MATCH_PRIMARY] = 5,  [CALL_SET_PRIMARY] = 4,
-    [CALL_TILES_TO_MAP] = 30,    [CALL_MAPPED] = 25,        [CALL_FAILED] = 8,
-    [CALL_CANCELLED] = 8,        [CALL_RETRY] = 2,          [CALL_GIVEN_UP] = 4,
-    [CALL_TILES_TO_CANCEL] = 10, [CALL_TILES_TO_UNMAP] = 20, [CALL_COMPLETE] = 12,
-    [CALL_TRIM] = 3,             [CALL_DEFRAGMENT] = 4,     [CALL_EMPTY_HEAPS] = 3,
-    [CALL_RELEASE_HEAP] = 4,     [CALL_MINMIP_UPDATES] = 10, [CALL_WRITE_MINMIP] = 2,
-    [CALL_WRITE_RECT] = 2,       [CALL_TILE_STATE] = 2,     [CALL_LAYOUT] = 1,
-    [CALL_TEXTURE_LAYOUT] = 1,   [CALL_STATISTICS] = 1,
+    [CALL_SET_CONFIG] = 2,
+    [CALL_ADD_TEXTURE] = 6,
+    [CALL_REMOVE_TEXTURE] = 2,
+    [CALL_FEEDBACK] = 40,
+    [CALL_MATCH_PRIMARY] = 5,
+    [CALL_SET_PRIMARY] = 4,
+    [CALL_TILES_TO_MAP] = 30,
+    [CALL_MAPPED] = 25,
+    [CALL_FAILED] = 8,
+    [CALL_CANCELLED] = 8,
+    [CALL_RETRY] = 2,
+    [CALL_GIVEN_UP] = 4,
+    [CALL_TILES_TO_CANCEL] = 10,
+    [CALL_TILES_TO_UNMAP] = 20,
+    [CALL_COMPLETE] = 12,
+    [CALL_TRIM] = 3,
+    [CALL_DEFRAGMENT] = 4,
+    [CALL_EMPTY_HEAPS] = 3,
+    [CALL_RELEASE_HEAP] = 4,
+    [CALL_MINMIP_UPDATES] = 10,
+    [CALL_WRITE_MINMIP] = 2,
+    [CALL_WRITE_RECT] = 2,
+    [CALL_TILE_STATE] = 2,
+    [CALL_LAYOUT] = 1,
+    [CALL_TEXTURE_LAYOUT] = 1,
+    [CALL_STATISTICS] = 1,
 };
 
 /* The pointers of each call that may be NULL: the manager, the first, the second. */
@@ -164,8 +181,8 @@ static uint64_t any_retire(struct call_sequence *s, const struct naive_manager *
 static void make_config(struct call_sequence *s, struct call *call)
 {
     struct choice *c = &s->choice;
-    static const uint64_t delays[] = {0, 1, 3, 20, (uint64_t)1 << 40, (uint64_t)1 << 61,
-                                      (uint64_t)1 << 62, UINT64_MAX};
+    static const uint64_t delays[] = {
+        0, 1, 3, 20, (uint64_t)1 << 40, (uint64_t)1 << 61, (uint64_t)1 << 62, UINT64_MAX};
     SluiceStreamedTextureManagerConfig *config = &call->config;
     config->numExtraStandbyTiles = choice_once_in(c, 3)   ? 0
                                    : choice_once_in(c, 6) ? UINT32_MAX
@@ -275,9 +292,7 @@ static void make_write(struct call_sequence *s, struct naive_manager *n, struct 
         switch (choice_below(c, 3)) {
         case 0: call->pitch = r.width - 1; break;
         case 1: call->size = (r.height - 1) * call->pitch + r.width - 1; break;
-        default:
-            call->pitch = r.height > 1 ? SIZE_MAX : call->pitch;
-            break;
+        default: call->pitch = r.height > 1 ? SIZE_MAX : call->pitch; break;
         }
 }
 
@@ -302,12 +317,6 @@ static enum call_kind any_kind(struct call_sequence *s)
     while (at >= s->weights[k])
         at -= s->weights[k++];
     return (enum call_kind)k;
-}
-
-static bool is_list(enum call_kind kind)
-{
-    return kind == CALL_TILES_TO_MAP || kind == CALL_GIVEN_UP || kind == CALL_TILES_TO_CANCEL ||
-           kind == CALL_TILES_TO_UNMAP || kind == CALL_EMPTY_HEAPS || kind == CALL_MINMIP_UPDATES;
 }
 
 static void make_feedback(struct call_sequence *s, struct naive_manager *n, struct call *call)
@@ -382,7 +391,8 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
     }
     default: /* list calls, and those that take a texture and a retire value at most */
         call->texture = any_id(s, n);
-        if (choice_once_in(c, 2) && (is_list(call->kind) || call->kind == CALL_RETRY))
+        if (choice_once_in(c, 2) && ((call_is_list(call->kind) && call->kind != CALL_DEFRAGMENT) ||
+                                     call->kind == CALL_RETRY))
             call->texture = SLUICE_ALL_TEXTURES;
         call->retire = any_retire(s, n);
         call->room = any_room(s);
@@ -404,8 +414,8 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
     call->refuse_after = UINT64_MAX;
     fill_in(s, n, call);
     if (s->starving && choice_once_in(c, s->starving))
-        call->refuse_after = choice_below(c, 5);
-    if (is_list(call->kind) && choice_once_in(c, 8))
+        call->refuse_after = 0;
+    if (call_is_list(call->kind) && call->kind != CALL_DEFRAGMENT && choice_once_in(c, 8))
         call->null = NULL_SECOND;
     else if (mistake(s) && choice_once_in(c, 4))
         call->null = (enum call_null)choice_range(c, 1, last_pointer[call->kind]);
@@ -430,7 +440,8 @@ struct heap_answer call_sequence_heap_answer(struct call_sequence *s, const uint
         answer.id = living[choice_below(c, living_count)];
         return answer;
     }
-    for (uint32_t i = 0; i < living_count; i++) /* ids may come back, but not those of living ones */
+    for (uint32_t i = 0; i < living_count;
+         i++) /* ids may come back, but not those of living ones */
         if (living[i] == answer.id) {
             answer.id++;
             i = UINT32_MAX;

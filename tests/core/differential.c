@@ -64,8 +64,7 @@ static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
     struct differential *d = user;
     if (size != (uint64_t)d->sequence.capacity * SLUICE_DEFAULT_TILE_SIZE)
         fail(d, "a heap of %" PRIu64 " bytes was asked for", size);
-    struct heap_answer answer =
-        call_sequence_heap_answer(&d->sequence, d->heaps, d->heap_count);
+    struct heap_answer answer = call_sequence_heap_answer(&d->sequence, d->heaps, d->heap_count);
     if (d->seen.answer_count < CALL_MAX_ROOM)
         d->seen.answers[d->seen.answer_count++] = answer;
     if (answer.result != SLUICE_SUCCESS)
@@ -316,8 +315,8 @@ static void publish(struct differential *d)
         const struct naive_texture *t = naive_find(n, r->textureId, &ignored);
         const size_t w = t->layout.minMipWidth, h = t->layout.minMipHeight;
         const size_t at = r->y * w + r->x;
-        SluiceResult result = sluiceWriteMinMipRect(d->manager, r, w, w * h - at,
-                                                    published_copy(d, t)->texels + at);
+        SluiceResult result =
+            sluiceWriteMinMipRect(d->manager, r, w, w * h - at, published_copy(d, t)->texels + at);
         if (result != SLUICE_SUCCESS)
             fail(d, "sluiceWriteMinMipRect says %s", sluiceResultString(result));
     }
@@ -331,29 +330,51 @@ static void publish(struct differential *d)
     }
 }
 
-/* Makes d->call on both and compares. */
-static void step(struct differential *d)
+/* A list call that fails leaves the count as it was. */
+static void check_count_is_kept(struct differential *d)
+{
+    if (call_is_list(d->call.kind) && d->call.null != NULL_FIRST && d->call.null != NULL_MANAGER &&
+        d->seen.count != d->call.room)
+        fail(d, "the failed call changed the count to %" PRIu32, d->seen.count);
+}
+
+/* Makes d->call, alone. Returns whether memory was refused. */
+static bool make_call(struct differential *d)
 {
     const struct call *call = &d->call;
-    const uint64_t allocations = d->allocator.calls;
-    d->call_number++;
     memset(d->seen.bytes, 0xEE, row_bytes(call));
-    memset(d->expected.bytes, 0xEE, row_bytes(call));
     if (call->refuse_after != UINT64_MAX)
-        d->allocator.refuse_from = allocations + call->refuse_after;
+        d->allocator.refuse_from = d->allocator.calls + call->refuse_after;
     call_make(d->manager, call, &d->seen);
     const bool refused = d->allocator.calls > d->allocator.refuse_from;
     d->allocator.refuse_from = UINT64_MAX;
     d->coverage[call->kind][(d->seen.result + 32) & 63]++;
+    if (d->seen.result < 0)
+        check_count_is_kept(d);
+    return refused;
+}
+
+/* Makes d->call on both and compares; with one allocation more each time as long as they fail. */
+static void step(struct differential *d)
+{
+    struct call *call = &d->call;
+    d->call_number++;
+    bool refused = make_call(d);
+    while (d->seen.result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && !d->failed) {
+        if (!refused)
+            fail(d, "out of host memory, although no allocation was refused");
+        compare_states(d);
+        call->refuse_after++;
+        refused = make_call(d);
+    }
+    if (d->failed)
+        return;
     if (refused && call->kind == CALL_TILES_TO_MAP && d->seen.result == SLUICE_INCOMPLETE &&
         d->seen.count > 0 && call->null == NULL_NONE)
-        d->call.room = d->seen.count; /* host memory ran out after these: as if for lack of room */
-    if (d->seen.result != SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
-        naive_call(&d->naive, call, &d->seen, &d->expected);
-        compare_outcomes(d);
-    } else if (!refused) {
-        fail(d, "out of host memory, although no allocation was refused");
-    }
+        call->room = d->seen.count; /* host memory ran out after these: as if for lack of room */
+    memset(d->expected.bytes, 0xEE, row_bytes(call));
+    naive_call(&d->naive, call, &d->seen, &d->expected);
+    compare_outcomes(d);
     if (!d->failed && call->kind == CALL_MINMIP_UPDATES && d->seen.result >= 0 &&
         call->null != NULL_SECOND)
         publish(d);
@@ -453,7 +474,8 @@ void differential_print_coverage(const struct differential *d, FILE *file)
                 fprintf(file, " %s %" PRIu64, sluiceResultString((SluiceResult)(r - 32)),
                         d->coverage[kind][r]);
         fprintf(file, "\n");
-    }    const double calls = d->calls ? (double)d->calls : 1;
+    }
+    const double calls = d->calls ? (double)d->calls : 1;
     fprintf(file, "# %" PRIu64 " tiles restored; on average %.1f textures, %.1f tiles\n",
             d->restored, (double)d->textures / calls, (double)d->tiles / calls);
 }

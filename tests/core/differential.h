@@ -1,4 +1,5 @@
-/** Runs one sequence of calls on the manager and on the naive one, and compares after every call. */
+/** Runs one sequence of calls on the manager and on the naive one, and compares after every call.
+ */
 #ifndef TESTS_CORE_DIFFERENTIAL_H
 #define TESTS_CORE_DIFFERENTIAL_H
 

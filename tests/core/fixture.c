@@ -1,6 +1,7 @@
 #include "core/fixture.h"
 
 #include "base/checked.h"
+#include "core/check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,7 @@ void fixture_open(struct fixture *f, uint32_t heap_capacity, bool always_map_pac
 
 void fixture_close(struct fixture *f)
 {
+    assert_string_equal(slc_manager_check(f->manager) ? slc_manager_check(f->manager) : "", "");
     sluiceDestroyStreamedTextureManager(f->manager);
     assert_int_equal(f->memory.live_bytes, 0);
     assert_int_equal(f->memory.live_count, 0);
@@ -283,6 +285,8 @@ static void hash_lists(uint64_t *h, const struct fixture *f)
 
 uint64_t fixture_digest(const struct fixture *f, uint32_t id_count, const SluiceTextureId *ids)
 {
+    const char *wrong = slc_manager_check(f->manager);
+    assert_string_equal(wrong ? wrong : "", "");
     SluiceStreamedTextureStatistics s = fixture_statistics(f);
     const uint64_t numbers[] = {
         s.textureCount,     s.tileCount,        s.requestedTileCount, s.allocatedTileCount,

@@ -66,8 +66,7 @@ static void answer_failed(struct naive_manager *n, struct naive_texture *t, stru
     n->given_up = realloc(n->given_up, (n->given_up_count + 1) * sizeof *n->given_up);
     if (!n->given_up)
         abort();
-    n->given_up[n->given_up_count++] =
-        (struct naive_given_up){t->id, (uint32_t)(tile - t->tiles)};
+    n->given_up[n->given_up_count++] = (struct naive_given_up){t->id, (uint32_t)(tile - t->tiles)};
 }
 
 static void answer_cancelled(struct naive_manager *n, struct naive_tile *tile, uint64_t retire)

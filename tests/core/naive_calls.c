@@ -166,8 +166,7 @@ static SluiceResult write_minmip(struct naive_manager *n, const struct call *cal
     if (call->null != NULL_NONE)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceMinMipRect r = call->rect;
-    const struct naive_texture *t =
-        naive_find(n, whole ? call->texture : r.textureId, &result);
+    const struct naive_texture *t = naive_find(n, whole ? call->texture : r.textureId, &result);
     if (!t)
         return result;
     const uint32_t w = t->layout.minMipWidth, h = t->layout.minMipHeight;
@@ -187,11 +186,12 @@ static void take_rect(struct naive_manager *n, struct naive_texture *t, const Sl
 {
     const uint32_t w = t->layout.minMipWidth, h = t->layout.minMipHeight;
     if (r->x > w || r->width > w - r->x || r->y > h || r->height > h - r->y)
-        naive_complain(n, "the rectangle of %#llx is not inside its map", (unsigned long long)t->id);
+        naive_complain(n, "the rectangle of %#llx is not inside its map",
+                       (unsigned long long)t->id);
     for (uint32_t y = 0; y < h; y++)
         for (uint32_t x = 0; x < w; x++)
-            if (t->changed[y * w + x] && (x < r->x || x - r->x >= r->width || y < r->y ||
-                                          y - r->y >= r->height))
+            if (t->changed[y * w + x] &&
+                (x < r->x || x - r->x >= r->width || y < r->y || y - r->y >= r->height))
                 naive_complain(n, "the rectangle of %#llx misses texel (%u, %u)",
                                (unsigned long long)t->id, x, y);
     memset(t->changed, 0, (size_t)w * h);
@@ -209,8 +209,8 @@ static SluiceResult minmip_updates(struct naive_manager *n, const struct call *c
     uint32_t count = 0;
     for (uint32_t i = 0; i < n->texture_room; i++)
         if (n->textures[i] && n->textures[i]->dirty_since)
-            refs[count++] = (struct naive_ref){
-                n->textures[i], NULL, {n->textures[i]->dirty_since, 0, 0, 0}};
+            refs[count++] =
+                (struct naive_ref){n->textures[i], NULL, {n->textures[i]->dirty_since, 0, 0, 0}};
     naive_sort(refs, count);
     out->count = call->null == NULL_SECOND || count < call->room ? count : call->room;
     for (uint32_t i = 0; i < out->count && i < seen->count && call->null != NULL_SECOND; i++)

@@ -31,8 +31,8 @@ static void make_move(struct naive_manager *n, const struct call *call, const Sl
         return;
     }
     const struct naive_heap *from = naive_find_heap(n, tile->heap);
-    if (from == to || naive_count_slots(n, from, NAIVE_SLOT_USED) >
-                          naive_count_slots(n, to, NAIVE_SLOT_USED))
+    if (from == to ||
+        naive_count_slots(n, from, NAIVE_SLOT_USED) > naive_count_slots(n, to, NAIVE_SLOT_USED))
         naive_complain(n, "move %u leads from heap %u to %u, which is not fuller", i, from->id,
                        to->id);
     naive_retire_slot(n, tile, call->retire);
@@ -50,6 +50,24 @@ static void check_sources_are_empty(struct naive_manager *n, const struct outcom
         if (heap && naive_count_slots(n, heap, NAIVE_SLOT_USED) > 0)
             naive_complain(n, "move %u leaves heap %u, in which other tiles stay", i, heap->id);
     }
+}
+
+/* Whether all tiles of the heap could be moved to heaps that are at least as full. */
+static bool could_be_emptied(const struct naive_manager *n, const struct naive_heap *heap)
+{
+    const uint32_t used = naive_count_slots(n, heap, NAIVE_SLOT_USED);
+    uint64_t room = 0;
+    uint32_t movable = 0;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (&n->heaps[i] != heap && naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_USED) >= used)
+            room += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++) {
+            const struct naive_tile *tile = &n->textures[i]->tiles[k];
+            movable += tile->heap == heap->id && (tile->state == SLUICE_TILE_STATE_MAPPED ||
+                                                  tile->state == SLUICE_TILE_STATE_STANDBY);
+        }
+    return used > 0 && movable == used && room >= used;
 }
 
 SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
@@ -71,7 +89,11 @@ SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
         make_move(n, call, &seen->moves[i], i);
     }
     out->count = seen->count;
-    if (seen->count < call->room)
+    if (seen->count < call->room) { /* there are no more moves to make */
         check_sources_are_empty(n, seen);
+        for (uint32_t i = 0; i < n->heap_count; i++)
+            if (could_be_emptied(n, &n->heaps[i]))
+                naive_complain(n, "heap %u could be emptied", n->heaps[i].id);
+    }
     return out->count > call->room ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_SUCCESS;
 }

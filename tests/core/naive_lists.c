@@ -158,8 +158,8 @@ SluiceResult naive_given_up_tiles(struct naive_manager *n, const struct call *ca
     out->count = min_u32(call->room, n->given_up_count);
     for (uint32_t i = 0; i < out->count; i++) {
         SluiceResult result;
-        out->tiles[i] = naive_tile_info(naive_find(n, n->given_up[i].texture, &result),
-                                        n->given_up[i].tile);
+        out->tiles[i] =
+            naive_tile_info(naive_find(n, n->given_up[i].texture, &result), n->given_up[i].tile);
     }
     n->given_up_count -= out->count;
     for (uint32_t i = 0; i < n->given_up_count; i++)

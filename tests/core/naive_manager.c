@@ -68,8 +68,7 @@ struct naive_texture *naive_find(struct naive_manager *n, SluiceTextureId id, Sl
     for (uint32_t i = 0; i < n->texture_room; i++)
         if (n->textures[i] && n->textures[i]->id == id)
             return n->textures[i];
-    *result =
-        was_removed(n, id) ? SLUICE_ERROR_STALE_TEXTURE : SLUICE_ERROR_UNKNOWN_TEXTURE;
+    *result = was_removed(n, id) ? SLUICE_ERROR_STALE_TEXTURE : SLUICE_ERROR_UNKNOWN_TEXTURE;
     return NULL;
 }
 
@@ -149,8 +148,7 @@ static struct naive_texture *make_texture(struct naive_manager *n,
             for (uint32_t x = 0; x < l->levelWidthInTiles[level]; x++)
                 t->tiles[i++] = (struct naive_tile){.level = level, .x = x, .y = y};
     for (uint32_t x = 0; x < l->desc.packedTileCount; x++) {
-        t->tiles[i] =
-            (struct naive_tile){.level = l->desc.regularMipCount, .x = x, .packed = true};
+        t->tiles[i] = (struct naive_tile){.level = l->desc.regularMipCount, .x = x, .packed = true};
         if (n->always_packed)
             naive_become_wanted(n, &t->tiles[i], 0);
         i++;
@@ -159,7 +157,7 @@ static struct naive_texture *make_texture(struct naive_manager *n,
 }
 
 SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
-                                const struct outcome *seen, struct outcome *out)
+                               const struct outcome *seen, struct outcome *out)
 {
     SluiceStreamedTextureLayout layout;
     if (call->null != NULL_NONE)

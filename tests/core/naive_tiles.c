@@ -12,8 +12,12 @@ bool naive_has_slot(const struct naive_tile *tile)
 SluiceTile naive_tile_info(const struct naive_texture *t, uint32_t index)
 {
     const struct naive_tile *tile = &t->tiles[index];
-    return (SluiceTile){t->id,   index,   tile->level, tile->x,
-                        tile->y, naive_has_slot(tile) ? tile->heap : 0,
+    return (SluiceTile){t->id,
+                        index,
+                        tile->level,
+                        tile->x,
+                        tile->y,
+                        naive_has_slot(tile) ? tile->heap : 0,
                         naive_has_slot(tile) ? tile->slot : 0};
 }
 

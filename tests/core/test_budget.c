@@ -129,8 +129,13 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     assert_int_equal(listed_for_unmapping(&f), 3);
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f), 3); /* asking again takes no more */
+    f.count = 1;
+    CHECK_RESULT(sluiceGetTilesToUnmap(f.manager, full, 6, &f.count, f.tiles), SLUICE_INCOMPLETE);
+    assert_true(LISTED(&f, full, 0));
+    CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
+    assert_int_equal(listed_for_unmapping(&f), 2); /* one retires, two are listed */
     CHECK_OK(fixture_to_unmap(&f, full, 7));
-    assert_true(LISTED(&f, full, 0, 1, 2));
+    assert_true(LISTED(&f, full, 1, 2));
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f), 0); /* slots on their way are counted */
     CHECK_OK(sluiceCompleteRetireValue(f.manager, 7));

@@ -42,7 +42,8 @@ static int run(struct differential *d, uint64_t sequences, uint64_t first_seed, 
     for (uint64_t i = 0; i < sequences; i++) {
         const char *message;
         const uint64_t seed = first_seed + i;
-        int made = differential_run(d, seeded(seed), length_of(seed), log ? stdout : NULL, &message);
+        int made =
+            differential_run(d, seeded(seed), length_of(seed), log ? stdout : NULL, &message);
         if (made < 0) {
             explain(d, seed, i);
             return EXIT_FAILURE;

@@ -152,6 +152,34 @@ static void a_tile_given_up_is_listed_once(void **state)
     fixture_close(&f);
 }
 
+static void all_that_is_given_up_is_listed_in_order(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    fixture_configure(&f, 0, 0, 1, 0);
+    SluiceStreamedTextureDesc desc = full_chain(2048, 2048, 128, 128);
+    SluiceTextureId id = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    uint32_t count = f.count, order[FIXTURE_ROOM], read = 0;
+    for (uint32_t i = 0; i < count; i++)
+        order[i] = f.tiles[i].tileIndex;
+    for (uint32_t i = 0; i < count; i++) { /* three are given up for every two that are read */
+        fail_load(&f, id, order[i], 0);
+        f.count = i % 3 == 2 ? 2 : 0;
+        assert_true(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles) >= 0);
+        for (uint32_t n = 0; n < f.count; n++)
+            assert_int_equal(f.tiles[n].tileIndex, order[read++]);
+    }
+    f.count = FIXTURE_ROOM;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
+    for (uint32_t n = 0; n < f.count; n++)
+        assert_int_equal(f.tiles[n].tileIndex, order[read++]);
+    assert_int_equal(read, count);
+    fixture_close(&f);
+}
+
 static void the_given_up_list_outlives_the_want_but_not_the_texture(void **state)
 {
     (void)state;
@@ -308,6 +336,7 @@ int main(void)
         cmocka_unit_test(retry_requests_failed_tiles_then_those_given_up),
         cmocka_unit_test(a_region_stays_at_the_coarser_mip_of_what_loaded),
         cmocka_unit_test(the_longest_delays_do_not_overflow),
+        cmocka_unit_test(all_that_is_given_up_is_listed_in_order),
     };
     return RUN_TESTS(tests);
 }

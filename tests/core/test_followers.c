@@ -101,23 +101,42 @@ static bool overlap(uint32_t p, uint32_t p_region, uint32_t p_size, uint32_t q, 
     return false;
 }
 
-/* The follower's map for primary and follower of no shift (d = 0), by looking at every pair. */
-static void expected_map(const SluiceStreamedTextureLayout *from, const uint8_t *map,
-                         const SluiceStreamedTextureLayout *to, int shift, uint8_t *out)
+enum { MOST_REGIONS = 20 }; /* along one axis */
+
+/* Which regions of the primary meet which of the follower's, along x and along y. */
+struct meeting {
+    bool x[MOST_REGIONS][MOST_REGIONS], y[MOST_REGIONS][MOST_REGIONS];
+};
+
+static void meet(const SluiceStreamedTextureLayout *from, const SluiceStreamedTextureLayout *to,
+                 struct meeting *out)
 {
     const SluiceStreamedTextureDesc *p = &from->desc, *q = &to->desc;
+    assert_true(from->feedbackWidth <= MOST_REGIONS && from->feedbackHeight <= MOST_REGIONS);
+    assert_true(to->feedbackWidth <= MOST_REGIONS && to->feedbackHeight <= MOST_REGIONS);
+    for (uint32_t i = 0; i < MOST_REGIONS; i++) {
+        for (uint32_t j = 0; j < MOST_REGIONS; j++) {
+            out->x[i][j] =
+                overlap(i, p->feedbackRegionWidth, p->width, j, q->feedbackRegionWidth, q->width);
+            out->y[i][j] = overlap(i, p->feedbackRegionHeight, p->height, j,
+                                   q->feedbackRegionHeight, q->height);
+        }
+    }
+}
+
+/* The follower's map, by looking at every pair of regions. */
+static void expected_map(const SluiceStreamedTextureLayout *from, const uint8_t *map,
+                         const SluiceStreamedTextureLayout *to, const struct meeting *meeting,
+                         int shift, uint8_t *out)
+{
+    int last = (int)to->desc.mipLevelCount - 1;
     for (uint32_t i = 0; i < to->feedbackWidth * to->feedbackHeight; i++) {
         uint32_t x = i % to->feedbackWidth, y = i / to->feedbackWidth;
         int least = SLUICE_MIP_UNTOUCHED;
-        for (uint32_t j = 0; j < from->feedbackWidth * from->feedbackHeight; j++) {
-            uint32_t u = j % from->feedbackWidth, v = j / from->feedbackWidth;
-            if (map[j] < least &&
-                overlap(u, p->feedbackRegionWidth, p->width, x, q->feedbackRegionWidth, q->width) &&
-                overlap(v, p->feedbackRegionHeight, p->height, y, q->feedbackRegionHeight,
-                        q->height))
+        for (uint32_t j = 0; j < from->feedbackWidth * from->feedbackHeight; j++)
+            if (map[j] < least && meeting->x[j % from->feedbackWidth][x] &&
+                meeting->y[j / from->feedbackWidth][y])
                 least = map[j];
-        }
-        int last = (int)q->mipLevelCount - 1;
         int level = least + shift < 0 ? 0 : least + shift > last ? last : least + shift;
         out[i] = least == SLUICE_MIP_UNTOUCHED ? SLUICE_MIP_UNTOUCHED : (uint8_t)level;
     }
@@ -156,6 +175,8 @@ static void regions_match_in_uv_whatever_the_shapes(void **state)
         SluiceTextureId twin = add(&f, q->width, q->height, q->tileWidth, q->tileHeight);
         SluiceStreamedTextureLayout from = fixture_layout(&f, primary);
         SluiceStreamedTextureLayout to = fixture_layout(&f, follower);
+        struct meeting meeting;
+        meet(&from, &to, &meeting);
         uint8_t *map = malloc(from.feedbackWidth * from.feedbackHeight);
         uint8_t *expected = malloc(to.feedbackWidth * to.feedbackHeight);
         assert_true(map && expected);
@@ -164,7 +185,7 @@ static void regions_match_in_uv_whatever_the_shapes(void **state)
                 map[r] = next_random(&random) % 8 ? SLUICE_MIP_UNTOUCHED : next_random(&random) % 5;
             fixture_feed_map(&f, primary, map, t, 2);
             CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, t, 2));
-            expected_map(&from, map, &to, cases[i].shift, expected);
+            expected_map(&from, map, &to, &meeting, cases[i].shift, expected);
             fixture_feed_map(&f, twin, expected, t, 2);
             for (uint32_t tile = 0; tile < to.tileCount; tile++)
                 assert_int_equal(fixture_state(&f, follower, tile), fixture_state(&f, twin, tile));
@@ -218,6 +239,52 @@ static void a_primary_that_never_had_a_map_gives_nothing(void **state)
     CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, 20, 10));
     CHECK_STATE(&f, follower, 0, REQUESTED); /* no map came, so nothing lapsed */
     fixture_close(&f);
+}
+
+static void an_empty_map_of_the_primary_is_a_map(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    SluiceTextureId primary = fixture_add_small(&f), follower = fixture_add_small(&f);
+    fixture_feed(&f, follower, 0, 0, 10);
+    fixture_feed(&f, primary, SLUICE_MIP_UNTOUCHED, 5, 10); /* never sampled anything */
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, 9, 10));
+    CHECK_STATE(&f, follower, 0, REQUESTED);
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, 10, 10));
+    CHECK_STATE(&f, follower, 0, FREE);
+    fixture_close(&f);
+}
+
+static void followers_leave_their_set_one_by_one(void **state)
+{
+    (void)state;
+    for (uint32_t gone = 0; gone < 8; gone++) { /* which of three, as bits */
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        SluiceTextureId primary = fixture_add_small(&f), followers[3];
+        for (uint32_t i = 0; i < 3; i++) {
+            followers[i] = fixture_add_small(&f);
+            CHECK_OK(sluiceSetPrimaryTexture(f.manager, followers[i], primary));
+        }
+        for (uint32_t i = 3; i-- > 0;) {
+            if (gone >> i & 1 && i % 2)
+                CHECK_OK(sluiceRemoveStreamedTexture(f.manager, followers[i], 0));
+            else if (gone >> i & 1)
+                CHECK_OK(sluiceSetPrimaryTexture(f.manager, followers[i], SLUICE_NO_TEXTURE));
+        }
+        fixture_feed(&f, primary, 2, 1, 1);
+        CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+        uint32_t next = 0;
+        assert_true(f.tiles[next++].textureId == primary);
+        for (uint32_t i = 0; i < 3; i++) /* those left, in the order in which they came */
+            if (!(gone >> i & 1))
+                assert_true(f.tiles[next++].textureId == followers[i]);
+        assert_int_equal(f.count, next);
+        CHECK_RESULT(sluiceSetPrimaryTexture(f.manager, primary, fixture_add_small(&f)),
+                     gone == 7 ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT);
+        fixture_close(&f);
+    }
 }
 
 static void a_set_needs_no_call(void **state)
@@ -319,6 +386,8 @@ int main(void)
         cmocka_unit_test(a_follower_can_change_its_primary),
         cmocka_unit_test(chains_and_loops_are_refused),
         cmocka_unit_test(followers_stand_alone_when_their_primary_is_removed),
+        cmocka_unit_test(an_empty_map_of_the_primary_is_a_map),
+        cmocka_unit_test(followers_leave_their_set_one_by_one),
     };
     return RUN_TESTS(tests);
 }

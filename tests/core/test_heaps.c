@@ -75,6 +75,34 @@ static void the_fullest_heap_is_filled_first(void **state)
     fixture_close(&f);
 }
 
+static void large_heaps_are_filled_fullest_first_too(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 10000, false);
+    SluiceStreamedTextureDesc desc = full_chain(128 * 90, 128 * 90, 128, 128);
+    SluiceTextureId big = fixture_add(&f, &desc), others[3]; /* more than one heap */
+    for (uint32_t i = 0; i < 3; i++)
+        others[i] = fixture_add_small(&f);
+    fixture_feed(&f, others[0], 0, 0, 0);
+    fixture_load(&f);
+    fixture_feed(&f, big, 0, 0, 0);
+    fixture_load(&f);
+    fixture_feed(&f, others[1], 0, 0, 0);
+    fixture_load(&f);
+    assert_int_equal(f.heaps.living_count, 2);
+    CHECK_OK(sluiceRemoveStreamedTexture(f.manager, big, 0)); /* 6 tiles stay in each heap */
+    assert_int_equal(fixture_tile(&f, others[0], 0).heapId, 0);
+    assert_int_equal(fixture_tile(&f, others[1], 0).heapId, 1);
+    fixture_feed(&f, others[0], 2, 1, 0); /* the packed one alone: 1 and 6 */
+    CHECK_OK(fixture_to_unmap(&f, others[0], 0));
+    fixture_feed(&f, others[2], 0, 1, 0);
+    CHECK_OK(fixture_to_map(&f, others[2]));
+    for (uint32_t i = 0; i < 6; i++)
+        assert_int_equal(fixture_tile(&f, others[2], i).heapId, 1);
+    fixture_close(&f);
+}
+
 static uint32_t empty_heaps(const struct fixture *f)
 {
     uint32_t count = 99;
@@ -332,6 +360,7 @@ int main(void)
         cmocka_unit_test(nothing_moves_when_no_heap_can_be_emptied),
         cmocka_unit_test(repeated_defragmentation_ends_in_the_fewest_heaps),
         cmocka_unit_test(loads_under_way_do_not_move),
+        cmocka_unit_test(large_heaps_are_filled_fullest_first_too),
     };
     return RUN_TESTS(tests);
 }

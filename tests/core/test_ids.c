@@ -36,6 +36,29 @@ static void indices_are_dense_and_the_lowest_comes_first(void **state)
     fixture_close(&f);
 }
 
+static void indices_stay_dense_whatever_is_removed(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId ids[300] = {0};
+    uint64_t random = 6;
+    for (uint32_t round = 0; round < 3000; round++) {
+        uint32_t lowest = 0, at = next_random(&random) % 300;
+        while (lowest < 300 && ids[lowest])
+            lowest++;
+        if (lowest < 300 && next_random(&random) % 300 > lowest / 2) {
+            SluiceTextureId id = fixture_add_small(&f);
+            assert_int_equal(index_of(id), lowest);
+            ids[lowest] = id;
+        } else if (ids[at]) {
+            remove_texture(&f, ids[at]);
+            ids[at] = 0;
+        }
+    }
+    fixture_close(&f);
+}
+
 static void generations_are_never_used_again(void **state)
 {
     (void)state;
@@ -274,6 +297,42 @@ static void null_arguments_are_refused_and_change_nothing(void **state)
     fixture_close(&f);
 }
 
+static void errors_are_named_in_the_documented_order(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = fixture_add_small(&f), stale = fixture_add_small(&f);
+    remove_texture(&f, stale);
+    fixture_feed(&f, id, 0, 100, 10);
+    CHECK_OK(fixture_to_map(&f, id));
+    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &(uint32_t){0}, 50));
+    const uint8_t map[4] = {0};
+    const SluiceFeedbackDesc none = {NULL, 7, 7, 0, 0}, wrong = {map, 2, 1, 0, 0};
+    const uint32_t beyond[] = {1, 6}, twice[] = {1, 1};
+    SluiceStreamedTextureManager *m = f.manager;
+    CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, stale, &none, 1, 1), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, stale, &wrong, 1, 1),
+                 SLUICE_ERROR_STALE_TEXTURE);
+    CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, id, &wrong, 1, 1), SLUICE_ERROR_SIZE_MISMATCH);
+    CHECK_RESULT(sluiceMatchPrimaryTexture(m, stale, stale, 1, 1), SLUICE_ERROR_STALE_TEXTURE);
+    CHECK_RESULT(sluiceReportFailedTiles(m, stale, 1, NULL, 1), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, beyond, 1), SLUICE_ERROR_UNKNOWN_TILE);
+    CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
+    CHECK_RESULT(sluiceReportFailedTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
+    CHECK_RESULT(sluiceReportCancelledTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
+    CHECK_RESULT(sluiceReportCancelledTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
+    CHECK_RESULT(sluiceRemoveStreamedTexture(m, stale, 1), SLUICE_ERROR_STALE_TEXTURE);
+    SluiceStreamedTextureDesc desc = {.width = 1u << 21, .mipLevelCount = 3, .regularMipCount = 4};
+    SluiceTextureId out;
+    CHECK_RESULT(sluiceAddStreamedTexture(m, &desc, &out), SLUICE_ERROR_ZERO_TILES);
+    desc.height = desc.tileWidth = desc.tileHeight = 1;
+    CHECK_RESULT(sluiceAddStreamedTexture(m, &desc, &out), SLUICE_ERROR_INVALID_PACKED_MIPS);
+    desc.regularMipCount = 3;
+    CHECK_RESULT(sluiceAddStreamedTexture(m, &desc, &out), SLUICE_ERROR_INVALID_ARGUMENT);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +343,8 @@ int main(void)
         cmocka_unit_test(create_infos_are_validated),
         cmocka_unit_test(null_managers_are_refused),
         cmocka_unit_test(null_arguments_are_refused_and_change_nothing),
+        cmocka_unit_test(indices_stay_dense_whatever_is_removed),
+        cmocka_unit_test(errors_are_named_in_the_documented_order),
     };
     return RUN_TESTS(tests);
 }

@@ -181,6 +181,28 @@ static void lapsed_stays_lapsed_with_a_longer_timeout(void **state)
     fixture_close(&f);
 }
 
+static void several_levels_may_lapse_in_one_call(void **state)
+{
+    (void)state;
+    for (uint8_t last = 0; last < 4; last++) { /* what the map that lets them lapse asks for */
+        struct fixture f;
+        fixture_open(&f, 16, false);
+        SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128); /* 16, 4, 1 and packed */
+        SluiceTextureId id = fixture_add(&f, &desc);
+        for (uint8_t level = 0; level < 4; level++)
+            fixture_feed_region(&f, id, 5, level, 100 + level, 10);
+        CHECK_STATE(&f, id, 5, REQUESTED);
+        fixture_feed_region(&f, id, 5, last, 200, 10);
+        static const uint32_t over[] = {5, 16, 20, 21}; /* the region's tile of each level */
+        for (uint8_t level = 0; level < 4; level++)
+            assert_int_equal(fixture_state(&f, id, over[level]),
+                             level >= last ? SLUICE_TILE_STATE_REQUESTED : SLUICE_TILE_STATE_FREE);
+        pass(&f, id, 300, 10);
+        assert_int_equal(fixture_statistics(&f).requestedTileCount, 0);
+        fixture_close(&f);
+    }
+}
+
 static void a_texture_without_maps_keeps_its_wants(void **state)
 {
     (void)state;
@@ -292,6 +314,7 @@ int main(void)
         cmocka_unit_test(lapsed_stays_lapsed_with_a_longer_timeout),
         cmocka_unit_test(a_texture_without_maps_keeps_its_wants),
         cmocka_unit_test(uptime_and_wrap_change_no_decision),
+        cmocka_unit_test(several_levels_may_lapse_in_one_call),
     };
     return RUN_TESTS(tests);
 }

@@ -1,0 +1,60 @@
+#include "vulkan/buffer.h"
+
+static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
+                          enum slc_buffer_kind kind)
+{
+    /* Coherent for all, so that nothing needs to be flushed or invalidated. */
+    const VkMemoryPropertyFlags host =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    switch (kind) {
+    case SLC_BUFFER_DEVICE:
+        return slc_find_memory_type(&caps->memory, type_bits, 0,
+                                    VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    case SLC_BUFFER_UPLOAD: return slc_find_memory_type(&caps->memory, type_bits, host, 0);
+    case SLC_BUFFER_READBACK:
+        return slc_find_memory_type(&caps->memory, type_bits, host,
+                                    VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+    }
+    return UINT32_MAX;
+}
+
+SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
+                             const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
+                             enum slc_buffer_kind kind)
+{
+    *buffer = (struct slc_buffer){.size = size};
+    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                               .size = size,
+                               .usage = usage,
+                               .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+    SluiceResult result = slc_vk_result(
+        vk, vk->CreateBuffer(vk->device, &info, NULL, &buffer->buffer), "vkCreateBuffer");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    VkMemoryRequirements memory;
+    vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = memory.size,
+                                     .memoryTypeIndex =
+                                         find_type(caps, memory.memoryTypeBits, kind)};
+    VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (allocate.memoryTypeIndex != UINT32_MAX)
+        status = vk->AllocateMemory(vk->device, &allocate, NULL, &buffer->memory);
+    if (status == VK_SUCCESS)
+        status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory, 0);
+    if (status == VK_SUCCESS && kind != SLC_BUFFER_DEVICE)
+        status = vk->MapMemory(vk->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped);
+    result = slc_vk_result(vk, status, "memory of a buffer");
+    if (result != SLUICE_SUCCESS)
+        slc_buffer_finish(buffer, vk);
+    return result;
+}
+
+void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk)
+{
+    if (!buffer->buffer && !buffer->memory)
+        return; /* also where nothing was loaded yet */
+    vk->DestroyBuffer(vk->device, buffer->buffer, NULL);
+    vk->FreeMemory(vk->device, buffer->memory, NULL);
+    *buffer = (struct slc_buffer){0};
+}

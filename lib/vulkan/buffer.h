@@ -1,0 +1,26 @@
+/** A buffer with memory of its own. */
+#ifndef SLC_VULKAN_BUFFER_H
+#define SLC_VULKAN_BUFFER_H
+
+#include "vulkan/caps.h"
+
+enum slc_buffer_kind {
+    SLC_BUFFER_DEVICE,   ///< the GPU's own
+    SLC_BUFFER_UPLOAD,   ///< written by the host, mapped, coherent
+    SLC_BUFFER_READBACK, ///< read by the host, mapped, cached where there is such memory
+};
+
+struct slc_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    uint64_t size;
+    void *mapped; ///< NULL for DEVICE
+};
+
+/** A zeroed buffer is finished with nothing to do. Errors: OUT_OF_DEVICE_MEMORY, VULKAN, ... */
+SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
+                             const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
+                             enum slc_buffer_kind kind);
+void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk);
+
+#endif /* SLC_VULKAN_BUFFER_H */

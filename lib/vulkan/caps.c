@@ -1,0 +1,114 @@
+#include "vulkan/caps.h"
+
+#include "base/log.h"
+
+#include <string.h>
+
+#define MAX_QUEUE_FAMILIES 32u
+
+/* A family of its own overlaps with drawing; the drawing family makes binds wait for frames. */
+static bool find_sparse_family(const struct slc_vk *vk, uint32_t *family)
+{
+    VkQueueFamilyProperties families[MAX_QUEUE_FAMILIES];
+    uint32_t count = MAX_QUEUE_FAMILIES;
+    vk->GetPhysicalDeviceQueueFamilyProperties(vk->physical_device, &count, families);
+    int best = -1;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(families[i].queueFlags & VK_QUEUE_SPARSE_BINDING_BIT))
+            continue;
+        int score = !(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT);
+        score += !(families[i].queueFlags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT));
+        if (score > best) {
+            best = score;
+            *family = i;
+        }
+    }
+    return best >= 0;
+}
+
+void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
+{
+    *caps = (struct slc_caps){0};
+    VkPhysicalDeviceVulkan12Features features12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &features12};
+    VkPhysicalDeviceProperties2 properties = {.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    vk->GetPhysicalDeviceFeatures2(vk->physical_device, &features);
+    vk->GetPhysicalDeviceProperties2(vk->physical_device, &properties);
+    vk->GetPhysicalDeviceMemoryProperties(vk->physical_device, &caps->memory);
+    const VkPhysicalDeviceProperties *p = &properties.properties;
+    SluiceVulkanDeviceCapabilities *out = &caps->public;
+    out->shaderResourceResidency = features.features.shaderResourceResidency;
+    out->shaderResourceMinLod = features.features.shaderResourceMinLod;
+    out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
+    out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
+    memcpy(out->deviceName, p->deviceName, sizeof out->deviceName);
+    bool vulkan12 = p->apiVersion >= VK_API_VERSION_1_2;
+    caps->timeline_semaphore = vulkan12 && features12.timelineSemaphore;
+    out->sparse = vulkan12 && features.features.sparseBinding &&
+                  features.features.sparseResidencyImage2D &&
+                  find_sparse_family(vk, &out->sparseQueueFamilyIndex);
+}
+
+uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,
+                              VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        VkMemoryPropertyFlags wanted = required | (pass == 0 ? preferred : 0);
+        for (uint32_t i = 0; i < memory->memoryTypeCount; i++)
+            if (type_bits >> i & 1 && (memory->memoryTypes[i].propertyFlags & wanted) == wanted)
+                return i;
+    }
+    return UINT32_MAX;
+}
+
+SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
+                                               PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
+                                               SluiceVulkanDeviceCapabilities *pCapabilities)
+{
+    if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pCapabilities)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_vk vk;
+    SluiceResult result =
+        slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_caps caps;
+    slc_caps_init(&caps, &vk);
+    *pCapabilities = caps.public;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,
+                                         PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
+                                         const SluiceLogCallback *pLog,
+                                         VkPhysicalDeviceFeatures *pFeatures,
+                                         VkPhysicalDeviceVulkan12Features *pVulkan12)
+{
+    if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pFeatures || !pVulkan12)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_vk vk;
+    SluiceResult result =
+        slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_caps caps;
+    slc_caps_init(&caps, &vk);
+    VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
+    const char *missing = !caps.timeline_semaphore ? "timeline semaphores (Vulkan 1.2)"
+                          : !caps.public.sparse    ? "sparse residency of 2D images"
+                          : !there.features.fragmentStoresAndAtomics ? "fragmentStoresAndAtomics"
+                                                                     : NULL;
+    if (missing) {
+        slc_log(pLog, SLUICE_LOG_ERROR, "%s has no %s", caps.public.deviceName, missing);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    pFeatures->sparseBinding = VK_TRUE;
+    pFeatures->sparseResidencyImage2D = VK_TRUE;
+    pFeatures->fragmentStoresAndAtomics = VK_TRUE;
+    pVulkan12->timelineSemaphore = VK_TRUE;
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,49 @@
+/** The device's functions, loaded through the application's vkGetInstanceProcAddr; no globals. */
+#ifndef SLC_VULKAN_DISPATCH_H
+#define SLC_VULKAN_DISPATCH_H
+
+#include <sluice/vulkan.h>
+
+/* clang-format off */
+#define SLC_VK_INSTANCE_FUNCTIONS(X)                                                               \
+    X(GetDeviceProcAddr) X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceImageFormatProperties)   \
+    X(GetPhysicalDeviceMemoryProperties) X(GetPhysicalDeviceProperties2)                           \
+    X(GetPhysicalDeviceQueueFamilyProperties) X(GetPhysicalDeviceSparseImageFormatProperties)
+
+#define SLC_VK_DEVICE_FUNCTIONS(X)                                                                 \
+    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(CmdBindDescriptorSets)       \
+    X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch) X(CmdFillBuffer)    \
+    X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
+    X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
+    X(CreateImageView) X(CreatePipelineLayout) X(CreateSemaphore) X(CreateShaderModule)            \
+    X(DestroyBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
+    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySemaphore)            \
+    X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
+    X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
+    X(InvalidateMappedMemoryRanges) X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \
+    X(WaitSemaphores)
+/* clang-format on */
+
+struct slc_vk {
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+#define SLC_VK_MEMBER(name) PFN_vk##name name;
+    SLC_VK_INSTANCE_FUNCTIONS(SLC_VK_MEMBER)
+    SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
+#undef SLC_VK_MEMBER
+    SluiceLogCallback log;
+};
+
+/** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */
+SluiceResult slc_vk_init_instance(struct slc_vk *vk, VkInstance instance,
+                                  VkPhysicalDevice physical_device, PFN_vkGetInstanceProcAddr get,
+                                  const SluiceLogCallback *log);
+
+/** The rest, after slc_vk_init_instance. */
+SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device);
+
+/** What a VkResult means here; logs `what` and the code unless it is success. */
+SluiceResult slc_vk_result(const struct slc_vk *vk, VkResult result, const char *what);
+
+#endif /* SLC_VULKAN_DISPATCH_H */

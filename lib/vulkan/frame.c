@@ -1,0 +1,185 @@
+/* The frame loop. The order of the steps is explained in docs/frame-loop.md. */
+#include "vulkan/streamer.h"
+
+#include "base/log.h"
+
+#define MAX_BARRIERS 64u
+
+static SluiceResult poll_frames(SluiceVulkanStreamer *s)
+{
+    uint64_t value = 0;
+    SluiceResult result =
+        slc_vk_result(&s->vk, s->vk.GetSemaphoreCounterValue(s->vk.device, s->semaphore, &value),
+                      "vkGetSemaphoreCounterValue");
+    if (result == SLUICE_SUCCESS && value > s->completed_frame)
+        s->completed_frame = value;
+    return result;
+}
+
+/* What the GPU has finished: slots, images and staging memory come back. */
+static SluiceResult retire(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = s->residency->interface->update(s->residency, s->completed_frame);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_loads_recycle(s);
+    uint64_t limit = s->residency->interface->retire_limit(s->residency, s->completed_frame);
+    limit = slc_textures_retire(s, limit);
+    if (limit < s->retired)
+        return SLUICE_SUCCESS;
+    s->retired = limit;
+    return slc_streamer_check(s, sluiceCompleteRetireValue(s->manager, limit),
+                              "sluiceCompleteRetireValue");
+}
+
+/* Tiles leave the MinMip maps with this frame, and their page tables when older frames are over. */
+static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
+{
+    for (;;) {
+        uint32_t room = s->residency->interface->room_to_unmap(s->residency);
+        uint32_t count = room < s->info.tilesPerFrame ? room : s->info.tilesPerFrame;
+        if (count == 0)
+            return SLUICE_SUCCESS;
+        uint32_t asked = count;
+        SluiceResult result =
+            sluiceGetTilesToUnmap(s->manager, SLUICE_ALL_TEXTURES, s->frame, &count, s->tiles);
+        if (result < 0)
+            return slc_streamer_check(s, result, "sluiceGetTilesToUnmap");
+        for (uint32_t i = 0; i < count; i++)
+            s->residency->interface->unmap(s->residency,
+                                           s->by_manager_index[(uint32_t)s->tiles[i].textureId],
+                                           &s->tiles[i], s->frame);
+        s->counts.tilesUnmapped += count;
+        if (count < asked)
+            return SLUICE_SUCCESS;
+    }
+}
+
+static SluiceResult bind(SluiceVulkanStreamer *s)
+{
+    slc_loads_bind(s);
+    uint64_t value;
+    SluiceResult result = s->residency->interface->submit(s->residency, &value);
+    if (result == SLUICE_SUCCESS)
+        slc_loads_bound(s, value);
+    return result;
+}
+
+static SluiceResult decide(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = retire(s);
+    if (result >= 0)
+        result = slc_loads_collect(s);
+    if (result >= 0)
+        result = slc_feedback_read(s);
+    if (result >= 0)
+        result = slc_loads_cancel(s);
+    if (result >= 0)
+        result = unmap_tiles(s);
+    if (result >= 0)
+        result = bind(s);
+    if (result >= 0)
+        result = slc_loads_start(s);
+    return result;
+}
+
+/* Shaders of earlier frames before the copies; new images into the layout in which they stay. */
+static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    VkImageMemoryBarrier images[MAX_BARRIERS];
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask =
+                                  VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                              .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT};
+    uint32_t done = 0;
+    do {
+        uint32_t count = 0;
+        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++)
+            images[count] = (VkImageMemoryBarrier){
+                .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_READ_BIT,
+                .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                .image = s->textures[s->new_textures[done]].image.image,
+                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1}};
+        s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                                 VK_PIPELINE_STAGE_TRANSFER_BIT |
+                                     VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                                 0, 1, &memory, 0, NULL, count, images);
+    } while (done < s->new_texture_count);
+}
+
+static void barrier_after(SluiceVulkanStreamer *s, VkCommandBuffer commands,
+                          VkPipelineStageFlags stages, VkAccessFlags accesses)
+{
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                              .dstAccessMask = accesses};
+    s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, stages, 0, 1, &memory, 0,
+                             NULL, 0, NULL);
+}
+
+static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE, SLUICE_MIP_UNTOUCHED);
+    s->vk.CmdFillBuffer(commands, s->min_mip.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
+    s->vk.CmdFillBuffer(commands, s->texture_table.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+}
+
+static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    barrier_before(s, commands);
+    if (!s->buffers_cleared)
+        clear_buffers(s, commands);
+    slc_textures_record_new(s, commands);
+    s->buffers_cleared = true;
+    SluiceResult result = slc_tile_uploads_record(s, commands);
+    if (result >= 0)
+        result = slc_min_mip_record(s, commands); /* after the texels that it shows */
+    barrier_after(s, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                  VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    return result;
+}
+
+SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
+                                       VkCommandBuffer commandBuffer, uint64_t timeStamp,
+                                       SluiceStreamingFrame *pFrame)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !commandBuffer || !pFrame)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (s->frame && timeStamp - s->time_stamp > UINT64_MAX / 2)
+        return SLUICE_ERROR_TIME_BACKWARDS;
+    SluiceResult result = poll_frames(s);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (s->frame - s->completed_frame >= s->info.framesInFlight)
+        return SLUICE_NOT_READY;
+    s->frame++;
+    s->time_stamp = timeStamp;
+    *pFrame = (SluiceStreamingFrame){s->frame, s->semaphore, s->frame};
+    result = decide(s);
+    if (result >= 0)
+        result = record(s, commandBuffer);
+    return result < 0 ? result : SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBuffer commandBuffer)
+{
+    if (!streamer || !commandBuffer)
+        return SLUICE_ERROR_NULL_POINTER;
+    slc_feedback_record(streamer, commandBuffer);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
+                                const char *what)
+{
+    if (result < 0)
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s refused with %s", what,
+                sluiceResultString(result));
+    return result;
+}

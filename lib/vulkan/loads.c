@@ -1,0 +1,469 @@
+/*
+ * From tiles that the manager wants to texels in staging slots, and on to the residency.
+ *
+ * A tile is bound when its texels have arrived, not when its load begins: a load that fails or is
+ * cancelled then never touches a page table (docs/decisions/bind-on-arrival.md).
+ */
+#include "vulkan/streamer.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define BATCH 64u
+
+void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit)
+{
+    s->units[unit].next = SLC_NONE;
+    if (list->first == SLC_NONE)
+        list->first = unit;
+    else
+        s->units[list->last].next = unit;
+    list->last = unit;
+}
+
+uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list)
+{
+    uint32_t unit = list->first;
+    if (unit != SLC_NONE)
+        list->first = s->units[unit].next;
+    return unit;
+}
+
+static uint32_t unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
+{
+    uint32_t unit = slc_unit_list_pop(s, &s->free_units);
+    assert(unit != SLC_NONE && s->units[unit].state == SLC_UNIT_FREE);
+    s->free_unit_count--;
+    s->units[unit] = (struct slc_unit){.texture = texture, .packed_unit = packed_unit};
+    s->textures[texture].unit_count++;
+    return unit;
+}
+
+void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit)
+{
+    s->textures[s->units[unit].texture].unit_count--;
+    s->units[unit].state = SLC_UNIT_FREE;
+    s->free_unit_count++;
+    slc_unit_list_append(s, &s->free_units, unit);
+}
+
+SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
+{
+    uint32_t count = s->info.maxLoadsInFlight;
+    s->units = slc_calloc(&s->cb, count, sizeof *s->units);
+    if (!s->units)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    const struct slc_unit_list empty = {SLC_NONE, SLC_NONE};
+    s->free_units = s->arrived = s->binding = s->uploaded = empty;
+    for (uint32_t i = 0; i < count; i++)
+        slc_unit_list_append(s, &s->free_units, i);
+    s->free_unit_count = count;
+    SluiceResult result = slc_tile_map_init(&s->tile_units, &s->cb, count);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_buffer_init(&s->staging, &s->vk, &s->caps, (uint64_t)count * SLC_TILE_SIZE,
+                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
+                                         .requestCapacity = count,
+                                         .pAllocator = s->info.pAllocator};
+    return sluiceCreateTileLoader(&loader, &s->loader);
+}
+
+void slc_loads_finish(SluiceVulkanStreamer *s)
+{
+    sluiceDestroyTileLoader(s->loader); /* first: its threads write into the staging slots */
+    slc_buffer_finish(&s->staging, &s->vk);
+    slc_tile_map_finish(&s->tile_units, &s->cb);
+    slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);
+}
+
+static uint8_t *unit_memory(SluiceVulkanStreamer *s, uint32_t unit)
+{
+    return (uint8_t *)s->staging.mapped + (size_t)unit * SLC_TILE_SIZE;
+}
+
+static SluiceImageRegion tile_region(const struct slc_texture *texture, const SluiceTile *tile)
+{
+    const SluiceStreamedTextureDesc *desc = &texture->image.desc;
+    uint32_t x = tile->x * desc->tileWidth, y = tile->y * desc->tileHeight;
+    return (SluiceImageRegion){
+        tile->mipLevel, x, y,
+        slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - x),
+        slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - y)};
+}
+
+/* Gives a unit to the loader; also again, for a source that was not ready. */
+static SluiceResult submit_unit(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_unit *unit = &s->units[index];
+    struct slc_texture *texture = &s->textures[unit->texture];
+    SluiceImageRegion regions[SLUICE_MAX_READ_REGIONS];
+    void *texels[SLUICE_MAX_READ_REGIONS];
+    SluiceTileRead read = {.source = texture->source,
+                           .regionCount = 1,
+                           .pRegions = regions,
+                           .ppTexels = texels,
+                           .userValue = index};
+    if (unit->packed_unit == SLC_NONE) {
+        regions[0] = tile_region(texture, &unit->tile);
+        texels[0] = unit_memory(s, index);
+        read.priority = unit->tile.mipLevel; /* coarse first */
+    } else {
+        const struct slc_packed_unit *packed = &texture->packed.units[unit->packed_unit];
+        assert(packed->rect_count <= SLUICE_MAX_READ_REGIONS);
+        read.regionCount = packed->rect_count;
+        read.priority = SLUICE_MAX_MIP_LEVELS;
+        for (uint32_t i = 0; i < packed->rect_count; i++) {
+            regions[i] = texture->packed.rects[packed->first_rect + i].region;
+            texels[i] =
+                unit_memory(s, index) + texture->packed.rects[packed->first_rect + i].offset;
+        }
+    }
+    unit->state = SLC_UNIT_READING;
+    return sluiceSubmitTileRead(s->loader, &read, &unit->ticket);
+}
+
+static void packed_restart(struct slc_texture *texture)
+{
+    texture->packed_state = SLC_PACKED_COLLECTING;
+    texture->packed_done = 0;
+    texture->packed_failed = false;
+    texture->packed_first_unit = SLC_NONE;
+}
+
+static void log_failure(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                        const struct slc_unit *unit, SluiceResult result)
+{
+    const char *name = texture->info.pName ? texture->info.pName : "image";
+    if (unit->packed_unit != SLC_NONE)
+        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: packed levels cannot be read: %s", name,
+                sluiceResultString(result));
+    else
+        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: level %u, tile (%u, %u) cannot be read: %s",
+                name, unit->tile.mipLevel, unit->tile.x, unit->tile.y, sluiceResultString(result));
+}
+
+/* All units are back and one of them failed: nothing was bound, the manager tries again later. */
+static SluiceResult packed_fail(SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    while (texture->packed_first_unit != SLC_NONE) {
+        uint32_t unit = texture->packed_first_unit;
+        texture->packed_first_unit = s->units[unit].next;
+        slc_unit_free(s, unit);
+    }
+    uint32_t count = texture->layout.desc.packedTileCount;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
+        result = sluiceReportFailedTiles(s->manager, texture->id, 1,
+                                         &texture->packed_tiles[i].tileIndex, s->manager_time);
+    s->counts.tilesFailed += count;
+    packed_restart(texture);
+    return slc_streamer_check(s, result, "sluiceReportFailedTiles");
+}
+
+static SluiceResult packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    struct slc_texture *texture = &s->textures[unit->texture];
+    if (answer != SLUICE_SUCCESS) {
+        log_failure(s, texture, unit, answer);
+        texture->packed_failed = true;
+    }
+    unit->state = SLC_UNIT_ARRIVED;
+    unit->next = texture->packed_first_unit;
+    texture->packed_first_unit = index;
+    if (++texture->packed_done < texture->packed.unit_count)
+        return SLUICE_SUCCESS;
+    if (texture->packed_failed)
+        return packed_fail(s, texture);
+    texture->packed_state = SLC_PACKED_MAPPING;
+    texture->packed_done = 0;
+    s->packed_queue[s->packed_queue_count++] = unit->texture;
+    return SLUICE_SUCCESS;
+}
+
+static void forget_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit)
+{
+    slc_tile_map_remove(&s->tile_units, slc_tile_key(unit->texture, unit->tile.tileIndex));
+}
+
+static SluiceResult tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    struct slc_texture *texture = &s->textures[unit->texture];
+    SluiceResult result;
+    if (unit->cancelled) {
+        result = sluiceReportCancelledTiles(s->manager, texture->id, 1, &unit->tile.tileIndex, 0);
+        slc_streamer_check(s, result, "sluiceReportCancelledTiles");
+        s->counts.tilesCancelled++;
+    } else if (answer != SLUICE_SUCCESS) {
+        log_failure(s, texture, unit, answer);
+        result = sluiceReportFailedTiles(s->manager, texture->id, 1, &unit->tile.tileIndex,
+                                         s->manager_time);
+        slc_streamer_check(s, result, "sluiceReportFailedTiles");
+        s->counts.tilesFailed++;
+    } else {
+        unit->state = SLC_UNIT_ARRIVED;
+        slc_unit_list_append(s, &s->arrived, index);
+        return SLUICE_SUCCESS;
+    }
+    forget_tile(s, unit);
+    slc_unit_free(s, index);
+    return result;
+}
+
+static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResult *read)
+{
+    uint32_t index = (uint32_t)read->userValue;
+    struct slc_unit *unit = &s->units[index];
+    assert(unit->state == SLC_UNIT_READING);
+    s->counts.bytesRead += read->size;
+    if (s->textures[unit->texture].state == SLC_TEXTURE_REMOVED) {
+        slc_unit_free(s, index);
+        return SLUICE_SUCCESS;
+    }
+    SluiceResult answer = read->result;
+    if (answer == SLUICE_NOT_READY && !unit->cancelled) {
+        answer = submit_unit(s, index);
+        if (answer == SLUICE_SUCCESS)
+            return SLUICE_SUCCESS;
+    }
+    return unit->packed_unit != SLC_NONE ? packed_unit_back(s, index, answer)
+                                         : tile_back(s, index, answer);
+}
+
+SluiceResult slc_loads_collect(SluiceVulkanStreamer *s)
+{
+    SluiceTileReadResult reads[BATCH];
+    /* A source that is never ready is asked again at once; without a limit that would not end. */
+    for (uint32_t left = s->info.maxLoadsInFlight; left > 0;) {
+        uint32_t count = slc_min_u32(BATCH, left);
+        SluiceResult result = sluiceCollectTileReads(s->loader, &count, reads);
+        if (result < 0)
+            return result;
+        for (uint32_t i = 0; i < count; i++) {
+            result = unit_back(s, &reads[i]);
+            if (result < 0)
+                return result;
+        }
+        if (count == 0)
+            break;
+        left -= count;
+    }
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
+{
+    SluiceTile tiles[BATCH];
+    for (;;) {
+        uint32_t count = BATCH;
+        SluiceResult result =
+            sluiceGetTilesToCancel(s->manager, SLUICE_ALL_TEXTURES, &count, tiles);
+        if (result < 0)
+            return slc_streamer_check(s, result, "sluiceGetTilesToCancel");
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t texture = s->by_manager_index[(uint32_t)tiles[i].textureId];
+            uint32_t unit =
+                slc_tile_map_get(&s->tile_units, slc_tile_key(texture, tiles[i].tileIndex));
+            /* What has arrived goes on to standby: its read is paid for already. */
+            if (unit == SLC_TILE_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
+                continue;
+            s->units[unit].cancelled = true;
+            sluiceCancelTileRead(s->loader, s->units[unit].ticket);
+        }
+        if (count < BATCH)
+            return SLUICE_SUCCESS;
+    }
+}
+
+static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    uint32_t unit = unit_take(s, texture, SLC_NONE);
+    s->units[unit].tile = *tile;
+    slc_tile_map_add(&s->tile_units, slc_tile_key(texture, tile->tileIndex), unit);
+    SluiceResult result = submit_unit(s, unit);
+    return result == SLUICE_SUCCESS ? result : tile_back(s, unit, result);
+}
+
+static void collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index, const SluiceTile *tile)
+{
+    struct slc_texture *texture = &s->textures[index];
+    assert(texture->packed_state == SLC_PACKED_COLLECTING);
+    texture->packed_tiles[tile->x] = *tile;
+    if (++texture->packed_done == texture->layout.desc.packedTileCount) {
+        texture->packed_state = SLC_PACKED_READY;
+        s->packed_queue[s->packed_queue_count++] = index;
+    }
+}
+
+static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    uint32_t count = texture->packed.unit_count;
+    texture->packed_state = SLC_PACKED_READING;
+    texture->packed_done = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t unit = unit_take(s, index, i);
+        SluiceResult result = submit_unit(s, unit);
+        if (result != SLUICE_SUCCESS)
+            result = packed_unit_back(s, unit, result);
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
+static void packed_queue_remove(SluiceVulkanStreamer *s, uint32_t at)
+{
+    s->packed_queue_count--;
+    memmove(&s->packed_queue[at], &s->packed_queue[at + 1],
+            (s->packed_queue_count - at) * sizeof *s->packed_queue);
+}
+
+/* True if one waits for staging slots: then tiles must not take them away. */
+static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
+{
+    *waits = false;
+    for (uint32_t i = 0; i < s->packed_queue_count;) {
+        uint32_t index = s->packed_queue[i];
+        struct slc_texture *texture = &s->textures[index];
+        if (texture->packed_state != SLC_PACKED_READY) {
+            i++;
+            continue;
+        }
+        if (texture->packed.unit_count > s->free_unit_count) {
+            *waits = true;
+            return SLUICE_SUCCESS;
+        }
+        packed_queue_remove(s, i);
+        SluiceResult result = start_packed(s, index);
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
+{
+    bool waits;
+    SluiceResult result = start_packed_queue(s, &waits);
+    uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
+    if (result < 0 || waits || count == 0)
+        return result;
+    result = sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &count, s->tiles);
+    if (result < 0)
+        return slc_streamer_check(s, result, "sluiceGetTilesToMap");
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
+        result = SLUICE_SUCCESS;
+        if (s->tiles[i].tileIndex >= s->textures[index].layout.regularTileCount)
+            collect_packed_tile(s, index, &s->tiles[i]);
+        else
+            result = start_tile(s, index, &s->tiles[i]);
+        if (result < 0)
+            return result;
+    }
+    return start_packed_queue(s, &waits);
+}
+
+/* Gives what the residency has room for; the units move on when the batch has its number. */
+static void bind_packed(SluiceVulkanStreamer *s)
+{
+    for (uint32_t i = 0; i < s->packed_queue_count; i++) {
+        uint32_t index = s->packed_queue[i];
+        struct slc_texture *texture = &s->textures[index];
+        uint32_t count = texture->layout.desc.packedTileCount;
+        if (texture->packed_state != SLC_PACKED_MAPPING)
+            continue;
+        while (texture->packed_done < count &&
+               s->residency->interface->map(s->residency, index,
+                                            &texture->packed_tiles[texture->packed_done]) ==
+                   SLUICE_SUCCESS)
+            texture->packed_done++;
+    }
+}
+
+void slc_loads_bind(SluiceVulkanStreamer *s)
+{
+    bind_packed(s);
+    struct slc_unit_list later = {SLC_NONE, SLC_NONE};
+    struct slc_unit_list bound = {SLC_NONE, SLC_NONE};
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->arrived)) != SLC_NONE;) {
+        struct slc_unit *u = &s->units[unit];
+        if (s->textures[u->texture].state == SLC_TEXTURE_REMOVED)
+            slc_unit_free(s, unit);
+        else if (s->residency->interface->map(s->residency, u->texture, &u->tile) == SLUICE_SUCCESS)
+            slc_unit_list_append(s, &bound, unit);
+        else
+            slc_unit_list_append(s, &later, unit);
+    }
+    s->arrived = later;
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &bound)) != SLC_NONE;) {
+        s->units[unit].state = SLC_UNIT_BINDING;
+        s->units[unit].value = UINT64_MAX;
+        slc_unit_list_append(s, &s->binding, unit);
+    }
+}
+
+void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value)
+{
+    for (uint32_t i = 0; i < s->packed_queue_count;) {
+        struct slc_texture *texture = &s->textures[s->packed_queue[i]];
+        if (texture->packed_state != SLC_PACKED_MAPPING ||
+            texture->packed_done < texture->layout.desc.packedTileCount) {
+            i++;
+            continue;
+        }
+        while (texture->packed_first_unit != SLC_NONE) {
+            uint32_t unit = texture->packed_first_unit;
+            texture->packed_first_unit = s->units[unit].next;
+            s->units[unit].state = SLC_UNIT_BINDING;
+            s->units[unit].value = UINT64_MAX;
+            slc_unit_list_append(s, &s->binding, unit);
+        }
+        texture->packed_state = SLC_PACKED_UPLOADING;
+        texture->packed_done = 0;
+        packed_queue_remove(s, i);
+    }
+    for (uint32_t unit = s->binding.first; unit != SLC_NONE; unit = s->units[unit].next)
+        if (s->units[unit].value == UINT64_MAX)
+            s->units[unit].value = value;
+}
+
+void slc_loads_recycle(SluiceVulkanStreamer *s)
+{
+    while (s->uploaded.first != SLC_NONE && s->units[s->uploaded.first].value <= s->completed_frame)
+        slc_unit_free(s, slc_unit_list_pop(s, &s->uploaded));
+}
+
+void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    for (uint32_t i = 0; i < s->packed_queue_count;) {
+        if (s->packed_queue[i] == index)
+            packed_queue_remove(s, i);
+        else
+            i++;
+    }
+    while (texture->packed_first_unit != SLC_NONE) {
+        uint32_t unit = texture->packed_first_unit;
+        texture->packed_first_unit = s->units[unit].next;
+        slc_unit_free(s, unit);
+    }
+    for (uint32_t i = 0; i < s->info.maxLoadsInFlight; i++) {
+        struct slc_unit *unit = &s->units[i];
+        if (unit->state == SLC_UNIT_FREE || unit->texture != index)
+            continue;
+        if (unit->packed_unit == SLC_NONE && unit->state != SLC_UNIT_UPLOADED)
+            forget_tile(s, unit);
+        if (unit->state == SLC_UNIT_READING)
+            sluiceCancelTileRead(s->loader, unit->ticket);
+    }
+}

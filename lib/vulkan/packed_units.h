@@ -1,0 +1,38 @@
+/**
+ * How the packed levels of a texture travel: cut into rectangles that fit into staging slots.
+ *
+ * A unit is what one slot holds and one read fills: several small levels, or a piece of a large
+ * one.
+ */
+#ifndef SLC_VULKAN_PACKED_UNITS_H
+#define SLC_VULKAN_PACKED_UNITS_H
+
+#include <sluice/loader.h>
+#include <sluice/manager.h>
+
+/** Rectangles begin at multiples of this in their slot: a multiple of every texel size and of 4. */
+#define SLC_STAGING_ALIGNMENT 16u
+
+struct slc_packed_rect {
+    SluiceImageRegion region;
+    uint32_t offset; ///< bytes in its slot
+};
+
+struct slc_packed_unit {
+    uint32_t first_rect, rect_count;
+};
+
+struct slc_packed_units {
+    struct slc_packed_rect *rects; ///< owned
+    struct slc_packed_unit *units; ///< owned
+    uint32_t rect_count, unit_count;
+};
+
+/** Of the levels [regularMipCount, mipLevelCount). */
+SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
+                                   const SluiceAllocationCallbacks *cb,
+                                   const SluiceStreamedTextureDesc *desc, uint32_t texel_size,
+                                   uint32_t slot_size);
+void slc_packed_units_finish(struct slc_packed_units *packed, const SluiceAllocationCallbacks *cb);
+
+#endif /* SLC_VULKAN_PACKED_UNITS_H */

@@ -1,0 +1,92 @@
+/**
+ * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
+ * sparse binding). The streamer decides nothing about memory and an implementation nothing about
+ * tiles.
+ *
+ * The protocol of a frame:
+ *
+ *     update            polls; from here on completed_value and retire_limit are of this frame
+ *     unmap, map        collect changes
+ *     submit            makes all of them happen; they are over once completed_value reaches *value
+ *     record_uploads    into images whose maps are over
+ */
+#ifndef SLC_VULKAN_RESIDENCY_H
+#define SLC_VULKAN_RESIDENCY_H
+
+#include "vulkan/caps.h"
+
+struct slc_residency;
+
+/** The image of one streamed texture. */
+struct slc_residency_image {
+    VkImage image;
+    SluiceStreamedTextureDesc desc;
+    bool uneven; ///< some level's size is not twice the next one's
+};
+
+struct slc_residency_interface {
+    /** Nothing of it is in use on the GPU. */
+    void (*destroy)(struct slc_residency *residency);
+
+    /** `index` is the streamer's; it names the image in the other calls. Logs what it refuses. */
+    SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
+                                 const SluiceImageInfo *info, struct slc_residency_image *image);
+    /** No frame that uses it is incomplete and image_is_idle. */
+    void (*destroy_image)(struct slc_residency *residency, uint32_t index);
+    /** True when no change of it is pending or under way. */
+    bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
+
+    /** As SluiceHeapAllocator. */
+    SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
+                                  uint32_t *heap_id);
+    void (*release_heap)(struct slc_residency *residency, uint32_t heap_id);
+
+    /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
+    SluiceResult (*update)(struct slc_residency *residency, uint64_t completed_frame);
+    /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
+     *  place is not over. Ask again in the next frame. */
+    SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+    /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
+     * times. */
+    void (*unmap)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
+                  uint64_t frame);
+    /** How many unmaps may be collected. */
+    uint32_t (*room_to_unmap)(const struct slc_residency *residency);
+    /** All that was collected goes to the GPU; `*value` names it. */
+    SluiceResult (*submit)(struct slc_residency *residency, uint64_t *value);
+    /** Until everything submitted is over. For tests and shutdown. */
+    SluiceResult (*wait)(struct slc_residency *residency);
+    uint64_t (*completed_value)(const struct slc_residency *residency);
+    /** The largest frame such that all unmaps of it and of earlier ones are over. */
+    uint64_t (*retire_limit)(const struct slc_residency *residency, uint64_t completed_frame);
+
+    /** One image's texels from `buffer`; the streamer puts barriers around. */
+    void (*record_uploads)(struct slc_residency *residency, uint32_t index,
+                           VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
+                           const VkBufferImageCopy *regions);
+};
+
+/** What is counted for the public statistics. */
+struct slc_residency_counters {
+    uint64_t bind_calls, bind_runs, device_memory_size;
+};
+
+/** The first member of every implementation's own struct. */
+struct slc_residency {
+    const struct slc_residency_interface *interface;
+    struct slc_residency_counters counters;
+};
+
+struct slc_residency_create_info {
+    const struct slc_vk *vk; ///< outlives the residency, as what follows
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    VkQueue sparse_queue;
+    uint32_t max_image_count;
+    uint32_t max_changes; ///< maps and unmaps per frame
+};
+
+SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
+                                         struct slc_residency **residency);
+
+#endif /* SLC_VULKAN_RESIDENCY_H */

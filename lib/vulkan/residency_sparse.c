@@ -1,0 +1,440 @@
+/*
+ * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a
+ * timeline semaphore that is only ever polled.
+ */
+#include "vulkan/residency.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "vulkan/bind_list.h"
+#include "vulkan/device_heap.h"
+#include "vulkan/sparse_image.h"
+#include "vulkan/tile_map.h"
+
+#include <assert.h>
+
+/* Batches that may be under way; more would only queue up behind a slow binding queue. */
+#define MAX_BATCHES 16u
+
+/* A tile whose binding is to be dropped when the last frame that may read it is over. */
+struct pending_unmap {
+    uint64_t frame; ///< the first one that does not read it
+    uint64_t key;   ///< in pending_tiles
+    uint32_t index;
+    struct slc_tile_place place;
+};
+
+struct batch {
+    uint64_t value;
+    uint64_t first_frame; ///< of its unmaps; UINT64_MAX: none
+};
+
+struct sparse_residency {
+    struct slc_residency base; ///< must be first
+    const struct slc_vk *vk;
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    VkQueue queue;
+    VkSemaphore semaphore;
+    uint32_t memory_type;
+    uint32_t max_image_count, max_changes;
+    struct slc_device_heaps heaps;
+    struct slc_sparse_image *images; ///< owned
+
+    struct pending_unmap *pending; ///< owned ring, oldest first, frames never decrease
+    uint32_t pending_first, pending_count, pending_capacity;
+    struct slc_tile_map pending_tiles;
+
+    struct slc_bind_list list;
+    uint64_t list_first_frame;           ///< of the unmaps in the list
+    VkSparseImageMemoryBind *tile_binds; ///< owned, as the next ones
+    VkSparseMemoryBind *page_binds;
+    VkSparseImageMemoryBindInfo *tile_infos;
+    VkSparseImageOpaqueMemoryBindInfo *page_infos;
+
+    struct batch batches[MAX_BATCHES]; ///< ring, oldest first
+    uint32_t batch_first, batch_count;
+    uint64_t submitted_value, completed_value;
+};
+
+static struct sparse_residency *sparse(struct slc_residency *residency)
+{
+    return (struct sparse_residency *)residency;
+}
+
+static const struct sparse_residency *const_sparse(const struct slc_residency *residency)
+{
+    return (const struct sparse_residency *)residency;
+}
+
+static uint64_t place_key(uint32_t index, struct slc_tile_place place)
+{
+    /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
+    uint32_t level = place.level == SLC_TAIL_LEVEL ? 31 : place.level;
+    return (uint64_t)index << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
+}
+
+static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
+                                 const SluiceImageInfo *info, struct slc_residency_image *image)
+{
+    struct sparse_residency *s = sparse(residency);
+    struct slc_sparse_image *sparse_image = &s->images[index];
+    assert(!sparse_image->image);
+    SluiceResult result =
+        slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *image = (struct slc_residency_image){sparse_image->image, sparse_image->layout.desc,
+                                          sparse_image->layout.uneven};
+    return SLUICE_SUCCESS;
+}
+
+static void destroy_image(struct slc_residency *residency, uint32_t index)
+{
+    struct sparse_residency *s = sparse(residency);
+    slc_sparse_image_destroy(&s->images[index], s->vk);
+}
+
+static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
+{
+    const struct sparse_residency *s = const_sparse(residency);
+    const struct slc_sparse_image *image = &s->images[index];
+    return image->last_value <= s->completed_value && image->unmap_count == 0;
+}
+
+static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
+{
+    struct sparse_residency *s = sparse(residency);
+    SluiceResult result =
+        slc_device_heaps_allocate(&s->heaps, s->vk, s->cb, size, s->memory_type, heap_id);
+    s->base.counters.device_memory_size = s->heaps.total_size;
+    return result;
+}
+
+static void release_heap(struct slc_residency *residency, uint32_t heap_id)
+{
+    struct sparse_residency *s = sparse(residency);
+    slc_device_heaps_release(&s->heaps, s->vk, heap_id);
+    s->base.counters.device_memory_size = s->heaps.total_size;
+}
+
+static uint32_t room_to_unmap(const struct slc_residency *residency)
+{
+    const struct sparse_residency *s = const_sparse(residency);
+    return s->pending_capacity - s->pending_count;
+}
+
+static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
+                  uint64_t frame)
+{
+    struct sparse_residency *s = sparse(residency);
+    assert(s->pending_count < s->pending_capacity);
+    struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
+    uint32_t at = (s->pending_first + s->pending_count++) % s->pending_capacity;
+    s->pending[at] = (struct pending_unmap){frame, place_key(index, place), index, place};
+    slc_tile_map_add(&s->pending_tiles, s->pending[at].key, at);
+    s->images[index].unmap_count++;
+}
+
+static SluiceResult map(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
+    /* Frames under way may still read the old page through their MinMip maps. */
+    if (slc_tile_map_get(&s->pending_tiles, place_key(index, place)) != SLC_TILE_MAP_NONE)
+        return SLUICE_NOT_READY;
+    /* While no batch can be submitted the list only grows, so it may be full. */
+    if (!slc_bind_list_put(&s->list, index, place, tile->heapId, tile->slot))
+        return SLUICE_NOT_READY;
+    s->images[index].last_value = s->submitted_value + 1; /* not idle from here on */
+    return SLUICE_SUCCESS;
+}
+
+/* Unmaps that no incomplete frame reads any more join the list of this frame. */
+static void release_pending(struct sparse_residency *s, uint64_t completed_frame)
+{
+    while (s->pending_count) {
+        struct pending_unmap *unmap = &s->pending[s->pending_first];
+        if (unmap->frame > completed_frame + 1 ||
+            !slc_bind_list_put(&s->list, unmap->index, unmap->place, SLC_UNBIND, 0))
+            return;
+        if (s->list_first_frame > unmap->frame)
+            s->list_first_frame = unmap->frame;
+        slc_tile_map_remove(&s->pending_tiles, unmap->key);
+        s->images[unmap->index].unmap_count--;
+        s->images[unmap->index].last_value = s->submitted_value + 1;
+        s->pending_first = (s->pending_first + 1) % s->pending_capacity;
+        s->pending_count--;
+    }
+}
+
+static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
+{
+    struct sparse_residency *s = sparse(residency);
+    uint64_t value = 0;
+    SluiceResult result =
+        slc_vk_result(s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->semaphore, &value),
+                      "vkGetSemaphoreCounterValue");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    s->completed_value = value;
+    while (s->batch_count && s->batches[s->batch_first].value <= value) {
+        s->batch_first = (s->batch_first + 1) % MAX_BATCHES;
+        s->batch_count--;
+    }
+    release_pending(s, completed_frame);
+    return SLUICE_SUCCESS;
+}
+
+static uint64_t completed_value(const struct slc_residency *residency)
+{
+    return const_sparse(residency)->completed_value;
+}
+
+static uint64_t min_u64(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint64_t retire_limit(const struct slc_residency *residency, uint64_t completed_frame)
+{
+    const struct sparse_residency *s = const_sparse(residency);
+    uint64_t first = s->list_first_frame;
+    if (s->pending_count)
+        first = min_u64(first, s->pending[s->pending_first].frame);
+    for (uint32_t i = 0; i < s->batch_count; i++)
+        first = min_u64(first, s->batches[(s->batch_first + i) % MAX_BATCHES].first_frame);
+    return first == UINT64_MAX ? completed_frame : min_u64(completed_frame, first - 1);
+}
+
+static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
+                                         const struct slc_sparse_image *image,
+                                         const struct slc_bind_run *run)
+{
+    const SluiceStreamedTextureDesc *desc = &image->layout.desc;
+    uint32_t level = run->place.level;
+    uint32_t x = run->place.x * desc->tileWidth, y = run->place.y * desc->tileHeight;
+    bool bound = run->heap_id != SLC_UNBIND;
+    return (VkSparseImageMemoryBind){
+        .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0},
+        .offset = {(int32_t)x, (int32_t)y, 0},
+        /* A tile at the edge ends with the level. */
+        .extent = {slc_min_u32(run->count * desc->tileWidth, slc_mip_size(desc->width, level) - x),
+                   slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, level) - y), 1},
+        .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
+        .memoryOffset = bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
+}
+
+/* Pages one by one: a driver takes a longer opaque bind for its first page only. */
+static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
+                                    const struct slc_sparse_image *image,
+                                    const struct slc_bind_run *run)
+{
+    const struct slc_sparse_layout *layout = &image->layout;
+    uint64_t offset = (uint64_t)run->place.x * SLC_TILE_SIZE;
+    bool bound = run->heap_id != SLC_UNBIND;
+    return (VkSparseMemoryBind){.resourceOffset = layout->tail_offset + offset,
+                                .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
+                                .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
+                                .memoryOffset =
+                                    bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
+}
+
+/* The binds of one image: runs[0..count), all of it, and its metadata if that is not bound yet. */
+static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32_t *tile_count,
+                      uint32_t *page_count, const struct slc_bind_run *runs, uint32_t count)
+{
+    struct slc_sparse_image *image = &s->images[runs[0].image];
+    uint32_t first_tile = *tile_count, first_page = *page_count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (runs[i].place.level == SLC_TAIL_LEVEL)
+            s->page_binds[(*page_count)++] = page_bind(s, image, &runs[i]);
+        else
+            s->tile_binds[(*tile_count)++] = tile_bind(s, image, &runs[i]);
+    }
+    if (image->metadata && !image->metadata_bound) {
+        s->page_binds[(*page_count)++] =
+            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset,
+                                 .size = image->layout.metadata_size,
+                                 .memory = image->metadata,
+                                 .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
+        image->metadata_bound = true;
+    }
+    if (*tile_count > first_tile)
+        s->tile_infos[info->imageBindCount++] = (VkSparseImageMemoryBindInfo){
+            image->image, *tile_count - first_tile, &s->tile_binds[first_tile]};
+    if (*page_count > first_page)
+        s->page_infos[info->imageOpaqueBindCount++] = (VkSparseImageOpaqueMemoryBindInfo){
+            image->image, *page_count - first_page, &s->page_binds[first_page]};
+    image->last_value = s->submitted_value + 1;
+}
+
+static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
+{
+    struct sparse_residency *s = sparse(residency);
+    /* What is collected now goes out with the next batch, in this call or in a later one. */
+    *value = s->submitted_value + 1;
+    if (s->list.count == 0 || s->batch_count == MAX_BATCHES)
+        return SLUICE_SUCCESS;
+    slc_bind_list_build_runs(&s->list);
+    /* Batches are ordered by semaphores only, and a later one may rebind what an earlier one
+     * unbinds. */
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .waitSemaphoreValueCount = 1,
+                                              .pWaitSemaphoreValues = &s->submitted_value,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = value};
+    VkBindSparseInfo info = {.sType = VK_STRUCTURE_TYPE_BIND_SPARSE_INFO,
+                             .pNext = &timeline,
+                             .waitSemaphoreCount = 1,
+                             .pWaitSemaphores = &s->semaphore,
+                             .pImageBinds = s->tile_infos,
+                             .pImageOpaqueBinds = s->page_infos,
+                             .signalSemaphoreCount = 1,
+                             .pSignalSemaphores = &s->semaphore};
+    uint32_t tile_count = 0, page_count = 0;
+    for (uint32_t i = 0, next; i < s->list.run_count; i = next) {
+        for (next = i + 1; next < s->list.run_count; next++)
+            if (s->list.runs[next].image != s->list.runs[i].image)
+                break;
+        add_image(s, &info, &tile_count, &page_count, &s->list.runs[i], next - i);
+    }
+    SluiceResult result = slc_vk_result(
+        s->vk, s->vk->QueueBindSparse(s->queue, 1, &info, VK_NULL_HANDLE), "vkQueueBindSparse");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    s->submitted_value++;
+    s->batches[(s->batch_first + s->batch_count++) % MAX_BATCHES] =
+        (struct batch){*value, s->list_first_frame};
+    s->base.counters.bind_calls++;
+    s->base.counters.bind_runs += s->list.run_count;
+    s->list_first_frame = UINT64_MAX;
+    slc_bind_list_clear(&s->list);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult wait(struct slc_residency *residency)
+{
+    struct sparse_residency *s = sparse(residency);
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &s->semaphore,
+                                .pValues = &s->submitted_value};
+    return slc_vk_result(s->vk, s->vk->WaitSemaphores(s->vk->device, &info, UINT64_MAX),
+                         "vkWaitSemaphores");
+}
+
+static void record_uploads(struct slc_residency *residency, uint32_t index,
+                           VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
+                           const VkBufferImageCopy *regions)
+{
+    struct sparse_residency *s = sparse(residency);
+    s->vk->CmdCopyBufferToImage(commands, buffer, s->images[index].image, VK_IMAGE_LAYOUT_GENERAL,
+                                count, regions);
+}
+
+static void destroy(struct slc_residency *residency)
+{
+    struct sparse_residency *s = sparse(residency);
+    const SluiceAllocationCallbacks *cb = s->cb;
+    if (s->images)
+        for (uint32_t i = 0; i < s->max_image_count; i++)
+            slc_sparse_image_destroy(&s->images[i], s->vk);
+    slc_device_heaps_finish(&s->heaps, s->vk, cb);
+    s->vk->DestroySemaphore(s->vk->device, s->semaphore, NULL);
+    uint32_t capacity = s->list.capacity, page_capacity = capacity + s->max_image_count;
+    slc_free(cb, s->tile_binds, capacity, sizeof *s->tile_binds);
+    slc_free(cb, s->page_binds, page_capacity, sizeof *s->page_binds);
+    slc_free(cb, s->tile_infos, s->max_image_count, sizeof *s->tile_infos);
+    slc_free(cb, s->page_infos, s->max_image_count, sizeof *s->page_infos);
+    slc_bind_list_finish(&s->list, cb);
+    slc_tile_map_finish(&s->pending_tiles, cb);
+    slc_free(cb, s->pending, s->pending_capacity, sizeof *s->pending);
+    slc_free(cb, s->images, s->max_image_count, sizeof *s->images);
+    slc_free(cb, s, 1, sizeof *s);
+}
+
+static const struct slc_residency_interface sparse_interface = {
+    .destroy = destroy,
+    .create_image = create_image,
+    .destroy_image = destroy_image,
+    .image_is_idle = image_is_idle,
+    .allocate_heap = allocate_heap,
+    .release_heap = release_heap,
+    .update = update,
+    .map = map,
+    .unmap = unmap,
+    .room_to_unmap = room_to_unmap,
+    .submit = submit,
+    .wait = wait,
+    .completed_value = completed_value,
+    .retire_limit = retire_limit,
+    .record_uploads = record_uploads,
+};
+
+static SluiceResult create_arrays(struct sparse_residency *s)
+{
+    uint32_t capacity = 2 * s->max_changes;
+    SluiceResult result = slc_bind_list_init(&s->list, s->cb, capacity);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    s->pending_capacity = 4 * s->max_changes;
+    result = slc_tile_map_init(&s->pending_tiles, s->cb, s->pending_capacity);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    s->images = slc_calloc(s->cb, s->max_image_count, sizeof *s->images);
+    s->pending = slc_alloc(s->cb, s->pending_capacity, sizeof *s->pending);
+    s->tile_binds = slc_alloc(s->cb, capacity, sizeof *s->tile_binds);
+    /* and once in its life each image's metadata */
+    s->page_binds = slc_alloc(s->cb, capacity + s->max_image_count, sizeof *s->page_binds);
+    s->tile_infos = slc_alloc(s->cb, s->max_image_count, sizeof *s->tile_infos);
+    s->page_infos = slc_alloc(s->cb, s->max_image_count, sizeof *s->page_infos);
+    if (!s->images || !s->pending || !s->tile_binds || !s->page_binds || !s->tile_infos ||
+        !s->page_infos)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_semaphore(struct sparse_residency *s)
+{
+    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    return slc_vk_result(s->vk, s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
+                         "vkCreateSemaphore");
+}
+
+SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
+                                         struct slc_residency **residency)
+{
+    struct sparse_residency *s = slc_calloc(info->cb, 1, sizeof *s);
+    if (!s)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    s->base.interface = &sparse_interface;
+    s->vk = info->vk;
+    s->caps = info->caps;
+    s->cb = info->cb;
+    s->queue = info->sparse_queue;
+    s->max_image_count = info->max_image_count;
+    s->max_changes = info->max_changes;
+    s->list_first_frame = UINT64_MAX;
+    SluiceResult result = create_arrays(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_semaphore(s);
+    if (result == SLUICE_SUCCESS) {
+        s->memory_type = slc_sparse_memory_type(s->vk, s->caps);
+        if (s->memory_type == UINT32_MAX) {
+            slc_log(&s->vk->log, SLUICE_LOG_ERROR,
+                    "%s has no device-local memory for sparse images", s->caps->public.deviceName);
+            result = SLUICE_ERROR_UNSUPPORTED;
+        }
+    }
+    if (result != SLUICE_SUCCESS) {
+        destroy(&s->base);
+        return result;
+    }
+    *residency = &s->base;
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,206 @@
+/**
+ * The functions of shaders/include/sluice in C, line by line, so that one can be tested against the
+ * other. Integer functions agree exactly, the others up to the precision of the device's float
+ * division, log2 and exp2. Denormal numbers may be taken for 0 on either side.
+ */
+#ifndef SLC_VULKAN_SHADER_TWINS_H
+#define SLC_VULKAN_SHADER_TWINS_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <sluice/shared/texture_table.h>
+
+/* stochastic.glsl */
+
+static inline uint32_t slc_twin_hash_step(uint32_t h)
+{
+    h = h * 747796405u + 2891336453u;
+    h = ((h >> ((h >> 28) + 4)) ^ h) * 277803737u;
+    return (h >> 22) ^ h;
+}
+
+static inline uint32_t slc_twin_hash(uint32_t x, uint32_t y, uint32_t z)
+{
+    return slc_twin_hash_step(slc_twin_hash_step(slc_twin_hash_step(x) + y) + z);
+}
+
+static inline bool slc_twin_select_random_quad(uint32_t x, uint32_t y, uint32_t frame_seed,
+                                               float probability)
+{
+    if (probability >= 1.0f)
+        return true;
+    float draw = (float)(slc_twin_hash(x >> 1, y >> 1, frame_seed) >> 8) * (1.0f / 16777216.0f);
+    return draw < probability;
+}
+
+static inline bool slc_twin_select_lattice(uint32_t pixel_x, uint32_t pixel_y, uint32_t frame_index)
+{
+    uint32_t f = frame_index & 63;
+    uint32_t x = (f & 1) << 2 | (f & 4) >> 1 | (f & 16) >> 4;
+    uint32_t y = (f & 2) << 1 | (f & 8) >> 2 | (f & 32) >> 5;
+    return (pixel_x & 7) == (x ^ y) && (pixel_y & 7) == y;
+}
+
+/* lod.glsl */
+
+#define SLC_TWIN_LOD_LIMIT 32.0f
+
+struct slc_twin_vec2 {
+    float x, y;
+};
+
+static inline float slc_twin_clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline float slc_twin_clamp_anisotropy(float max_anisotropy)
+{
+    return max_anisotropy > 1.0f ? fminf(max_anisotropy, 16.0f) : 1.0f;
+}
+
+static inline float slc_twin_lod_margin(float max_anisotropy)
+{
+    return max_anisotropy > 1.0f ? 0.1875f : 0.125f;
+}
+
+static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
+                                         float lod_bias, float max_anisotropy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    if (!(x2 >= 0.0f && y2 >= 0.0f)) /* NaN */
+        return SLC_TWIN_LOD_LIMIT;
+    float n = slc_twin_clamp_anisotropy(max_anisotropy);
+    float major2 = fmaxf(x2, y2);
+    float minor2 = fmaxf(fminf(x2, y2), major2 / (n * n));
+    float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
+    lod += lod_bias;
+    if (!(lod >= -SLC_TWIN_LOD_LIMIT))
+        return -SLC_TWIN_LOD_LIMIT;
+    return fminf(lod, SLC_TWIN_LOD_LIMIT);
+}
+
+static inline uint32_t slc_twin_finest_level(float lod, float margin, uint32_t count)
+{
+    return (uint32_t)slc_twin_clamp(lod - margin, 0.0f, (float)(count - 1));
+}
+
+static inline uint32_t slc_twin_coarsest_level(float lod, uint32_t count)
+{
+    uint32_t level = (uint32_t)slc_twin_clamp(lod, 0.0f, (float)(count - 1)) + 1;
+    return level < count - 1 ? level : count - 1;
+}
+
+/* footprint.glsl */
+
+#define SLC_TWIN_APRON 0.5625f
+#define SLC_TWIN_APRON_UNEVEN 1.5625f
+
+struct slc_twin_footprint {
+    uint32_t x[3], y[3];
+};
+
+static inline uint32_t slc_twin_region_index(float coordinate, float regions_per_unit,
+                                             uint32_t region_count)
+{
+    float at = coordinate > 0.0f ? fminf(coordinate, 1.0f) * regions_per_unit : 0.0f;
+    uint32_t index = (uint32_t)at;
+    return index < region_count - 1 ? index : region_count - 1;
+}
+
+static inline void slc_twin_region_range(float coordinate, float below, float above,
+                                         uint32_t address_mode, float regions_per_unit,
+                                         uint32_t region_count, uint32_t out[3])
+{
+    below = fminf(below, 0.5f);
+    above = fminf(above, 0.5f);
+    if (address_mode == SLUICE_ADDRESS_MODE_REPEAT) {
+        float middle = coordinate - floorf(coordinate);
+        middle = middle >= 0.0f ? fminf(middle, 1.0f) : 0.0f;
+        float low = middle - below, high = middle + above;
+        bool wraps = low < 0.0f || high >= 1.0f;
+        out[0] =
+            slc_twin_region_index(low < 0.0f ? low + 1.0f : low, regions_per_unit, region_count);
+        out[1] = slc_twin_region_index(high >= 1.0f ? high - 1.0f : high, regions_per_unit,
+                                       region_count);
+        out[2] = wraps ? region_count - 1 : out[1];
+        return;
+    }
+    float middle = coordinate;
+    if (address_mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
+        middle = coordinate - 2.0f * floorf(coordinate * 0.5f);
+        middle = middle > 1.0f ? 2.0f - middle : middle;
+        below = above = fmaxf(below, above);
+    } else if (address_mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
+        middle = fabsf(coordinate);
+        below = above = fmaxf(below, above);
+    }
+    middle = middle > 0.0f ? fminf(middle, 1.0f) : 0.0f;
+    out[0] = slc_twin_region_index(middle - below, regions_per_unit, region_count);
+    out[1] = slc_twin_region_index(middle + above, regions_per_unit, region_count);
+    out[2] = out[1];
+}
+
+static inline struct slc_twin_footprint
+slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_twin_vec2 uv,
+                           struct slc_twin_vec2 half_axis, uint32_t coarsest_level)
+{
+    float below =
+        entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
+    uint32_t width = entry->width >> coarsest_level, height = entry->height >> coarsest_level;
+    float texel_x = 1.0f / (float)(width ? width : 1);
+    float texel_y = 1.0f / (float)(height ? height : 1);
+    float axis_x = fabsf(half_axis.x), axis_y = fabsf(half_axis.y);
+    struct slc_twin_footprint footprint;
+    slc_twin_region_range(uv.x, below * texel_x + axis_x, SLC_TWIN_APRON * texel_x + axis_x,
+                          entry->addressModeU, (float)entry->width / (float)entry->regionWidth,
+                          entry->regionCountX, footprint.x);
+    slc_twin_region_range(uv.y, below * texel_y + axis_y, SLC_TWIN_APRON * texel_y + axis_y,
+                          entry->addressModeV, (float)entry->height / (float)entry->regionHeight,
+                          entry->regionCountY, footprint.y);
+    return footprint;
+}
+
+static inline struct slc_twin_vec2 slc_twin_half_axis(const struct SluiceTextureEntry *entry,
+                                                      struct slc_twin_vec2 dx,
+                                                      struct slc_twin_vec2 dy, float lod_bias,
+                                                      float max_anisotropy)
+{
+    if (!(max_anisotropy > 1.0f))
+        return (struct slc_twin_vec2){0.0f, 0.0f};
+    float w = (float)entry->width, h = (float)entry->height;
+    float x2 = dx.x * w * (dx.x * w) + dx.y * h * (dx.y * h);
+    float y2 = dy.x * w * (dy.x * w) + dy.y * h * (dy.y * h);
+    float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
+    struct slc_twin_vec2 major = x2 >= y2 ? dx : dy;
+    return (struct slc_twin_vec2){0.5f * scale * major.x, 0.5f * scale * major.y};
+}
+
+/* feedback.glsl: what one sample marks */
+
+struct slc_twin_wants {
+    uint32_t level;
+    struct slc_twin_footprint regions;
+};
+
+static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEntry *entry,
+                                                   struct slc_twin_vec2 uv, struct slc_twin_vec2 dx,
+                                                   struct slc_twin_vec2 dy, float lod_bias,
+                                                   float max_anisotropy)
+{
+    float w = (float)entry->width, h = (float)entry->height;
+    struct slc_twin_vec2 tx = {dx.x * w, dx.y * h}, ty = {dy.x * w, dy.y * h};
+    float lod = slc_twin_compute_lod(tx, ty, lod_bias, max_anisotropy);
+    struct slc_twin_wants wants;
+    wants.level =
+        slc_twin_finest_level(lod, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
+    wants.regions = slc_twin_compute_footprint(
+        entry, uv, slc_twin_half_axis(entry, dx, dy, lod_bias, max_anisotropy),
+        slc_twin_coarsest_level(lod, entry->mipLevelCount));
+    return wants;
+}
+
+#endif /* SLC_VULKAN_SHADER_TWINS_H */

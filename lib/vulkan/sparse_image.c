@@ -1,0 +1,129 @@
+#include "vulkan/sparse_image.h"
+
+#include "base/log.h"
+#include "vulkan/format.h"
+
+#define MAX_ASPECTS 4u
+
+static VkImageCreateInfo image_create_info(VkFormat format, uint32_t width, uint32_t height,
+                                           uint32_t level_count)
+{
+    return (VkImageCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .flags = VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = format,
+        .extent = {width, height, 1},
+        .mipLevels = level_count,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+}
+
+uint32_t slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps)
+{
+    VkImageCreateInfo info = image_create_info(VK_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
+    VkImage image;
+    if (vk->CreateImage(vk->device, &info, NULL, &image) != VK_SUCCESS)
+        return UINT32_MAX;
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image, &memory);
+    vk->DestroyImage(vk->device, image, NULL);
+    /* Asked for explicitly: the first allowed type may be plain system memory. */
+    return slc_find_memory_type(&caps->memory, memory.memoryTypeBits,
+                                VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
+}
+
+static const char *check_format(const struct slc_vk *vk, const VkImageCreateInfo *info)
+{
+    VkImageFormatProperties limits;
+    if (info->format == VK_FORMAT_UNDEFINED)
+        return "has no Vulkan format";
+    if (vk->GetPhysicalDeviceImageFormatProperties(vk->physical_device, info->format,
+                                                   info->imageType, info->tiling, info->usage,
+                                                   info->flags, &limits) != VK_SUCCESS)
+        return "is not available as a sparse image";
+    uint32_t count = 0;
+    vk->GetPhysicalDeviceSparseImageFormatProperties(vk->physical_device, info->format,
+                                                     info->imageType, info->samples, info->usage,
+                                                     info->tiling, &count, NULL);
+    if (count == 0)
+        return "is not available as a sparse image";
+    if (info->extent.width > limits.maxExtent.width ||
+        info->extent.height > limits.maxExtent.height || info->mipLevels > limits.maxMipLevels)
+        return "is larger than the device allows";
+    return NULL;
+}
+
+/* The layout of the image as the driver made it; NULL, or what is wrong with it. */
+static const char *read_layout(struct slc_sparse_image *image, const struct slc_vk *vk,
+                               const struct slc_caps *caps, uint32_t memory_type,
+                               const SluiceImageInfo *info)
+{
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image->image, &memory);
+    VkSparseImageMemoryRequirements aspects[MAX_ASPECTS];
+    uint32_t count = MAX_ASPECTS;
+    vk->GetImageSparseMemoryRequirements(vk->device, image->image, &count, aspects);
+    const VkSparseImageMemoryRequirements *color = NULL, *metadata = NULL;
+    for (uint32_t i = 0; i < count; i++) {
+        if (aspects[i].formatProperties.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT)
+            color = &aspects[i];
+        if (aspects[i].formatProperties.aspectMask & VK_IMAGE_ASPECT_METADATA_BIT)
+            metadata = &aspects[i];
+    }
+    if (!color)
+        return "has no sparse memory requirements";
+    if (!(memory.memoryTypeBits >> memory_type & 1))
+        return "cannot be bound to the memory of the heaps";
+    if (memory.size > caps->public.sparseAddressSpaceSize)
+        return "is larger than the sparse address space";
+    if (slc_sparse_layout_init(&image->layout, info, &memory, color, metadata,
+                               caps->public.sparseAddressSpaceSize) != SLUICE_SUCCESS)
+        return "has tiles that are not pages of 64 KiB";
+    return NULL;
+}
+
+SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
+                                     const struct slc_caps *caps, uint32_t memory_type,
+                                     const SluiceImageInfo *info)
+{
+    *image = (struct slc_sparse_image){0};
+    VkImageCreateInfo create = image_create_info(slc_vk_format(info->format), info->width,
+                                                 info->height, info->mipLevelCount);
+    const char *trouble = check_format(vk, &create);
+    SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
+    if (!trouble) {
+        result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),
+                               "vkCreateImage");
+        if (result != SLUICE_SUCCESS)
+            return result;
+        trouble = read_layout(image, vk, caps, memory_type, info);
+    }
+    if (trouble) {
+        slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",
+                info->width, info->height, sluiceFormatString(info->format), trouble);
+        slc_sparse_image_destroy(image, vk);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    if (image->layout.metadata_size == 0)
+        return SLUICE_SUCCESS;
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = image->layout.metadata_size,
+                                     .memoryTypeIndex = memory_type};
+    result = slc_vk_result(vk, vk->AllocateMemory(vk->device, &allocate, NULL, &image->metadata),
+                           "vkAllocateMemory for image metadata");
+    if (result != SLUICE_SUCCESS)
+        slc_sparse_image_destroy(image, vk);
+    return result;
+}
+
+void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_vk *vk)
+{
+    vk->DestroyImage(vk->device, image->image, NULL);
+    vk->FreeMemory(vk->device, image->metadata, NULL);
+    *image = (struct slc_sparse_image){0};
+}

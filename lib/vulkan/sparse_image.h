@@ -1,0 +1,26 @@
+/** Sparse images: creation, what the driver says of their layout, and the pages of the metadata. */
+#ifndef SLC_VULKAN_SPARSE_IMAGE_H
+#define SLC_VULKAN_SPARSE_IMAGE_H
+
+#include "vulkan/caps.h"
+#include "vulkan/sparse_layout.h"
+
+struct slc_sparse_image {
+    VkImage image;
+    struct slc_sparse_layout layout;
+    VkDeviceMemory metadata; ///< owned; VK_NULL_HANDLE where there is none
+    bool metadata_bound;
+    uint64_t last_value;  ///< of the last batch that names it
+    uint32_t unmap_count; ///< not yet in a batch
+};
+
+/** Errors: UNSUPPORTED with a message that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY. */
+SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
+                                     const struct slc_caps *caps, uint32_t memory_type,
+                                     const SluiceImageInfo *info);
+void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_vk *vk);
+
+/** Device-local memory that sparse images can be bound to; UINT32_MAX if there is none. */
+uint32_t slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps);
+
+#endif /* SLC_VULKAN_SPARSE_IMAGE_H */

@@ -1,0 +1,86 @@
+#include "vulkan/sparse_layout.h"
+
+#include "base/checked.h"
+
+/* The first level that fits into one tile; from there on pages would be mostly empty. */
+static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
+{
+    uint32_t level = 0;
+    while (slc_mip_size(info->width, level) > tile.width ||
+           slc_mip_size(info->height, level) > tile.height)
+        level++;
+    return level;
+}
+
+/* Levels whose size is rounded down have tiles that begin before the regions under them. */
+static bool halves_evenly(uint32_t size, uint32_t level_count)
+{
+    for (uint32_t level = 1; level < level_count; level++)
+        if (slc_mip_size(size, level) * 2 != slc_mip_size(size, level - 1) &&
+            slc_mip_size(size, level - 1) > 1)
+            return false;
+    return true;
+}
+
+static void set_regions(SluiceStreamedTextureDesc *desc)
+{
+    /* Without regular levels nothing can be wanted apart, so one region is enough. */
+    desc->feedbackRegionWidth = desc->regularMipCount ? desc->tileWidth : desc->width;
+    desc->feedbackRegionHeight = desc->regularMipCount ? desc->tileHeight : desc->height;
+}
+
+SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
+                                    const VkMemoryRequirements *memory,
+                                    const VkSparseImageMemoryRequirements *color,
+                                    const VkSparseImageMemoryRequirements *metadata,
+                                    uint64_t address_space_size)
+{
+    VkExtent3D tile = color->formatProperties.imageGranularity;
+    uint64_t tile_size =
+        (uint64_t)tile.width * tile.height * tile.depth * sluiceFormatTexelSize(info->format);
+    if (tile_size != SLC_TILE_SIZE || tile.depth != 1 || memory->alignment == 0 ||
+        SLC_TILE_SIZE % memory->alignment != 0 || memory->size > address_space_size)
+        return SLUICE_ERROR_UNSUPPORTED;
+
+    *layout = (struct slc_sparse_layout){0};
+    SluiceStreamedTextureDesc *desc = &layout->desc;
+    desc->width = info->width;
+    desc->height = info->height;
+    desc->mipLevelCount = info->mipLevelCount;
+    desc->tileWidth = tile.width;
+    desc->tileHeight = tile.height;
+    layout->opaque_tail =
+        color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize > 0;
+    if (layout->opaque_tail) {
+        uint64_t pages = (color->imageMipTailSize + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE;
+        if (pages > SLUICE_MAX_TILES_PER_TEXTURE)
+            return SLUICE_ERROR_UNSUPPORTED;
+        desc->regularMipCount = color->imageMipTailFirstLod;
+        desc->packedTileCount = (uint32_t)pages;
+        layout->tail_offset = color->imageMipTailOffset;
+        layout->tail_size = color->imageMipTailSize;
+    } else {
+        desc->regularMipCount = own_packed_level(info, tile);
+        if (desc->regularMipCount > info->mipLevelCount)
+            desc->regularMipCount = info->mipLevelCount;
+        desc->packedTileCount = info->mipLevelCount - desc->regularMipCount;
+    }
+    if (metadata) {
+        layout->metadata_offset = metadata->imageMipTailOffset;
+        layout->metadata_size = metadata->imageMipTailSize;
+    }
+    set_regions(desc);
+    layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||
+                     !halves_evenly(info->height, info->mipLevelCount);
+    return SLUICE_SUCCESS;
+}
+
+struct slc_tile_place slc_sparse_layout_place(const struct slc_sparse_layout *layout,
+                                              const SluiceTile *tile)
+{
+    if (tile->mipLevel < layout->desc.regularMipCount)
+        return (struct slc_tile_place){tile->mipLevel, tile->x, tile->y};
+    if (layout->opaque_tail)
+        return (struct slc_tile_place){SLC_TAIL_LEVEL, tile->x, 0};
+    return (struct slc_tile_place){layout->desc.regularMipCount + tile->x, 0, 0};
+}

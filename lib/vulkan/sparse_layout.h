@@ -1,0 +1,38 @@
+/** How a sparse image is cut into tiles and packed pages: pure arithmetic over what a driver says.
+ */
+#ifndef SLC_VULKAN_SPARSE_LAYOUT_H
+#define SLC_VULKAN_SPARSE_LAYOUT_H
+
+#include <sluice/vulkan.h>
+
+#define SLC_TILE_SIZE 65536u
+/** In place of a level: a page of the driver's mip tail. */
+#define SLC_TAIL_LEVEL UINT32_MAX
+
+struct slc_sparse_layout {
+    SluiceStreamedTextureDesc desc;
+    /** The driver has a mip tail, bound opaquely. Otherwise each packed tile is a whole level. */
+    bool opaque_tail;
+    uint64_t tail_offset, tail_size;
+    uint64_t metadata_offset, metadata_size; ///< size 0: none to bind
+    bool uneven;                             ///< some level's size is not twice the next one's
+};
+
+/**
+ * `metadata` may be NULL. Errors: UNSUPPORTED if the driver's tiles are not 64 KiB pages, or the
+ * image is larger than `address_space_size`.
+ */
+SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
+                                    const VkMemoryRequirements *memory,
+                                    const VkSparseImageMemoryRequirements *color,
+                                    const VkSparseImageMemoryRequirements *metadata,
+                                    uint64_t address_space_size);
+
+/** Where a tile lies: level and tile coordinates, or SLC_TAIL_LEVEL and page number in `x`. */
+struct slc_tile_place {
+    uint32_t level, x, y;
+};
+struct slc_tile_place slc_sparse_layout_place(const struct slc_sparse_layout *layout,
+                                              const SluiceTile *tile);
+
+#endif /* SLC_VULKAN_SPARSE_LAYOUT_H */

@@ -1,0 +1,288 @@
+/* Creation and destruction of a streamer, and what it tells about itself. */
+#include "vulkan/streamer.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+
+#include <string.h>
+
+static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
+{
+    SluiceVulkanStreamer *s = user;
+    return s->residency->interface->allocate_heap(s->residency, size, heap_id);
+}
+
+static void release_heap(void *user, uint32_t heap_id)
+{
+    SluiceVulkanStreamer *s = user;
+    s->residency->interface->release_heap(s->residency, heap_id);
+}
+
+static void set_default(uint32_t *value, uint32_t otherwise)
+{
+    if (*value == 0)
+        *value = otherwise;
+}
+
+/* Bounds keep every size below 2^32 bytes of staging and 2^30 regions. */
+static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
+{
+    set_default(&info->framesInFlight, 3);
+    set_default(&info->maxTextureCount, 1024);
+    set_default(&info->texturesPerFrame, 10);
+    set_default(&info->tilesPerFrame, 256);
+    if (info->tilesPerFrame > 1u << 14)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    set_default(&info->maxLoadsInFlight, slc_max_u32(64, 4 * info->tilesPerFrame));
+    set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
+    set_default(&info->maxRegionCount, 1u << 20);
+    if (info->framesInFlight > 16 || info->maxTextureCount > 1u << 20 ||
+        info->maxLoadsInFlight > 1u << 16 || info->maxRegionCount > 1u << 28 ||
+        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->heapTileCapacity > 1u << 20)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_residency(SluiceVulkanStreamer *s)
+{
+    if (!s->caps.public.sparse || !s->caps.timeline_semaphore) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName,
+                s->caps.public.sparse ? "timeline semaphores" : "sparse residency of 2D images");
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    struct slc_residency_create_info info = {
+        .vk = &s->vk,
+        .caps = &s->caps,
+        .cb = &s->cb,
+        .sparse_queue = s->info.sparseQueue,
+        .max_image_count = s->info.maxTextureCount,
+        .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
+    };
+    return slc_create_sparse_residency(&info, &s->residency);
+}
+
+static SluiceResult create_manager(SluiceVulkanStreamer *s)
+{
+    SluiceStreamedTextureManagerCreateInfo info = {
+        .heapAllocator = {s, allocate_heap, release_heap},
+        .pAllocator = s->info.pAllocator,
+        .heapTileCapacity = s->info.heapTileCapacity,
+        .tileSize = SLC_TILE_SIZE,
+        .alwaysMapPackedTiles = true,
+    };
+    SluiceResult result = sluiceCreateStreamedTextureManager(&info, &s->manager);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceStreamedTextureManagerConfig config = {
+        .numExtraStandbyTiles = s->info.numExtraStandbyTiles,
+        .maxHeapCount = s->info.maxHeapCount,
+        .retryDelay = s->info.retryDelay,
+    };
+    return sluiceSetConfig(s->manager, &config);
+}
+
+static SluiceResult create_arrays(SluiceVulkanStreamer *s)
+{
+    const SluiceAllocationCallbacks *cb = &s->cb;
+    uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
+    s->textures = slc_calloc(cb, textures, sizeof *s->textures);
+    s->by_manager_index = slc_calloc(cb, textures, sizeof *s->by_manager_index);
+    s->primaries = slc_alloc(cb, textures, sizeof *s->primaries);
+    s->new_textures = slc_alloc(cb, textures, sizeof *s->new_textures);
+    s->packed_queue = slc_alloc(cb, textures, sizeof *s->packed_queue);
+    s->frame_units = slc_alloc(cb, tiles, sizeof *s->frame_units);
+    s->tiles = slc_alloc(cb, tiles, sizeof *s->tiles);
+    s->tile_indices = slc_alloc(cb, tiles, sizeof *s->tile_indices);
+    s->copy_capacity = tiles * SLUICE_MAX_READ_REGIONS;
+    s->copies = slc_alloc(cb, s->copy_capacity, sizeof *s->copies);
+    s->min_mip_shadow = slc_alloc(cb, s->info.maxRegionCount, 1);
+    if (s->info.mapEverything)
+        s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
+    if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
+        !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
+        !s->min_mip_shadow || (s->info.mapEverything && !s->zero_map))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    memset(s->min_mip_shadow, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
+    return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
+}
+
+static SluiceResult create_buffers(SluiceVulkanStreamer *s)
+{
+    const VkBufferUsageFlags usage =
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    uint64_t regions = s->regions.size;
+    SluiceResult result =
+        slc_buffer_init(&s->texture_table, &s->vk, &s->caps,
+                        (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry),
+                        usage, SLC_BUFFER_DEVICE);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_buffer_init(&s->feedback, &s->vk, &s->caps, regions * 4, usage, SLC_BUFFER_DEVICE);
+    if (result == SLUICE_SUCCESS)
+        result = slc_buffer_init(&s->min_mip, &s->vk, &s->caps, regions, usage, SLC_BUFFER_DEVICE);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps, regions * s->info.framesInFlight,
+                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
+                                   s->info.texturesPerFrame, (uint32_t)regions);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_resolve_init(&s->resolve, &s->vk, s->feedback.buffer, s->readback.buffer.buffer);
+    return result;
+}
+
+static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
+{
+    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    return slc_vk_result(&s->vk, s->vk.CreateSemaphore(s->vk.device, &info, NULL, &s->semaphore),
+                         "vkCreateSemaphore");
+}
+
+static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
+{
+    const SluiceVulkanStreamerCreateInfo *info = &s->info;
+    SluiceResult result = slc_vk_init_instance(&s->vk, info->instance, info->physicalDevice,
+                                               info->pfnGetInstanceProcAddr, &info->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_vk_init_device(&s->vk, info->device);
+    if (result != SLUICE_SUCCESS) {
+        s->vk.device = VK_NULL_HANDLE; /* nothing can be called */
+        return result;
+    }
+    slc_caps_init(&s->caps, &s->vk);
+    result = create_residency(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_semaphore(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_buffers(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_manager(s);
+    if (result == SLUICE_SUCCESS)
+        result = slc_loads_init(s);
+    return result;
+}
+
+SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
+                                        SluiceVulkanStreamer **pStreamer)
+{
+    if (!pStreamer)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pStreamer = NULL;
+    if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
+        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr || !pCreateInfo->sparseQueue)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
+    SluiceResult result = fill_in(&info);
+    if (result != SLUICE_SUCCESS || !slc_allocator_is_valid(info.pAllocator) ||
+        (info.residencyMode != SLUICE_RESIDENCY_MODE_AUTO &&
+         info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
+    SluiceVulkanStreamer *s = slc_calloc(&cb, 1, sizeof *s);
+    if (!s)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    s->cb = cb;
+    s->info = info;
+    if (info.pAllocator)
+        s->info.pAllocator = &s->cb;
+    result = create_arrays(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_device_parts(s);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyVulkanStreamer(s);
+        return result;
+    }
+    *pStreamer = s;
+    return SLUICE_SUCCESS;
+}
+
+static void free_arrays(SluiceVulkanStreamer *s)
+{
+    const SluiceAllocationCallbacks *cb = &s->cb;
+    uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
+    slc_region_arena_finish(&s->regions, cb);
+    slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
+    slc_free(cb, s->min_mip_shadow, s->info.maxRegionCount, 1);
+    slc_free(cb, s->copies, s->copy_capacity, sizeof *s->copies);
+    slc_free(cb, s->tile_indices, tiles, sizeof *s->tile_indices);
+    slc_free(cb, s->tiles, tiles, sizeof *s->tiles);
+    slc_free(cb, s->frame_units, tiles, sizeof *s->frame_units);
+    slc_free(cb, s->packed_queue, textures, sizeof *s->packed_queue);
+    slc_free(cb, s->new_textures, textures, sizeof *s->new_textures);
+    slc_free(cb, s->primaries, textures, sizeof *s->primaries);
+    slc_free(cb, s->by_manager_index, textures, sizeof *s->by_manager_index);
+    slc_free(cb, s->textures, textures, sizeof *s->textures);
+}
+
+static void destroy_device_parts(SluiceVulkanStreamer *s)
+{
+    s->vk.DeviceWaitIdle(s->vk.device);
+    slc_loads_finish(s);
+    for (uint32_t i = 0; i < s->texture_high; i++)
+        slc_texture_destroy(s, i);
+    sluiceDestroyStreamedTextureManager(s->manager); /* releases its heaps */
+    slc_resolve_finish(&s->resolve, &s->vk);
+    slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
+    slc_buffer_finish(&s->min_mip_staging, &s->vk);
+    slc_buffer_finish(&s->min_mip, &s->vk);
+    slc_buffer_finish(&s->feedback, &s->vk);
+    slc_buffer_finish(&s->texture_table, &s->vk);
+    s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
+    if (s->residency)
+        s->residency->interface->destroy(s->residency);
+}
+
+void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
+{
+    if (!streamer)
+        return;
+    if (streamer->vk.device)
+        destroy_device_parts(streamer);
+    free_arrays(streamer);
+    SluiceAllocationCallbacks cb = streamer->cb;
+    slc_free(&cb, streamer, 1, sizeof *streamer);
+}
+
+SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s)
+        return SLUICE_ERROR_NULL_POINTER;
+    sluiceWaitTileLoaderIdle(s->loader);
+    return s->residency->interface->wait(s->residency);
+}
+
+void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBuffers *pBuffers)
+{
+    *pBuffers = (SluiceVulkanBuffers){streamer->texture_table.buffer, streamer->feedback.buffer,
+                                      streamer->min_mip.buffer};
+}
+
+void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
+                                       SluiceVulkanStreamerStatistics *pStatistics)
+{
+    *pStatistics = streamer->counts;
+    sluiceGetStatistics(streamer->manager, &pStatistics->manager);
+    const struct slc_residency_counters *counters = &streamer->residency->counters;
+    pStatistics->bindCalls = counters->bind_calls;
+    pStatistics->bindRuns = counters->bind_runs;
+    pStatistics->deviceMemorySize = counters->device_memory_size;
+    uint32_t uploaded = 0;
+    for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;
+         unit = streamer->units[unit].next)
+        uploaded++;
+    pStatistics->loadsInFlight =
+        streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
+}
+
+SluiceStreamedTextureManager *sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer)
+{
+    return streamer ? streamer->manager : NULL;
+}

@@ -1,0 +1,172 @@
+/** What the files of the streamer share: its parts and who calls whom. */
+#ifndef SLC_VULKAN_STREAMER_H
+#define SLC_VULKAN_STREAMER_H
+
+#include <sluice/loader.h>
+
+#include "vulkan/buffer.h"
+#include "vulkan/packed_units.h"
+#include "vulkan/readback_ring.h"
+#include "vulkan/region_arena.h"
+#include "vulkan/residency.h"
+#include "vulkan/resolve.h"
+#include "vulkan/sparse_layout.h"
+#include "vulkan/tile_map.h"
+
+#include <sluice/shared/texture_table.h>
+
+#define SLC_NONE UINT32_MAX
+
+enum slc_texture_state {
+    SLC_TEXTURE_FREE = 0,
+    SLC_TEXTURE_LIVE,
+    SLC_TEXTURE_REMOVED, ///< waits for frames, reads and bindings that still name it
+};
+
+/** The packed levels are read, bound, copied and published as one. */
+enum slc_packed_state {
+    SLC_PACKED_COLLECTING = 0, ///< until every packed tile was handed out
+    SLC_PACKED_READY,          ///< waits for staging slots
+    SLC_PACKED_READING,
+    SLC_PACKED_MAPPING,
+    SLC_PACKED_UPLOADING,
+};
+
+struct slc_texture {
+    enum slc_texture_state state;
+    SluiceTextureId id;
+    SluiceTextureId primary_id;
+    SluiceImageSource *source; ///< borrowed
+    SluiceImageInfo info;
+    struct slc_residency_image image;
+    VkImageView view;
+    SluiceStreamedTextureLayout layout;
+    VkSamplerAddressMode address_modes[2];
+    uint32_t region_first, region_count;
+    uint32_t primary_place; ///< in primaries; SLC_NONE for followers
+    uint64_t removed_frame;
+    uint32_t unit_count; ///< staging slots that name it
+
+    struct slc_packed_units packed;
+    SluiceTile *packed_tiles; ///< owned; desc.packedTileCount
+    enum slc_packed_state packed_state;
+    uint32_t packed_done; ///< tiles handed out, units arrived, tiles mapped, units uploaded
+    bool packed_failed;
+    uint32_t packed_first_unit; ///< chain over slc_unit.next of those that arrived
+};
+
+enum slc_unit_state {
+    SLC_UNIT_FREE = 0,
+    SLC_UNIT_READING,  ///< the loader has it
+    SLC_UNIT_ARRIVED,  ///< texels are in its slot, not bound yet
+    SLC_UNIT_BINDING,  ///< copied once its bind is over
+    SLC_UNIT_UPLOADED, ///< its slot is read by a frame
+};
+
+/** One staging slot and what is on its way through it: a tile, or a share of packed levels. */
+struct slc_unit {
+    enum slc_unit_state state;
+    uint32_t texture;
+    SluiceTile tile;
+    uint32_t packed_unit; ///< SLC_NONE for a tile
+    bool cancelled;
+    uint64_t ticket;
+    uint64_t value; ///< BINDING: of the bind; UPLOADED: the frame
+    uint32_t next;  ///< in its list
+};
+
+struct slc_unit_list {
+    uint32_t first, last;
+};
+
+struct SluiceVulkanStreamer {
+    SluiceAllocationCallbacks cb;
+    SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
+    struct slc_vk vk;
+    struct slc_caps caps;
+    struct slc_residency *residency;
+    SluiceStreamedTextureManager *manager;
+    SluiceTileLoader *loader;
+
+    VkSemaphore semaphore; ///< of frames
+    uint64_t frame;        ///< the last one begun
+    uint64_t completed_frame;
+    uint64_t retired;      ///< the last value that the manager was told
+    uint64_t time_stamp;   ///< of the last frame begun
+    uint64_t manager_time; ///< the last time stamp that the manager got
+    bool buffers_cleared;
+
+    struct slc_texture *textures; ///< owned; maxTextureCount
+    uint32_t *by_manager_index;   ///< owned; low half of a texture id -> index in textures
+    uint32_t texture_high;        ///< textures from here on were never used
+    uint32_t *primaries;          ///< owned; textures whose feedback is read back
+    uint32_t primary_count, primary_cursor;
+    uint32_t *new_textures; ///< owned; added since the last frame
+    uint32_t new_texture_count;
+    uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
+    uint32_t packed_queue_count;
+    uint32_t removed_count;
+    struct slc_region_arena regions;
+
+    struct slc_unit *units; ///< owned; maxLoadsInFlight
+    struct slc_unit_list free_units, arrived, binding, uploaded;
+    uint32_t free_unit_count;
+    struct slc_tile_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
+    struct slc_buffer staging;
+    uint32_t *frame_units;     ///< owned; tilesPerFrame
+    VkBufferImageCopy *copies; ///< owned
+    uint32_t copy_capacity;
+    SluiceTile *tiles;      ///< owned; tilesPerFrame
+    uint32_t *tile_indices; ///< owned; tilesPerFrame
+
+    struct slc_buffer texture_table, feedback, min_mip;
+    struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
+    uint8_t *min_mip_shadow;           ///< owned; what min_mip holds after the frames begun
+    uint8_t *zero_map;                 ///< owned; for mapEverything, maxRegionCount
+    struct slc_readback_ring readback;
+    struct slc_resolve resolve;
+
+    SluiceVulkanStreamerStatistics counts; ///< but what others count
+};
+
+static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, SluiceTextureId id)
+{
+    return &s->textures[s->by_manager_index[(uint32_t)id]];
+}
+
+/** Logs what the manager refuses although it should not; returns `result`. */
+SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
+                                const char *what);
+
+/* loads.c: from tiles that are wanted to texels in staging slots */
+SluiceResult slc_loads_init(SluiceVulkanStreamer *s);
+void slc_loads_finish(SluiceVulkanStreamer *s);
+SluiceResult slc_loads_collect(SluiceVulkanStreamer *s);
+SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s);
+SluiceResult slc_loads_start(SluiceVulkanStreamer *s);
+void slc_loads_bind(SluiceVulkanStreamer *s); ///< what arrived is given to the residency
+void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value); ///< by the submission of that value
+void slc_loads_recycle(SluiceVulkanStreamer *s);               ///< slots of completed frames
+void slc_loads_drop(SluiceVulkanStreamer *s,
+                    uint32_t texture); ///< of a texture that is being removed
+void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
+uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
+void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit);
+
+/* tile_upload.c: from staging slots to images */
+SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+
+/* minmip_upload.c: publishes what the manager changed */
+SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+
+/* feedback.c: which maps are read back, and what the manager gets of them */
+SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
+void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+
+/* texture.c */
+void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+/** Destroys what is over; returns the largest retire value that no texture holds back. */
+uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
+void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);
+
+#endif /* SLC_VULKAN_STREAMER_H */

@@ -1,0 +1,285 @@
+/* Streamed textures of a streamer: adding, removing, and what their first frame records. */
+#include "vulkan/streamer.h"
+
+#include "base/alloc.h"
+#include "base/log.h"
+#include "vulkan/format.h"
+
+#include <assert.h>
+
+static uint32_t find_free(const SluiceVulkanStreamer *s)
+{
+    for (uint32_t i = 0; i < s->texture_high; i++)
+        if (s->textures[i].state == SLC_TEXTURE_FREE)
+            return i;
+    return s->texture_high < s->info.maxTextureCount ? s->texture_high : SLC_NONE;
+}
+
+static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
+                                      const SluiceVulkanTextureCreateInfo *info)
+{
+    if (info->addressModeU > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
+        info->addressModeV > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (info->primaryId == SLUICE_NO_TEXTURE)
+        return SLUICE_SUCCESS;
+    SluiceStreamedTextureLayout layout;
+    return sluiceGetTextureLayout(s->manager, info->primaryId, &layout);
+}
+
+static SluiceResult create_view(SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = texture->image.image,
+        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+        .format = slc_vk_format(texture->info.format),
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, texture->info.mipLevelCount, 0, 1}};
+    return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, &texture->view),
+                         "vkCreateImageView");
+}
+
+static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    const SluiceStreamedTextureLayout *layout = &texture->layout;
+    uint64_t count = (uint64_t)layout->feedbackWidth * layout->feedbackHeight;
+    assert(count >= (uint64_t)layout->minMipWidth * layout->minMipHeight);
+    if (count > s->regions.size ||
+        !slc_region_arena_take(&s->regions, (uint32_t)count, &texture->region_first)) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s: no room for %llu more feedback regions of %u",
+                texture->info.pName ? texture->info.pName : "image", (unsigned long long)count,
+                s->info.maxRegionCount);
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    }
+    texture->region_count = (uint32_t)count;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    const SluiceStreamedTextureDesc *desc = &texture->image.desc;
+    texture->packed_first_unit = SLC_NONE;
+    SluiceResult result = slc_packed_units_init(
+        &texture->packed, &s->cb, desc, sluiceFormatTexelSize(texture->info.format), SLC_TILE_SIZE);
+    if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
+        return result;
+    if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s: its packed levels need %u loads at once",
+                texture->info.pName ? texture->info.pName : "image", texture->packed.unit_count);
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    }
+    texture->packed_tiles = slc_alloc(&s->cb, desc->packedTileCount, sizeof(SluiceTile));
+    return texture->packed_tiles ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *texture,
+                                   SluiceTextureId primary)
+{
+    SluiceResult result = sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    assert((uint32_t)texture->id < s->info.maxTextureCount);
+    if (primary != SLUICE_NO_TEXTURE)
+        result = sluiceSetPrimaryTexture(s->manager, texture->id, primary);
+    if (result != SLUICE_SUCCESS)
+        sluiceRemoveStreamedTexture(s->manager, texture->id, s->frame);
+    return result;
+}
+
+static void add_primary(SluiceVulkanStreamer *s, uint32_t index)
+{
+    s->textures[index].primary_place = s->primary_count;
+    s->primaries[s->primary_count++] = index;
+}
+
+static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
+{
+    uint32_t place = s->textures[index].primary_place;
+    if (place == SLC_NONE)
+        return;
+    uint32_t last = s->primaries[--s->primary_count];
+    s->primaries[place] = last;
+    s->textures[last].primary_place = place;
+    s->textures[index].primary_place = SLC_NONE;
+}
+
+static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    if (texture->view)
+        s->vk.DestroyImageView(s->vk.device, texture->view, NULL);
+    if (texture->image.image)
+        s->residency->interface->destroy_image(s->residency, index);
+    if (texture->region_count)
+        slc_region_arena_give(&s->regions, texture->region_first, texture->region_count);
+    slc_free(&s->cb, texture->packed_tiles, texture->image.desc.packedTileCount,
+             sizeof *texture->packed_tiles);
+    slc_packed_units_finish(&texture->packed, &s->cb);
+    *texture = (struct slc_texture){.state = SLC_TEXTURE_FREE};
+}
+
+static SluiceResult build(SluiceVulkanStreamer *s, uint32_t index,
+                          const SluiceVulkanTextureCreateInfo *info)
+{
+    struct slc_texture *texture = &s->textures[index];
+    *texture = (struct slc_texture){.source = info->source,
+                                    .primary_id = info->primaryId,
+                                    .address_modes = {info->addressModeU, info->addressModeV}};
+    SluiceResult result = sluiceGetImageInfo(info->source, &texture->info);
+    if (result == SLUICE_SUCCESS)
+        result = s->residency->interface->create_image(s->residency, index, &texture->info,
+                                                       &texture->image);
+    if (result == SLUICE_SUCCESS)
+        result = create_view(s, texture);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetStreamedTextureLayout(&texture->image.desc, &texture->layout);
+    if (result == SLUICE_SUCCESS)
+        result = take_regions(s, texture);
+    if (result == SLUICE_SUCCESS)
+        result = create_packed(s, texture);
+    if (result == SLUICE_SUCCESS)
+        result = add_to_manager(s, texture, info->primaryId);
+    return result;
+}
+
+SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
+                                    const SluiceVulkanTextureCreateInfo *pCreateInfo,
+                                    SluiceVulkanTexture *pTexture)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !pCreateInfo || !pTexture || !pCreateInfo->source)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = check_create_info(s, pCreateInfo);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t index = find_free(s);
+    if (index == SLC_NONE)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    result = build(s, index, pCreateInfo);
+    if (result != SLUICE_SUCCESS) {
+        destroy_parts(s, index);
+        return result;
+    }
+    struct slc_texture *texture = &s->textures[index];
+    texture->state = SLC_TEXTURE_LIVE;
+    if (index == s->texture_high)
+        s->texture_high++;
+    s->by_manager_index[(uint32_t)texture->id] = index;
+    s->new_textures[s->new_texture_count++] = index;
+    texture->primary_place = SLC_NONE;
+    if (texture->primary_id == SLUICE_NO_TEXTURE)
+        add_primary(s, index);
+    *pTexture = (SluiceVulkanTexture){
+        .textureId = texture->id,
+        .image = texture->image.image,
+        .imageView = texture->view,
+        .format = slc_vk_format(texture->info.format),
+        .width = texture->info.width,
+        .height = texture->info.height,
+        .mipLevelCount = texture->info.mipLevelCount,
+        .tableIndex = index,
+    };
+    return SLUICE_SUCCESS;
+}
+
+/* They stand alone from now on, so their own feedback is read. */
+static void free_followers(SluiceVulkanStreamer *s, SluiceTextureId primary)
+{
+    for (uint32_t i = 0; i < s->texture_high; i++) {
+        struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_LIVE || texture->primary_id != primary)
+            continue;
+        texture->primary_id = SLUICE_NO_TEXTURE;
+        add_primary(s, i);
+    }
+}
+
+static void forget_new(SluiceVulkanStreamer *s, uint32_t index)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->new_texture_count; i++)
+        if (s->new_textures[i] != index)
+            s->new_textures[kept++] = s->new_textures[i];
+    s->new_texture_count = kept;
+}
+
+SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTextureId textureId)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s)
+        return SLUICE_ERROR_NULL_POINTER;
+    /* The manager knows which ids are good. */
+    SluiceResult result = sluiceRemoveStreamedTexture(s->manager, textureId, s->frame);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t index = s->by_manager_index[(uint32_t)textureId];
+    struct slc_texture *texture = &s->textures[index];
+    assert(texture->id == textureId && texture->state == SLC_TEXTURE_LIVE);
+    texture->state = SLC_TEXTURE_REMOVED;
+    texture->removed_frame = s->frame;
+    s->removed_count++;
+    slc_loads_drop(s, index);
+    remove_primary(s, index);
+    free_followers(s, textureId);
+    forget_new(s, index);
+    return SLUICE_SUCCESS;
+}
+
+uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
+{
+    for (uint32_t i = 0; i < s->texture_high && s->removed_count; i++) {
+        struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_REMOVED)
+            continue;
+        if (texture->removed_frame <= s->completed_frame && texture->unit_count == 0 &&
+            s->residency->interface->image_is_idle(s->residency, i)) {
+            destroy_parts(s, i);
+            s->removed_count--;
+        } else if (limit >= texture->removed_frame) {
+            /* Its pages are bound to its slots until it is gone. */
+            limit = texture->removed_frame ? texture->removed_frame - 1 : 0;
+        }
+    }
+    return limit;
+}
+
+void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index)
+{
+    if (s->textures[index].state != SLC_TEXTURE_FREE)
+        destroy_parts(s, index);
+}
+
+static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
+{
+    const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
+    return (struct SluiceTextureEntry){
+        .width = desc->width,
+        .height = desc->height,
+        .mipLevelCount = desc->mipLevelCount,
+        .regularMipCount = desc->regularMipCount,
+        .regionWidth = desc->feedbackRegionWidth,
+        .regionHeight = desc->feedbackRegionHeight,
+        .regionCountX = texture->layout.feedbackWidth,
+        .regionCountY = texture->layout.feedbackHeight,
+        .feedbackOffset = texture->region_first,
+        .minMipOffset = texture->region_first,
+        .addressModeU = (uint)texture->address_modes[0],
+        .addressModeV = (uint)texture->address_modes[1],
+        .flags = texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u,
+    };
+}
+
+void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    for (uint32_t i = 0; i < s->new_texture_count; i++) {
+        uint32_t index = s->new_textures[i];
+        const struct slc_texture *texture = &s->textures[index];
+        struct SluiceTextureEntry entry = table_entry(texture);
+        s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
+                              sizeof entry, &entry);
+        if (s->buffers_cleared) /* else the whole buffer has just been filled */
+            s->vk.CmdFillBuffer(commands, s->feedback.buffer, (uint64_t)texture->region_first * 4,
+                                (uint64_t)texture->region_count * 4, SLUICE_MIP_UNTOUCHED);
+    }
+    s->new_texture_count = 0;
+}

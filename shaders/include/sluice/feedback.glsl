@@ -1,0 +1,50 @@
+/*
+ * Writes down which level a sample wants, whether it is resident or not.
+ *
+ * Select few pixels first (stochastic.glsl), and take the derivatives before that branch:
+ *
+ *     vec2 dx = dFdx(uv), dy = dFdy(uv);
+ *     if (sluiceSelectRandomQuad(uvec2(gl_FragCoord.xy), seed, 1.0 / 16.0))
+ *         sluiceWriteFeedback(tableIndex, uv, dx, dy, 0.0, 8.0);
+ *
+ * A texture set writes once, with the primary's index.
+ */
+#ifndef SLUICE_FEEDBACK_GLSL
+#define SLUICE_FEEDBACK_GLSL
+
+#include "buffers.glsl"
+#include "footprint.glsl"
+#include "lod.glsl"
+
+void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
+{
+    uint at = entry.feedbackOffset + y * entry.regionCountX + x;
+    /* Most writes change nothing, and a load is far cheaper than an atomic. */
+    if (level < SLUICE_FEEDBACK_WORD(at))
+        atomicMin(SLUICE_FEEDBACK_WORD(at), level);
+}
+
+/**
+ * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
+ * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
+ * (1: none). Not finite arguments mark at most the coarsest level. Never writes outside the
+ * texture's own map. Helper invocations write nothing.
+ */
+void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                         float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    vec2 size = vec2(entry.width, entry.height);
+    float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
+    uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    SluiceFootprint at = sluiceComputeFootprint(
+        entry, uv, sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy), coarsest);
+    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
+    if (sluiceFootprintIsOneRegion(at))
+        return;
+    for (uint i = 1u; i < 9u; i++)
+        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+}
+
+#endif

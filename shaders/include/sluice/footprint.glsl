@@ -1,0 +1,113 @@
+/*
+ * The regions of a texture that one sample may touch.
+ *
+ * A tile of level l stands over the regions whose index, shifted right by l, is its own. Level sizes
+ * are rounded down, so on textures that do not halve evenly a tile begins up to one texel of its
+ * level before its regions: the box around a sample reaches that much further down.
+ *
+ * Along an axis it suffices to look at both ends of the box, and at the last region where the box
+ * wraps around it: no box is as wide as a tile of the level that is sampled, so at that level the
+ * ends see every tile that lies between. C twin: lib/vulkan/shader_twins.h.
+ */
+#ifndef SLUICE_FOOTPRINT_GLSL
+#define SLUICE_FOOTPRINT_GLSL
+
+#include "buffers.glsl"
+#include "lod.glsl"
+
+/* Texels of the coarser level: half a texel for the bilinear filter, and room for fixed-point uv. */
+#define SLUICE_APRON 0.5625
+#define SLUICE_APRON_UNEVEN 1.5625
+
+/** Columns x and rows y; entries repeat where fewer than three are touched. */
+struct SluiceFootprint {
+    uvec3 x;
+    uvec3 y;
+};
+
+/** Region of a coordinate in [0, 1]; always below `regionCount`, also for NaN. */
+uint sluiceRegionIndex(float coordinate, float regionsPerUnit, uint regionCount)
+{
+    float at = coordinate > 0.0 ? min(coordinate, 1.0) * regionsPerUnit : 0.0;
+    return min(uint(at), regionCount - 1u);
+}
+
+/**
+ * One axis: the regions from `below` before to `above` behind the coordinate, both in units of uv.
+ */
+uvec3 sluiceRegionRange(float coordinate, float below, float above, uint addressMode,
+                        float regionsPerUnit, uint regionCount)
+{
+    below = min(below, 0.5);
+    above = min(above, 0.5);
+    if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
+        /* fract first: far from 0 the ends of the box would round to its middle */
+        float middle = coordinate - floor(coordinate);
+        middle = middle >= 0.0 ? min(middle, 1.0) : 0.0;
+        float low = middle - below;
+        float high = middle + above;
+        bool wraps = low < 0.0 || high >= 1.0;
+        uint first = sluiceRegionIndex(low < 0.0 ? low + 1.0 : low, regionsPerUnit, regionCount);
+        uint last = sluiceRegionIndex(high >= 1.0 ? high - 1.0 : high, regionsPerUnit, regionCount);
+        return uvec3(first, last, wraps ? regionCount - 1u : last);
+    }
+    float middle = coordinate;
+    if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
+        middle = coordinate - 2.0 * floor(coordinate * 0.5);
+        middle = middle > 1.0 ? 2.0 - middle : middle;
+        below = above = max(below, above);
+    } else if (addressMode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
+        middle = abs(coordinate);
+        below = above = max(below, above);
+    }
+    middle = middle > 0.0 ? min(middle, 1.0) : 0.0;
+    uint first = sluiceRegionIndex(middle - below, regionsPerUnit, regionCount);
+    uint last = sluiceRegionIndex(middle + above, regionsPerUnit, regionCount);
+    return uvec3(first, last, last);
+}
+
+/**
+ * Around `uv`, for samples of levels up to `coarsestLevel`. `halfAxis` is half of the longer
+ * derivative where the sampler is anisotropic, in units of uv, and 0 where it is not.
+ */
+SluiceFootprint sluiceComputeFootprint(SluiceTextureEntry entry, vec2 uv, vec2 halfAxis,
+                                       uint coarsestLevel)
+{
+    float below = (entry.flags & SLUICE_TEXTURE_FLAG_UNEVEN) != 0u ? SLUICE_APRON_UNEVEN : SLUICE_APRON;
+    float texelX = 1.0 / float(max(entry.width >> coarsestLevel, 1u));
+    float texelY = 1.0 / float(max(entry.height >> coarsestLevel, 1u));
+    float axisX = abs(halfAxis.x);
+    float axisY = abs(halfAxis.y);
+    SluiceFootprint footprint;
+    footprint.x = sluiceRegionRange(uv.x, below * texelX + axisX, SLUICE_APRON * texelX + axisX,
+                                    entry.addressModeU,
+                                    float(entry.width) / float(entry.regionWidth),
+                                    entry.regionCountX);
+    footprint.y = sluiceRegionRange(uv.y, below * texelY + axisY, SLUICE_APRON * texelY + axisY,
+                                    entry.addressModeV,
+                                    float(entry.height) / float(entry.regionHeight),
+                                    entry.regionCountY);
+    return footprint;
+}
+
+bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
+{
+    return all(equal(footprint.x.xx, footprint.x.yz)) && all(equal(footprint.y.xx, footprint.y.yz));
+}
+
+/**
+ * Half of the longer derivative, 0 without anisotropy. A positive LOD bias makes it longer: some
+ * devices scale the footprint with it, and so do explicit derivatives that hold the bias.
+ */
+vec2 sluiceHalfAxis(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+{
+    if (!(maxAnisotropy > 1.0))
+        return vec2(0.0);
+    vec2 size = vec2(entry.width, entry.height);
+    vec2 tx = dx * size;
+    vec2 ty = dy * size;
+    float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
+    return 0.5 * scale * (dot(tx, tx) >= dot(ty, ty) ? dx : dy);
+}
+
+#endif

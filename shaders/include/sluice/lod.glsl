@@ -1,0 +1,58 @@
+/*
+ * The level of detail that a sampler will choose, computed from derivatives.
+ *
+ * Vulkan lets implementations approximate; those measured pick a level up to 0.09 finer than the
+ * formula without anisotropy and 0.14 finer with it. Whoever must not miss a level subtracts
+ * sluiceLodMargin. C twin: lib/vulkan/shader_twins.h.
+ */
+#ifndef SLUICE_LOD_GLSL
+#define SLUICE_LOD_GLSL
+
+/* Ends of the range in which everything is computed; beyond them there are no levels. */
+#define SLUICE_LOD_LIMIT 32.0
+
+/** The anisotropy that counts: 1 to 16, 1 for NaN. */
+float sluiceClampAnisotropy(float maxAnisotropy)
+{
+    return maxAnisotropy > 1.0 ? min(maxAnisotropy, 16.0) : 1.0;
+}
+
+/** How far the sampler's level may lie below the computed one. */
+float sluiceLodMargin(float maxAnisotropy)
+{
+    return maxAnisotropy > 1.0 ? 0.1875 : 0.125;
+}
+
+/**
+ * `dx` and `dy` in texels of level 0 per pixel. The result is finite, -32 to 32, whatever the
+ * arguments: no derivative gives -32, an infinite one or NaN gives 32.
+ */
+float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    if (!(x2 >= 0.0 && y2 >= 0.0)) /* NaN */
+        return SLUICE_LOD_LIMIT;
+    float n = sluiceClampAnisotropy(maxAnisotropy);
+    float major2 = max(x2, y2);
+    float minor2 = max(min(x2, y2), major2 / (n * n));
+    float lod = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
+    lod += lodBias;
+    if (!(lod >= -SLUICE_LOD_LIMIT))
+        return -SLUICE_LOD_LIMIT;
+    return min(lod, SLUICE_LOD_LIMIT);
+}
+
+/** The finest level of `count` that a sampler may touch at this LOD. */
+uint sluiceFinestLevel(float lod, float margin, uint count)
+{
+    return uint(clamp(lod - margin, 0.0, float(count - 1u)));
+}
+
+/** The coarsest level of `count` that a sampler may touch at this LOD. */
+uint sluiceCoarsestLevel(float lod, uint count)
+{
+    return min(uint(clamp(lod, 0.0, float(count - 1u))) + 1u, count - 1u);
+}
+
+#endif

@@ -1,0 +1,68 @@
+/*
+ * Checks, with residency codes, that a sample touches only what is resident. For tests and for
+ * pictures of mistakes; drawing does not need it. Needs the feature shaderResourceResidency.
+ *
+ * The sampler passed here must filter NEAREST between levels and LINEAR inside them: the codes of a
+ * widely used driver are wrong for others.
+ */
+#ifndef SLUICE_RESIDENCY_GLSL
+#define SLUICE_RESIDENCY_GLSL
+
+#extension GL_ARB_sparse_texture2 : require
+
+#include "sample.glsl"
+
+/* A coordinate whose filter stays inside the image; false if there is none, on a single texel. */
+bool sluiceStayInside(inout float coordinate, uint size)
+{
+    coordinate = clamp(coordinate, 0.75 / float(size), 1.0 - 0.75 / float(size));
+    return size > 1u;
+}
+
+/**
+ * 1 if a texel that the LINEAR filter needs at this place and level is not resident, 0 if not.
+ * Border colours are no memory, and drivers do not agree on whether they are resident: where the
+ * address mode is CLAMP_TO_BORDER the nearest place inside is asked for.
+ */
+uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, vec2 uv, float level)
+{
+    vec4 texel;
+    if (entry.addressModeU == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        !sluiceStayInside(uv.x, max(entry.width >> uint(level), 1u)))
+        return 0u;
+    if (entry.addressModeV == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        !sluiceStayInside(uv.y, max(entry.height >> uint(level), 1u)))
+        return 0u;
+    return sparseTexelsResidentARB(sparseTextureLodARB(nearestMipTex, uv, level, texel)) ? 0u : 1u;
+}
+
+/**
+ * How many places and levels sluiceSample and sluiceSampleGrad touch, with the same arguments,
+ * that are not resident. Must be 0.
+ */
+uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
+                            float lodBias, float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return 0u;
+    float last = float(entry.mipLevelCount - 1u);
+    float fine = floor(clamp(s.lod - (s.plain ? sluiceLodMargin(maxAnisotropy) : 0.0), 0.0, last));
+    float coarse = ceil(clamp(s.lod, 0.0, last));
+    uint taps = 1u;
+    vec2 axis = vec2(0.0);
+    if (maxAnisotropy > 1.0) {
+        taps = 9u;
+        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, 0.0, maxAnisotropy);
+    }
+    uint count = 0u;
+    for (uint i = 0u; i < taps; i++) {
+        vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : vec2(0.0));
+        count += sluiceProbeNonResident(nearestMipTex, entry, at, fine);
+        count += sluiceProbeNonResident(nearestMipTex, entry, at, coarse);
+    }
+    return count;
+}
+
+#endif

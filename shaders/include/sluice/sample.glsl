@@ -1,0 +1,182 @@
+/*
+ * Samples a streamed texture where it is resident: at the wanted level, or at the finest one that
+ * the MinMip map shows around the sample. Never touches a texel that is not there.
+ *
+ * The sampler must have no LOD bias of its own, minLod 0 and maxLod VK_LOD_CLAMP_NONE, and the
+ * address modes that the texture was added with.
+ *
+ * Where nothing has to be clamped the texture is sampled as if it were not streamed, so the settled
+ * picture is that of a fully resident texture.
+ */
+#ifndef SLUICE_SAMPLE_GLSL
+#define SLUICE_SAMPLE_GLSL
+
+#include "buffers.glsl"
+#include "footprint.glsl"
+#include "lod.glsl"
+
+/* What a sample is where not even the packed levels are resident. Define it before to change it. */
+#ifndef SLUICE_FALLBACK_COLOR
+#define SLUICE_FALLBACK_COLOR vec4(0.5, 0.5, 0.5, 1.0)
+#endif
+
+/* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
+#define SLUICE_CLAMP_STEPS 4
+
+/* A footprint this much smaller than a texel is a point. */
+#define SLUICE_LOD_POINT -16.0
+
+/** What may be sampled. */
+struct SluiceSampling {
+    vec2 uv;            /* as given; 0 where not finite */
+    vec2 dx, dy;        /* for textureGrad: LOD bias included, coarsened where need be */
+    float lod;          /* what the sampler will choose, about */
+    uint wantedLevel;   /* the finest level that would be touched if all were there */
+    uint level;         /* the finest level that may be touched; SLUICE_MIP_UNTOUCHED: none */
+    bool plain;         /* texture() touches only what is there, and may be used instead */
+};
+
+uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
+{
+    uint at = entry.minMipOffset + y * entry.regionCountX + x;
+    return (SLUICE_MIN_MIP_WORD(at >> 2u) >> ((at & 3u) * 8u)) & 255u;
+}
+
+/** The coarsest of the MinMip values over a footprint. */
+uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at)
+{
+    uint level = sluiceReadMinMip(entry, at.x.x, at.y.x);
+    if (sluiceFootprintIsOneRegion(at))
+        return level;
+    for (uint i = 1u; i < 9u; i++)
+        level = max(level, sluiceReadMinMip(entry, at.x[i % 3u], at.y[i / 3u]));
+    return level;
+}
+
+/**
+ * Lengthens a derivative to at least `scale` texels. The longer one stays, so an anisotropic
+ * footprint keeps its length and loses only its narrowness.
+ */
+vec2 sluiceLengthen(vec2 derivative, vec2 size, float scale, vec2 otherwise)
+{
+    vec2 texels = derivative * size;
+    float texelLength = length(texels);
+    if (texelLength >= scale)
+        return derivative;
+    if (!(texelLength > 1.0e-15)) /* 0, denormal or NaN: it has no direction */
+        return otherwise * scale / size;
+    return derivative * (scale / texelLength);
+}
+
+bool sluiceIsFinite(vec2 v)
+{
+    return abs(v.x) <= 3.0e38 && abs(v.y) <= 3.0e38;
+}
+
+/**
+ * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
+ * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
+ * s.level is SLUICE_MIP_UNTOUCHED. `dx` and `dy` are the derivatives of `uv` per pixel.
+ */
+SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                                     float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    vec2 size = vec2(entry.width, entry.height);
+    float margin = sluiceLodMargin(maxAnisotropy);
+    SluiceSampling s;
+    bool clamped = !(sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy));
+    s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
+    s.lod = clamped ? SLUICE_LOD_LIMIT
+                    : sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
+    s.level = s.wantedLevel;
+    float biasScale = exp2(clamp(lodBias, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT));
+    s.dx = clamped ? vec2(0.0) : dx * biasScale;
+    s.dy = clamped ? vec2(0.0) : dy * biasScale;
+    /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
+    s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
+    float scale = s.plain ? 0.0 : exp2(SLUICE_LOD_POINT);
+
+    vec2 halfAxis =
+        clamped ? vec2(0.0) : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
+    uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
+    for (uint tries = 0u;; tries++) {
+        uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfAxis, coarsest));
+        if (there == SLUICE_MIP_UNTOUCHED) {
+            s.level = SLUICE_MIP_UNTOUCHED;
+            s.plain = false;
+            return s;
+        }
+        if (there <= s.level)
+            break;
+        clamped = true;
+        s.level = tries < SLUICE_CLAMP_STEPS ? there : max(entry.regularMipCount, there);
+        coarsest = min(s.level + 1u, entry.mipLevelCount - 1u);
+        if (tries >= SLUICE_CLAMP_STEPS)
+            break;
+        if (maxAnisotropy > 1.0)
+            halfAxis = max(abs(halfAxis), vec2(0.5 * exp2(float(s.level))) / size);
+    }
+    if (clamped) {
+        s.plain = false;
+        s.lod = float(s.level) + margin;
+        scale = exp2(s.lod);
+    }
+    if (!s.plain) {
+        s.dx = sluiceLengthen(s.dx, size, scale, vec2(1.0, 0.0));
+        s.dy = sluiceLengthen(s.dy, size, scale, vec2(0.0, 1.0));
+    }
+    return s;
+}
+
+/** How many levels a sample is coarser than it should be; SLUICE_MIP_UNTOUCHED if it is nothing. */
+uint sluiceMissingLevels(SluiceSampling s)
+{
+    return s.level == SLUICE_MIP_UNTOUCHED ? s.level : s.level - s.wantedLevel;
+}
+
+/**
+ * Samples with explicit derivatives of `uv` per pixel; any stage. `missingLevels` as
+ * sluiceMissingLevels: 0 once the texture is as sharp as wanted.
+ */
+vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                      float maxAnisotropy, out uint missingLevels)
+{
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+    return textureGrad(tex, s.uv, s.dx, s.dy);
+}
+
+#ifdef GL_FRAGMENT_SHADER
+
+/** True in all four pixels of a quad if it is in one. */
+bool sluiceAnyInQuad(bool value)
+{
+    float any = value ? 1.0 : 0.0;
+    any += abs(dFdxFine(any));
+    any += abs(dFdyFine(any));
+    return any > 0.0;
+}
+
+/** The same with the fragment's own derivatives, in control flow that is uniform over the quad. */
+vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
+                  out uint missingLevels)
+{
+    vec2 dx = dFdx(uv);
+    vec2 dy = dFdy(uv);
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    /* The quad decides as one, because implicit derivatives need all of it. */
+    if (!sluiceAnyInQuad(!s.plain))
+        return texture(tex, uv, lodBias);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+    return textureGrad(tex, s.uv, s.dx, s.dy);
+}
+
+#endif
+
+#endif

@@ -1,0 +1,361 @@
+#include "device/harness.h"
+
+#include "support/test.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_DEVICES 16u
+#define MAX_FAMILIES 32u
+#define LAYER "VK_LAYER_KHRONOS_validation"
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT types,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user)
+{
+    (void)types;
+    if (severity < VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT)
+        return VK_FALSE;
+    /* The loader warns of libraries of other drivers; only the layer judges this program. */
+    if (data->pMessageIdName && strcmp(data->pMessageIdName, "Loader Message") == 0)
+        return VK_FALSE;
+    struct harness *h = user;
+    if (h->message_count++ < 10)
+        fprintf(stderr, "# validation: %s\n", data->pMessage);
+    return VK_FALSE;
+}
+
+static void on_log(void *user, SluiceLogSeverity severity, const char *message)
+{
+    struct harness *h = user;
+    h->log_count[severity]++;
+    if (!h->quiet)
+        fprintf(stderr, "# %s\n", message);
+}
+
+static bool layer_is_installed(struct harness *h)
+{
+    PFN_vkEnumerateInstanceLayerProperties enumerate =
+        (PFN_vkEnumerateInstanceLayerProperties)h->get(NULL, "vkEnumerateInstanceLayerProperties");
+    VkLayerProperties layers[64];
+    uint32_t count = 64;
+    if (!enumerate || enumerate(&count, layers) < 0)
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        if (strcmp(layers[i].layerName, LAYER) == 0)
+            return true;
+    return false;
+}
+
+static bool create_instance(struct harness *h)
+{
+    const char *layers[] = {LAYER}, *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                                     VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    VkValidationFeatureEnableEXT enables[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    VkDebugUtilsMessengerCreateInfoEXT messenger = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        /* Not performance: the layer would rather not copy into VK_IMAGE_LAYOUT_GENERAL, but a
+         * streamed image is copied to in one place while it is sampled in another. */
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = h};
+    VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                        .pNext = &messenger,
+                                        .enabledValidationFeatureCount = 1,
+                                        .pEnabledValidationFeatures = enables};
+    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                     .apiVersion = VK_API_VERSION_1_2};
+    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                 .pApplicationInfo = &application};
+    h->validates = layer_is_installed(h);
+    if (h->validates) {
+        info.pNext = &features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = layers;
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = extensions;
+    }
+    PFN_vkCreateInstance create = (PFN_vkCreateInstance)h->get(NULL, "vkCreateInstance");
+    if (!create || create(&info, NULL, &h->instance) != VK_SUCCESS)
+        return false;
+#define LOAD(name) h->name = (PFN_vk##name)h->get(h->instance, "vk" #name);
+    HARNESS_INSTANCE_FUNCTIONS(LOAD)
+#undef LOAD
+    if (!h->validates)
+        return true;
+    PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
+        (PFN_vkCreateDebugUtilsMessengerEXT)h->get(h->instance, "vkCreateDebugUtilsMessengerEXT");
+    return create_messenger &&
+           create_messenger(h->instance, &messenger, NULL, &h->messenger) == VK_SUCCESS;
+}
+
+static bool pick_device(struct harness *h)
+{
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = MAX_DEVICES;
+    if (h->EnumeratePhysicalDevices(h->instance, &count, devices) < 0)
+        return false;
+    const char *wanted = getenv("SLUICE_DEVICE");
+    for (uint32_t i = 0; i < count; i++) {
+        char number[16];
+        snprintf(number, sizeof number, "%u", i);
+        SluiceVulkanDeviceCapabilities caps;
+        if (sluiceGetVulkanDeviceCapabilities(h->instance, devices[i], h->get, &caps) !=
+            SLUICE_SUCCESS)
+            continue;
+        bool named = wanted && (strcmp(wanted, number) == 0 || strstr(caps.deviceName, wanted));
+        if (wanted ? !named : !caps.sparse)
+            continue;
+        h->physical_device = devices[i];
+        h->caps = caps;
+        return caps.sparse;
+    }
+    return false;
+}
+
+static uint32_t drawing_family(struct harness *h)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    h->GetPhysicalDeviceQueueFamilyProperties(h->physical_device, &count, families);
+    const VkQueueFlags both = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    for (uint32_t i = 0; i < count; i++)
+        if ((families[i].queueFlags & both) == both)
+            return i;
+    return 0;
+}
+
+static bool create_device(struct harness *h)
+{
+    SluiceLogCallback log = {h, on_log};
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &vulkan12};
+    VkPhysicalDeviceVulkan12Features there12 = vulkan12;
+    VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                       .pNext = &there12};
+    h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
+    features.features.shaderResourceResidency = there.features.shaderResourceResidency;
+    features.features.samplerAnisotropy = there.features.samplerAnisotropy;
+    vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
+    h->anisotropy = there.features.samplerAnisotropy;
+    h->mirror_clamp = there12.samplerMirrorClampToEdge;
+    if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, &log,
+                                    &features.features, &vulkan12) != SLUICE_SUCCESS)
+        return false;
+    h->family = drawing_family(h);
+    float priority = 1.0f;
+    VkDeviceQueueCreateInfo queues[2];
+    for (uint32_t i = 0; i < 2; i++)
+        queues[i] = (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                              .queueFamilyIndex =
+                                                  i ? h->caps.sparseQueueFamilyIndex : h->family,
+                                              .queueCount = 1,
+                                              .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &features,
+                               .queueCreateInfoCount =
+                                   h->caps.sparseQueueFamilyIndex == h->family ? 1 : 2,
+                               .pQueueCreateInfos = queues};
+    if (h->CreateDevice(h->physical_device, &info, NULL, &h->device) != VK_SUCCESS)
+        return false;
+#define LOAD(name) h->name = (PFN_vk##name)h->GetDeviceProcAddr(h->device, "vk" #name);
+    HARNESS_DEVICE_FUNCTIONS(LOAD)
+#undef LOAD
+    h->GetDeviceQueue(h->device, h->family, 0, &h->queue);
+    h->GetDeviceQueue(h->device, h->caps.sparseQueueFamilyIndex, 0, &h->sparse_queue);
+    h->GetPhysicalDeviceMemoryProperties(h->physical_device, &h->memory);
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                    .queueFamilyIndex = h->family};
+    if (h->CreateCommandPool(h->device, &pool, NULL, &h->pool) != VK_SUCCESS)
+        return false;
+    VkCommandBufferAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                            .commandPool = h->pool,
+                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                            .commandBufferCount = HARNESS_FRAMES};
+    return h->AllocateCommandBuffers(h->device, &allocate, h->commands) == VK_SUCCESS;
+}
+
+/* TAP for "all skipped"; the status says the same to the build. */
+static int no_device(struct harness *h, const char *why)
+{
+    harness_finish(h);
+    printf("1..0 # SKIP %s\n", why);
+    return 77;
+}
+
+int harness_init(struct harness *h)
+{
+    *h = (struct harness){0};
+    h->library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (!h->library)
+        return no_device(h, "there is no Vulkan loader (libvulkan.so.1)");
+    *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* as dlopen(3) writes it */
+    if (!h->get || !create_instance(h))
+        return no_device(h, "no Vulkan 1.2 instance can be created");
+    if (!pick_device(h))
+        return no_device(
+            h, getenv("SLUICE_DEVICE")
+                   ? "the device that SLUICE_DEVICE names is absent or has no sparse residency"
+                   : "no device has Vulkan 1.2 and sparse residency of 2D images");
+    if (!create_device(h))
+        return 1;
+    fprintf(stderr, "# %s, validation %s\n", h->caps.deviceName, h->validates ? "on" : "absent");
+    return 0;
+}
+
+void harness_finish(struct harness *h)
+{
+    if (h->device) {
+        h->DeviceWaitIdle(h->device);
+        h->DestroyCommandPool(h->device, h->pool, NULL);
+        h->DestroyDevice(h->device, NULL);
+    }
+    if (h->messenger)
+        ((PFN_vkDestroyDebugUtilsMessengerEXT)h->get(
+            h->instance, "vkDestroyDebugUtilsMessengerEXT"))(h->instance, h->messenger, NULL);
+    if (h->instance)
+        h->DestroyInstance(h->instance, NULL);
+    /* The loader stays: drivers keep threads and thread-local data that outlive an unload badly. */
+    *h = (struct harness){0};
+}
+
+void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
+{
+    info->instance = h->instance;
+    info->physicalDevice = h->physical_device;
+    info->device = h->device;
+    info->pfnGetInstanceProcAddr = h->get;
+    info->sparseQueue = h->sparse_queue;
+    info->sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex;
+    info->queueFamilyIndex = h->family;
+    info->log = (SluiceLogCallback){h, on_log};
+    info->framesInFlight = HARNESS_FRAMES;
+}
+
+void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,
+                         VkBufferUsageFlags usage)
+{
+    *buffer = (struct harness_buffer){.size = size};
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+    assert_int_equal(h->CreateBuffer(h->device, &info, NULL, &buffer->buffer), VK_SUCCESS);
+    VkMemoryRequirements memory;
+    h->GetBufferMemoryRequirements(h->device, buffer->buffer, &memory);
+    const VkMemoryPropertyFlags wanted =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = memory.size,
+                                     .memoryTypeIndex = UINT32_MAX};
+    for (uint32_t i = 0; i < h->memory.memoryTypeCount; i++)
+        if (memory.memoryTypeBits >> i & 1 &&
+            (h->memory.memoryTypes[i].propertyFlags & wanted) == wanted) {
+            allocate.memoryTypeIndex = i;
+            /* results are read by the host, so cached memory is worth a look */
+            if (h->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
+                break;
+        }
+    assert_int_equal(h->AllocateMemory(h->device, &allocate, NULL, &buffer->memory), VK_SUCCESS);
+    assert_int_equal(h->BindBufferMemory(h->device, buffer->buffer, buffer->memory, 0), VK_SUCCESS);
+    assert_int_equal(h->MapMemory(h->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),
+                     VK_SUCCESS);
+}
+
+void harness_buffer_finish(struct harness *h, struct harness_buffer *buffer)
+{
+    h->DestroyBuffer(h->device, buffer->buffer, NULL);
+    h->FreeMemory(h->device, buffer->memory, NULL);
+    *buffer = (struct harness_buffer){0};
+}
+
+static void begin_commands(struct harness *h, VkCommandBuffer commands)
+{
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
+    assert_int_equal(h->BeginCommandBuffer(commands, &begin), VK_SUCCESS);
+}
+
+static void wait_for(struct harness *h, VkSemaphore semaphore, uint64_t value)
+{
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &semaphore,
+                                .pValues = &value};
+    assert_int_equal(h->WaitSemaphores(h->device, &info, UINT64_MAX), VK_SUCCESS);
+}
+
+void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
+                   void (*record)(void *user, VkCommandBuffer commands), void *user)
+{
+    uint32_t at = h->frame_count++ % HARNESS_FRAMES;
+    VkCommandBuffer commands = h->commands[at];
+    if (h->last[at].semaphore)
+        wait_for(h, h->last[at].semaphore, h->last[at].signalValue);
+    begin_commands(h, commands);
+    SluiceStreamingFrame frame;
+    CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, ++h->time, &frame));
+    if (record)
+        record(user, commands);
+    CHECK_OK(sluiceEndStreamingFrame(streamer, commands));
+    assert_int_equal(h->EndCommandBuffer(commands), VK_SUCCESS);
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = &frame.signalValue};
+    VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                           .pNext = &timeline,
+                           .commandBufferCount = 1,
+                           .pCommandBuffers = &commands,
+                           .signalSemaphoreCount = 1,
+                           .pSignalSemaphores = &frame.semaphore};
+    assert_int_equal(h->QueueSubmit(h->queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
+    h->last[at] = frame;
+    if (wait)
+        wait_for(h, frame.semaphore, frame.signalValue);
+}
+
+void harness_destroy(struct harness *h, SluiceVulkanStreamer *streamer)
+{
+    sluiceDestroyVulkanStreamer(streamer);
+    for (uint32_t i = 0; i < HARNESS_FRAMES; i++)
+        h->last[i] = (SluiceStreamingFrame){0};
+}
+
+void harness_settle(struct harness *h, SluiceVulkanStreamer *streamer, uint32_t frame_count,
+                    void (*record)(void *user, VkCommandBuffer commands), void *user)
+{
+    for (uint32_t i = 0; i < frame_count; i++) {
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+        harness_frame(h, streamer, true, record, user);
+    }
+}
+
+void harness_run(struct harness *h, void (*record)(void *user, VkCommandBuffer commands),
+                 void *user)
+{
+    VkCommandBuffer commands = h->commands[0];
+    assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+    begin_commands(h, commands);
+    record(user, commands);
+    assert_int_equal(h->EndCommandBuffer(commands), VK_SUCCESS);
+    VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                           .commandBufferCount = 1,
+                           .pCommandBuffers = &commands};
+    assert_int_equal(h->QueueSubmit(h->queue, 1, &submit, VK_NULL_HANDLE), VK_SUCCESS);
+    assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+}
+
+void harness_check_silence(const struct harness *h)
+{
+    assert_int_equal(h->message_count, 0);
+}

@@ -1,0 +1,104 @@
+/**
+ * A headless Vulkan device for tests, with the validation layer where it is installed: any message
+ * of warning or error severity fails the test.
+ *
+ * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. Without one that has
+ * Vulkan 1.2 and sparse residency a test program exits with status 77 and says why.
+ */
+#ifndef TESTS_DEVICE_HARNESS_H
+#define TESTS_DEVICE_HARNESS_H
+
+#include <sluice/vulkan.h>
+
+#define HARNESS_FRAMES 3u
+
+/* clang-format off */
+#define HARNESS_INSTANCE_FUNCTIONS(X)                                                             \
+    X(CreateDevice) X(DestroyInstance) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr)           \
+    X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties)                             \
+    X(GetPhysicalDeviceProperties) X(GetPhysicalDeviceQueueFamilyProperties)
+
+#define HARNESS_DEVICE_FUNCTIONS(X)                                                               \
+    X(AllocateCommandBuffers) X(AllocateDescriptorSets) X(AllocateMemory)                         \
+    X(BeginCommandBuffer) X(BindBufferMemory) X(BindImageMemory) X(CmdBeginRenderPass)            \
+    X(CmdBindDescriptorSets) X(CmdBindPipeline) X(CmdCopyImageToBuffer) X(CmdDispatch)            \
+    X(CmdDraw) X(CmdEndRenderPass) X(CmdPipelineBarrier) X(CmdPushConstants) X(CreateBuffer)      \
+    X(CreateCommandPool) X(CreateComputePipelines) X(CreateDescriptorPool)                        \
+    X(CreateDescriptorSetLayout) X(CreateFramebuffer) X(CreateGraphicsPipelines)                  \
+    X(CreateImage) X(CreateImageView) X(CreatePipelineLayout) X(CreateRenderPass)                 \
+    X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) X(DestroyCommandPool)                 \
+    X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyDevice)                       \
+    X(DestroyFramebuffer) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline)                  \
+    X(DestroyPipelineLayout) X(DestroyRenderPass) X(DestroySampler) X(DestroyShaderModule)        \
+    X(DeviceWaitIdle) X(EndCommandBuffer) X(FreeDescriptorSets) X(FreeMemory) X(GetBufferMemoryRequirements)            \
+    X(GetDeviceQueue) X(GetImageMemoryRequirements) X(MapMemory) X(QueueSubmit)                   \
+    X(ResetCommandBuffer) X(UpdateDescriptorSets) X(WaitSemaphores)
+/* clang-format on */
+
+struct harness_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    void *mapped; ///< host visible and coherent
+    uint64_t size;
+};
+
+struct harness {
+    void *library;
+    PFN_vkGetInstanceProcAddr get;
+    VkInstance instance;
+    VkDebugUtilsMessengerEXT messenger;
+    bool validates;
+    uint32_t message_count; ///< of validation, warnings and errors
+    VkPhysicalDevice physical_device;
+    VkPhysicalDeviceMemoryProperties memory;
+    VkDevice device;
+    uint32_t family;
+    VkQueue queue, sparse_queue;
+    SluiceVulkanDeviceCapabilities caps;
+    bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
+    VkCommandPool pool;
+    VkCommandBuffer commands[HARNESS_FRAMES];
+    uint32_t frame_count;
+    SluiceStreamingFrame last[HARNESS_FRAMES]; ///< that used each command buffer
+    uint64_t time;                             ///< of the last frame; one more each frame
+    uint32_t log_count[3];                     ///< messages of the library by severity
+    bool quiet;                                ///< expected failures are counted but not printed
+#define HARNESS_MEMBER(name) PFN_vk##name name;
+    HARNESS_INSTANCE_FUNCTIONS(HARNESS_MEMBER)
+    HARNESS_DEVICE_FUNCTIONS(HARNESS_MEMBER)
+#undef HARNESS_MEMBER
+};
+
+/** 0; or 77, having said why there is no device to test on; or 1. */
+int harness_init(struct harness *h);
+void harness_finish(struct harness *h);
+
+/** Fills in handles, queues and the log; the rest stays. */
+void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
+
+void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,
+                         VkBufferUsageFlags usage);
+void harness_buffer_finish(struct harness *h, struct harness_buffer *buffer);
+
+/**
+ * One frame: begin, `record` (may be NULL), end, submit. With `wait`, until the GPU has finished
+ * it. Fails the test on any error.
+ */
+void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
+                   void (*record)(void *user, VkCommandBuffer commands), void *user);
+
+/** Use one streamer at a time, and this to destroy it. */
+void harness_destroy(struct harness *h, SluiceVulkanStreamer *streamer);
+
+/** Frames, each finished and with all reads and binds waited for, until nothing is on its way. */
+void harness_settle(struct harness *h, SluiceVulkanStreamer *streamer, uint32_t frame_count,
+                    void (*record)(void *user, VkCommandBuffer commands), void *user);
+
+/** Commands outside of frames, waited for. */
+void harness_run(struct harness *h, void (*record)(void *user, VkCommandBuffer commands),
+                 void *user);
+
+/** Fails the test if validation has said anything. */
+void harness_check_silence(const struct harness *h);
+
+#endif /* TESTS_DEVICE_HARNESS_H */

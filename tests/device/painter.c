@@ -1,0 +1,134 @@
+#include "device/painter.h"
+
+#include "support/test.h"
+
+#include "picture_codes_frag.h"
+#include "picture_frag.h"
+#include "picture_vert.h"
+
+static VkShaderModule module(struct harness *h, const uint32_t *code, size_t size)
+{
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
+    VkShaderModule result;
+    assert_int_equal(h->CreateShaderModule(h->device, &info, NULL, &result), VK_SUCCESS);
+    return result;
+}
+
+/* Nothing is attached: fragments only write to buffers. */
+static void create_target(struct painter *p)
+{
+    struct harness *h = p->prober->h;
+    VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS};
+    VkRenderPassCreateInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                   .subpassCount = 1,
+                                   .pSubpasses = &subpass};
+    assert_int_equal(h->CreateRenderPass(h->device, &pass, NULL, &p->pass), VK_SUCCESS);
+    VkFramebufferCreateInfo framebuffer = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
+                                           .renderPass = p->pass,
+                                           .width = PICTURE_SIZE,
+                                           .height = PICTURE_SIZE,
+                                           .layers = 1};
+    assert_int_equal(h->CreateFramebuffer(h->device, &framebuffer, NULL, &p->framebuffer),
+                     VK_SUCCESS);
+}
+
+static void create_pipeline(struct painter *p)
+{
+    struct harness *h = p->prober->h;
+    bool codes = h->caps.shaderResourceResidency;
+    VkPipelineShaderStageCreateInfo stages[2] = {
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_VERTEX_BIT,
+         .module = module(h, picture_vert, sizeof picture_vert),
+         .pName = "main"},
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+         .module = codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
+                         : module(h, picture_frag, sizeof picture_frag),
+         .pName = "main"}};
+    VkPipelineVertexInputStateCreateInfo input = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    VkPipelineInputAssemblyStateCreateInfo assembly = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    VkViewport viewport = {0, 0, PICTURE_SIZE, PICTURE_SIZE, 0, 1};
+    VkRect2D scissor = {{0, 0}, {PICTURE_SIZE, PICTURE_SIZE}};
+    VkPipelineViewportStateCreateInfo viewports = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .pViewports = &viewport,
+        .scissorCount = 1,
+        .pScissors = &scissor};
+    VkPipelineRasterizationStateCreateInfo raster = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1};
+    VkPipelineMultisampleStateCreateInfo samples = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                         .stageCount = 2,
+                                         .pStages = stages,
+                                         .pVertexInputState = &input,
+                                         .pInputAssemblyState = &assembly,
+                                         .pViewportState = &viewports,
+                                         .pRasterizationState = &raster,
+                                         .pMultisampleState = &samples,
+                                         .layout = p->prober->layout,
+                                         .renderPass = p->pass};
+    assert_int_equal(
+        h->CreateGraphicsPipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
+        VK_SUCCESS);
+    h->DestroyShaderModule(h->device, stages[0].module, NULL);
+    h->DestroyShaderModule(h->device, stages[1].module, NULL);
+}
+
+void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture)
+{
+    *p = (struct painter){.prober = prober, .texture = texture};
+    create_target(p);
+    create_pipeline(p);
+}
+
+void painter_finish(struct painter *p)
+{
+    struct harness *h = p->prober->h;
+    assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+    h->DestroyPipeline(h->device, p->pipeline, NULL);
+    h->DestroyFramebuffer(h->device, p->framebuffer, NULL);
+    h->DestroyRenderPass(h->device, p->pass, NULL);
+}
+
+static void output_barrier(struct painter *p, VkCommandBuffer commands, VkPipelineStageFlags from,
+                           VkPipelineStageFlags to, VkAccessFlags accesses)
+{
+    VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                               .dstAccessMask = accesses};
+    p->prober->h->CmdPipelineBarrier(commands, from, to, 0, 1, &barrier, 0, NULL, 0, NULL);
+}
+
+void painter_record(void *user, VkCommandBuffer commands)
+{
+    struct painter *p = user;
+    struct harness *h = p->prober->h;
+    struct ProbeParams params = {p->texture.table_index, p->frame++, 0,
+                                 p->lattice ? PICTURE_LATTICE : 0};
+    VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
+                                   .renderPass = p->pass,
+                                   .framebuffer = p->framebuffer,
+                                   .renderArea = {{0, 0}, {PICTURE_SIZE, PICTURE_SIZE}}};
+    output_barrier(p, commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                   VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    h->CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->pipeline);
+    h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->prober->layout, 0, 1,
+                             &p->texture.set, 0, NULL);
+    h->CmdPushConstants(commands, p->prober->layout,
+                        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                        sizeof params, &params);
+    h->CmdDraw(commands, 3, 1, 0, 0);
+    h->CmdEndRenderPass(commands);
+    output_barrier(p, commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                   VK_ACCESS_HOST_READ_BIT);
+}

@@ -1,0 +1,197 @@
+#include "device/probe.h"
+
+#include "support/test.h"
+
+#include "probe_codes_comp.h"
+#include "probe_comp.h"
+
+#define BUFFERS 5u
+#define BINDINGS 7u
+
+static void create_layouts(struct prober *p)
+{
+    struct harness *h = p->h;
+    VkDescriptorSetLayoutBinding bindings[BINDINGS];
+    for (uint32_t i = 0; i < BINDINGS; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i,
+            .descriptorType = i < BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                          : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            .descriptorCount = 1,
+            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT};
+    VkDescriptorSetLayoutCreateInfo set = {.sType =
+                                               VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                           .bindingCount = BINDINGS,
+                                           .pBindings = bindings};
+    assert_int_equal(h->CreateDescriptorSetLayout(h->device, &set, NULL, &p->set_layout),
+                     VK_SUCCESS);
+    VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                sizeof(struct ProbeParams)};
+    VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                         .setLayoutCount = 1,
+                                         .pSetLayouts = &p->set_layout,
+                                         .pushConstantRangeCount = 1,
+                                         .pPushConstantRanges = &push};
+    assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &p->layout), VK_SUCCESS);
+    VkDescriptorPoolSize sizes[2] = {
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS * PROBE_MAX_TEXTURES},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, (BINDINGS - BUFFERS) * PROBE_MAX_TEXTURES}};
+    VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
+                                       .maxSets = PROBE_MAX_TEXTURES,
+                                       .poolSizeCount = 2,
+                                       .pPoolSizes = sizes};
+    assert_int_equal(h->CreateDescriptorPool(h->device, &pool, NULL, &p->pool), VK_SUCCESS);
+}
+
+static void create_pipeline(struct prober *p)
+{
+    struct harness *h = p->h;
+    bool codes = h->caps.shaderResourceResidency;
+    VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                            .codeSize =
+                                                codes ? sizeof probe_codes_comp : sizeof probe_comp,
+                                            .pCode = codes ? probe_codes_comp : probe_comp};
+    VkShaderModule module;
+    assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
+    VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main"},
+        .layout = p->layout};
+    assert_int_equal(
+        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
+        VK_SUCCESS);
+    h->DestroyShaderModule(h->device, module, NULL);
+}
+
+void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
+{
+    *p = (struct prober){.h = h, .streamer = streamer};
+    harness_buffer_init(h, &p->inputs, PROBE_CAPACITY * sizeof(struct ProbeInput),
+                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    harness_buffer_init(h, &p->outputs, PROBE_CAPACITY * sizeof(struct ProbeOutput),
+                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    create_layouts(p);
+    create_pipeline(p);
+}
+
+void prober_finish(struct prober *p)
+{
+    struct harness *h = p->h;
+    for (uint32_t i = 0; i < p->sampler_count; i++)
+        h->DestroySampler(h->device, p->samplers[i], NULL);
+    h->DestroyDescriptorPool(h->device, p->pool, NULL);
+    h->DestroyPipeline(h->device, p->pipeline, NULL);
+    h->DestroyPipelineLayout(h->device, p->layout, NULL);
+    h->DestroyDescriptorSetLayout(h->device, p->set_layout, NULL);
+    harness_buffer_finish(h, &p->inputs);
+    harness_buffer_finish(h, &p->outputs);
+}
+
+void prober_release(struct prober *p, struct probe_texture texture)
+{
+    assert_int_equal(p->h->DeviceWaitIdle(p->h->device), VK_SUCCESS);
+    assert_int_equal(p->h->FreeDescriptorSets(p->h->device, p->pool, 1, &texture.set), VK_SUCCESS);
+}
+
+VkSampler prober_sampler(struct prober *p, VkSamplerAddressMode u, VkSamplerAddressMode v,
+                         float anisotropy, bool nearest_mip)
+{
+    for (uint32_t i = 0; i < p->sampler_count; i++)
+        if (p->sampler_keys[i].u == (uint32_t)u && p->sampler_keys[i].v == (uint32_t)v &&
+            p->sampler_keys[i].anisotropy == (uint32_t)anisotropy &&
+            p->sampler_keys[i].nearest_mip == nearest_mip)
+            return p->samplers[i];
+    assert_true(p->sampler_count < PROBE_MAX_SAMPLERS);
+    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                .magFilter = VK_FILTER_LINEAR,
+                                .minFilter = VK_FILTER_LINEAR,
+                                .mipmapMode = nearest_mip ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                          : VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                .addressModeU = u,
+                                .addressModeV = v,
+                                .anisotropyEnable = anisotropy > 1.0f,
+                                .maxAnisotropy = anisotropy,
+                                .maxLod = VK_LOD_CLAMP_NONE};
+    uint32_t at = p->sampler_count++;
+    assert_int_equal(p->h->CreateSampler(p->h->device, &info, NULL, &p->samplers[at]), VK_SUCCESS);
+    p->sampler_keys[at].u = (uint32_t)u;
+    p->sampler_keys[at].v = (uint32_t)v;
+    p->sampler_keys[at].anisotropy = (uint32_t)anisotropy;
+    p->sampler_keys[at].nearest_mip = nearest_mip;
+    return p->samplers[at];
+}
+
+struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,
+                                    VkSamplerAddressMode u, VkSamplerAddressMode v,
+                                    float anisotropy)
+{
+    struct harness *h = p->h;
+    struct probe_texture result = {.table_index = texture->tableIndex};
+    VkDescriptorSetAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                            .descriptorPool = p->pool,
+                                            .descriptorSetCount = 1,
+                                            .pSetLayouts = &p->set_layout};
+    assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &result.set), VK_SUCCESS);
+    SluiceVulkanBuffers buffers;
+    sluiceGetVulkanBuffers(p->streamer, &buffers);
+    VkDescriptorBufferInfo infos[BUFFERS] = {{buffers.textureTable, 0, VK_WHOLE_SIZE},
+                                             {buffers.minMip, 0, VK_WHOLE_SIZE},
+                                             {buffers.feedback, 0, VK_WHOLE_SIZE},
+                                             {p->inputs.buffer, 0, VK_WHOLE_SIZE},
+                                             {p->outputs.buffer, 0, VK_WHOLE_SIZE}};
+    VkDescriptorImageInfo images[2] = {
+        {prober_sampler(p, u, v, anisotropy, false), texture->imageView, VK_IMAGE_LAYOUT_GENERAL},
+        {prober_sampler(p, u, v, 1.0f, true), texture->imageView, VK_IMAGE_LAYOUT_GENERAL}};
+    VkWriteDescriptorSet writes[2] = {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                       .dstSet = result.set,
+                                       .descriptorCount = BUFFERS,
+                                       .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                       .pBufferInfo = infos},
+                                      {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                       .dstSet = result.set,
+                                       .dstBinding = BUFFERS,
+                                       .descriptorCount = 2,
+                                       .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                       .pImageInfo = images}};
+    h->UpdateDescriptorSets(h->device, 2, writes, 0, NULL);
+    return result;
+}
+
+struct ProbeInput *prober_inputs(struct prober *p)
+{
+    return p->inputs.mapped;
+}
+
+const struct ProbeOutput *prober_outputs(const struct prober *p)
+{
+    return p->outputs.mapped;
+}
+
+void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_texture texture,
+                   uint32_t first, uint32_t count, uint32_t flags)
+{
+    struct harness *h = p->h;
+    assert_true(first + count <= PROBE_CAPACITY);
+    VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                               .dstAccessMask =
+                                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
+    h->CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, NULL, 0, NULL);
+    struct ProbeParams params = {texture.table_index, first, count, flags};
+    h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, p->pipeline);
+    h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, p->layout, 0, 1,
+                             &texture.set, 0, NULL);
+    h->CmdPushConstants(commands, p->layout,
+                        VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                        sizeof params, &params);
+    h->CmdDispatch(commands, (count + 63) / 64, 1, 1);
+    barrier.dstAccessMask |= VK_ACCESS_HOST_READ_BIT;
+    h->CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                          VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1,
+                          &barrier, 0, NULL, 0, NULL);
+}

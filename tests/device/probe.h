@@ -1,0 +1,60 @@
+/**
+ * Samples streamed textures in a compute shader at given places, writes their feedback, and checks
+ * each sample with residency codes where the device has them.
+ */
+#ifndef TESTS_DEVICE_PROBE_H
+#define TESTS_DEVICE_PROBE_H
+
+#include "device/harness.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include "probe_shared.h"
+
+#define PROBE_CAPACITY 16384u
+#define PROBE_MAX_TEXTURES 64u
+#define PROBE_MAX_SAMPLERS 64u
+
+struct probe_texture {
+    VkDescriptorSet set;
+    uint32_t table_index;
+};
+
+struct prober {
+    struct harness *h;
+    SluiceVulkanStreamer *streamer;
+    struct harness_buffer inputs, outputs;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkPipeline pipeline;
+    VkDescriptorPool pool;
+    VkSampler samplers[PROBE_MAX_SAMPLERS];
+    struct {
+        uint32_t u, v, anisotropy, nearest_mip;
+    } sampler_keys[PROBE_MAX_SAMPLERS];
+    uint32_t sampler_count;
+};
+
+void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer);
+void prober_finish(struct prober *p);
+
+/** A set for the texture, sampled with these modes; anisotropy 1: none. */
+struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,
+                                    VkSamplerAddressMode u, VkSamplerAddressMode v,
+                                    float anisotropy);
+
+/** The set may be used again; no frame uses it any more once the device was waited for. */
+void prober_release(struct prober *p, struct probe_texture texture);
+
+VkSampler prober_sampler(struct prober *p, VkSamplerAddressMode u, VkSamplerAddressMode v,
+                         float anisotropy, bool nearest_mip);
+
+/** The inputs are written to before; [0, PROBE_CAPACITY). */
+struct ProbeInput *prober_inputs(struct prober *p);
+const struct ProbeOutput *prober_outputs(const struct prober *p);
+
+/** Records inputs [first, first + count) for one texture; for use inside a frame. */
+void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_texture texture,
+                   uint32_t first, uint32_t count, uint32_t flags);
+
+#endif /* TESTS_DEVICE_PROBE_H */

@@ -1,0 +1,179 @@
+#include "device/scene.h"
+
+#include "base/checked.h"
+#include "support/test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void scene_init(struct scene *scene, struct harness *h, SluiceVulkanStreamerCreateInfo info)
+{
+    *scene = (struct scene){.h = h};
+    harness_fill(h, &info);
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &scene->streamer));
+    prober_init(&scene->prober, h, scene->streamer);
+    scene_clear_outputs(scene);
+}
+
+void scene_finish(struct scene *scene)
+{
+    assert_int_equal(scene->h->DeviceWaitIdle(scene->h->device), VK_SUCCESS);
+    prober_finish(&scene->prober);
+    harness_destroy(scene->h, scene->streamer);
+    for (uint32_t i = 0; i < SCENE_TEXTURES; i++)
+        if (scene->textures[i].owns)
+            sluiceDestroyImageSource(scene->textures[i].source);
+    harness_check_silence(scene->h);
+}
+
+uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerAddressMode u,
+                      VkSamplerAddressMode v, float anisotropy, SluiceTextureId primary)
+{
+    uint32_t index = 0;
+    while (scene->textures[index].used)
+        index++;
+    assert_true(index < SCENE_TEXTURES);
+    struct scene_texture *texture = &scene->textures[index];
+    if (texture->owns) /* of a texture that was removed before */
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(scene->streamer));
+    if (texture->owns)
+        sluiceDestroyImageSource(texture->source);
+    *texture = (struct scene_texture){
+        .used = true, .source = source, .owns = true, .u = u, .v = v, .anisotropy = anisotropy};
+    CHECK_OK(sluiceGetImageInfo(source, &texture->info));
+    SluiceVulkanTextureCreateInfo info = {
+        .source = source, .primaryId = primary, .addressModeU = u, .addressModeV = v};
+    CHECK_OK(sluiceAddVulkanTexture(scene->streamer, &info, &texture->texture));
+    texture->probe = prober_texture(&scene->prober, &texture->texture, u, v, anisotropy);
+    return index;
+}
+
+uint32_t scene_add(struct scene *scene, SluiceImageSource *source)
+{
+    return scene_add_as(scene, source, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                        VK_SAMPLER_ADDRESS_MODE_REPEAT, 1.0f, SLUICE_NO_TEXTURE);
+}
+
+void scene_remove(struct scene *scene, uint32_t index)
+{
+    struct scene_texture *texture = &scene->textures[index];
+    CHECK_OK(sluiceRemoveVulkanTexture(scene->streamer, texture->texture.textureId));
+    texture->used = false;
+    texture->sample_count = 0;
+    prober_release(&scene->prober, texture->probe);
+}
+
+struct ProbeInput *scene_inputs(struct scene *scene, uint32_t texture)
+{
+    return prober_inputs(&scene->prober) + texture * SCENE_SAMPLES;
+}
+
+const struct ProbeOutput *scene_outputs(const struct scene *scene, uint32_t texture)
+{
+    return prober_outputs(&scene->prober) + texture * SCENE_SAMPLES;
+}
+
+static double draw(void)
+{
+    return (double)rand() / RAND_MAX;
+}
+
+void scene_aim(struct scene *scene, uint32_t index, uint32_t count, const struct scene_aim *aim)
+{
+    struct scene_texture *texture = &scene->textures[index];
+    struct ProbeInput *inputs = scene_inputs(scene, index);
+    double w = texture->info.width, h = texture->info.height;
+    assert_true(count <= SCENE_SAMPLES);
+    texture->sample_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        double scale = exp2(aim->min_lod + draw() * (aim->max_lod - aim->min_lod));
+        double ratio = aim->max_ratio > 0 ? 1 + draw() * (aim->max_ratio - 1) : 1;
+        double angle = aim->max_ratio > 0 ? draw() * 6.2831853 : 0;
+        inputs[i] = (struct ProbeInput){
+            .uv = {(float)(aim->left + draw() * aim->width),
+                   (float)(aim->top + draw() * aim->height)},
+            .dx = {(float)(cos(angle) * scale * ratio / w),
+                   (float)(sin(angle) * scale * ratio / h)},
+            .dy = {(float)(-sin(angle) * scale / w), (float)(cos(angle) * scale / h)},
+            .lodBias = aim->bias,
+            .maxAnisotropy = texture->anisotropy};
+    }
+}
+
+void scene_record(void *user, VkCommandBuffer commands)
+{
+    struct scene *scene = user;
+    for (uint32_t i = 0; i < SCENE_TEXTURES; i++) {
+        const struct scene_texture *texture = &scene->textures[i];
+        uint32_t flags = PROBE_SAMPLE | PROBE_RESIDENCY;
+        if (!texture->no_feedback)
+            flags |= PROBE_FEEDBACK;
+        if (texture->used && texture->sample_count)
+            prober_record(&scene->prober, commands, texture->probe, i * SCENE_SAMPLES,
+                          texture->sample_count, flags);
+    }
+}
+
+void scene_settle(struct scene *scene, uint32_t frame_count)
+{
+    harness_settle(scene->h, scene->streamer, frame_count, scene_record, scene);
+}
+
+void scene_clear_outputs(struct scene *scene)
+{
+    assert_int_equal(scene->h->DeviceWaitIdle(scene->h->device), VK_SUCCESS);
+    memset(scene->prober.outputs.mapped, 0, PROBE_CAPACITY * sizeof(struct ProbeOutput));
+}
+
+uint64_t scene_non_resident(struct scene *scene)
+{
+    assert_int_equal(scene->h->DeviceWaitIdle(scene->h->device), VK_SUCCESS);
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < PROBE_CAPACITY; i++) {
+        const struct ProbeOutput *out = &prober_outputs(&scene->prober)[i];
+        const struct ProbeInput *in = &prober_inputs(&scene->prober)[i];
+        const struct scene_texture *texture = &scene->textures[i / SCENE_SAMPLES];
+        if (out->nonResident && count == 0)
+            fprintf(stderr,
+                    "# not resident, texture %u (%ux%u, modes %d %d): uv %.9g %.9g, dx %.9g %.9g, "
+                    "dy %.9g %.9g, bias %g, anisotropy %g; now lod %g, level %u of %u\n",
+                    i / SCENE_SAMPLES, texture->info.width, texture->info.height, (int)texture->u,
+                    (int)texture->v, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
+                    (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
+                    (double)in->maxAnisotropy, (double)out->lod, out->level, out->wantedLevel);
+        count += out->nonResident;
+    }
+    return count;
+}
+
+void scene_check_levels(const struct scene *scene)
+{
+    for (uint32_t t = 0; t < SCENE_TEXTURES; t++)
+        for (uint32_t i = 0; i < scene->textures[t].sample_count; i++) {
+            const struct ProbeOutput *out = &scene_outputs(scene, t)[i];
+            const struct ProbeInput *inputs = scene->prober.inputs.mapped;
+            const struct ProbeInput *in = &inputs[t * SCENE_SAMPLES + i];
+            if (out->level == SLUICE_MIP_UNTOUCHED ||
+                pattern_level(out->color) >= (float)out->level - PATTERN_LEVEL_ERROR)
+                continue;
+            fail_msg("texture %u (%ux%u, modes %d %d): shows level %g, allowed %u, wanted %u, lod "
+                     "%g; uv %.9g %.9g, dx %.9g %.9g, dy %.9g %.9g, bias %g, anisotropy %g",
+                     t, scene->textures[t].info.width, scene->textures[t].info.height,
+                     (int)scene->textures[t].u, (int)scene->textures[t].v,
+                     (double)pattern_level(out->color), out->level, out->wantedLevel,
+                     (double)out->lod, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
+                     (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
+                     (double)in->maxAnisotropy);
+        }
+}
+
+uint32_t scene_missing(const struct scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < SCENE_TEXTURES; t++)
+        for (uint32_t i = 0; i < scene->textures[t].sample_count; i++)
+            count += scene_outputs(scene, t)[i].missingLevels != 0;
+    return count;
+}

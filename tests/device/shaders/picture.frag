@@ -1,0 +1,59 @@
+/*
+ * A textured floor up to the horizon, sampled with the fragments' own derivatives. Colours and
+ * checks go to a buffer, so that no rounding hides a difference.
+ */
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "sluice/shared/texture_table.h"
+#include "probe_shared.h"
+
+layout(std430, binding = 0) readonly buffer Table { SluiceTextureEntry entries[]; } textureTable;
+layout(std430, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
+layout(std430, binding = 2) buffer Feedback { uint words[]; } feedback;
+layout(std430, binding = 3) readonly buffer Inputs { ProbeInput inputs[]; };
+layout(std430, binding = 4) buffer Outputs { ProbeOutput outputs[]; };
+layout(binding = 5) uniform sampler2D tex;
+layout(binding = 6) uniform sampler2D nearestMipTex;
+layout(push_constant) uniform Push { ProbeParams params; };
+
+#define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
+#define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
+#define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+#include "sluice/feedback.glsl"
+#include "sluice/sample.glsl"
+#include "sluice/stochastic.glsl"
+#ifdef PROBE_CODES
+#include "sluice/residency.glsl"
+#endif
+
+void main()
+{
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uint at = pixel.y * PICTURE_SIZE + pixel.x;
+    /* inputs[0]: the eye over the floor in uv, its height in dx.x, one pixel's angle in dx.y */
+    vec2 screen = (gl_FragCoord.xy - vec2(0.5 * float(PICTURE_SIZE), -1.0)) * inputs[0].dx[1];
+    float distance = inputs[0].dx[0] / screen.y;
+    vec2 uv = vec2(inputs[0].uv[0], inputs[0].uv[1]) + vec2(screen.x, 1.0) * distance;
+    float bias = inputs[0].lodBias, anisotropy = inputs[0].maxAnisotropy;
+    vec2 dx = dFdx(uv), dy = dFdy(uv);
+
+    uint missing;
+    vec4 color = sluiceSample(tex, params.tableIndex, uv, bias, anisotropy, missing);
+    SluiceSampling s = sluiceResolveSampling(params.tableIndex, uv, dx, dy, bias, anisotropy);
+    for (uint i = 0u; i < 4u; i++)
+        outputs[at].color[i] = color[i];
+    outputs[at].missingLevels = missing;
+    outputs[at].level = s.level;
+    outputs[at].wantedLevel = s.wantedLevel;
+    outputs[at].lod = s.lod;
+#ifdef PROBE_CODES
+    outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
+                                                      bias, anisotropy);
+#endif
+    bool selected = (params.flags & PICTURE_LATTICE) != 0u
+                        ? sluiceSelectLattice(pixel, params.first)
+                        : sluiceSelectRandomQuad(pixel, params.first, 1.0 / 16.0);
+    if (selected)
+        sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);
+}

@@ -1,0 +1,94 @@
+/* Samples, writes feedback and checks residency at given places. Built with and without PROBE_CODES. */
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "sluice/shared/texture_table.h"
+#include "probe_shared.h"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Table { SluiceTextureEntry entries[]; } textureTable;
+layout(std430, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
+layout(std430, binding = 2) buffer Feedback { uint words[]; } feedback;
+layout(std430, binding = 3) readonly buffer Inputs { ProbeInput inputs[]; };
+layout(std430, binding = 4) buffer Outputs { ProbeOutput outputs[]; };
+layout(binding = 5) uniform sampler2D tex;
+layout(binding = 6) uniform sampler2D nearestMipTex;
+layout(push_constant) uniform Push { ProbeParams params; };
+
+#define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
+#define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
+#define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+#include "sluice/feedback.glsl"
+#include "sluice/sample.glsl"
+#include "sluice/stochastic.glsl"
+#ifdef PROBE_CODES
+#include "sluice/residency.glsl"
+#endif
+
+void writeColor(uint at, vec4 color)
+{
+    for (uint i = 0u; i < 4u; i++)
+        outputs[at].color[i] = color[i];
+}
+
+/* Bits of pixel and frame in uv, dx: what stochastic.glsl selects. */
+void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(params.tableIndex);
+    vec2 size = vec2(entry.width, entry.height);
+    float lod = sluiceComputeLod(dx * size, dy * size, bias, anisotropy);
+    SluiceFootprint f =
+        sluiceComputeFootprint(entry, uv, sluiceHalfAxis(entry, dx, dy, bias, anisotropy),
+                               sluiceCoarsestLevel(lod, entry.mipLevelCount));
+    outputs[at].lod = lod;
+    outputs[at].wantedLevel =
+        sluiceFinestLevel(lod, sluiceLodMargin(anisotropy), entry.mipLevelCount);
+    outputs[at].level = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    for (uint i = 0u; i < 3u; i++) {
+        outputs[at].footprint[i] = f.x[i];
+        outputs[at].footprint[3u + i] = f.y[i];
+    }
+    uvec2 pixel = uvec2(at % 128u, at / 128u);
+    outputs[at].missingLevels = sluiceHash(uvec3(pixel, floatBitsToUint(bias)));
+    outputs[at].nonResident = (sluiceSelectRandomQuad(pixel, at / 7u, anisotropy) ? 1u : 0u) |
+                              (sluiceSelectLattice(pixel, at / 5u) ? 2u : 0u);
+}
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= params.count)
+        return;
+    uint at = params.first + gl_GlobalInvocationID.x;
+    vec2 uv = vec2(inputs[at].uv[0], inputs[at].uv[1]);
+    vec2 dx = vec2(inputs[at].dx[0], inputs[at].dx[1]);
+    vec2 dy = vec2(inputs[at].dy[0], inputs[at].dy[1]);
+    float bias = inputs[at].lodBias, anisotropy = inputs[at].maxAnisotropy;
+
+    if ((params.flags & PROBE_WORDS) != 0u) {
+        outputs[at].level = feedback.words[textureTable.entries[params.tableIndex].feedbackOffset +
+                                           gl_GlobalInvocationID.x];
+        return;
+    }
+    if ((params.flags & PROBE_TWINS) != 0u) {
+        evaluateTwins(at, uv, dx, dy, bias, anisotropy);
+        return;
+    }
+    if ((params.flags & PROBE_FETCH) != 0u)
+        writeColor(at, texelFetch(tex, ivec2(uv), int(bias)));
+    if ((params.flags & PROBE_SAMPLE) != 0u) {
+        uint missing;
+        writeColor(at, sluiceSampleGrad(tex, params.tableIndex, uv, dx, dy, bias, anisotropy, missing));
+        SluiceSampling s = sluiceResolveSampling(params.tableIndex, uv, dx, dy, bias, anisotropy);
+        outputs[at].missingLevels = missing;
+        outputs[at].level = s.level;
+        outputs[at].wantedLevel = s.wantedLevel;
+        outputs[at].lod = s.lod;
+    }
+#ifdef PROBE_CODES
+    if ((params.flags & PROBE_RESIDENCY) != 0u)
+        outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
+                                                         bias, anisotropy);
+#endif
+    if ((params.flags & PROBE_FEEDBACK) != 0u)
+        sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);
+}

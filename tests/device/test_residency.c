@@ -1,0 +1,121 @@
+/* Whatever is resident: no sample touches what is not, and what is shown is allowed. */
+#include "device/scene.h"
+
+#include "support/fault_source.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+
+static double draw(void)
+{
+    return (double)rand() / RAND_MAX;
+}
+
+static struct scene_aim random_aim(float anisotropy)
+{
+    struct scene_aim aim = {draw() * 1.5 - 0.5,
+                            draw() * 1.5 - 0.5,
+                            0.05 + draw() * 0.4,
+                            0.05 + draw() * 0.4,
+                            -1,
+                            0,
+                            0,
+                            0};
+    aim.min_lod = draw() * 5 - 1;
+    aim.max_lod = aim.min_lod + draw() * 3;
+    aim.max_ratio = anisotropy > 1 ? 30 : rand() % 2 ? 3 : 0;
+    aim.bias = rand() % 4 ? 0.0f : (float)(draw() * 2 - 1);
+    return aim;
+}
+
+static uint32_t add_random(struct scene *scene, float anisotropy)
+{
+    const uint32_t sizes[][2] = {{1024, 1024}, {1000, 1500}, {2048, 300}, {129, 2000}, {700, 700}};
+    const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R16G16B16A16_SFLOAT,
+                                    SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32B32A32_SFLOAT};
+    /* no border: its colour would look like texels that are not resident */
+    const VkSamplerAddressMode modes[] = {
+        VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        scene->h->mirror_clamp ? VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
+                               : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    const uint32_t *size = sizes[rand() % 5];
+    uint32_t t =
+        scene_add_as(scene, pattern_source(PATTERN_LEVEL, size[0], size[1], formats[rand() % 4]),
+                     modes[rand() % 4], modes[rand() % 4], anisotropy, SLUICE_NO_TEXTURE);
+    struct scene_aim aim = random_aim(anisotropy);
+    scene_aim(scene, t, 128, &aim);
+    return t;
+}
+
+static void churn(struct harness *h, float anisotropy, uint32_t frame_count)
+{
+    struct scene scene;
+    scene_init(&scene, h,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 4,
+                                                .tilesPerFrame = 32,
+                                                .heapTileCapacity = 64,
+                                                .maxHeapCount = 5,
+                                                .texturesPerFrame = 4});
+    for (uint32_t i = 0; i < 8; i++)
+        add_random(&scene, anisotropy);
+    for (uint32_t frame = 0; frame < frame_count; frame++) {
+        uint32_t t = (uint32_t)rand() % 8;
+        if (frame % 3 == 0) {
+            /* inputs may only change while no frame reads them */
+            assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+            if (frame)
+                scene_check_levels(&scene);
+            struct scene_aim aim = random_aim(anisotropy);
+            scene_aim(&scene, t, 128, &aim);
+        }
+        if (frame % 40 == 39) {
+            assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+            scene_remove(&scene, t);
+            add_random(&scene, anisotropy);
+        }
+        harness_frame(h, scene.streamer, rand() % 4 == 0, scene_record, &scene);
+    }
+    assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
+    scene_check_levels(&scene);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_true(stats.tilesMapped > frame_count);
+    assert_true(stats.tilesUnmapped > frame_count / 4);
+    assert_in_range(stats.manager.heapCount, 1, 5);
+    scene_finish(&scene);
+}
+
+static void thousand_trilinear_frames_touch_nothing_that_is_not_there(void **state)
+{
+    srand(21);
+    churn(*state, 1.0f, 1000);
+}
+
+static void anisotropic_frames_touch_nothing_that_is_not_there(void **state)
+{
+    struct harness *h = *state;
+    if (!h->anisotropy)
+        skip();
+    srand(22);
+    churn(h, 16.0f, 400);
+    churn(h, 2.0f, 200);
+}
+
+int main(void)
+{
+    struct harness h;
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    struct CMUnitTest tests[] = {
+        cmocka_unit_test(thousand_trilinear_frames_touch_nothing_that_is_not_there),
+        cmocka_unit_test(anisotropic_frames_touch_nothing_that_is_not_there),
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
+        tests[i].initial_state = &h;
+    status = cmocka_run_group_tests_name("residency", tests, NULL, NULL);
+    harness_finish(&h);
+    return status;
+}
