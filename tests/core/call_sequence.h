@@ -16,7 +16,6 @@ struct call_sequence {
     uint32_t refusing;  ///< the heap allocator refuses one time in so many; 0: never
     uint32_t max_tiles; ///< of most textures
     uint32_t max_textures;
-    bool has_leapt;   ///< time made its one step of nearly 2^63
     bool small_rooms; ///< lists are mostly read in small pieces
     uint64_t time, timeout;
     uint64_t time_spent; ///< how far time went on, or might have
