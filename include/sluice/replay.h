@@ -23,8 +23,8 @@ typedef struct SluiceRecordWriter {
 } SluiceRecordWriter;
 
 /**
- * Starts to record a manager that has no textures and no heaps yet. The recorder must be ended
- * before the manager is destroyed.
+ * Starts to record a manager that has no textures and no heaps yet; it may be configured. The
+ * recorder must be ended before the manager is destroyed.
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT if the manager was used already or is being recorded;
  *         OUT_OF_HOST_MEMORY, and what the writer says.

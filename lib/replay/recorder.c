@@ -94,6 +94,18 @@ static void notify(void *user, const SluiceStreamedTextureManager *manager,
         write_block(recorder);
 }
 
+/** A manager may have been configured before: its trace begins with that. */
+static void write_configuration(SluiceRecorder *recorder)
+{
+    static const SluiceStreamedTextureManagerConfig none;
+    const SluiceStreamedTextureManagerConfig *config = slc_manager_config(recorder->manager);
+    if (config->numExtraStandbyTiles != none.numExtraStandbyTiles ||
+        config->maxHeapCount != none.maxHeapCount ||
+        config->maxLoadAttempts != none.maxLoadAttempts || config->retryDelay != none.retryDelay)
+        notify(recorder, recorder->manager,
+               &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});
+}
+
 static void release(SluiceRecorder *recorder)
 {
     SluiceAllocationCallbacks cb = recorder->cb;
@@ -126,6 +138,7 @@ SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
     slc_bytes_init(&recorder->block, &cb);
     slc_bytes_init(&recorder->head, &cb);
     write_header(recorder);
+    write_configuration(recorder);
     if (recorder->result != SLUICE_SUCCESS) {
         SluiceResult result = recorder->result;
         release(recorder);

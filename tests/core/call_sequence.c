@@ -62,6 +62,10 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->always_packed = choice_once_in(c, 2);
     for (int k = 0; k < CALL_KIND_COUNT; k++)
         s->weights[k] = base_weights[k] * (1 + choice_below(c, 4));
+    if (choice_once_in(c, 4)) /* a bad day: most loads fail */
+        s->weights[CALL_FAILED] *= 6;
+    if (choice_once_in(c, 4)) /* a fast camera: most loads are cancelled */
+        s->weights[CALL_CANCELLED] *= 4;
     s->mistakes = choice_once_in(c, 4) ? 0 : choice_range(c, 8, 60);
     s->starving = choice_once_in(c, 2) ? 0 : choice_range(c, 3, 30);
     s->refusing = choice_once_in(c, 3) ? 0 : choice_range(c, 1, 8);
@@ -132,6 +136,21 @@ static uint32_t any_room(struct call_sequence *s)
     }
 }
 
+static uint64_t any_step(struct choice *c)
+{
+    switch (choice_below(c, 16)) {
+    case 0: return choice_below(c, 300);
+    case 1:
+        return choice_once_in(c, 8) ? (UINT64_MAX >> 1) - choice_below(c, 2)
+                                    : (uint64_t)1 << choice_below(c, 45);
+    case 2:
+    case 3:
+    case 4:
+    case 5: return 0;
+    default: return choice_range(c, 1, 8);
+    }
+}
+
 static uint64_t any_time(struct call_sequence *s, const struct naive_manager *n)
 {
     struct choice *c = &s->choice;
@@ -142,17 +161,11 @@ static uint64_t any_time(struct call_sequence *s, const struct naive_manager *n)
         case 1: return now - ((uint64_t)1 << choice_below(c, 63));
         default: return now + ((uint64_t)1 << 63) + choice_below(c, 2);
         }
-    switch (choice_below(c, 16)) {
-    case 0: return now + choice_range(c, 0, 300);
-    case 1:
-        return choice_once_in(c, 8) ? now + (UINT64_MAX >> 1) - choice_below(c, 2)
-                                    : now + ((uint64_t)1 << choice_below(c, 45));
-    case 2:
-    case 3:
-    case 4:
-    case 5: return now;
-    default: return now + choice_range(c, 1, 8);
-    }
+    const uint64_t step = any_step(c);
+    if (step > UINT64_MAX - s->time_spent) /* a history may not span 2^64 */
+        return now;
+    s->time_spent += step;
+    return now + step;
 }
 
 static uint64_t any_timeout(struct call_sequence *s)
@@ -189,7 +202,7 @@ static void make_config(struct call_sequence *s, struct call *call)
                                                           : choice_range(c, 1, 40);
     config->maxHeapCount = choice_once_in(c, 2) ? 0 : choice_range(c, 1, 6);
     config->maxLoadAttempts = choice_below(c, 4);
-    config->retryDelay = delays[choice_below(c, 8)];
+    config->retryDelay = delays[choice_below(c, 11)];
 }
 
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)

@@ -73,6 +73,30 @@ static void recorder_without_memory_says_so_and_leaks_nothing(void **state)
     }
 }
 
+static void recording_begins_with_what_was_configured_before(void **state)
+{
+    (void)state;
+    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3, .maxHeapCount = 2};
+    struct random_app app;
+    struct trace_buffer buffer;
+    SluiceRecorder *recorder;
+    const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceSetConfig(app.manager, &config));
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    random_app_run(&app, 400);
+    CHECK_OK(sluiceEndRecording(recorder));
+
+    const SluiceReplayInfo info = {.pData = buffer.data, .size = buffer.size};
+    SluiceReplayResult replayed;
+    CHECK_OK(sluiceReplay(&info, &replayed));
+    assert_int_equal(replayed.divergedEvent, 0);
+    assert_true(replayed.decisionHash == replayed.recordedHash);
+    check_same_statistics(app.manager, &replayed.statistics);
+    random_app_finish(&app);
+    trace_buffer_free(&buffer);
+}
+
 static void file_appears_when_the_recording_ends(void **state)
 {
     (void)state;
@@ -171,6 +195,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_writer_ends_the_recording_and_the_manager_goes_on),
         cmocka_unit_test(recorder_without_memory_says_so_and_leaks_nothing),
+        cmocka_unit_test(recording_begins_with_what_was_configured_before),
         cmocka_unit_test(file_appears_when_the_recording_ends),
         cmocka_unit_test(file_of_a_failed_recording_stays_away),
         cmocka_unit_test(path_that_cannot_be_written_is_an_error),
