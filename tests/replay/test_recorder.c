@@ -76,7 +76,8 @@ static void recorder_without_memory_says_so_and_leaks_nothing(void **state)
 static void recording_begins_with_what_was_configured_before(void **state)
 {
     (void)state;
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3, .maxHeapCount = 2};
+    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3,
+                                                       .maxHeapCount = 2};
     struct random_app app;
     struct trace_buffer buffer;
     SluiceRecorder *recorder;
