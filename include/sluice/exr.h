@@ -22,11 +22,13 @@ typedef struct SluiceExrImageSourceCreateInfo {
      * Format delivered, UNDEFINED for what fits the file: R16_SFLOAT or R32_SFLOAT for one channel,
      * R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT for more, by the widest channel. Conversion to
      * half saturates at +-65504; to 8 bits clamps to [0, 1], sRGB encodes; NaN becomes 0. Float
-     * formats keep infinities and NaN as they are in the file; chains built here treat NaN as 0.
+     * formats keep infinities and NaN as they are in the file, and so do half ones where the file
+     * has halves; chains built here treat NaN as 0.
      */
     SluiceFormat format;
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
-    SluiceLogCallback log;                       ///< what is wrong with a file, and where
+    /** NULL: malloc and free. What OpenEXRCore needs itself is always from malloc. */
+    const SluiceAllocationCallbacks *pAllocator;
+    SluiceLogCallback log; ///< what is wrong with a file, and where
     uint64_t maxImageSize; ///< bytes of level 0 beyond which a file is refused; 0: 2^34
 } SluiceExrImageSourceCreateInfo;
 
@@ -34,8 +36,8 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * Opens a file and reads its header.
  *
  * Channels any of R, G, B, A (missing R, G and B: 0, missing A: 1) or Y (grey, with A: grey with
- * alpha) of type half, float or uint. Formats of fewer components take the first ones; a file of one
- * channel read as one component gives that channel, whatever its name. The data window is the
+ * alpha) of type half, float or uint. Formats of fewer components take the first ones; a file of
+ * one channel read as one component gives that channel, whatever its name. The data window is the
  * image, at most 2^20 texels in either direction; where it starts does not matter. Of levels that
  * were rounded up, the last row and column beyond Vulkan's size are dropped.
  *
@@ -68,13 +70,13 @@ typedef struct SluiceExrWriteInfo {
  * ones keep their bits, others are rounded to nearest and saturate at +-65504.
  *
  * Tiles are made on threadCount threads, the caller's among them, and written in order; memory is
- * a few tiles per thread and 8 bytes per tile of the file. The allocator is called from all of them.
- * The file is written under another name beside `pPath` and renamed when it is complete.
+ * a few tiles per thread and 8 bytes per tile of the file. The allocator is called from all of
+ * them. The file is written under another name beside `pPath` and renamed when it is complete.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for tiles of more than 2^24 texels; UNSUPPORTED beyond 2^20
- *         texels in a direction; LIMIT_EXCEEDED beyond 2^31 tiles; IO; OUT_OF_HOST_MEMORY; CANCELLED;
- *         and whatever but success the source answers, NOT_READY among it. No file is left then.
- * Thread safety: any thread.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for tiles of more than 2^24 texels and sources without a
+ *         full chain; UNSUPPORTED beyond 2^20 texels in a direction; LIMIT_EXCEEDED beyond 2^31
+ * tiles; IO; OUT_OF_HOST_MEMORY; CANCELLED; and whatever but success the source answers, NOT_READY
+ * among it. No file is left then. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo,
                                            SluiceImageSource *source);

@@ -96,7 +96,9 @@ typedef struct SluiceProceduralImage {
 
 /**
  * An image that is computed where it is read. `pInfo->pName` is copied, mipLevelCount may be 0 for
- * the full chain. Errors: NULL_POINTER, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. Any thread.
+ * the full chain. Colours are converted as exr.h says of files: half saturates, 8 bits clamp and
+ * round, sRGB encodes, NaN becomes 0 but in float formats. Errors: NULL_POINTER, INVALID_ARGUMENT,
+ * OUT_OF_HOST_MEMORY. Any thread.
  */
 SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
     const SluiceProceduralImage *pImage, const SluiceImageInfo *pInfo,
@@ -104,8 +106,9 @@ SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
 
 /**
  * Texels in memory, level 0 given, the other levels made by a box filter once (in linear light for
- * sRGB). `pTexels` is [height][width] of pInfo->format, tightly packed, and is copied.
- * Errors: NULL_POINTER, INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. Any thread.
+ * sRGB), each texel the mean of the area it covers in the level above, NaN counting as 0. `pTexels`
+ * is [height][width] of pInfo->format, tightly packed, and is copied. Errors: NULL_POINTER,
+ * INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. Any thread.
  */
 SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       const SluiceImageInfo *pInfo,

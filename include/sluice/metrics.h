@@ -10,8 +10,8 @@ extern "C" {
 
 /**
  * Peak signal-to-noise ratio in dB of two 8-bit pictures, over all `channelCount` channels, peak
- * 255; +infinity if they are equal. Both are [height][width][channelCount], tightly packed. Sums are
- * exact integers, so the order of summation does not matter.
+ * 255; +infinity if they are equal. Both are [height][width][channelCount], tightly packed. Sums
+ * are exact integers, so the order of summation does not matter.
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT if a size is 0 or channelCount is above 4. Any thread.
  */

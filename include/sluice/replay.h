@@ -23,24 +23,32 @@ typedef struct SluiceRecordWriter {
 } SluiceRecordWriter;
 
 /**
- * Starts to record a manager that has no textures and no heaps yet. The recorder must be ended
- * before the manager is destroyed.
+ * Starts to record a manager that has no textures and no heaps yet; it may be configured. The
+ * recorder must be ended before the manager is destroyed.
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT if the manager was used already or is being recorded;
  *         OUT_OF_HOST_MEMORY, and what the writer says.
+ * Thread safety: a recorder works on the threads that call its manager; external on the manager.
  */
 SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
                                              const SluiceRecordWriter *pWriter,
                                              const SluiceAllocationCallbacks *pAllocator,
                                              SluiceRecorder **pRecorder);
 
-/** The same into a file. `pPath` is complete or, after an error, absent. */
+/**
+ * The same into a file, which is written as `pPath` with ".partial" appended and gets its name when
+ * the recording ends: `pPath` is complete or, after an error, as it was before. Errors: also IO.
+ */
 SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager,
                                                    const char *pPath,
                                                    const SluiceAllocationCallbacks *pAllocator,
                                                    SluiceRecorder **pRecorder);
 
-/** Writes the end mark with the hash over all decisions and releases the recorder. NULL is allowed. */
+/**
+ * Writes the end mark with the hash over all decisions and releases the recorder. NULL is allowed.
+ * Returns the first thing that went wrong since the recording began: OUT_OF_HOST_MEMORY, IO, or
+ * what the writer said.
+ */
 SLUICE_API SluiceResult sluiceEndRecording(SluiceRecorder *recorder);
 
 /** How to play a trace. Zero in any field asks for the default written beside it. */
@@ -53,28 +61,37 @@ typedef struct SluiceReplayInfo {
     /** NULL, or called with each line of the text dump, without a newline. */
     void (*pfnLine)(void *pUserData, const char *pLine);
     /* For SLTRACE1 only, which has feedback but no frame loop: */
-    uint32_t heapTileCapacity;  ///< 0: 1024
-    uint32_t maxHeapCount;      ///< 0: no cap
-    uint32_t standbyTileCount;  ///< numExtraStandbyTiles
-    uint32_t tilesPerFrame;     ///< answered per frame at most; 0: 256
-    uint32_t latency;           ///< frames from handed out to answered
-    uint64_t timeoutMicros;     ///< 0: 1 000 000
+    uint32_t heapTileCapacity; ///< 0: 1024
+    uint32_t maxHeapCount;     ///< 0: no cap
+    uint32_t standbyTileCount; ///< numExtraStandbyTiles
+    uint32_t tilesPerFrame;    ///< answered per frame at most; 0: 256
+    uint32_t latency;          ///< frames from handed out to answered; 0: answered at once
+    uint64_t timeoutMicros;    ///< 0: 1 000 000
+    /* For both: */
+    /** NULL, or a file to record what is played into, as sluiceBeginRecordingToFile does. */
+    const char *pRecordPath;
 } SluiceReplayInfo;
 
 typedef struct SluiceReplayResult {
-    uint64_t decisionHash;  ///< over every output of every call, in order
-    uint64_t recordedHash;  ///< from the end mark; 0 if there is none
+    uint64_t decisionHash; ///< over every output of every call, in order
+    uint64_t recordedHash; ///< from the end mark; 0 if there is none
     uint64_t eventCount;
-    uint64_t errorOffset;   ///< byte offset of what is wrong, after CORRUPT_DATA
+    uint64_t errorOffset; ///< byte offset of what is wrong, after CORRUPT_DATA
     SluiceStreamedTextureStatistics statistics; ///< at the end
+    /** The first call, counted from 1, that was decided otherwise than recorded; 0: none. */
+    uint64_t divergedEvent;
+    uint64_t divergedOffset; ///< byte offset of that call in the trace
 } SluiceReplayResult;
 
 /**
- * Plays a trace against a manager of its own.
+ * Plays a trace against a manager of its own. A trace whose decisions come out otherwise than they
+ * were recorded is no error: see decisionHash, recordedHash and divergedEvent.
  *
- * Errors: NULL_POINTER, OUT_OF_HOST_MEMORY, UNSUPPORTED for a newer version; CORRUPT_DATA for a
- *         truncated or damaged trace: errorOffset says where, the decisions up to there are in
- *         `*pResult`.
+ * Errors: NULL_POINTER, INVALID_ARGUMENT if only one of pAllocator's functions is set,
+ *         OUT_OF_HOST_MEMORY, UNSUPPORTED for a newer version, IO for pRecordPath; CORRUPT_DATA for
+ *         a truncated or damaged trace: errorOffset says where. The decisions made before an error
+ *         are in `*pResult`. A hostile trace can ask for a lot of memory: bound it in pAllocator.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult);
 

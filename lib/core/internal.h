@@ -90,6 +90,7 @@ struct slc_texture {
     uint32_t *packed_nodes;          ///< owned, [packedTileCount], NULL if there are none
     uint32_t packed_resident;        ///< packed tiles MAPPED or STANDBY
     uint32_t first_node;             ///< of all nodes of the texture
+    uint32_t regular_nodes;          ///< nodes of regular tiles
     uint32_t requested_count;
     uint32_t held_regions;                                 ///< that hold anything
     uint64_t map_time;                                     ///< of the last map

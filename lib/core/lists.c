@@ -107,12 +107,14 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
+        return result;
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);
     if (result == SLUICE_BUDGET_REACHED)
         list_standby_for(m, slc_min_u32(left, room - written));
-    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written > 0)
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
     return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;
 }

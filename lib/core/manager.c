@@ -123,9 +123,16 @@ slc_manager_create_info(const SluiceStreamedTextureManager *manager)
     return &manager->info;
 }
 
+const SluiceStreamedTextureManagerConfig *
+slc_manager_config(const SluiceStreamedTextureManager *manager)
+{
+    return &manager->config;
+}
+
 void slc_notify(slc_manager *m, const struct slc_call *call)
 {
-    m->used = true;
+    /* The configuration can be asked for at any time, so it alone hides nothing from a recorder. */
+    m->used |= call->kind != SLC_CALL_SET_CONFIG;
     if (m->observer.notify)
         m->observer.notify(m->observer.user, m, call);
 }

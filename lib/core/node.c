@@ -195,6 +195,7 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t tile, 
         m->nodes[t->first_node].texture_prev = node;
     t->first_node = node;
     *node_cell(m, t, tile) = node;
+    t->regular_nodes += tile < t->regular_tile_count;
     m->state_counts[SLUICE_TILE_STATE_FREE]++;
     return node;
 }
@@ -214,6 +215,7 @@ static void detach_node(slc_manager *m, uint32_t node)
     struct slc_node *n = &m->nodes[node];
     struct slc_texture *t = slc_texture_at(m, n->texture);
     *node_cell(m, t, n->tile) = 0;
+    t->regular_nodes -= n->tile < t->regular_tile_count;
     if (n->texture_prev)
         m->nodes[n->texture_prev].texture_next = n->texture_next;
     else

@@ -65,11 +65,15 @@ struct slc_observer {
 /** A zeroed observer switches off. One at a time. */
 void slc_manager_set_observer(SluiceStreamedTextureManager *manager, struct slc_observer observer);
 
-/** Whether a changing call was made, or an observer is there. */
+/** Whether a changing call but sluiceSetConfig was made, or an observer is there. */
 bool slc_manager_is_used(const SluiceStreamedTextureManager *manager);
 
 /** Read only; what the player needs to make an equal manager. */
 const SluiceStreamedTextureManagerCreateInfo *
 slc_manager_create_info(const SluiceStreamedTextureManager *manager);
+
+/** What sluiceSetConfig was given last; all 0 before. */
+const SluiceStreamedTextureManagerConfig *
+slc_manager_config(const SluiceStreamedTextureManager *manager);
 
 #endif /* SLC_CORE_OBSERVER_H */

@@ -448,6 +448,9 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
         apply_drops(m, t, count);
         if (packed_move && held_before > 0 && t->held_regions == 0)
             packed_unwanted(m, t);
+        /* Nothing held and nothing left: the last map was empty, which is what no state means. */
+        if (t->held_regions == 0 && t->regular_nodes == 0)
+            slc_state_destroy(m, t);
     }
     t->has_map = true;
     t->map_time = time;

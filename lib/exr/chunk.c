@@ -15,8 +15,7 @@ static uint64_t little_endian(const unsigned char *bytes, int count)
 static uint32_t tiles_along(struct slc_exr_file *file, int32_t level_x, int32_t level_y, bool in_x)
 {
     int32_t width = 0, height = 0;
-    if (exr_get_level_sizes(file->context, 0, level_x, level_y, &width, &height) !=
-        EXR_ERR_SUCCESS)
+    if (exr_get_level_sizes(file->context, 0, level_x, level_y, &width, &height) != EXR_ERR_SUCCESS)
         return 0;
     return in_x ? slc_div_up_u32((uint32_t)width, file->chunk_width)
                 : slc_div_up_u32((uint32_t)height, file->chunk_height);
@@ -37,7 +36,8 @@ static uint64_t find_rip_index(struct slc_exr_file *file, const exr_chunk_info_t
            (uint64_t)info->start_x;
 }
 
-/* Where OpenEXRCore itself has the offset and the leader right, exr_read_tile_chunk_info is used. */
+/* Where OpenEXRCore itself has the offset and the leader right, exr_read_tile_chunk_info is used.
+ */
 static SluiceResult read_rip_leader(struct slc_exr_file *file, exr_chunk_info_t *info)
 {
     uint64_t index = find_rip_index(file, info);
@@ -59,10 +59,9 @@ static SluiceResult read_rip_leader(struct slc_exr_file *file, exr_chunk_info_t 
                    little_endian(bytes + 12, 4) == info->level_x &&
                    little_endian(bytes + 16, 4) == info->level_y;
     if (!matches)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                            "the chunk at %llu is not tile %d, %d of level %u, %u",
-                            (unsigned long long)offset, info->start_x, info->start_y,
-                            info->level_x, info->level_y);
+        return slc_exr_fail(
+            file, SLUICE_ERROR_CORRUPT_DATA, "the chunk at %llu is not tile %d, %d of level %u, %u",
+            (unsigned long long)offset, info->start_x, info->start_y, info->level_x, info->level_y);
     info->idx = (int32_t)index;
     info->packed_size = little_endian(bytes + 20, 4);
     info->data_offset = offset + leader;
@@ -81,8 +80,7 @@ static SluiceResult find_rip_tile(struct slc_exr_file *file, struct slc_exr_chun
         .level_y = (uint8_t)level_y,
         .type = EXR_STORAGE_TILED,
         .compression = (uint8_t)file->compression,
-        .unpacked_size =
-            (uint64_t)chunk->region.width * chunk->region.height * file->texel_size,
+        .unpacked_size = (uint64_t)chunk->region.width * chunk->region.height * file->texel_size,
     };
     return read_rip_leader(file, &chunk->info);
 }
@@ -99,8 +97,9 @@ static SluiceResult find_with_library(struct slc_exr_file *file, struct slc_exr_
                                           level_y, &chunk->info);
     if (result == EXR_ERR_SUCCESS)
         return SLUICE_SUCCESS;
-    return slc_exr_fail(file, slc_exr_result(file, result), "cannot find chunk %u, %u of level %d: %s",
-                        x, y, level_x, exr_get_default_error_message(result));
+    return slc_exr_fail(file, slc_exr_result(file, result),
+                        "cannot find chunk %u, %u of level %d: %s", x, y, level_x,
+                        exr_get_default_error_message(result));
 }
 
 /*

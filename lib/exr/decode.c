@@ -81,8 +81,8 @@ static void store_span(uint32_t component_size, bool encode, const float *values
             uint16_t half = slc_half_from_float(values[i]);
             memcpy(result, &half, 2);
         } else {
-            uint8_t step = encode ? slc_srgb_from_linear(values[i])
-                                  : slc_unorm8_from_float(values[i]);
+            uint8_t step =
+                encode ? slc_srgb_from_linear(values[i]) : slc_unorm8_from_float(values[i]);
             memcpy(result, &step, 1);
         }
     }
@@ -117,8 +117,8 @@ static void convert_span(exr_pixel_type_t type, const unsigned char *source,
     for (uint32_t done = 0; done < count; done += BATCH) {
         uint32_t step = slc_min_u32(BATCH, count - done);
         load_span(type, source + (size_t)done * size, values, step);
-        store_span(component->size, component->encode, values,
-                   result + done * component->stride, component->stride, step);
+        store_span(component->size, component->encode, values, result + done * component->stride,
+                   component->stride, step);
     }
 }
 
@@ -198,7 +198,8 @@ SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
     size_t row_size = (size_t)chunk->region.width * file->texel_size;
     size_t result_texel = sluiceFormatTexelSize(target->format);
     for (uint32_t y = shared.y; y < shared.y + shared.height; y++)
-        deliver_row(file, texels + (y - chunk->region.y) * row_size, &chunk->region, &shared, target,
+        deliver_row(file, texels + (y - chunk->region.y) * row_size, &chunk->region, &shared,
+                    target,
                     target->texels + (y - target->region.y) * target->pitch +
                         (shared.x - target->region.x) * result_texel);
     return SLUICE_SUCCESS;

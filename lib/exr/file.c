@@ -86,7 +86,8 @@ static int64_t on_query_size(exr_const_context_t context, void *user)
     return (int64_t)((struct slc_exr_file *)user)->size;
 }
 
-/* Warnings, because OpenEXRCore goes on after some of them; our own error follows if it does not. */
+/* Warnings, because OpenEXRCore goes on after some of them; our own error follows if it does not.
+ */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     void *user = NULL;

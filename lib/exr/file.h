@@ -43,7 +43,7 @@ struct slc_exr_file {
     enum slc_exr_layout layout;
     exr_compression_t compression;
     uint32_t width, height;
-    int32_t first_line; ///< the y that the file gives to the first row
+    int32_t first_line;                 ///< the y that the file gives to the first row
     uint32_t chunk_width, chunk_height; ///< of the tiles, or of the blocks of lines
     int32_t chunk_count;
     int32_t level_count_x, level_count_y; ///< in the file
@@ -78,8 +78,8 @@ SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-SluiceResult slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, const char *format,
-                          ...);
+SluiceResult
+slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, const char *format, ...);
 
 /** Copies as much of a file's own words as fits, with ? for what may not stand in a message. */
 void slc_exr_printable(const char *text, char *printable, size_t size);

@@ -184,8 +184,8 @@ static SluiceResult check_compression(struct slc_exr_file *file)
     int major, minor, patch;
     const char *extra;
     exr_get_library_version(&major, &minor, &patch, &extra);
-    bool is_dwa = file->compression == EXR_COMPRESSION_DWAA ||
-                  file->compression == EXR_COMPRESSION_DWAB;
+    bool is_dwa =
+        file->compression == EXR_COMPRESSION_DWAA || file->compression == EXR_COMPRESSION_DWAB;
     if (is_dwa && (major < 3 || (major == 3 && minor < 2)))
         return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
                             "is DWA compressed, which OpenEXRCore %d.%d.%d does not decode; use "
@@ -197,9 +197,8 @@ static SluiceResult check_compression(struct slc_exr_file *file)
 /* What any chunk needs in memory, and how much more the image is than its file could hold. */
 static SluiceResult check_plausibility(struct slc_exr_file *file)
 {
-    uint64_t texels =
-        (uint64_t)slc_min_u32(file->chunk_width, file->width) *
-        slc_min_u32(file->chunk_height, file->height);
+    uint64_t texels = (uint64_t)slc_min_u32(file->chunk_width, file->width) *
+                      slc_min_u32(file->chunk_height, file->height);
     if (texels * file->texel_size > 1u << 30)
         return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
                             "has tiles of %u x %u texels, which need more than 1 GiB each; use "
@@ -236,8 +235,7 @@ SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level,
     int32_t x = (int32_t)slc_min_u32(level, (uint32_t)file->level_count_x - 1);
     int32_t y = (int32_t)slc_min_u32(level, (uint32_t)file->level_count_y - 1);
     int32_t level_width = 0, level_height = 0;
-    exr_result_t result =
-        exr_get_level_sizes(file->context, 0, x, y, &level_width, &level_height);
+    exr_result_t result = exr_get_level_sizes(file->context, 0, x, y, &level_width, &level_height);
     if (result != EXR_ERR_SUCCESS || level_width < 1 || level_height < 1)
         return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no size for level %u", level);
     *width = (uint32_t)level_width;
@@ -284,16 +282,17 @@ static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, 
     if (!value || (size_t)(value + 5 - bytes) > size)
         return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has a broken attribute at %llu",
                             (unsigned long long)*offset);
-    uint32_t length = value[1] | (uint32_t)value[2] << 8 | (uint32_t)value[3] << 16 |
-                      (uint32_t)value[4] << 24;
+    uint32_t length =
+        value[1] | (uint32_t)value[2] << 8 | (uint32_t)value[3] << 16 | (uint32_t)value[4] << 24;
     *offset += (uint64_t)(value + 5 - bytes) + length;
     return SLUICE_SUCCESS;
 }
 
 /*
- * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly (docs/decisions/exr-chunks.md), so
- * that for them the table of chunks is looked up here. It follows the headers: attributes up to an
- * empty name, in multi-part files one header after the other up to an empty one.
+ * OpenEXRCore up to 3.1 counts the chunks of rip maps wrongly
+ * (docs/decisions/0010-what-openexrcore-is-trusted-with.md), so that for them the table of chunks
+ * is looked up here. It follows the headers: attributes up to an empty name, in multi-part files
+ * one header after the other up to an empty one.
  */
 static SluiceResult find_chunk_table(struct slc_exr_file *file)
 {
@@ -327,7 +326,7 @@ static SluiceResult read_multipart_flag(struct slc_exr_file *file)
 SluiceResult slc_exr_read_header(struct slc_exr_file *file)
 {
     static SluiceResult (*const steps[])(struct slc_exr_file *) = {
-        read_multipart_flag, read_size,   read_layout,        read_channels,
+        read_multipart_flag, read_size,    read_layout,        read_channels,
         check_compression,   check_levels, check_plausibility, check_chunk_count,
     };
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {

@@ -12,7 +12,7 @@ struct exr_source {
     SluiceImageSource base;
     struct slc_exr_file file;
     SluiceImageInfo info;
-    bool reads_chain; ///< the file has no levels of its own
+    bool reads_chain;      ///< the file has no levels of its own
     pthread_mutex_t mutex; ///< around what follows
     bool is_built;
     SluiceResult failure; ///< of building, where another attempt would fail again

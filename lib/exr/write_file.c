@@ -49,8 +49,8 @@ bool slc_write_file_put(struct slc_write_file *file, const void *bytes, uint64_t
     while (done < size) {
         uint64_t rest = size - done;
         size_t step = rest < 1u << 30 ? (size_t)rest : 1u << 30; /* a write is at most 2^31 */
-        ssize_t put = pwrite(file->descriptor, (const char *)bytes + done, step,
-                             (off_t)(offset + done));
+        ssize_t put =
+            pwrite(file->descriptor, (const char *)bytes + done, step, (off_t)(offset + done));
         if (put >= 0) {
             done += (uint64_t)put;
         } else if (errno != EINTR) {

@@ -22,8 +22,8 @@ SluiceResult slc_write_file_open(struct slc_write_file *file, const char *path,
 bool slc_write_file_put(struct slc_write_file *file, const void *bytes, uint64_t size,
                         uint64_t offset);
 
-/** Closes the file and, if `keep`, gives it its name; otherwise or on errors removes it. Errors: IO,
- *  logged. */
+/** Closes the file and, if `keep`, gives it its name; otherwise or on errors removes it. Errors:
+ * IO, logged. */
 SluiceResult slc_write_file_finish(struct slc_write_file *file, bool keep);
 
 #endif /* SLC_EXR_WRITE_FILE_H */

@@ -37,8 +37,8 @@ struct writer {
 
 /* What one thread needs for one tile. */
 struct tile_buffers {
-    char *texels;  ///< in the source's format
-    char *packed;  ///< as the file has them: per row each channel by itself, A, B, G, R
+    char *texels; ///< in the source's format
+    char *packed; ///< as the file has them: per row each channel by itself, A, B, G, R
     size_t texels_size, packed_size;
 };
 
@@ -100,9 +100,9 @@ static exr_result_t define_image(struct writer *writer)
             context, part, (int32_t)writer->image.width, (int32_t)writer->image.height,
             writer->info.uncompressed ? EXR_COMPRESSION_NONE : EXR_COMPRESSION_ZIP);
     if (result == EXR_ERR_SUCCESS)
-        result = exr_set_tile_descriptor(context, part, writer->info.tileWidth,
-                                         writer->info.tileHeight, EXR_TILE_MIPMAP_LEVELS,
-                                         EXR_TILE_ROUND_DOWN);
+        result =
+            exr_set_tile_descriptor(context, part, writer->info.tileWidth, writer->info.tileHeight,
+                                    EXR_TILE_MIPMAP_LEVELS, EXR_TILE_ROUND_DOWN);
     const char *const *names = channel_names(writer->channel_count);
     for (uint32_t i = 0; i < writer->channel_count && result == EXR_ERR_SUCCESS; i++)
         result = exr_add_channel(context, part, names[i], EXR_PIXEL_HALF,
@@ -117,8 +117,8 @@ static exr_result_t start_context(struct writer *writer)
     init.user_data = &writer->file;
     init.write_fn = on_write;
     init.zip_level = 4; /* twice as fast as 6 for files that are a few percent larger */
-    exr_result_t result = exr_start_write(&writer->context, writer->info.pPath,
-                                          EXR_WRITE_FILE_DIRECTLY, &init);
+    exr_result_t result =
+        exr_start_write(&writer->context, writer->info.pPath, EXR_WRITE_FILE_DIRECTLY, &init);
     if (result != EXR_ERR_SUCCESS) {
         writer->context = NULL;
         return result;
@@ -280,8 +280,7 @@ static void write_tile(struct writer *writer, const struct tile *tile,
 {
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     const void *bytes = buffers->packed;
-    uint64_t size =
-        (uint64_t)tile->region.width * tile->region.height * 2 * writer->channel_count;
+    uint64_t size = (uint64_t)tile->region.width * tile->region.height * 2 * writer->channel_count;
     bool compresses = !writer->info.uncompressed;
     exr_result_t encoding = EXR_ERR_SUCCESS;
     SluiceResult result = make_tile(writer, tile, buffers);
@@ -351,8 +350,7 @@ static SluiceResult run_workers(struct writer *writer)
         if (!threads)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
-    while (started < extra &&
-           pthread_create(&threads[started], NULL, worker_main, writer) == 0)
+    while (started < extra && pthread_create(&threads[started], NULL, worker_main, writer) == 0)
         started++;
     worker_main(writer);
     for (uint32_t i = 0; i < started; i++)
@@ -363,8 +361,8 @@ static SluiceResult run_workers(struct writer *writer)
 
 static SluiceResult write_image(struct writer *writer)
 {
-    SluiceResult result = slc_write_file_open(&writer->file, writer->info.pPath,
-                                              &writer->allocator, &writer->info.log);
+    SluiceResult result = slc_write_file_open(&writer->file, writer->info.pPath, &writer->allocator,
+                                              &writer->info.log);
     if (result != SLUICE_SUCCESS)
         return result;
     result = library_result(writer, start_context(writer));
@@ -404,10 +402,15 @@ static SluiceResult prepare(struct writer *writer)
     SluiceResult result = sluiceGetImageInfo(writer->source, &writer->image);
     if (result != SLUICE_SUCCESS)
         return result;
-    writer->channel_count = slc_format_channel_count(writer->image.format);
+    const SluiceImageInfo *image = &writer->image;
+    writer->channel_count = slc_format_channel_count(image->format);
+    if (writer->channel_count == 0 || image->width == 0 || image->height == 0 ||
+        image->mipLevelCount != slc_mip_count(slc_max_u32(image->width, image->height)))
+        return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT,
+                    "the source has no texels, an unknown format or not all levels");
     if (writer->channel_count == 4 && info->opaque)
         writer->channel_count = 3;
-    if (writer->image.width > 1u << 20 || writer->image.height > 1u << 20)
+    if (image->width > 1u << 20 || image->height > 1u << 20)
         return fail(writer, SLUICE_ERROR_UNSUPPORTED,
                     "images have at most 2^20 texels in either direction");
     count_tiles(writer);

@@ -1,8 +1,8 @@
 /**
  * Texels of any format from and to linear RGBA floats.
  *
- * Towards half, values saturate at +-65504; towards 8 bits they are clamped to [0, 1] and rounded to
- * nearest, sRGB formats encode R, G and B; in both NaN becomes 0. Towards float nothing changes.
+ * Towards half, values saturate at +-65504; towards 8 bits they are clamped to [0, 1] and rounded
+ * to nearest, sRGB formats encode R, G and B; in both NaN becomes 0. Towards float nothing changes.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H
@@ -21,7 +21,8 @@ static inline uint8_t slc_unorm8_from_float(float value)
     return value >= 1.0f ? 255 : (uint8_t)((double)value * 255.0 + 0.5);
 }
 
-/** `count` texels of `format` from [count][4] floats; channels that the format lacks are dropped. */
+/** `count` texels of `format` from [count][4] floats; channels that the format lacks are dropped.
+ */
 void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, size_t count);
 
 /** [count][4] floats from `count` texels; missing G and B are 0, missing A is 1. */

@@ -43,7 +43,8 @@ static inline uint16_t slc_half_from_float(float value)
         return 0;
     if (magnitude >= 0x477FE000u) /* 65504 */
         return sign | 0x7BFF;
-    if (magnitude < 0x38800000u) { /* below 2^-14: a multiple of 2^-24, which the addition rounds to */
+    if (magnitude <
+        0x38800000u) { /* below 2^-14: a multiple of 2^-24, which the addition rounds to */
         float shifted = slc_float_from_bits(magnitude) + 0.5f;
         return (uint16_t)(sign | (slc_float_bits(shifted) - 0x3F000000u));
     }

@@ -125,8 +125,8 @@ void slc_mip_chain_read(const struct slc_mip_chain *chain, const SluiceImageRegi
 {
     size_t texel_size = sluiceFormatTexelSize(chain->format);
     size_t pitch = slc_mip_size(chain->width, region->mipLevel) * texel_size;
-    const char *source = slc_mip_chain_level(chain, region->mipLevel) + region->y * pitch +
-                         region->x * texel_size;
+    const char *source =
+        slc_mip_chain_level(chain, region->mipLevel) + region->y * pitch + region->x * texel_size;
     for (uint32_t y = 0; y < region->height; y++)
         memcpy((char *)texels + y * row_pitch, source + y * pitch, region->width * texel_size);
 }

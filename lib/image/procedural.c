@@ -33,8 +33,8 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
         for (uint32_t x = 0; x < region->width; x += BATCH) {
             uint32_t count = slc_min_u32(BATCH, region->width - x);
             for (uint32_t i = 0; i < count; i++)
-                source->image.pfnTexel(source->image.pUserData, region->mipLevel,
-                                       region->x + x + i, region->y + y, width, height, rgba[i]);
+                source->image.pfnTexel(source->image.pUserData, region->mipLevel, region->x + x + i,
+                                       region->y + y, width, height, rgba[i]);
             slc_texels_from_rgba(source->info.format, rgba[0], row + (size_t)x * texel_size, count);
         }
     }
@@ -56,8 +56,7 @@ SluiceResult sluiceCreateProceduralImageSource(const SluiceProceduralImage *pIma
                                                const SluiceAllocationCallbacks *pAllocator,
                                                SluiceImageSource **pSource)
 {
-    if (!pImage || !pInfo || !pSource || !pImage->pfnTexel ||
-        !slc_allocator_is_valid(pAllocator))
+    if (!pImage || !pInfo || !pSource || !pImage->pfnTexel || !slc_allocator_is_valid(pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     struct procedural_source *source = slc_calloc(&cb, 1, sizeof *source);

@@ -1,5 +1,7 @@
 #include "image/srgb.h"
 
+/* clang-format off */
+
 /* IEC 61966-2-1 decoded at i / 255 and rounded to float once, from 50 decimal digits. */
 const float slc_srgb_to_linear[256] = {
     0.0f, 0x1.3e4568p-12f, 0x1.3e4568p-11f, 0x1.dd681cp-11f, 0x1.3e4568p-10f, 0x1.8dd6c2p-10f,
@@ -93,6 +95,8 @@ static const float smallest[255] = {
     0x1.d5acep-1f, 0x1.da07cap-1f, 0x1.de68b4p-1f, 0x1.e2cfa4p-1f, 0x1.e73c9ap-1f, 0x1.ebaf98p-1f,
     0x1.f028a2p-1f, 0x1.f4a7bap-1f, 0x1.f92ce2p-1f, 0x1.fdb81cp-1f,
 };
+
+/* clang-format on */
 
 uint8_t slc_srgb_from_linear(float value)
 {

@@ -19,7 +19,7 @@ SluiceResult sluiceComputePsnr8(const uint8_t *pA, const uint8_t *pB, uint32_t w
         int32_t difference = (int32_t)pA[i] - pB[i];
         sum += (uint64_t)(difference * difference);
     }
-    *pPsnr = sum == 0 ? (double)INFINITY
-                      : 10.0 * log10(255.0 * 255.0 * (double)count / (double)sum);
+    *pPsnr =
+        sum == 0 ? (double)INFINITY : 10.0 * log10(255.0 * 255.0 * (double)count / (double)sum);
     return SLUICE_SUCCESS;
 }

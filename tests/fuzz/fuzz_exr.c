@@ -1,14 +1,11 @@
 /**
- * Any bytes as an OpenEXR file: an error or an image, all of whose levels can be asked for. Built
- * with -fsanitize=fuzzer it is a fuzz target; with -DFUZZ_REPLAY it is a program that takes files
- * and folders of inputs.
+ * Any bytes as an OpenEXR file: an error or an image, all of whose levels can be asked for. Link it
+ * with -fsanitize=fuzzer, or with standalone.c to replay inputs.
  */
-#define _POSIX_C_SOURCE 200809L
 #define _XOPEN_SOURCE 700
 
 #include <sluice/exr.h>
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -60,45 +57,3 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     unlink(path);
     return 0;
 }
-
-#ifdef FUZZ_REPLAY
-#include <dirent.h>
-#include <sys/stat.h>
-
-static int replay_file(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return 0;
-    static uint8_t bytes[1 << 20];
-    size_t size = fread(bytes, 1, sizeof bytes, file);
-    fclose(file);
-    LLVMFuzzerTestOneInput(bytes, size);
-    return 1;
-}
-
-static int replay(const char *path)
-{
-    DIR *folder = opendir(path);
-    if (!folder)
-        return replay_file(path);
-    int count = 0;
-    char name[4096];
-    for (struct dirent *entry; (entry = readdir(folder));)
-        if (entry->d_name[0] != '.') {
-            snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-            count += replay_file(name);
-        }
-    closedir(folder);
-    return count;
-}
-
-int main(int argc, char **argv)
-{
-    int count = 0;
-    for (int i = 1; i < argc; i++)
-        count += replay(argv[i]);
-    printf("%d inputs replayed\n", count);
-    return count > 0 ? 0 : 1;
-}
-#endif

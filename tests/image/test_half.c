@@ -8,8 +8,8 @@ static long double half_value(uint16_t half)
 {
     int exponent = half >> 10 & 0x1F;
     long double mantissa = half & 0x3FF;
-    long double magnitude = exponent ? ldexpl(1024 + mantissa, exponent - 25)
-                                     : ldexpl(mantissa, -24);
+    long double magnitude =
+        exponent ? ldexpl(1024 + mantissa, exponent - 25) : ldexpl(mantissa, -24);
     return half & 0x8000 ? -magnitude : magnitude;
 }
 
@@ -104,8 +104,8 @@ static void ties_and_their_neighbours_round_right(void **state)
 static void the_ends_saturate_and_nan_becomes_zero(void **state)
 {
     (void)state;
-    const float ends[] = {0.0f, -0.0f, 65504.0f, 65519.9f, 65520.0f, 65536.0f, 3.4e38f, INFINITY,
-                          0x1p-24f, 0x1p-25f, 0x1.8p-25f, 0x1p-26f, 0x1p-149f, 0x1p-14f};
+    const float ends[] = {0.0f,     -0.0f,    65504.0f, 65519.9f,   65520.0f, 65536.0f,  3.4e38f,
+                          INFINITY, 0x1p-24f, 0x1p-25f, 0x1.8p-25f, 0x1p-26f, 0x1p-149f, 0x1p-14f};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         check(ends[i]);
         check(-ends[i]);

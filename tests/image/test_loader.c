@@ -45,8 +45,7 @@ static void teardown(struct fixture *f)
 }
 
 static SluiceResult submit(struct fixture *f, const SluiceImageRegion *regions, uint32_t count,
-                           void *const *texels, uint32_t priority, uint64_t value,
-                           uint64_t *ticket)
+                           void *const *texels, uint32_t priority, uint64_t value, uint64_t *ticket)
 {
     SluiceTileRead read = {&f->source.base, count, regions, texels, priority, value};
     return sluiceSubmitTileRead(f->loader, &read, ticket);
@@ -277,7 +276,8 @@ static void collect_some(struct storm *storm)
     uint32_t count = 7;
     sluiceCollectTileReads(storm->f.loader, &count, results);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t who = (uint32_t)(results[i].userValue >> 32), which = (uint32_t)results[i].userValue;
+        uint32_t who = (uint32_t)(results[i].userValue >> 32),
+                 which = (uint32_t)results[i].userValue;
         atomic_fetch_add(&storm->collected[who][which], 1);
         if (results[i].result == SLUICE_SUCCESS &&
             storm->texels[who][which] == (float)(which % SIZE))

@@ -106,11 +106,11 @@ static void check_chain(SluiceFormat format, uint32_t width, uint32_t height)
 static void every_texel_is_the_mean_of_its_area(void **state)
 {
     (void)state;
-    const uint32_t sizes[][2] = {{1, 1},  {2, 2},  {1, 37}, {64, 1}, {3, 3},  {5, 7},
+    const uint32_t sizes[][2] = {{1, 1},  {2, 2},  {1, 37}, {64, 1},  {3, 3}, {5, 7},
                                  {17, 9}, {31, 2}, {16, 8}, {29, 23}, {2, 61}};
-    const SluiceFormat formats[] = {
-        SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB, SLUICE_FORMAT_R16G16B16A16_SFLOAT,
-        SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32B32A32_SFLOAT};
+    const SluiceFormat formats[] = {SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                    SLUICE_FORMAT_R16G16B16A16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT,
+                                    SLUICE_FORMAT_R32G32B32A32_SFLOAT};
     for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++)
         for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
             check_chain(formats[f], sizes[s][0], sizes[s][1]);

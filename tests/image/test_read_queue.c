@@ -27,8 +27,11 @@ static uint64_t submit(struct slc_read_queue *queue, uint32_t priority)
 {
     SluiceImageRegion region = {0, 0, 0, 1, 1};
     void *texels = &region;
-    SluiceTileRead read = {.regionCount = 1, .pRegions = &region, .ppTexels = &texels,
-                           .priority = priority, .userValue = priority};
+    SluiceTileRead read = {.regionCount = 1,
+                           .pRegions = &region,
+                           .ppTexels = &texels,
+                           .priority = priority,
+                           .userValue = priority};
     uint64_t ticket = 0;
     return slc_read_queue_submit(queue, &read, &ticket) ? ticket : 0;
 }

@@ -85,12 +85,10 @@ static void wrong_descriptions_are_refused(void **state)
 {
     (void)state;
     SluiceProceduralImage image = {NULL, mark};
-    const SluiceImageInfo bad[] = {{0, 1, 0, SLUICE_FORMAT_R8_UNORM, "a"},
-                                   {1, 0, 0, SLUICE_FORMAT_R8_UNORM, "a"},
-                                   {4, 4, 2, SLUICE_FORMAT_R8_UNORM, "a"},
-                                   {4, 4, 4, SLUICE_FORMAT_R8_UNORM, "a"},
-                                   {4, 4, 0, SLUICE_FORMAT_UNDEFINED, "a"},
-                                   {4, 4, 0, (SluiceFormat)99, "a"}};
+    const SluiceImageInfo bad[] = {
+        {0, 1, 0, SLUICE_FORMAT_R8_UNORM, "a"},  {1, 0, 0, SLUICE_FORMAT_R8_UNORM, "a"},
+        {4, 4, 2, SLUICE_FORMAT_R8_UNORM, "a"},  {4, 4, 4, SLUICE_FORMAT_R8_UNORM, "a"},
+        {4, 4, 0, SLUICE_FORMAT_UNDEFINED, "a"}, {4, 4, 0, (SluiceFormat)99, "a"}};
     SluiceImageSource *source = NULL;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &bad[i], NULL, &source),
@@ -104,7 +102,8 @@ static void wrong_descriptions_are_refused(void **state)
 static void memory_levels_are_what_was_given_and_its_means(void **state)
 {
     (void)state;
-    const uint8_t texels[4][4] = {{0, 4, 8, 12}, {4, 8, 12, 16}, {100, 0, 0, 100}, {0, 100, 100, 0}};
+    const uint8_t texels[4][4] = {
+        {0, 4, 8, 12}, {4, 8, 12, 16}, {100, 0, 0, 100}, {0, 100, 100, 0}};
     SluiceImageInfo info = {4, 4, 3, SLUICE_FORMAT_R8_UNORM, NULL};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &source));

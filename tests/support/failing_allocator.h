@@ -1,4 +1,5 @@
-/** An allocator that refuses after n calls, checks the sizes it gets back and counts what is left. */
+/** An allocator that refuses after n calls, checks the sizes it gets back and counts what is left.
+ */
 #ifndef TESTS_SUPPORT_FAILING_ALLOCATOR_H
 #define TESTS_SUPPORT_FAILING_ALLOCATOR_H
 

@@ -11,6 +11,8 @@
 
 #include <sluice/base.h>
 
+#include "support/tap.h"
+
 /** Prints both results by name when they differ. */
 #define CHECK_RESULT(expression, expected)                                                         \
     do {                                                                                           \
@@ -23,7 +25,16 @@
 
 #define CHECK_OK(expression) CHECK_RESULT(expression, SLUICE_SUCCESS)
 
+/** Leaves the test, which counts as skipped, and says why: a string literal, printf arguments. */
+#define SKIP_TEST(...)                                                                             \
+    do {                                                                                           \
+        print_message("# skipped: " __VA_ARGS__);                                                  \
+        print_message("\n");                                                                       \
+        skip();                                                                                    \
+    } while (0)
+
 /** An array of cmocka unit tests, named as the functions are. */
-#define RUN_TESTS(tests) cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL)
+#define RUN_TESTS(tests)                                                                           \
+    (tap_filter_stdout(), cmocka_run_group_tests_name(__FILE__, tests, NULL, NULL))
 
 #endif /* TESTS_SUPPORT_TEST_H */

@@ -1,0 +1,83 @@
+#include "replay/replay.h"
+
+#include "base/alloc.h"
+#include "base/log.h"
+#include "replay/decisions.h"
+#include "replay/record.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+SluiceResult slc_replay_start(struct slc_replay *replay,
+                              const SluiceStreamedTextureManagerCreateInfo *info, bool scripted)
+{
+    SluiceResult result = slc_player_init(&replay->player, &replay->cb, info, scripted);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    replay->playing = true;
+    replay->player.dump.user = replay->info->pUserData;
+    replay->player.dump.line = replay->info->pfnLine;
+    slc_dump_line(&replay->player.dump, "manager heap-tiles=%" PRIu32 " tile-size=%" PRIu32 "%s",
+                  info->heapTileCapacity, info->tileSize,
+                  info->alwaysMapPackedTiles ? " always-map-packed" : "");
+    if (!replay->info->pRecordPath)
+        return SLUICE_SUCCESS;
+    return sluiceBeginRecordingToFile(replay->player.manager, replay->info->pRecordPath,
+                                      replay->info->pAllocator, &replay->recorder);
+}
+
+SluiceResult slc_replay_corrupt(struct slc_replay *replay, uint64_t offset, const char *why)
+{
+    replay->out->errorOffset = offset;
+    slc_log(&replay->info->log, SLUICE_LOG_ERROR, "trace is damaged at byte %" PRIu64 ": %s",
+            offset, why);
+    return SLUICE_ERROR_CORRUPT_DATA;
+}
+
+SluiceResult slc_replay_check(struct slc_replay *replay, const struct slc_cursor *cursor)
+{
+    return cursor->why ? slc_replay_corrupt(replay, cursor->pos, cursor->why) : SLUICE_SUCCESS;
+}
+
+static SluiceResult play(struct slc_replay *replay)
+{
+    const SluiceReplayInfo *info = replay->info;
+    if (info->size >= 8 && memcmp(info->pData, SLC_TRACE_MAGIC, 8) == 0)
+        return slc_play_recording(replay);
+    if (info->size >= 8 && memcmp(info->pData, "SLTRACE1", 8) == 0)
+        return slc_play_feedback_trace(replay);
+    return slc_replay_corrupt(replay, 0, "it begins with neither SLUICERT nor SLTRACE1");
+}
+
+/* Also after an error: what was decided up to there is of use, and so is a recording of it. */
+static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
+{
+    struct slc_player *player = &replay->player;
+    if (!replay->playing)
+        return result;
+    SluiceResult recorded = sluiceEndRecording(replay->recorder);
+    replay->out->decisionHash = player->hash;
+    replay->out->eventCount = player->event_count;
+    sluiceGetStatistics(player->manager, &replay->out->statistics);
+    if (result == SLUICE_SUCCESS)
+        slc_dump_line(&player->dump, "hash %016" PRIx64 " events %" PRIu64, player->hash,
+                      player->event_count);
+    slc_player_finish(player);
+    return result == SLUICE_SUCCESS ? recorded : result;
+}
+
+SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult)
+{
+    if (!pInfo || !pResult || !pInfo->pData)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    *pResult = (SluiceReplayResult){.decisionHash = SLC_HASH_EMPTY};
+    struct slc_replay replay = {
+        .info = pInfo,
+        .out = pResult,
+        .cb = slc_allocator(pInfo->pAllocator),
+        .in = {pInfo->pData, 0, pInfo->size, NULL},
+    };
+    return finish(&replay, play(&replay));
+}

@@ -1,0 +1,24 @@
+/** Folders: making them, and finding the files in them. */
+#ifndef SAMPLES_COMMON_FILES_H
+#define SAMPLES_COMMON_FILES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/** Makes a folder and those above it. Says on stderr why it failed. */
+bool files_make_folders(const char *path);
+
+/** A growing list of paths. Zeroed is empty. */
+struct file_list {
+    char **paths; ///< owned
+    size_t count, capacity;
+};
+
+/**
+ * Adds a file as it is, or all files with this suffix in a folder and those below it, sorted by
+ * name. Says on stderr what cannot be read; false only when out of memory.
+ */
+bool files_collect(const char *path, const char *suffix, struct file_list *list);
+void files_finish(struct file_list *list);
+
+#endif /* SAMPLES_COMMON_FILES_H */

@@ -1,0 +1,433 @@
+#include "gpu.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_DEVICES 32
+#define MAX_FAMILIES 32
+#define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
+
+static const char *vulkan_result_string(VkResult result)
+{
+    switch ((int)result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY: return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_INITIALIZATION_FAILED: return "VK_ERROR_INITIALIZATION_FAILED";
+    case VK_ERROR_DEVICE_LOST: return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_LAYER_NOT_PRESENT: return "VK_ERROR_LAYER_NOT_PRESENT";
+    case VK_ERROR_EXTENSION_NOT_PRESENT: return "VK_ERROR_EXTENSION_NOT_PRESENT";
+    case VK_ERROR_FEATURE_NOT_PRESENT: return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_ERROR_INCOMPATIBLE_DRIVER: return "VK_ERROR_INCOMPATIBLE_DRIVER";
+    case VK_TIMEOUT: return "VK_TIMEOUT";
+    default: return "an unexpected VkResult";
+    }
+}
+
+bool gpu_check(VkResult result, const char *what)
+{
+    if (result == VK_SUCCESS)
+        return true;
+    fprintf(stderr, "%s: %s (%d)\n", what, vulkan_result_string(result), (int)result);
+    return false;
+}
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL note_validation_message(
+    VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT types,
+    const VkDebugUtilsMessengerCallbackDataEXT *data, void *user_data)
+{
+    struct gpu *gpu = user_data;
+    (void)types;
+    atomic_fetch_add(&gpu->validation_messages, 1);
+    fprintf(stderr, "validation %s: %s\n",
+            severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : "warning",
+            data->pMessage);
+    return VK_FALSE;
+}
+
+static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct gpu *gpu)
+{
+    return (VkDebugUtilsMessengerCreateInfoEXT){
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        /* Not the hints on speed: streamed images stay in the GENERAL layout on purpose. */
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = note_validation_message,
+        .pUserData = gpu,
+    };
+}
+
+/** `*no_driver` tells a machine without any Vulkan driver from other failures. */
+static bool create_instance(bool validation, struct gpu *gpu, bool *no_driver)
+{
+    static const VkValidationFeatureEnableEXT synchronization[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    static const char *const layers[] = {VALIDATION_LAYER};
+    static const char *const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                             VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(gpu);
+    VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                        .pNext = &messenger,
+                                        .enabledValidationFeatureCount = 1,
+                                        .pEnabledValidationFeatures = synchronization};
+    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                     .pApplicationName = "sluice samples",
+                                     .apiVersion = VK_API_VERSION_1_2};
+    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                 .pApplicationInfo = &application};
+    if (validation) {
+        info.pNext = &features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = layers;
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = extensions;
+    }
+    VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
+    *no_driver = result == VK_ERROR_INCOMPATIBLE_DRIVER;
+    if (!gpu_check(result, "vkCreateInstance"))
+        return false;
+    if (!validation)
+        return true;
+    PFN_vkCreateDebugUtilsMessengerEXT create =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(gpu->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    messenger.pNext = NULL;
+    return create && gpu_check(create(gpu->instance, &messenger, NULL, &gpu->messenger),
+                               "vkCreateDebugUtilsMessengerEXT");
+}
+
+static uint32_t enumerate_devices(VkInstance instance, VkPhysicalDevice devices[MAX_DEVICES])
+{
+    uint32_t count = MAX_DEVICES;
+    VkResult result = vkEnumeratePhysicalDevices(instance, &count, devices);
+    return result == VK_SUCCESS || result == VK_INCOMPLETE ? count : 0;
+}
+
+static const char *device_type_string(VkPhysicalDeviceType type)
+{
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
+    default: return "other";
+    }
+}
+
+static bool can_stream(VkInstance instance, VkPhysicalDevice device,
+                       SluiceVulkanDeviceCapabilities *capabilities)
+{
+    return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
+                                             capabilities) == SLUICE_SUCCESS &&
+           capabilities->sparse;
+}
+
+uint32_t gpu_list_devices(void)
+{
+    struct gpu gpu = {0};
+    bool no_driver;
+    if (!create_instance(false, &gpu, &no_driver))
+        return 0;
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = enumerate_devices(gpu.instance, devices);
+    for (uint32_t i = 0; i < count; i++) {
+        VkPhysicalDeviceProperties properties;
+        vkGetPhysicalDeviceProperties(devices[i], &properties);
+        SluiceVulkanDeviceCapabilities capabilities;
+        printf("%u  %s (%s, Vulkan %u.%u): %s\n", i, properties.deviceName,
+               device_type_string(properties.deviceType),
+               VK_API_VERSION_MAJOR(properties.apiVersion),
+               VK_API_VERSION_MINOR(properties.apiVersion),
+               can_stream(gpu.instance, devices[i], &capabilities) ? "sparse residency"
+                                                                   : "no sparse residency");
+    }
+    gpu_destroy(&gpu);
+    return count;
+}
+
+static bool contains_ignoring_case(const char *text, const char *part)
+{
+    size_t length = strlen(part);
+    for (; *text; text++) {
+        size_t i = 0;
+        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (i == length)
+            return true;
+    }
+    return length == 0;
+}
+
+/** By a part of its name or of its type: "cpu" finds lavapipe. */
+static bool is_called(const VkPhysicalDeviceProperties *properties, const char *wanted)
+{
+    return contains_ignoring_case(properties->deviceName, wanted) ||
+           contains_ignoring_case(device_type_string(properties->deviceType), wanted);
+}
+
+static int device_rank(VkPhysicalDeviceType type)
+{
+    switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 1;
+    default: return 0;
+    }
+}
+
+/** The device that was asked for, or the best that streams. */
+static bool choose_device(const char *wanted, struct gpu *gpu)
+{
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = enumerate_devices(gpu->instance, devices);
+    char *end = NULL;
+    unsigned long wanted_index = wanted ? strtoul(wanted, &end, 10) : 0;
+    bool by_index = wanted && *wanted && *end == '\0';
+
+    int best_rank = -1;
+    for (uint32_t i = 0; i < count; i++) {
+        VkPhysicalDeviceProperties properties;
+        vkGetPhysicalDeviceProperties(devices[i], &properties);
+        if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
+            continue;
+        SluiceVulkanDeviceCapabilities capabilities;
+        if (!can_stream(gpu->instance, devices[i], &capabilities))
+            continue;
+        if (device_rank(properties.deviceType) <= best_rank)
+            continue;
+        best_rank = device_rank(properties.deviceType);
+        gpu->physical_device = devices[i];
+        gpu->properties = properties;
+        gpu->capabilities = capabilities;
+    }
+    if (best_rank < 0)
+        fprintf(stderr,
+                "no Vulkan device%s%s can stream: it needs sparse residency images (for "
+                "Mesa's lavapipe: version 25 or later); see --list-devices\n",
+                wanted ? " like " : "", wanted ? wanted : "");
+    return best_rank >= 0;
+}
+
+static bool choose_queue_family(struct gpu *gpu)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES;
+    vkGetPhysicalDeviceQueueFamilyProperties(gpu->physical_device, &count, families);
+    const VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    for (uint32_t i = 0; i < count; i++)
+        if ((families[i].queueFlags & needed) == needed) {
+            gpu->family = i;
+            gpu->sparse_family = gpu->capabilities.sparseQueueFamilyIndex;
+            return true;
+        }
+    fprintf(stderr, "%s has no graphics queue\n", gpu->properties.deviceName);
+    return false;
+}
+
+static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
+{
+    (void)user_data;
+    if (severity != SLUICE_LOG_INFO)
+        fprintf(stderr, "%s\n", message);
+}
+
+static bool create_device(struct gpu *gpu)
+{
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &vulkan12};
+    VkPhysicalDeviceFeatures supported;
+    vkGetPhysicalDeviceFeatures(gpu->physical_device, &supported);
+    features.features.samplerAnisotropy = supported.samplerAnisotropy;
+    features.features.shaderResourceResidency = supported.shaderResourceResidency;
+    features.features.fragmentStoresAndAtomics = VK_TRUE;
+
+    SluiceLogCallback log = {.pfnLog = print_log};
+    if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                    &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
+        return false;
+
+    static const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queues[2];
+    uint32_t queue_count = gpu->family == gpu->sparse_family ? 1 : 2;
+    for (uint32_t i = 0; i < queue_count; i++)
+        queues[i] =
+            (VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = i == 0 ? gpu->family : gpu->sparse_family,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &features,
+                               .queueCreateInfoCount = queue_count,
+                               .pQueueCreateInfos = queues};
+    if (!gpu_check(vkCreateDevice(gpu->physical_device, &info, NULL, &gpu->device),
+                   "vkCreateDevice"))
+        return false;
+    vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
+    vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
+    vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
+
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                    .queueFamilyIndex = gpu->family};
+    return gpu_check(vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->command_pool),
+                     "vkCreateCommandPool");
+}
+
+bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported)
+{
+    memset(gpu, 0, sizeof *gpu);
+    if (create_instance(request->validation, gpu, unsupported)) {
+        *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
+        if (!*unsupported && create_device(gpu))
+            return true;
+    }
+    gpu_destroy(gpu);
+    return false;
+}
+
+void gpu_destroy(struct gpu *gpu)
+{
+    if (gpu->device) {
+        vkDeviceWaitIdle(gpu->device);
+        vkDestroyCommandPool(gpu->device, gpu->command_pool, NULL);
+        vkDestroyDevice(gpu->device, NULL);
+    }
+    if (gpu->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+                gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        destroy(gpu->instance, gpu->messenger, NULL);
+    }
+    if (gpu->instance)
+        vkDestroyInstance(gpu->instance, NULL);
+    gpu->device = VK_NULL_HANDLE;
+    gpu->messenger = VK_NULL_HANDLE;
+    gpu->instance = VK_NULL_HANDLE;
+}
+
+/** The first type with all of `wanted`, else with all of `needed`. */
+static uint32_t find_memory_type(const struct gpu *gpu, uint32_t allowed,
+                                 VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted)
+{
+    uint32_t found = UINT32_MAX;
+    for (uint32_t i = 0; i < gpu->memory.memoryTypeCount; i++) {
+        VkMemoryPropertyFlags flags = gpu->memory.memoryTypes[i].propertyFlags;
+        if (!(allowed & (1u << i)))
+            continue;
+        if ((flags & wanted) == wanted)
+            return i;
+        if (found == UINT32_MAX && (flags & needed) == needed)
+            found = i;
+    }
+    return found;
+}
+
+static bool allocate(const struct gpu *gpu, const VkMemoryRequirements *requirements,
+                     VkMemoryPropertyFlags needed, VkMemoryPropertyFlags wanted,
+                     VkDeviceMemory *memory)
+{
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .allocationSize = requirements->size,
+                                 .memoryTypeIndex = find_memory_type(
+                                     gpu, requirements->memoryTypeBits, needed, needed | wanted)};
+    return gpu_check(vkAllocateMemory(gpu->device, &info, NULL, memory), "vkAllocateMemory");
+}
+
+bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFlags usage,
+                       struct gpu_buffer *buffer)
+{
+    *buffer = (struct gpu_buffer){.size = size};
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size, .usage = usage};
+    if (!gpu_check(vkCreateBuffer(gpu->device, &info, NULL, &buffer->buffer), "vkCreateBuffer"))
+        return false;
+
+    VkMemoryRequirements requirements;
+    vkGetBufferMemoryRequirements(gpu->device, buffer->buffer, &requirements);
+    const VkMemoryPropertyFlags host =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    /* Read by the host: cached. Used by shaders, atomics among them: beside them if possible. */
+    VkMemoryPropertyFlags wanted = 0;
+    if (usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT)
+        wanted = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    else if (usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)
+        wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    if (allocate(gpu, &requirements, host, wanted, &buffer->memory) &&
+        gpu_check(vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0),
+                  "vkBindBufferMemory") &&
+        gpu_check(vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),
+                  "vkMapMemory"))
+        return true;
+    gpu_destroy_buffer(gpu, buffer);
+    return false;
+}
+
+void gpu_destroy_buffer(const struct gpu *gpu, struct gpu_buffer *buffer)
+{
+    vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
+    vkFreeMemory(gpu->device, buffer->memory, NULL);
+    *buffer = (struct gpu_buffer){0};
+}
+
+static bool create_view(const struct gpu *gpu, VkFormat format, VkImageAspectFlags aspect,
+                        struct gpu_image *image)
+{
+    VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                  .image = image->image,
+                                  .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                  .format = format,
+                                  .subresourceRange = {aspect, 0, 1, 0, 1}};
+    return gpu_check(vkCreateImageView(gpu->device, &info, NULL, &image->view),
+                     "vkCreateImageView");
+}
+
+bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
+                      VkSampleCountFlagBits samples, VkImageUsageFlags usage,
+                      VkImageAspectFlags aspect, struct gpu_image *image)
+{
+    *image = (struct gpu_image){0};
+    VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                              .imageType = VK_IMAGE_TYPE_2D,
+                              .format = format,
+                              .extent = {width, height, 1},
+                              .mipLevels = 1,
+                              .arrayLayers = 1,
+                              .samples = samples,
+                              .tiling = VK_IMAGE_TILING_OPTIMAL,
+                              .usage = usage};
+    if (!gpu_check(vkCreateImage(gpu->device, &info, NULL, &image->image), "vkCreateImage"))
+        return false;
+
+    VkMemoryRequirements requirements;
+    vkGetImageMemoryRequirements(gpu->device, image->image, &requirements);
+    if (allocate(gpu, &requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory) &&
+        gpu_check(vkBindImageMemory(gpu->device, image->image, image->memory, 0),
+                  "vkBindImageMemory") &&
+        create_view(gpu, format, aspect, image))
+        return true;
+    gpu_destroy_image(gpu, image);
+    return false;
+}
+
+void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image)
+{
+    vkDestroyImageView(gpu->device, image->view, NULL);
+    vkDestroyImage(gpu->device, image->image, NULL);
+    vkFreeMemory(gpu->device, image->memory, NULL);
+    *image = (struct gpu_image){0};
+}
+
+VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size)
+{
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = words};
+    VkShaderModule module = VK_NULL_HANDLE;
+    gpu_check(vkCreateShaderModule(gpu->device, &info, NULL, &module), "vkCreateShaderModule");
+    return module;
+}

@@ -1,0 +1,72 @@
+/** A Vulkan device without a window: instance, device, queues, and small helpers over them. */
+#ifndef SAMPLES_COMMON_GPU_H
+#define SAMPLES_COMMON_GPU_H
+
+#include <vulkan/vulkan.h>
+
+#include <sluice/vulkan.h>
+
+#include <stdatomic.h>
+
+struct gpu_request {
+    const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
+    bool validation;    ///< with synchronization validation
+};
+
+struct gpu {
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    VkQueue queue, sparse_queue; ///< may be the same
+    uint32_t family, sparse_family;
+    VkCommandPool command_pool; ///< buffers can be reset one by one
+    VkPhysicalDeviceProperties properties;
+    VkPhysicalDeviceMemoryProperties memory;
+    SluiceVulkanDeviceCapabilities capabilities;
+    VkDebugUtilsMessengerEXT messenger;
+    atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
+};
+
+/** A buffer of its own memory; `mapped` unless it is in device memory. */
+struct gpu_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    VkDeviceSize size;
+    void *mapped;
+};
+
+/** An image of its own memory and a view of it. */
+struct gpu_image {
+    VkImage image;
+    VkDeviceMemory memory;
+    VkImageView view;
+};
+
+/** Prints a line per device. Returns how many there are. */
+uint32_t gpu_list_devices(void);
+
+/**
+ * Says on stderr what is missing. `*unsupported` tells a machine without a device that streams from
+ * other failures.
+ */
+bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported);
+/** A zeroed struct is fine. */
+void gpu_destroy(struct gpu *gpu);
+
+/** Prints "what: VK_..." and returns false unless `result` is VK_SUCCESS. */
+bool gpu_check(VkResult result, const char *what);
+
+/** Host-visible buffers are coherent, and cached where `usage` is only a transfer destination. */
+bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFlags usage,
+                       struct gpu_buffer *buffer);
+void gpu_destroy_buffer(const struct gpu *gpu, struct gpu_buffer *buffer);
+
+/** A 2D image of one level in device memory. */
+bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
+                      VkSampleCountFlagBits samples, VkImageUsageFlags usage,
+                      VkImageAspectFlags aspect, struct gpu_image *image);
+void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image);
+
+VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size);
+
+#endif /* SAMPLES_COMMON_GPU_H */

@@ -1,0 +1,14 @@
+/** Pictures as PNG files. */
+#ifndef SAMPLES_COMMON_PNG_FILE_H
+#define SAMPLES_COMMON_PNG_FILE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/**
+ * Writes [height][width] RGBA bytes, row 0 on top, as an opaque sRGB picture. Says on stderr why it
+ * failed. Errors leave no file.
+ */
+bool png_file_write(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height);
+
+#endif /* SAMPLES_COMMON_PNG_FILE_H */

@@ -1,0 +1,113 @@
+#include "gallery.h"
+
+#include <stdio.h>
+
+#include "../common/progress.h"
+
+static bool open_surroundings(struct gallery *gallery)
+{
+    const SluiceFormat format = SLUICE_FORMAT_R8G8B8A8_SRGB;
+    uint32_t scale = gallery->settings.generate_scale;
+    gallery->floor_pattern =
+        (struct pattern_image){"parquet", 4096 / scale, 4096 / scale, pattern_parquet, 1};
+    gallery->wall_pattern =
+        (struct pattern_image){"wallpaper", 2048 / scale, 2048 / scale, pattern_wallpaper, 1};
+    if (pattern_create_source(&gallery->floor_pattern, format, &gallery->floor) == SLUICE_SUCCESS &&
+        pattern_create_source(&gallery->wall_pattern, format, &gallery->wall) == SLUICE_SUCCESS &&
+        room_build(&gallery->pictures, &gallery->room))
+        return true;
+    fprintf(stderr, "out of memory\n");
+    return false;
+}
+
+static bool counts_residency(const struct gallery *gallery)
+{
+    const struct settings *settings = &gallery->settings;
+    bool able = gallery->gpu.capabilities.shaderResourceResidency;
+    if (settings->check_residency == THREE_WAY_ON && !able)
+        fprintf(stderr, "%s has no residency codes: nothing is checked with them\n",
+                gallery->gpu.properties.deviceName);
+    return able && (settings->check_residency == THREE_WAY_ON ||
+                    (settings->check_residency == THREE_WAY_AUTO && settings->compare));
+}
+
+/* The truth is drawn from the entrance until it has all its tiles. */
+static bool fill_truth(struct gallery *gallery)
+{
+    struct view *view = &gallery->truth;
+    struct camera camera = walk_camera(&gallery->room, 0.0f);
+    uint64_t tile_count = view_tile_count(view);
+    struct progress progress;
+    struct view_frame frame = {0};
+    progress_begin(&progress, "loading everything to compare with", "tiles", tile_count);
+    do {
+        if (!view_wait(view, view->frame_index % VIEW_FRAMES_IN_FLIGHT) ||
+            !view_draw(view, &camera, 0, &frame) || !view_settle(view))
+            return false;
+        progress_update(&progress, frame.statistics.manager.mappedTileCount);
+        if (frame.statistics.manager.givenUpTileCount > 0) {
+            fprintf(stderr, "%u tiles cannot be loaded\n",
+                    frame.statistics.manager.givenUpTileCount);
+            return false;
+        }
+    } while (frame.statistics.manager.mappedTileCount < tile_count);
+    progress_end(&progress);
+    return true;
+}
+
+static bool open_views(struct gallery *gallery)
+{
+    const struct settings *settings = &gallery->settings;
+    struct view_request request = {
+        .gpu = &gallery->gpu,
+        .renderer = &gallery->renderer,
+        .target = &gallery->target,
+        .settings = settings,
+        .pictures = &gallery->pictures,
+        .floor = gallery->floor,
+        .wall = gallery->wall,
+        .counting = counts_residency(gallery),
+    };
+    if (!target_create(&gallery->gpu, settings->size[0], settings->size[1], settings->samples,
+                       &gallery->target) ||
+        !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
+                         request.counting, &gallery->renderer) ||
+        !view_create(&request, settings->record, &gallery->streamed))
+        return false;
+    if (!settings->compare)
+        return true;
+    request.everything = true;
+    request.counting = false;
+    return view_create(&request, NULL, &gallery->truth) && fill_truth(gallery);
+}
+
+enum gallery_outcome gallery_open(struct gallery *gallery)
+{
+    const struct settings *settings = &gallery->settings;
+    struct gpu_request device = {settings->device, settings->validation};
+    bool unsupported;
+    if (!gpu_create(&device, &gallery->gpu, &unsupported))
+        return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
+    struct picture_limits limits = {gallery->gpu.properties.limits.maxImageDimension2D,
+                                    gallery->gpu.capabilities.sparseAddressSpaceSize};
+    return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
+                   open_views(gallery)
+               ? GALLERY_READY
+               : GALLERY_FAILED;
+}
+
+bool gallery_close(struct gallery *gallery)
+{
+    bool recorded = view_destroy(&gallery->streamed);
+    view_destroy(&gallery->truth);
+    if (gallery->gpu.device) {
+        renderer_destroy(&gallery->renderer);
+        target_destroy(&gallery->gpu, &gallery->target);
+    }
+    room_finish(&gallery->room);
+    sluiceDestroyImageSource(gallery->floor);
+    sluiceDestroyImageSource(gallery->wall);
+    pictures_close(&gallery->pictures);
+    gpu_destroy(&gallery->gpu);
+    return recorded;
+}

@@ -1,0 +1,188 @@
+#include "gallery_report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../common/report.h"
+
+void gallery_report_picture_path(const char *folder, bool truth, uint32_t frame, char *path,
+                                 size_t size)
+{
+    snprintf(path, size, "%s/%s-%04u.png", folder, truth ? "truth" : "frame", frame);
+}
+
+typedef double (*frame_value)(const struct frame_record *now, const struct frame_record *before);
+
+static double psnr_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return now->psnr;
+}
+
+static double resident_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return measure_resident_tiles(now);
+}
+
+static double wanted_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return now->statistics.manager.mappedTileCount + now->statistics.manager.requestedTileCount +
+           now->statistics.manager.allocatedTileCount;
+}
+
+static double mapped_value(const struct frame_record *now, const struct frame_record *before)
+{
+    return (double)(now->statistics.tilesMapped - before->statistics.tilesMapped);
+}
+
+static double unmapped_value(const struct frame_record *now, const struct frame_record *before)
+{
+    return (double)(now->statistics.tilesUnmapped - before->statistics.tilesUnmapped);
+}
+
+static double uploaded_value(const struct frame_record *now, const struct frame_record *before)
+{
+    return (double)(now->statistics.bytesUploaded - before->statistics.bytesUploaded) / 1048576.0;
+}
+
+static double missing_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return now->counts.sampled ? 100.0 * now->counts.missingPixels / now->counts.sampled : 0.0;
+}
+
+static double frame_time_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return 1e3 * now->frame_seconds;
+}
+
+static double host_time_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return 1e3 * now->host_seconds;
+}
+
+struct plot_line {
+    const char *name;
+    frame_value value;
+};
+
+static void add_plot(struct report *report, const struct measure *measure, const char *title,
+                     const char *unit, double maximum, const struct plot_line *lines,
+                     size_t line_count)
+{
+    static const struct frame_record none;
+    struct report_series series[2];
+    double *values = calloc(2 * (size_t)measure->frame_count, sizeof *values);
+    if (!values)
+        return;
+    for (size_t s = 0; s < line_count; s++) {
+        double *line = values + s * measure->frame_count;
+        series[s] = (struct report_series){lines[s].name, line};
+        for (uint32_t i = 0; i < measure->frame_count; i++)
+            line[i] = lines[s].value(&measure->frames[i], i > 0 ? &measure->frames[i - 1] : &none);
+    }
+    report_plot(report, &(struct report_plot){.title = title,
+                                              .unit = unit,
+                                              .value_count = measure->frame_count,
+                                              .series_count = line_count,
+                                              .series = series,
+                                              .maximum = maximum,
+                                              .mark = measure->rest_frame,
+                                              .mark_name = "camera at rest"});
+    free(values);
+}
+
+static void add_plots(struct report *report, const struct measure *measure, bool compared)
+{
+    static const struct plot_line psnr[] = {{"PSNR to everything resident", psnr_value}};
+    static const struct plot_line tiles[] = {{"resident", resident_value},
+                                             {"wanted", wanted_value}};
+    static const struct plot_line flow[] = {{"mapped", mapped_value}, {"unmapped", unmapped_value}};
+    static const struct plot_line bytes[] = {{"uploaded", uploaded_value}};
+    static const struct plot_line missing[] = {{"pixels coarser than wanted", missing_value}};
+    static const struct plot_line times[] = {{"frame", frame_time_value},
+                                             {"the application's thread", host_time_value}};
+    if (compared)
+        add_plot(report, measure, "Difference to everything resident", "dB, the top is equality",
+                 80.0, psnr, 1);
+    if (measure->counting)
+        add_plot(report, measure, "Missing detail", "% of the streamed pixels", 0.0, missing, 1);
+    add_plot(report, measure, "Tiles in memory", "tiles of 64 KiB", 0.0, tiles, 2);
+    add_plot(report, measure, "Tiles mapped and unmapped", "tiles per frame", 0.0, flow, 2);
+    add_plot(report, measure, "Uploads", "MiB per frame", 0.0, bytes, 1);
+    add_plot(report, measure, "Time", "ms per frame", 0.0, times, 2);
+}
+
+static void add_figures(struct report *report, const struct measure *measure)
+{
+    struct figure figures[MEASURE_MAX_FIGURES];
+    uint32_t count = measure_figures(measure, figures);
+    report_begin_table(report);
+    for (uint32_t i = 0; i < count; i++) {
+        char buffer[32];
+        if (!isnan(figures[i].value))
+            report_row(report, figures[i].name, measure_format(figures[i].value, buffer),
+                       figures[i].unit);
+    }
+    report_end_table(report);
+}
+
+static void add_frames(struct report *report, const struct gallery_report_info *info,
+                       const struct measure *measure)
+{
+    report_heading(report, info->compared ? "Streamed, and with everything resident" : "Frames");
+    report_begin_pictures(report);
+    for (uint32_t i = 0; i < info->written_count; i++) {
+        uint32_t frame = info->written_frames[i];
+        char path[4096], caption[128];
+        int length = snprintf(caption, sizeof caption, "frame %u", frame);
+        if (info->compared && isinf(measure->frames[frame].psnr))
+            snprintf(caption + length, sizeof caption - (size_t)length, ", the same picture");
+        else if (info->compared)
+            snprintf(caption + length, sizeof caption - (size_t)length, ", %.1f dB",
+                     measure->frames[frame].psnr);
+        gallery_report_picture_path(info->folder, false, frame, path, sizeof path);
+        report_picture(report, path, caption);
+        if (!info->compared)
+            continue;
+        snprintf(caption, sizeof caption, "frame %u, everything resident", frame);
+        gallery_report_picture_path(info->folder, true, frame, path, sizeof path);
+        report_picture(report, path, caption);
+    }
+    report_end_pictures(report);
+}
+
+static void add_pictures(struct report *report, const struct picture_list *pictures)
+{
+    report_heading(report, "Pictures");
+    report_begin_table(report);
+    for (uint32_t i = 0; i < pictures->count; i++) {
+        char size[64];
+        snprintf(size, sizeof size, "%u x %u", pictures->pictures[i].info.width,
+                 pictures->pictures[i].info.height);
+        report_row(report, pictures->pictures[i].path, size,
+                   sluiceFormatString(pictures->pictures[i].info.format));
+    }
+    report_end_table(report);
+}
+
+bool gallery_report_write(const struct gallery_report_info *info, const struct measure *measure)
+{
+    char path[4096];
+    struct report report;
+    snprintf(path, sizeof path, "%s/report.html", info->folder);
+    if (!report_begin(&report, path, "A walk through the gallery"))
+        return false;
+    report_code(&report, info->command_line);
+    report_text(&report, info->device_name);
+    add_figures(&report, measure);
+    add_plots(&report, measure, info->compared);
+    add_frames(&report, info, measure);
+    add_pictures(&report, info->pictures);
+    return report_end(&report);
+}

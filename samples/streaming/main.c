@@ -1,0 +1,237 @@
+/**
+ * A walk through a room hung with pictures whose textures are streamed; see --help.
+ *
+ * What an application has to do for one frame stands in view.c (record_frame); here the frames are
+ * strung together, looked at and written down.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sluice/metrics.h>
+
+#include "../common/clock.h"
+#include "../common/files.h"
+#include "../common/png_file.h"
+#include "../common/progress.h"
+#include "gallery.h"
+#include "gallery_report.h"
+#include "measure.h"
+
+#define EXIT_USAGE 2
+#define EXIT_NO_DEVICE 77
+#define SOME_FRAMES 8 ///< pictures of the way that --write-frames some writes
+
+struct walk {
+    struct gallery *gallery;
+    struct measure *measure;
+    uint32_t *written_frames; ///< owned
+    uint32_t written_count;
+};
+
+/** The way, the moment when the camera stops and what follows it, the end. */
+static bool is_written(const struct walk *walk, uint32_t frame)
+{
+    uint32_t count = walk->measure->frame_count, rest = walk->measure->rest_frame;
+    uint32_t step = rest / SOME_FRAMES ? rest / SOME_FRAMES : 1;
+    switch (walk->gallery->settings.write_frames) {
+    case WRITE_FRAMES_NONE: return false;
+    case WRITE_FRAMES_ALL: return true;
+    default:
+        return frame + 1 == count || frame == rest || frame == rest + 10 ||
+               (frame < rest && frame % step == step / 2);
+    }
+}
+
+static bool write_picture(const struct walk *walk, const struct view *view, bool truth,
+                          uint32_t frame)
+{
+    const struct settings *settings = &walk->gallery->settings;
+    char path[4096];
+    gallery_report_picture_path(settings->output, truth, frame, path, sizeof path);
+    return png_file_write(path, view_pixels(view, frame % VIEW_FRAMES_IN_FLIGHT), settings->size[0],
+                          settings->size[1]);
+}
+
+/** Waits for a frame that was submitted earlier and looks at what came out. */
+static bool collect_frame(struct walk *walk, uint32_t frame)
+{
+    struct gallery *gallery = walk->gallery;
+    struct frame_record *record = &walk->measure->frames[frame];
+    uint32_t slot = frame % VIEW_FRAMES_IN_FLIGHT;
+    bool compare = gallery->settings.compare;
+    if (!view_wait(&gallery->streamed, slot))
+        return false;
+    record->gpu_seconds = view_gpu_seconds(&gallery->streamed, slot);
+    record->counts = view_counts(&gallery->streamed, slot);
+    record->psnr = NAN;
+    if (compare) {
+        uint32_t truth_slot =
+            (gallery->truth.frame_index - (gallery->streamed.frame_index - frame)) %
+            VIEW_FRAMES_IN_FLIGHT;
+        if (!view_wait(&gallery->truth, truth_slot) ||
+            sluiceComputePsnr8(view_pixels(&gallery->streamed, slot),
+                               view_pixels(&gallery->truth, truth_slot), gallery->target.width,
+                               gallery->target.height, 4, &record->psnr) != SLUICE_SUCCESS)
+            return false;
+    }
+    if (!is_written(walk, frame))
+        return true;
+    walk->written_frames[walk->written_count++] = frame;
+    return write_picture(walk, &gallery->streamed, false, frame) &&
+           (!compare || write_picture(walk, &gallery->truth, true, frame));
+}
+
+/** Draws one frame, in both views if they are compared. */
+static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
+{
+    struct gallery *gallery = walk->gallery;
+    uint32_t rest = walk->measure->rest_frame;
+    float progress = frame < rest ? (float)frame / (float)rest : 1.0f;
+    struct camera camera = walk_camera(&gallery->room, progress);
+    struct view_frame drawn, truth;
+    if (!view_draw(&gallery->streamed, &camera, time_stamp, &drawn))
+        return false;
+    walk->measure->frames[frame].host_seconds = drawn.host_seconds;
+    walk->measure->frames[frame].statistics = drawn.statistics;
+    return !gallery->settings.compare || view_draw(&gallery->truth, &camera, time_stamp, &truth);
+}
+
+static bool walk_through(struct walk *walk)
+{
+    const struct settings *settings = &walk->gallery->settings;
+    const double step = 1.0 / settings->frames_per_second;
+    struct progress progress;
+    progress_begin(&progress, "walking", "frames", settings->frames);
+    double due = clock_seconds(), submitted = due;
+    for (uint32_t frame = 0; frame < settings->frames; frame++) {
+        if (frame >= VIEW_FRAMES_IN_FLIGHT && !collect_frame(walk, frame - VIEW_FRAMES_IN_FLIGHT))
+            return false;
+        if (!settings->deterministic)
+            clock_sleep_until(due);
+        due = fmax(due + step, clock_seconds());
+
+        /* Time stamps follow the frames, not the clock: a slow machine streams the same way. */
+        uint64_t time_stamp = (uint64_t)(frame + 1) * 1000000u / settings->frames_per_second;
+        if (!draw_frame(walk, frame, time_stamp))
+            return false;
+        double now = clock_seconds();
+        walk->measure->frames[frame].frame_seconds = now - submitted;
+        submitted = now;
+        if (settings->deterministic &&
+            (!view_wait(&walk->gallery->streamed, frame % VIEW_FRAMES_IN_FLIGHT) ||
+             !view_settle(&walk->gallery->streamed)))
+            return false;
+        progress_update(&progress, frame + 1);
+    }
+    uint32_t left =
+        settings->frames < VIEW_FRAMES_IN_FLIGHT ? settings->frames : VIEW_FRAMES_IN_FLIGHT;
+    for (uint32_t frame = settings->frames - left; frame < settings->frames; frame++)
+        if (!collect_frame(walk, frame))
+            return false;
+    progress_end(&progress);
+    return true;
+}
+
+static char *join_arguments(int argc, char *const *argv)
+{
+    size_t size = 1;
+    for (int i = 0; i < argc; i++)
+        size += strlen(argv[i]) + 1;
+    char *line = calloc(size, 1);
+    for (int i = 0; line && i < argc; i++) {
+        strcat(line, argv[i]);
+        strcat(line, i + 1 < argc ? " " : "");
+    }
+    return line;
+}
+
+static bool write_results(const struct walk *walk, int argc, char *const *argv)
+{
+    const struct gallery *gallery = walk->gallery;
+    const struct settings *settings = &gallery->settings;
+    struct figure figures[MEASURE_MAX_FIGURES];
+    uint32_t figure_count = measure_figures(walk->measure, figures);
+    char csv_path[4096];
+    snprintf(csv_path, sizeof csv_path, "%s/frames.csv", settings->output);
+    char *command_line = join_arguments(argc, argv);
+    struct gallery_report_info report = {
+        .folder = settings->output,
+        .command_line = command_line ? command_line : "",
+        .device_name = gallery->gpu.properties.deviceName,
+        .pictures = &gallery->pictures,
+        .written_frames = walk->written_frames,
+        .written_count = walk->written_count,
+        .compared = settings->compare,
+    };
+    bool written =
+        measure_write_csv(walk->measure, csv_path) && gallery_report_write(&report, walk->measure);
+    free(command_line);
+    if (settings->json)
+        measure_print_json(figures, figure_count);
+    else
+        measure_print_text(figures, figure_count);
+    if (written && !settings->json)
+        printf("pictures, frames.csv and report.html are in %s\n", settings->output);
+    return written;
+}
+
+static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
+{
+    struct measure measure;
+    struct walk walk = {.gallery = gallery, .measure = &measure};
+    walk.written_frames = calloc(gallery->settings.frames, sizeof *walk.written_frames);
+    bool done = measure_begin(&measure, &gallery->settings) && walk.written_frames;
+    if (!done)
+        fprintf(stderr, "out of memory\n");
+    measure.counting = gallery->streamed.request.counting;
+    measure.tile_count = view_tile_count(&gallery->streamed);
+    if (gallery->settings.compare) {
+        SluiceVulkanStreamerStatistics truth;
+        sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
+        measure.truth_bytes = truth.deviceMemorySize;
+    }
+    done = done && walk_through(&walk) && write_results(&walk, argc, argv);
+    free(walk.written_frames);
+    measure_finish(&measure);
+    return done;
+}
+
+static int generate_only(const struct settings *settings)
+{
+    struct picture_limits limits = {UINT32_MAX, UINT64_MAX};
+    struct picture_list pictures;
+    if (!pictures_open(settings, &limits, &pictures))
+        return EXIT_FAILURE;
+    for (uint32_t i = 0; i < pictures.count; i++)
+        printf("%s\n", pictures.pictures[i].path);
+    pictures_close(&pictures);
+    return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
+    struct gallery gallery = {0};
+    switch (settings_parse(argc, argv, &gallery.settings)) {
+    case OPTIONS_HELP: return EXIT_SUCCESS;
+    case OPTIONS_ERROR: return EXIT_USAGE;
+    case OPTIONS_RUN: break;
+    }
+    if (gallery.settings.list_devices)
+        return gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE;
+    if (gallery.settings.generate_only)
+        return generate_only(&gallery.settings);
+    if (!files_make_folders(gallery.settings.output))
+        return EXIT_FAILURE;
+
+    enum gallery_outcome opened = gallery_open(&gallery);
+    bool done = opened == GALLERY_READY && run_walk(&gallery, argc, argv);
+    done = gallery_close(&gallery) && done;
+    uint32_t messages = atomic_load(&gallery.gpu.validation_messages);
+    if (messages > 0)
+        fprintf(stderr, "the validation layers had %u messages\n", messages);
+    if (opened == GALLERY_NO_DEVICE)
+        return EXIT_NO_DEVICE;
+    return done && messages == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,193 @@
+#include "measure.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool measure_begin(struct measure *measure, const struct settings *settings)
+{
+    *measure = (struct measure){.settings = settings};
+    measure->frames = calloc(settings->frames, sizeof *measure->frames);
+    measure->frame_count = settings->frames;
+    measure->rest_frame = settings->frames - settings->rest_frames;
+    return measure->frames != NULL;
+}
+
+void measure_finish(struct measure *measure)
+{
+    free(measure->frames);
+    *measure = (struct measure){0};
+}
+
+uint32_t measure_resident_tiles(const struct frame_record *record)
+{
+    return record->statistics.manager.mappedTileCount + record->statistics.manager.standbyTileCount;
+}
+
+/** Frames after the camera stopped until the picture is sharp for good; NaN if it never is. */
+static double frames_to_sharp(const struct measure *measure)
+{
+    uint32_t sharp_from = measure->frame_count;
+    while (sharp_from > measure->rest_frame &&
+           measure->frames[sharp_from - 1].psnr >= MEASURE_SHARP_DB)
+        sharp_from--;
+    return sharp_from < measure->frame_count ? sharp_from - measure->rest_frame : NAN;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/** The value that `share` of the frames do not exceed. */
+static double quantile(const struct measure *measure, size_t offset, double share)
+{
+    double *values = calloc(measure->frame_count, sizeof *values);
+    if (!values)
+        return NAN;
+    for (uint32_t i = 0; i < measure->frame_count; i++)
+        memcpy(&values[i], (const char *)&measure->frames[i] + offset, sizeof *values);
+    qsort(values, measure->frame_count, sizeof *values, compare_doubles);
+    double value = values[(uint32_t)(share * (measure->frame_count - 1))];
+    free(values);
+    return value;
+}
+
+#define FRAME_QUANTILE(measure, field, share)                                                      \
+    quantile(measure, offsetof(struct frame_record, field), share)
+
+static double finite_psnr(double psnr)
+{
+    return psnr > MEASURE_EQUAL_DB ? MEASURE_EQUAL_DB : psnr;
+}
+
+static double lowest_psnr(const struct measure *measure)
+{
+    double lowest = NAN;
+    for (uint32_t i = 0; i < measure->frame_count; i++)
+        lowest = fmin(lowest, measure->frames[i].psnr);
+    return finite_psnr(lowest);
+}
+
+uint32_t measure_figures(const struct measure *measure, struct figure figures[MEASURE_MAX_FIGURES])
+{
+    const struct frame_record *last = &measure->frames[measure->frame_count - 1];
+    const SluiceVulkanStreamerStatistics *statistics = &last->statistics;
+    uint64_t non_resident = 0, sampled = 0, peak_memory = 0;
+    uint32_t peak_tiles = 0;
+    for (uint32_t i = 0; i < measure->frame_count; i++) {
+        const struct frame_record *record = &measure->frames[i];
+        non_resident += record->counts.nonResident;
+        sampled += record->counts.sampled;
+        if (measure_resident_tiles(record) > peak_tiles)
+            peak_tiles = measure_resident_tiles(record);
+        if (record->statistics.deviceMemorySize > peak_memory)
+            peak_memory = record->statistics.deviceMemorySize;
+    }
+    const struct figure list[] = {
+        {"psnr_final_db", finite_psnr(last->psnr), "dB"},
+        {"psnr_lowest_db", lowest_psnr(measure), "dB"},
+        {"frames_to_60db", frames_to_sharp(measure), "frames"},
+        {"resident_tiles_percent", 100.0 * peak_tiles / (double)measure->tile_count, "%"},
+        {"resident_tiles_peak", peak_tiles, "tiles"},
+        {"tiles_of_all_textures", (double)measure->tile_count, "tiles"},
+        {"nonresident_reads", measure->counting ? (double)non_resident : NAN, "samples"},
+        {"checked_pixels", measure->counting ? (double)sampled : NAN, "pixels"},
+        {"tiles_mapped", (double)statistics->tilesMapped, "tiles"},
+        {"tiles_unmapped", (double)statistics->tilesUnmapped, "tiles"},
+        {"tiles_cancelled", (double)statistics->tilesCancelled, "tiles"},
+        {"tiles_failed", (double)statistics->tilesFailed, "tiles"},
+        {"bytes_uploaded", (double)statistics->bytesUploaded, "bytes"},
+        {"bytes_read", (double)statistics->bytesRead, "bytes"},
+        {"device_memory_peak", (double)peak_memory, "bytes"},
+        {"device_memory_everything", measure->truth_bytes ? (double)measure->truth_bytes : NAN,
+         "bytes"},
+        {"bind_calls", (double)statistics->bindCalls, "calls"},
+        {"feedback_maps", (double)statistics->feedbackMaps, "maps"},
+        {"frames", measure->frame_count, "frames"},
+        {"frame_ms_median", 1e3 * FRAME_QUANTILE(measure, frame_seconds, 0.5), "ms"},
+        {"frame_ms_p95", 1e3 * FRAME_QUANTILE(measure, frame_seconds, 0.95), "ms"},
+        {"host_ms_median", 1e3 * FRAME_QUANTILE(measure, host_seconds, 0.5), "ms"},
+        {"host_ms_p95", 1e3 * FRAME_QUANTILE(measure, host_seconds, 0.95), "ms"},
+        {"gpu_ms_median", 1e3 * FRAME_QUANTILE(measure, gpu_seconds, 0.5), "ms"},
+    };
+    memcpy(figures, list, sizeof list);
+    return sizeof list / sizeof *list;
+}
+
+static void write_csv_line(FILE *file, const struct measure *measure, uint32_t index)
+{
+    static const struct frame_record none;
+    const struct frame_record *record = &measure->frames[index];
+    const struct frame_record *before = index > 0 ? &measure->frames[index - 1] : &none;
+    const SluiceVulkanStreamerStatistics *now = &record->statistics;
+    const SluiceVulkanStreamerStatistics *then = &before->statistics;
+    fprintf(file, "%u,%d,%.3f,%.3f,%.3f,", index, index >= measure->rest_frame,
+            1e3 * record->frame_seconds, 1e3 * record->host_seconds, 1e3 * record->gpu_seconds);
+    if (!isnan(record->psnr))
+        fprintf(file, "%.3f", finite_psnr(record->psnr));
+    fprintf(file, ",%u,%u,%u,%u,%u,", measure_resident_tiles(record), now->manager.mappedTileCount,
+            now->manager.standbyTileCount, now->manager.requestedTileCount, now->loadsInFlight);
+    fprintf(file, "%llu,%llu,%llu,%llu,%llu,",
+            (unsigned long long)(now->tilesMapped - then->tilesMapped),
+            (unsigned long long)(now->tilesUnmapped - then->tilesUnmapped),
+            (unsigned long long)(now->bytesRead - then->bytesRead),
+            (unsigned long long)(now->bytesUploaded - then->bytesUploaded),
+            (unsigned long long)now->deviceMemorySize);
+    if (measure->counting)
+        fprintf(file, "%u,%u,%u,%u\n", record->counts.nonResident, record->counts.sampled,
+                record->counts.missingPixels, record->counts.missingLevels);
+    else
+        fprintf(file, ",,,\n");
+}
+
+bool measure_write_csv(const struct measure *measure, const char *path)
+{
+    FILE *file = fopen(path, "w");
+    if (file) {
+        fputs("frame,at_rest,frame_ms,host_ms,gpu_ms,psnr_db,resident_tiles,mapped_tiles,"
+              "standby_tiles,requested_tiles,loads_in_flight,tiles_mapped,tiles_unmapped,"
+              "bytes_read,bytes_uploaded,device_memory,nonresident_reads,sampled_pixels,"
+              "missing_pixels,missing_levels\n",
+              file);
+        for (uint32_t i = 0; i < measure->frame_count; i++)
+            write_csv_line(file, measure, i);
+    }
+    if (!file || ferror(file) | fclose(file)) {
+        fprintf(stderr, "%s: %s\n", path, strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+const char *measure_format(double value, char buffer[32])
+{
+    if (isnan(value))
+        return "-";
+    if (value == floor(value) && fabs(value) < 1e15)
+        snprintf(buffer, 32, "%.0f", value);
+    else
+        snprintf(buffer, 32, "%.3f", value);
+    return buffer;
+}
+
+void measure_print_json(const struct figure *figures, uint32_t count)
+{
+    char buffer[32];
+    for (uint32_t i = 0; i < count; i++)
+        printf("{\"name\": \"%s\", \"value\": %s, \"unit\": \"%s\"}\n", figures[i].name,
+               isnan(figures[i].value) ? "null" : measure_format(figures[i].value, buffer),
+               figures[i].unit);
+}
+
+void measure_print_text(const struct figure *figures, uint32_t count)
+{
+    char buffer[32];
+    for (uint32_t i = 0; i < count; i++)
+        if (!isnan(figures[i].value))
+            printf("%-26s %16s %s\n", figures[i].name, measure_format(figures[i].value, buffer),
+                   figures[i].unit);
+}

@@ -1,0 +1,53 @@
+/** What is measured per frame, and the figures that follow from it. */
+#ifndef SAMPLES_STREAMING_MEASURE_H
+#define SAMPLES_STREAMING_MEASURE_H
+
+#include "settings.h"
+#include "view.h"
+
+#define MEASURE_SHARP_DB 60.0  ///< "the same picture"
+#define MEASURE_EQUAL_DB 999.0 ///< stands for infinity where only numbers may be written
+
+struct frame_record {
+    double frame_seconds; ///< since the frame before was submitted
+    double host_seconds;  ///< of the application's thread
+    double gpu_seconds;
+    double psnr; ///< to the fully resident picture; NaN without a comparison
+    SluiceVulkanStreamerStatistics statistics;
+    struct GalleryCounts counts;
+};
+
+struct measure {
+    const struct settings *settings; ///< borrowed
+    struct frame_record *frames;     ///< owned
+    uint32_t frame_count;
+    uint32_t rest_frame;  ///< the first in which the camera stands still
+    bool counting;        ///< counts are valid
+    uint64_t tile_count;  ///< of all textures
+    uint64_t truth_bytes; ///< that the fully resident pictures take; 0 without a comparison
+};
+
+/** One named figure. */
+struct figure {
+    const char *name;
+    double value; ///< NaN: there is none
+    const char *unit;
+};
+
+#define MEASURE_MAX_FIGURES 24
+
+bool measure_begin(struct measure *measure, const struct settings *settings);
+void measure_finish(struct measure *measure);
+
+uint32_t measure_resident_tiles(const struct frame_record *record);
+/** Returns how many there are. */
+uint32_t measure_figures(const struct measure *measure, struct figure figures[MEASURE_MAX_FIGURES]);
+
+/** One line per frame. Says on stderr why it failed. */
+bool measure_write_csv(const struct measure *measure, const char *path);
+void measure_print_json(const struct figure *figures, uint32_t count);
+void measure_print_text(const struct figure *figures, uint32_t count);
+/** "12.5", "-" for NaN. */
+const char *measure_format(double value, char buffer[32]);
+
+#endif /* SAMPLES_STREAMING_MEASURE_H */

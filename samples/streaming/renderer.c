@@ -1,0 +1,324 @@
+#include "renderer.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "gallery_vert.h"
+#include "plain_frag.h"
+#include "surface_frag.h"
+#include "count_frag.h"
+
+static bool create_layouts(struct renderer *renderer)
+{
+    VkDevice device = renderer->gpu->device;
+    VkDescriptorSetLayoutBinding frame_bindings[6], texture_bindings[4];
+    for (uint32_t i = 0; i < 6; i++) /* alike, so that one write fills all */
+        frame_bindings[i] = (VkDescriptorSetLayoutBinding){
+            i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    for (uint32_t i = 0; i < 4; i++)
+        texture_bindings[i] = (VkDescriptorSetLayoutBinding){
+            i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo frame = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 6,
+        .pBindings = frame_bindings};
+    VkDescriptorSetLayoutCreateInfo texture = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 4,
+        .pBindings = texture_bindings};
+    if (!gpu_check(vkCreateDescriptorSetLayout(device, &frame, NULL, &renderer->frame_layout),
+                   "vkCreateDescriptorSetLayout") ||
+        !gpu_check(vkCreateDescriptorSetLayout(device, &texture, NULL, &renderer->texture_layout),
+                   "vkCreateDescriptorSetLayout"))
+        return false;
+
+    const VkDescriptorSetLayout sets[] = {renderer->frame_layout, renderer->texture_layout};
+    const VkPushConstantRange constants = {VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                                           sizeof(struct GalleryDraw)};
+    VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                       .setLayoutCount = 2,
+                                       .pSetLayouts = sets,
+                                       .pushConstantRangeCount = 1,
+                                       .pPushConstantRanges = &constants};
+    return gpu_check(vkCreatePipelineLayout(device, &info, NULL, &renderer->pipeline_layout),
+                     "vkCreatePipelineLayout");
+}
+
+static bool create_sampler(const struct gpu *gpu, VkSamplerAddressMode address, bool probe,
+                           uint32_t anisotropy, VkSampler *sampler)
+{
+    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                .magFilter = VK_FILTER_LINEAR,
+                                .minFilter = VK_FILTER_LINEAR,
+                                .mipmapMode = probe ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                    : VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                .addressModeU = address,
+                                .addressModeV = address,
+                                .addressModeW = address,
+                                .anisotropyEnable = !probe && anisotropy > 1,
+                                .maxAnisotropy = (float)anisotropy,
+                                .maxLod = VK_LOD_CLAMP_NONE};
+    return gpu_check(vkCreateSampler(gpu->device, &info, NULL, sampler), "vkCreateSampler");
+}
+
+static bool create_samplers(struct renderer *renderer, uint32_t anisotropy)
+{
+    const VkSamplerAddressMode clamp = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    const VkSamplerAddressMode repeat = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    return create_sampler(renderer->gpu, clamp, false, anisotropy, &renderer->clamp) &&
+           create_sampler(renderer->gpu, repeat, false, anisotropy, &renderer->repeat) &&
+           create_sampler(renderer->gpu, clamp, true, 1, &renderer->probe_clamp) &&
+           create_sampler(renderer->gpu, repeat, true, 1, &renderer->probe_repeat);
+}
+
+static bool create_buffers(struct renderer *renderer)
+{
+    const struct room *room = renderer->room;
+    size_t vertex_size = room->vertex_count * sizeof *room->vertices;
+    size_t light_size = room->place_count * sizeof *room->lights;
+    if (!gpu_create_buffer(renderer->gpu, vertex_size, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                           &renderer->vertices) ||
+        !gpu_create_buffer(renderer->gpu, light_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                           &renderer->lights))
+        return false;
+    memcpy(renderer->vertices.mapped, room->vertices, vertex_size);
+    memcpy(renderer->lights.mapped, room->lights, light_size);
+    return true;
+}
+
+static const VkVertexInputBindingDescription vertex_binding = {0, sizeof(struct room_vertex),
+                                                               VK_VERTEX_INPUT_RATE_VERTEX};
+static const VkVertexInputAttributeDescription vertex_attributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct room_vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct room_vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(struct room_vertex, tangent)},
+    {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct room_vertex, uv)},
+};
+
+static bool create_pipeline(struct renderer *renderer, const struct target *target,
+                            VkShaderModule vertex, VkShaderModule fragment, bool writes_color,
+                            VkPipeline *pipeline)
+{
+    const VkPipelineShaderStageCreateInfo stages[] = {
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_VERTEX_BIT,
+         .module = vertex,
+         .pName = "main"},
+        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+         .module = fragment,
+         .pName = "main"},
+    };
+    const VkPipelineVertexInputStateCreateInfo input = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = 1,
+        .pVertexBindingDescriptions = &vertex_binding,
+        .vertexAttributeDescriptionCount = 4,
+        .pVertexAttributeDescriptions = vertex_attributes};
+    const VkPipelineInputAssemblyStateCreateInfo assembly = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    const VkPipelineViewportStateCreateInfo viewport = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1,
+        .scissorCount = 1};
+    const VkPipelineRasterizationStateCreateInfo raster = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .cullMode = VK_CULL_MODE_BACK_BIT,
+        .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+        .lineWidth = 1.0f};
+    const VkPipelineMultisampleStateCreateInfo multisample = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = target->samples};
+    const VkPipelineDepthStencilStateCreateInfo depth = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = VK_TRUE,
+        .depthWriteEnable = VK_TRUE,
+        .depthCompareOp = VK_COMPARE_OP_LESS};
+    const VkPipelineColorBlendAttachmentState attachment = {.colorWriteMask =
+                                                                writes_color ? 0xf : 0};
+    const VkPipelineColorBlendStateCreateInfo blend = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = 1,
+        .pAttachments = &attachment};
+    static const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT,
+                                                    VK_DYNAMIC_STATE_SCISSOR};
+    const VkPipelineDynamicStateCreateInfo dynamic = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = 2,
+        .pDynamicStates = dynamic_states};
+    const VkGraphicsPipelineCreateInfo info = {.sType =
+                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                               .stageCount = 2,
+                                               .pStages = stages,
+                                               .pVertexInputState = &input,
+                                               .pInputAssemblyState = &assembly,
+                                               .pViewportState = &viewport,
+                                               .pRasterizationState = &raster,
+                                               .pMultisampleState = &multisample,
+                                               .pDepthStencilState = &depth,
+                                               .pColorBlendState = &blend,
+                                               .pDynamicState = &dynamic,
+                                               .layout = renderer->pipeline_layout,
+                                               .renderPass = target->pass};
+    return gpu_check(
+        vkCreateGraphicsPipelines(renderer->gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
+        "vkCreateGraphicsPipelines");
+}
+
+static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting)
+{
+    const struct gpu *gpu = renderer->gpu;
+    const struct {
+        const uint32_t *words;
+        size_t size;
+    } fragments[RENDERER_PASS_COUNT] = {
+        [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
+        [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
+        [RENDERER_COUNT] = {count_frag, sizeof count_frag},
+    };
+    VkShaderModule vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
+    bool created = vertex != VK_NULL_HANDLE;
+    for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
+        if (i == RENDERER_COUNT && !counting)
+            continue;
+        VkShaderModule fragment = gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
+        created = fragment != VK_NULL_HANDLE &&
+                  create_pipeline(renderer, target, vertex, fragment, i != RENDERER_COUNT,
+                                  &renderer->pipelines[i]);
+        vkDestroyShaderModule(gpu->device, fragment, NULL);
+    }
+    vkDestroyShaderModule(gpu->device, vertex, NULL);
+    return created;
+}
+
+bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
+                     uint32_t anisotropy, bool counting, struct renderer *renderer)
+{
+    *renderer = (struct renderer){.gpu = gpu, .room = room};
+    if (create_layouts(renderer) && create_samplers(renderer, anisotropy) &&
+        create_buffers(renderer) && create_pipelines(renderer, target, counting))
+        return true;
+    renderer_destroy(renderer);
+    return false;
+}
+
+void renderer_destroy(struct renderer *renderer)
+{
+    if (!renderer->gpu)
+        return;
+    VkDevice device = renderer->gpu->device;
+    for (int i = 0; i < RENDERER_PASS_COUNT; i++)
+        vkDestroyPipeline(device, renderer->pipelines[i], NULL);
+    gpu_destroy_buffer(renderer->gpu, &renderer->vertices);
+    gpu_destroy_buffer(renderer->gpu, &renderer->lights);
+    vkDestroySampler(device, renderer->clamp, NULL);
+    vkDestroySampler(device, renderer->repeat, NULL);
+    vkDestroySampler(device, renderer->probe_clamp, NULL);
+    vkDestroySampler(device, renderer->probe_repeat, NULL);
+    vkDestroyPipelineLayout(device, renderer->pipeline_layout, NULL);
+    vkDestroyDescriptorSetLayout(device, renderer->texture_layout, NULL);
+    vkDestroyDescriptorSetLayout(device, renderer->frame_layout, NULL);
+    *renderer = (struct renderer){0};
+}
+
+void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
+                              VkBuffer counts, const SluiceVulkanBuffers *buffers)
+{
+    const VkDescriptorBufferInfo infos[6] = {
+        {frame, 0, VK_WHOLE_SIZE},
+        {renderer->lights.buffer, 0, VK_WHOLE_SIZE},
+        {buffers->textureTable, 0, VK_WHOLE_SIZE},
+        {buffers->feedback, 0, VK_WHOLE_SIZE},
+        {buffers->minMip, 0, VK_WHOLE_SIZE},
+        {counts, 0, VK_WHOLE_SIZE},
+    };
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = set,
+                                  .descriptorCount = 6,
+                                  .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                  .pBufferInfo = infos};
+    vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
+}
+
+void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
+                                VkImageView color, VkImageView relief, bool repeat)
+{
+    VkSampler drawn = repeat ? renderer->repeat : renderer->clamp;
+    VkSampler probe = repeat ? renderer->probe_repeat : renderer->probe_clamp;
+    const VkDescriptorImageInfo infos[4] = {
+        {drawn, color, VK_IMAGE_LAYOUT_GENERAL},
+        {drawn, relief, VK_IMAGE_LAYOUT_GENERAL},
+        {probe, color, VK_IMAGE_LAYOUT_GENERAL},
+        {probe, relief, VK_IMAGE_LAYOUT_GENERAL},
+    };
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = set,
+                                  .descriptorCount = 4,
+                                  .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                  .pImageInfo = infos};
+    vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
+}
+
+static const struct renderer_surface *surface_of(const struct room_part *part,
+                                                 const struct renderer_surface *surfaces)
+{
+    switch (part->surface) {
+    case ROOM_PLAIN: return NULL;
+    case ROOM_FLOOR: return &surfaces[0];
+    case ROOM_WALL: return &surfaces[1];
+    case ROOM_PICTURE: return &surfaces[2 + part->picture];
+    }
+    return NULL;
+}
+
+static struct GalleryDraw draw_of(const struct room_part *part,
+                                  const struct renderer_surface *surface)
+{
+    struct GalleryDraw draw = {.colorTexture = GALLERY_NO_TEXTURE,
+                               .reliefTexture = GALLERY_NO_TEXTURE,
+                               .flags = part->glowing ? GALLERY_GLOWING : 0};
+    memcpy(draw.lights, part->lights, sizeof draw.lights);
+    memcpy(draw.color, part->color, sizeof draw.color);
+    for (int i = 1; i < GALLERY_LIGHTS_PER_DRAW; i++) /* each lamp once */
+        if (part->lights[i] == part->lights[0])
+            draw.lights[i] = GALLERY_NO_TEXTURE;
+    if (!surface)
+        return draw;
+    draw.colorTexture = surface->color_index;
+    draw.reliefTexture = surface->relief_index;
+    draw.reliefFeedback = surface->relief_feedback;
+    draw.exposure = surface->exposure;
+    draw.reliefScale = surface->relief_scale;
+    draw.flags |= (surface->grey ? GALLERY_GREY : 0) | (surface->painted ? GALLERY_PAINTED : 0);
+    return draw;
+}
+
+void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
+                   const struct renderer_surface *surfaces, bool counting)
+{
+    const struct room *room = renderer->room;
+    const VkDeviceSize offset = 0;
+    VkPipeline bound = VK_NULL_HANDLE;
+    vkCmdBindVertexBuffers(commands, 0, 1, &renderer->vertices.buffer, &offset);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer->pipeline_layout, 0,
+                            1, &frame, 0, NULL);
+    for (uint32_t i = 0; i < room->part_count; i++) {
+        const struct room_part *part = &room->parts[i];
+        const struct renderer_surface *surface = surface_of(part, surfaces);
+        VkPipeline pipeline = renderer->pipelines[!surface   ? RENDERER_PLAIN
+                                                  : counting ? RENDERER_COUNT
+                                                             : RENDERER_SURFACE];
+        if (pipeline != bound)
+            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        bound = pipeline;
+        if (surface)
+            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                    renderer->pipeline_layout, 1, 1, &surface->textures, 0, NULL);
+        struct GalleryDraw draw = draw_of(part, surface);
+        vkCmdPushConstants(commands, renderer->pipeline_layout, VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                           sizeof draw, &draw);
+        vkCmdDraw(commands, part->vertex_count, 1, part->first_vertex, 0);
+    }
+}

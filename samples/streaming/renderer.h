@@ -1,0 +1,49 @@
+/** How the room is drawn: pipelines, samplers, vertices; knows textures only as descriptor sets. */
+#ifndef SAMPLES_STREAMING_RENDERER_H
+#define SAMPLES_STREAMING_RENDERER_H
+
+#include "../common/gpu.h"
+#include "../common/target.h"
+#include "room.h"
+#include "walk.h"
+
+enum renderer_pass { RENDERER_PLAIN, RENDERER_SURFACE, RENDERER_COUNT, RENDERER_PASS_COUNT };
+
+struct renderer {
+    const struct gpu *gpu;   ///< borrowed
+    const struct room *room; ///< borrowed
+    VkDescriptorSetLayout frame_layout, texture_layout;
+    VkPipelineLayout pipeline_layout;
+    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the counting one only where it was asked for
+    VkSampler clamp, repeat;                   ///< as drawn
+    VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
+    struct gpu_buffer vertices, lights;
+};
+
+/** What a surface is drawn with. */
+struct renderer_surface {
+    VkDescriptorSet textures;
+    uint32_t color_index, relief_index; ///< in the texture table
+    bool relief_feedback;               ///< writes feedback of its own
+    float exposure, relief_scale;
+    bool grey, painted;
+};
+
+/** `pass` of a target that is compatible with those drawn to. */
+bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
+                     uint32_t anisotropy, bool counting, struct renderer *renderer);
+/** A zeroed struct is fine. */
+void renderer_destroy(struct renderer *renderer);
+
+/** Descriptors of set 0. */
+void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
+                              VkBuffer counts, const SluiceVulkanBuffers *buffers);
+/** Descriptors of set 1; without a relief, pass the colour's view twice. */
+void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
+                                VkImageView color, VkImageView relief, bool repeat);
+
+/** `surfaces`: floor, wall, then one per picture. Inside a render pass. */
+void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
+                   const struct renderer_surface *surfaces, bool counting);
+
+#endif /* SAMPLES_STREAMING_RENDERER_H */

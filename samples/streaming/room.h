@@ -1,0 +1,53 @@
+/** The gallery as triangles, lamps and a list of what to draw. Metres; y is up. */
+#ifndef SAMPLES_STREAMING_ROOM_H
+#define SAMPLES_STREAMING_ROOM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "../common/vecmath.h"
+#include "gallery_shared.h"
+#include "pictures.h"
+
+struct room_vertex {
+    float position[3], normal[3], tangent[3], uv[2];
+};
+
+enum room_surface { ROOM_PLAIN, ROOM_FLOOR, ROOM_WALL, ROOM_PICTURE };
+
+/** One draw call. */
+struct room_part {
+    enum room_surface surface;
+    uint32_t picture; ///< of ROOM_PICTURE
+    uint32_t first_vertex, vertex_count;
+    uint32_t lights[GALLERY_LIGHTS_PER_DRAW]; ///< those that reach it
+    float color[3];
+    bool glowing;
+};
+
+/** Where a picture hangs. */
+struct room_place {
+    struct vec3 center, normal, right; ///< right as seen by who looks at it
+    float width, height;
+};
+
+struct room {
+    float width, height, length; ///< x from -width/2 to width/2, z from 0 to -length
+    struct room_place *places;   ///< owned; one per picture
+    uint32_t place_count;
+    struct GalleryLight *lights;  ///< owned; one per picture
+    struct room_vertex *vertices; ///< owned; triangles
+    uint32_t vertex_count, vertex_capacity;
+    struct room_part *parts; ///< owned; pictures first, because they hide the most
+    uint32_t part_count, part_capacity;
+    bool out_of_memory;
+};
+
+#define ROOM_FLOOR_REPEAT 3.2f ///< metres that the floor's texture covers
+#define ROOM_WALL_REPEAT 1.8f
+
+/** False if out of memory. */
+bool room_build(const struct picture_list *pictures, struct room *room);
+void room_finish(struct room *room);
+
+#endif /* SAMPLES_STREAMING_ROOM_H */

@@ -1,0 +1,100 @@
+#include "settings.h"
+
+#include <stdio.h>
+
+static const char usage[] =
+    "streaming [OPTION ...]\n\n"
+    "Walks through a room hung with pictures whose textures are streamed: only the tiles that the\n"
+    "frames sample are in GPU memory. Without a window: writes pictures, a CSV line per frame and\n"
+    "report.html. Numbers in brackets are defaults.\n";
+
+enum option_outcome settings_parse(int argc, char *const *argv, struct settings *s)
+{
+    *s = (struct settings){
+        .generate_scale = 1,
+        .size = {640, 360},
+        .frames = 330,
+        .rest_frames = 90,
+        .frames_per_second = 60,
+        .samples = 4,
+        .output = "gallery-out",
+        .seed = 1,
+        .probability = 1.0 / 16.0,
+        .textures_per_frame = 10,
+        .tiles_per_frame = 64,
+        .timeout = 1.0,
+        .standby = 1024,
+        .heap_tiles = 256,
+        .anisotropy = 1,
+    };
+    const struct option options[] = {
+        {OPTION_SECTION, .help = "Pictures"},
+        {OPTION_LIST, "images", "FILE|DIR ...", &s->images,
+         "OpenEXR files, and folders that are searched for *.exr;\n"
+         "without it a set of large pictures is generated once and kept"},
+        {OPTION_TEXT, "cache", "DIR", &s->cache,
+         "where generated pictures are kept [$XDG_CACHE_HOME/sluice,\n~/.cache/sluice]"},
+        {OPTION_UINT, "generate-scale", "N", &s->generate_scale,
+         "generated pictures are 1/N as wide and high", 1, 64},
+        {OPTION_FLAG, "generate-only", NULL, &s->generate_only, "end after generating them"},
+        {OPTION_CHOICE, "format", "auto|rgba16f|rgba8", &s->format,
+         "texels on the GPU; auto: half floats, one channel for grey\npictures"},
+
+        {OPTION_SECTION, .help = "Frames"},
+        {OPTION_SIZE, "size", "WxH", s->size, "pixels", 16, 8192},
+        {OPTION_UINT, "frames", "N", &s->frames, "frames in all", 1, 100000},
+        {OPTION_UINT, "rest-frames", "N", &s->rest_frames,
+         "so many of them at the end, in which the camera stands still", 0, 100000},
+        {OPTION_UINT, "fps", "N", &s->frames_per_second,
+         "frames per second: sets the time step, and frames do not come\nfaster", 1, 10000},
+        {OPTION_UINT, "samples", "N", &s->samples, "per pixel along edges: 1, 2, 4 or 8", 1, 8},
+        {OPTION_TEXT, "output", "DIR", &s->output, "where everything is written"},
+        {OPTION_CHOICE, "write-frames", "some|all|none", &s->write_frames, "pictures to write"},
+        {OPTION_FLAG, "deterministic", NULL, &s->deterministic,
+         "wait for loads in each frame, so that each run is the same"},
+        {OPTION_UINT, "seed", "N", &s->seed, "of the random choice of pixels", 0, 4294967295.0},
+
+        {OPTION_SECTION, .help = "Streaming"},
+        {OPTION_REAL, "probability", "P", &s->probability,
+         "that a pixel quad writes feedback; 1/16 is understood", 0, 1},
+        {OPTION_FLAG, "lattice", NULL, &s->lattice,
+         "one pixel in 8x8 writes feedback instead, all in turn"},
+        {OPTION_UINT, "textures-per-frame", "N", &s->textures_per_frame,
+         "feedback maps read back per frame", 1, 65536},
+        {OPTION_UINT, "tiles-per-frame", "N", &s->tiles_per_frame,
+         "tiles mapped and uploaded per frame at most", 1, 65536},
+        {OPTION_REAL, "timeout", "SECONDS", &s->timeout, "tiles not wanted for so long are let go",
+         0.001, 86400},
+        {OPTION_UINT, "standby", "N", &s->standby, "tiles kept although unwanted", 0, 4294967295.0},
+        {OPTION_UINT, "heap-tiles", "N", &s->heap_tiles, "tiles of 64 KiB per heap", 1, 1048576},
+        {OPTION_UINT, "max-heaps", "N", &s->max_heaps, "heaps at most; 0: no cap", 0, 65536},
+        {OPTION_UINT, "loader-threads", "N", &s->loader_threads,
+         "threads that read tiles; 0: by the number of processors", 0, 256},
+        {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
+         "on: a picture's relief follows the picture's feedback;\noff: it writes its own"},
+        {OPTION_TEXT, "record", "TRACE", &s->record, "record the manager for sluice-replay"},
+
+        {OPTION_SECTION, .help = "Sampling"},
+        {OPTION_REAL, "lod-bias", "B", &s->lod_bias, "levels; positive is blurrier", -8, 8},
+        {OPTION_UINT, "anisotropy", "N", &s->anisotropy, "1: trilinear", 1, 16},
+        {OPTION_FLAG, "highlight", NULL, &s->highlight, "tint what is not yet as sharp as wanted"},
+
+        {OPTION_SECTION, .help = "Checks"},
+        {OPTION_FLAG, "compare", NULL, &s->compare,
+         "draw each frame a second time with everything resident and\nreport the difference"},
+        {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
+         "count samples of texels that are not there; auto: with\n--compare, where the device can"},
+        {OPTION_FLAG, "validation", NULL, &s->validation,
+         "Vulkan's validation layers; any message is an error"},
+        {OPTION_FLAG, "json", NULL, &s->json, "figures as JSON lines on stdout"},
+
+        {OPTION_SECTION, .help = "Device"},
+        {OPTION_TEXT, "device", "INDEX|NAME", &s->device, "instead of the best one"},
+        {OPTION_FLAG, "list-devices", NULL, &s->list_devices, "list them and end"},
+    };
+    enum option_outcome outcome =
+        options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
+    if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
+        s->rest_frames = s->frames - 1;
+    return outcome;
+}

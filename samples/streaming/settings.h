@@ -1,0 +1,52 @@
+/** What the command line asks of the gallery. */
+#ifndef SAMPLES_STREAMING_SETTINGS_H
+#define SAMPLES_STREAMING_SETTINGS_H
+
+#include <sluice/base.h>
+
+#include "../common/options.h"
+
+enum write_frames { WRITE_FRAMES_SOME, WRITE_FRAMES_ALL, WRITE_FRAMES_NONE };
+enum pixel_format { PIXEL_FORMAT_AUTO, PIXEL_FORMAT_RGBA16F, PIXEL_FORMAT_RGBA8 };
+enum three_way { THREE_WAY_AUTO, THREE_WAY_ON, THREE_WAY_OFF };
+enum on_off { SETTING_ON, SETTING_OFF };
+
+struct settings {
+    /* pictures */
+    struct option_list images;
+    const char *cache;
+    uint32_t generate_scale;
+    bool generate_only;
+    int format; ///< enum pixel_format
+    /* frames */
+    uint32_t size[2];
+    uint32_t frames, rest_frames;
+    uint32_t frames_per_second;
+    uint32_t samples;
+    const char *output;
+    int write_frames; ///< enum write_frames
+    bool deterministic;
+    uint32_t seed;
+    /* streaming */
+    double probability;
+    bool lattice;
+    uint32_t textures_per_frame, tiles_per_frame;
+    double timeout; ///< seconds
+    uint32_t standby, heap_tiles, max_heaps, loader_threads;
+    int texture_sets; ///< enum on_off
+    const char *record;
+    /* sampling */
+    double lod_bias;
+    uint32_t anisotropy;
+    bool highlight;
+    /* checks */
+    bool compare, validation, json;
+    int check_residency; ///< enum three_way
+    /* device */
+    const char *device;
+    bool list_devices;
+};
+
+enum option_outcome settings_parse(int argc, char *const *argv, struct settings *settings);
+
+#endif /* SAMPLES_STREAMING_SETTINGS_H */

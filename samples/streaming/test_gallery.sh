@@ -1,0 +1,73 @@
+#!/bin/sh
+# test_gallery.sh STREAMING REPLAY FOLDER
+#
+# Walks through a small gallery and checks what the walk must show: it ends with the picture that
+# everything resident gives, nothing that is not there is read, the validation layers are silent, and
+# the recording replays to the same decisions. Exit status 77: no device has sparse residency.
+set -eu
+streaming=$1 replay=$2 folder=$3
+
+rm -rf "$folder"
+mkdir -p "$folder"
+
+walk() { # name, options
+    name=$1
+    shift
+    status=0
+    "$streaming" --cache "$folder/cache" --generate-scale 8 --size 256x144 --json \
+        --output "$folder/$name" --record "$folder/$name.trace" "$@" \
+        >"$folder/$name.json" 2>"$folder/$name.log" || status=$?
+}
+
+# The value of a figure must satisfy an awk condition on v.
+check() { # name, figure, condition
+    awk -F'"value": ' -v figure="\"$2\"" '
+        index($0, figure) { found = 1; sub(/,.*/, "", $2); v = $2; good = v != "null" && ('"$3"') }
+        END { exit !(found && good) }' "$folder/$1.json" || {
+        echo "$1: $2 must satisfy: $3" >&2
+        grep "$2" "$folder/$1.json" >&2 || true
+        failed=1
+    }
+}
+
+failed=0
+walk compared --frames 60 --rest-frames 30 --compare --validation
+if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/compared.log"; then
+    echo "there are no validation layers: walking without them" >&2
+    walk compared --frames 60 --rest-frames 30 --compare
+fi
+[ "$status" -ne 77 ] || { cat "$folder/compared.log" >&2; exit 77; }
+[ "$status" -eq 0 ] || { cat "$folder/compared.log" >&2; exit 1; }
+check compared psnr_final_db 'v >= 60'
+check compared frames_to_60db 'v <= 30'
+check compared tiles_mapped 'v > 0'
+check compared tiles_failed 'v == 0'
+if ! grep -q '"nonresident_reads", "value": null' "$folder/compared.json"; then
+    check compared nonresident_reads 'v == 0'
+    check compared checked_pixels 'v > 100000'
+fi
+grep -q '</svg>' "$folder/compared/report.html" || { echo "the report has no plots" >&2; failed=1; }
+"$replay" "$folder/compared.trace" >/dev/null || failed=1
+
+# The lattice, followers that write their own feedback, few tiles in memory, standby not allowed.
+walk pressed --frames 40 --rest-frames 5 --lattice --texture-sets off --heap-tiles 16 --max-heaps 9 \
+    --standby 0 --timeout 0.2 --samples 1 --format rgba8 --highlight --check-residency on
+[ "$status" -eq 0 ] || { cat "$folder/pressed.log" >&2; failed=1; }
+check pressed resident_tiles_peak 'v <= 144'
+check pressed tiles_unmapped 'v > 0'
+if ! grep -q '"nonresident_reads", "value": null' "$folder/pressed.json"; then
+    check pressed nonresident_reads 'v == 0'
+fi
+"$replay" "$folder/pressed.trace" >/dev/null || failed=1
+
+# The same walk twice is the same, decision by decision and pixel by pixel.
+for name in first second; do
+    walk $name --frames 24 --rest-frames 6 --deterministic --loader-threads 1 --write-frames all
+    [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
+done
+cmp "$folder/first.trace" "$folder/second.trace" >&2 || failed=1
+for picture in "$folder"/first/*.png; do
+    cmp "$picture" "$folder/second/${picture##*/}" >&2 || failed=1
+done
+
+exit $failed

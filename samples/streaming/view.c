@@ -1,0 +1,412 @@
+#include "view.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../common/clock.h"
+
+#define WAIT_NANOSECONDS 60000000000ull
+
+static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
+{
+    (void)user_data;
+    if (severity != SLUICE_LOG_INFO)
+        fprintf(stderr, "%s\n", message);
+}
+
+/** Prints "what: SLUICE_..." and returns false unless it is a success. */
+static bool check(SluiceResult result, const char *what)
+{
+    if (result == SLUICE_SUCCESS)
+        return true;
+    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    return false;
+}
+
+static bool create_streamer(struct view *view)
+{
+    const struct gpu *gpu = view->request.gpu;
+    const struct settings *settings = view->request.settings;
+    SluiceVulkanStreamerCreateInfo info = {
+        .instance = gpu->instance,
+        .physicalDevice = gpu->physical_device,
+        .device = gpu->device,
+        .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+        .sparseQueue = gpu->sparse_queue,
+        .sparseQueueFamilyIndex = gpu->sparse_family,
+        .queueFamilyIndex = gpu->family,
+        .log = {NULL, print_log},
+        .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
+        .maxTextureCount = 2 + 2 * view->request.pictures->count,
+        .texturesPerFrame = settings->textures_per_frame,
+        .tilesPerFrame = settings->tiles_per_frame,
+        .loaderThreadCount = settings->loader_threads,
+        .heapTileCapacity = settings->heap_tiles,
+        .maxHeapCount = settings->max_heaps,
+        .numExtraStandbyTiles = settings->standby,
+        .feedbackTimeout = (uint64_t)(settings->timeout * 1e6),
+        .retryDelay = 250000,
+    };
+    if (view->request.everything) {
+        info.mapEverything = true;
+        info.tilesPerFrame = 1024;
+        info.maxHeapCount = 0;
+    }
+    return check(sluiceCreateVulkanStreamer(&info, &view->streamer), "sluiceCreateVulkanStreamer");
+}
+
+static bool add_texture(struct view *view, SluiceImageSource *source, SluiceTextureId primary,
+                        bool repeat, SluiceVulkanTexture *texture)
+{
+    VkSamplerAddressMode mode =
+        repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    SluiceVulkanTextureCreateInfo info = {
+        .source = source, .primaryId = primary, .addressModeU = mode, .addressModeV = mode};
+    SluiceResult result = sluiceAddVulkanTexture(view->streamer, &info, texture);
+    if (result == SLUICE_SUCCESS)
+        return true;
+    SluiceImageInfo image = {.pName = "a texture"};
+    (void)sluiceGetImageInfo(source, &image);
+    fprintf(stderr, "%s: cannot be streamed: %s\n", image.pName, sluiceResultString(result));
+    return false;
+}
+
+static bool allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
+                          VkDescriptorSet *sets)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                            .descriptorPool = view->descriptor_pool,
+                                            .descriptorSetCount = 1,
+                                            .pSetLayouts = &layout};
+        if (!gpu_check(vkAllocateDescriptorSets(view->request.gpu->device, &info, &sets[i]),
+                       "vkAllocateDescriptorSets"))
+            return false;
+    }
+    return true;
+}
+
+static bool create_descriptor_pool(struct view *view)
+{
+    uint32_t surface_count = 2 + view->request.pictures->count;
+    const VkDescriptorPoolSize sizes[] = {
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 6 * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * surface_count},
+    };
+    VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .maxSets = VIEW_FRAMES_IN_FLIGHT + surface_count,
+                                       .poolSizeCount = 2,
+                                       .pPoolSizes = sizes};
+    return gpu_check(
+        vkCreateDescriptorPool(view->request.gpu->device, &info, NULL, &view->descriptor_pool),
+        "vkCreateDescriptorPool");
+}
+
+/** A texture without a relief: floor and walls. */
+static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
+                                 struct renderer_surface *surface)
+{
+    SluiceVulkanTexture color;
+    if (!add_texture(view, source, SLUICE_NO_TEXTURE, true, &color))
+        return false;
+    surface->color_index = surface->relief_index = color.tableIndex;
+    surface->exposure = 1.0f;
+    renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
+                               color.imageView, true);
+    return true;
+}
+
+static bool create_picture_surface(struct view *view, const struct picture *picture,
+                                   struct renderer_surface *surface)
+{
+    bool sets = view->request.settings->texture_sets == SETTING_ON;
+    SluiceVulkanTexture color, relief;
+    if (!add_texture(view, picture->color, SLUICE_NO_TEXTURE, false, &color) ||
+        !add_texture(view, picture->relief, sets ? color.textureId : SLUICE_NO_TEXTURE, false,
+                     &relief))
+        return false;
+    surface->color_index = color.tableIndex;
+    surface->relief_index = relief.tableIndex;
+    surface->relief_feedback = !sets;
+    surface->exposure = picture->exposure;
+    surface->relief_scale = 0.0012f; /* metres from the deepest to the highest paint */
+    surface->grey = picture->grey;
+    surface->painted = true;
+    renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
+                               relief.imageView, false);
+    return true;
+}
+
+static bool create_surfaces(struct view *view)
+{
+    const struct view_request *request = &view->request;
+    uint32_t count = 2 + request->pictures->count;
+    view->surfaces = calloc(count, sizeof *view->surfaces);
+    if (!view->surfaces)
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        if (!allocate_sets(view, request->renderer->texture_layout, 1, &view->surfaces[i].textures))
+            return false;
+    if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
+        !create_tiled_surface(view, request->wall, &view->surfaces[1]))
+        return false;
+    for (uint32_t i = 0; i < request->pictures->count; i++)
+        if (!create_picture_surface(view, &request->pictures->pictures[i], &view->surfaces[2 + i]))
+            return false;
+    return true;
+}
+
+static bool create_slot(struct view *view, struct view_slot *slot)
+{
+    const struct gpu *gpu = view->request.gpu;
+    const struct target *target = view->request.target;
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = gpu->command_pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = 1};
+    if (!gpu_check(vkAllocateCommandBuffers(gpu->device, &info, &slot->commands),
+                   "vkAllocateCommandBuffers") ||
+        !gpu_create_buffer(gpu, sizeof(struct GalleryFrame), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                           &slot->frame) ||
+        !gpu_create_buffer(gpu, sizeof(struct GalleryCounts),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           &slot->counts) ||
+        !gpu_create_buffer(gpu, (VkDeviceSize)target->width * target->height * 4,
+                           VK_BUFFER_USAGE_TRANSFER_DST_BIT, &slot->pixels) ||
+        !allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
+        return false;
+    memset(slot->counts.mapped, 0, sizeof(struct GalleryCounts));
+    SluiceVulkanBuffers buffers;
+    sluiceGetVulkanBuffers(view->streamer, &buffers);
+    renderer_write_frame_set(view->request.renderer, slot->frame_set, slot->frame.buffer,
+                             slot->counts.buffer, &buffers);
+    return true;
+}
+
+static bool create_slots(struct view *view)
+{
+    VkQueryPoolCreateInfo queries = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                     .queryCount = 2 * VIEW_FRAMES_IN_FLIGHT};
+    for (uint32_t i = 0; i < VIEW_FRAMES_IN_FLIGHT; i++)
+        if (!create_slot(view, &view->slots[i]))
+            return false;
+    return gpu_check(
+        vkCreateQueryPool(view->request.gpu->device, &queries, NULL, &view->timestamps),
+        "vkCreateQueryPool");
+}
+
+bool view_create(const struct view_request *request, const char *record_path, struct view *view)
+{
+    *view = (struct view){.request = *request};
+    bool created = create_streamer(view);
+    /* Before the first texture, so that the recording is complete. */
+    if (created && record_path)
+        created = check(sluiceBeginRecordingToFile(sluiceGetVulkanStreamerManager(view->streamer),
+                                                   record_path, NULL, &view->recorder),
+                        record_path);
+    if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view))
+        return true;
+    view_destroy(view);
+    return false;
+}
+
+bool view_destroy(struct view *view)
+{
+    if (!view->request.gpu)
+        return true;
+    const struct gpu *gpu = view->request.gpu;
+    vkDeviceWaitIdle(gpu->device);
+    bool recorded = check(sluiceEndRecording(view->recorder), "sluiceEndRecording");
+    for (uint32_t i = 0; i < VIEW_FRAMES_IN_FLIGHT; i++) {
+        struct view_slot *slot = &view->slots[i];
+        if (slot->commands)
+            vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &slot->commands);
+        gpu_destroy_buffer(gpu, &slot->frame);
+        gpu_destroy_buffer(gpu, &slot->counts);
+        gpu_destroy_buffer(gpu, &slot->pixels);
+    }
+    vkDestroyQueryPool(gpu->device, view->timestamps, NULL);
+    vkDestroyDescriptorPool(gpu->device, view->descriptor_pool, NULL);
+    free(view->surfaces);
+    sluiceDestroyVulkanStreamer(view->streamer);
+    *view = (struct view){0};
+    return recorded;
+}
+
+static void write_frame_data(const struct view *view, const struct camera *camera,
+                             struct GalleryFrame *frame)
+{
+    const struct settings *settings = view->request.settings;
+    const struct target *target = view->request.target;
+    const struct room *room = view->request.renderer->room;
+    struct mat4 look = mat4_look_at(camera->eye, camera->target);
+    struct mat4 lens = mat4_perspective(
+        WALK_FIELD_OF_VIEW, (float)target->width / (float)target->height, 0.05f, 200.0f);
+    struct mat4 view_projection = mat4_multiply(&lens, &look);
+    *frame = (struct GalleryFrame){
+        .eye = {camera->eye.x, camera->eye.y, camera->eye.z},
+        .feedbackProbability = (float)settings->probability,
+        .roomSize = {room->width, room->height, room->length},
+        .lodBias = (float)settings->lod_bias,
+        .maxAnisotropy = (float)settings->anisotropy,
+        .feedbackSeed = settings->seed * 0x9e3779b1u + view->frame_index,
+        .latticeFrame = settings->lattice ? view->frame_index : GALLERY_NO_TEXTURE,
+        .highlight = settings->highlight && !view->request.everything,
+    };
+    if (view->request.everything) { /* its feedback is not needed */
+        frame->feedbackProbability = 0.0f;
+        frame->latticeFrame = GALLERY_NO_TEXTURE;
+    }
+    memcpy(frame->viewProjection, view_projection.m, sizeof frame->viewProjection);
+}
+
+static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
+                    VkPipelineStageFlags to, VkAccessFlags to_access)
+{
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = from_access,
+                              .dstAccessMask = to_access};
+    vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
+}
+
+/** The room once more, only to count what its samples would read. */
+static void record_counting(const struct view *view, const struct view_slot *slot)
+{
+    const struct view_request *request = &view->request;
+    static const float black[4] = {0, 0, 0, 0};
+    vkCmdFillBuffer(slot->commands, slot->counts.buffer, 0, VK_WHOLE_SIZE, 0);
+    barrier(slot->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+            VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    target_begin(request->target, slot->commands, black);
+    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces, true);
+    target_end(request->target, slot->commands);
+    barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+            VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+}
+
+/* One frame of an application that streams. */
+static bool record_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
+                         SluiceStreamingFrame *frame)
+{
+    const struct view_request *request = &view->request;
+    static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
+    VkCommandBuffer commands = slot->commands;
+    uint32_t query = 2 * (view->frame_index % VIEW_FRAMES_IN_FLIGHT);
+    vkCmdResetQueryPool(commands, view->timestamps, query, 2);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, view->timestamps, query);
+
+    /* Uploads what arrived and publishes it; its answers decide what the shaders may sample. */
+    if (!check(sluiceBeginStreamingFrame(view->streamer, commands, time_stamp, frame),
+               "sluiceBeginStreamingFrame"))
+        return false;
+
+    if (request->counting)
+        record_counting(view, slot);
+
+    target_begin(request->target, commands, background);
+    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, false);
+    target_end(request->target, commands);
+
+    /* Takes down what the shaders wanted. */
+    if (!check(sluiceEndStreamingFrame(view->streamer, commands), "sluiceEndStreamingFrame"))
+        return false;
+
+    target_copy_out(request->target, commands, slot->pixels.buffer);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
+                        query + 1);
+    return true;
+}
+
+static bool submit(const struct view *view, struct view_slot *slot,
+                   const SluiceStreamingFrame *frame)
+{
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = &frame->signalValue};
+    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                         .pNext = &timeline,
+                         .commandBufferCount = 1,
+                         .pCommandBuffers = &slot->commands,
+                         .signalSemaphoreCount = 1,
+                         .pSignalSemaphores = &frame->semaphore};
+    slot->semaphore = frame->semaphore;
+    slot->signal_value = frame->signalValue;
+    return gpu_check(vkQueueSubmit(view->request.gpu->queue, 1, &info, VK_NULL_HANDLE),
+                     "vkQueueSubmit");
+}
+
+bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
+               struct view_frame *out)
+{
+    uint32_t slot_index = view->frame_index % VIEW_FRAMES_IN_FLIGHT;
+    struct view_slot *slot = &view->slots[slot_index];
+    if (!view_wait(view, slot_index))
+        return false;
+    double start = clock_seconds();
+    write_frame_data(view, camera, slot->frame.mapped);
+
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    SluiceStreamingFrame frame;
+    if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
+        !record_frame(view, slot, time_stamp, &frame) ||
+        !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
+        !submit(view, slot, &frame))
+        return false;
+    out->host_seconds = clock_seconds() - start;
+    sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
+    view->frame_index++;
+    return true;
+}
+
+bool view_wait(const struct view *view, uint32_t slot)
+{
+    const struct view_slot *waited = &view->slots[slot];
+    if (waited->signal_value == 0)
+        return true;
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &waited->semaphore,
+                                .pValues = &waited->signal_value};
+    return gpu_check(vkWaitSemaphores(view->request.gpu->device, &info, WAIT_NANOSECONDS),
+                     "vkWaitSemaphores");
+}
+
+const uint8_t *view_pixels(const struct view *view, uint32_t slot)
+{
+    return view->slots[slot].pixels.mapped;
+}
+
+struct GalleryCounts view_counts(const struct view *view, uint32_t slot)
+{
+    struct GalleryCounts counts;
+    memcpy(&counts, view->slots[slot].counts.mapped, sizeof counts);
+    return counts;
+}
+
+double view_gpu_seconds(const struct view *view, uint32_t slot)
+{
+    uint64_t ticks[2] = {0, 0};
+    if (vkGetQueryPoolResults(view->request.gpu->device, view->timestamps, 2 * slot, 2,
+                              sizeof ticks, ticks, sizeof *ticks,
+                              VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+        return 0.0;
+    return (double)(ticks[1] - ticks[0]) * 1e-9 *
+           (double)view->request.gpu->properties.limits.timestampPeriod;
+}
+
+bool view_settle(struct view *view)
+{
+    return check(sluiceWaitVulkanStreamerIdle(view->streamer), "sluiceWaitVulkanStreamerIdle");
+}
+
+uint64_t view_tile_count(const struct view *view)
+{
+    SluiceVulkanStreamerStatistics statistics;
+    sluiceGetVulkanStreamerStatistics(view->streamer, &statistics);
+    return statistics.manager.tileCount;
+}

@@ -1,0 +1,17 @@
+/** The way through the gallery: the same in every run, and at rest in the end. */
+#ifndef SAMPLES_STREAMING_WALK_H
+#define SAMPLES_STREAMING_WALK_H
+
+#include "../common/vecmath.h"
+#include "room.h"
+
+struct camera {
+    struct vec3 eye, target;
+};
+
+#define WALK_FIELD_OF_VIEW 0.95f ///< vertical, radians
+
+/** `progress` from 0 at the entrance to 1 at the end. */
+struct camera walk_camera(const struct room *room, float progress);
+
+#endif /* SAMPLES_STREAMING_WALK_H */

@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Sluice and streams the gallery: a room hung with large pictures,
+# of which only the tiles that are seen are kept in memory.
+#
+#   scripts/demo.sh [options] [-- options of samples/streaming]
+#
+#   --output DIR   where pictures and report go      (default: build/demo-out)
+#   --cache DIR    where generated images are kept   (default: build/demo-cache)
+#   --no-install   install nothing; say what is missing
+#   --help
+#
+# Runs on a fresh Debian 12, Debian 13 or Ubuntu 24.04, as root or with sudo (root is needed only if
+# something is missing), and asks nothing. Without a GPU it runs on the CPU, on Mesa's lavapipe.
+#
+# Environment: SLUICE_BUILD      folder for everything that is built (default: build)
+#              VK_DRIVER_FILES   the Vulkan drivers to look at, as the Vulkan loader takes it
+
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+for part in common packages mesa build; do
+    # shellcheck source=/dev/null
+    . "$here/lib/$part.sh"
+done
+
+install=yes output=$SLUICE_BUILD/demo-out cache=$SLUICE_BUILD/demo-cache
+while [ $# -gt 0 ]; do
+    case $1 in
+    --output) output=${2:?--output needs a folder}; shift ;;
+    --cache) cache=${2:?--cache needs a folder}; shift ;;
+    --no-install) install=no ;;
+    --help) usage_of "$0"; exit 0 ;;
+    --) shift; break ;;
+    *) die "unknown option $1 (see --help)" ;;
+    esac
+    shift
+done
+trap give_back_build EXIT
+
+ensure_packages build "$install"
+
+title "Building"
+folder=$SLUICE_BUILD/demo
+configure "$folder" --wrap-mode="$(wrap_mode build)" --buildtype=release -Dtests=false \
+    -Dexr=enabled -Dvulkan=enabled -Dsamples=enabled || die "configuring failed"
+compile "$folder" || die "the build failed"
+
+forget_display
+if has_gpu; then
+    say "A GPU was found; add '-- --device cpu' to run on lavapipe all the same."
+else
+    select_lavapipe
+    say "No GPU was found: running on the CPU (lavapipe)."
+fi
+
+title "Streaming the gallery"
+mkdir -p "$output" "$cache"
+"$folder/samples/streaming/streaming" --output "$output" --cache "$cache" --compare --json "$@" |
+    tee "$output/summary.txt" || die "the demo did not end well"
+
+title "Done"
+say "The report, with pictures and figures: $output/report.html"
+say "Pictures, and the same with everything resident: $output/frame-*.png, truth-*.png"
+say "Figures: $output/frames.csv (by frame), $output/summary.txt"

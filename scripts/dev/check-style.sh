@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# What a reader should never stumble over, checked on every tracked file. Prints TAP.
+#
+#   scripts/dev/check-style.sh
+#
+# Formatting is checked with clang-format 14 alone, because versions differ in what they write.
+
+set -uo pipefail
+shopt -s lastpipe # report counts, at the end of pipes
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
+
+# Without git (an unpacked archive) everything outside the build folders counts.
+files() {
+    if git rev-parse --git-dir >/dev/null 2>&1; then
+        git ls-files -- "$@"
+    else
+        local pattern
+        local -a names=()
+        for pattern; do names+=(-o -path "./$pattern"); done
+        find . -name '.git' -prune -o -path './build*' -prune -o -path './subprojects/*-[0-9]*' -prune -o -type f \( "${names[@]:1}" \) -print
+    fi
+}
+
+text=('*.c' '*.h' '*.cpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.txt' '*.md' '*.sh' '*.py'
+    '*.awk' '*.wrap' '*.supp' '*.ci/run' '*.csv')
+code=('*.c' '*.h' '*.cpp' '*.glsl' '*.comp' '*.vert' '*.frag' '*.build' '*.sh' '*.py' '*.awk' '*.ci/run')
+number=0 status=0
+
+# report FACT: what is wrong, one line each, is on stdin
+report() {
+    local found
+    number=$((number + 1))
+    found=$(head -n 40)
+    if [ -z "$found" ]; then
+        echo "ok $number - $1"
+    else
+        echo "not ok $number - $1"
+        printf '%s\n' "$found" | sed 's/^/# /'
+        status=1
+    fi
+}
+
+skipped() {
+    number=$((number + 1))
+    echo "ok $number - $1 # SKIP $2"
+}
+
+# search PATTERN FILES...: where an extended regular expression occurs
+search() {
+    local pattern=$1
+    shift
+    files "$@" | tr '\n' '\0' | xargs -0 -r grep -n -I -E -e "$pattern" --
+}
+
+no_final_newline() {
+    files "${text[@]}" | while IFS= read -r file; do
+        [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo "$file"
+    done
+}
+
+echo 1..9
+search $'\t' "${code[@]}" | report sources_hold_no_tabs
+search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
+search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
+no_final_newline | report files_end_with_a_newline
+# The marks are written with a class so that this file does not find itself.
+search '\b(TOD[O]|FIXM[E]|XX[X])\b' "${text[@]}" | report no_work_is_left_marked
+search '(deb|archive|security|ports|snapshot|mirrors?|registry|proxy)\.[a-z0-9-]+\.(org|com|net|io|dev)\b' \
+    "${text[@]}" | report no_package_mirror_is_named
+search 'https?://' "${code[@]}" | grep -v -E '://(registry\.khronos\.org|[a-z]+\.example)/' |
+    report code_names_no_host
+
+if command -v shellcheck >/dev/null; then
+    files '*.sh' '*.ci/run' | tr '\n' '\0' | xargs -0 shellcheck -x 2>&1 | report scripts_pass_shellcheck
+else
+    skipped scripts_pass_shellcheck "shellcheck is not installed"
+fi
+
+formatter=$(command -v clang-format-14 || command -v clang-format || true)
+if [ -n "$formatter" ] && "$formatter" --version | grep -q 'version 14\.'; then
+    files '*.c' '*.h' '*.cpp' | tr '\n' '\0' | xargs -0 "$formatter" --dry-run -Werror 2>&1 |
+        sed -n 's/:.*error:.*//p' | sort | uniq -c | report sources_are_formatted
+else
+    skipped sources_are_formatted "clang-format 14 is not installed"
+fi
+exit $status

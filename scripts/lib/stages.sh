@@ -1,0 +1,113 @@
+# The stages of scripts/test.sh: each builds or checks something and adds its facts to one list.
+# shellcheck shell=bash
+
+tests_folder=$SLUICE_BUILD/test
+facts=$tests_folder/facts.tsv
+collect() { python3 "$SLUICE_ROOT/scripts/lib/collect.py" "$@"; }
+
+begin_stages() {
+    mkdir -p "$tests_folder"
+    : >"$facts"
+    SECONDS=0
+}
+
+end_stages() {
+    title "Result after $((SECONDS / 60)) min $((SECONDS % 60)) s"
+    collect summary "$facts"
+}
+
+# fact STATUS STAGE TEST NAME REASON
+fact() { (IFS=$'\t' && printf '%s\n' "$*") >>"$facts"; }
+
+stage_title() { title "$1 ($((SECONDS / 60)):$(printf '%02d' $((SECONDS % 60))))"; }
+
+# Empties the stage's own logs first, so that nothing of an earlier run is counted.
+run_meson_tests() {
+    local stage=$1 folder=$tests_folder/$1 before
+    shift
+    rm -rf "$folder/meson-logs/"testlog*
+    before=$(wc -l <"$facts")
+    # Its exit status says nothing that the facts do not say.
+    ${disable_aslr:-} meson test -C "$folder" --no-rebuild --num-processes "$(nproc)" "$@" \
+        >"$folder.test.log" 2>&1 </dev/null || true
+    collect meson "$stage" "$folder" >>"$facts"
+    if [ "$(wc -l <"$facts")" -eq "$before" ]; then
+        tail -n 30 "$folder.test.log"
+        fact failed "$stage" tests "no test ran" "see $folder.test.log"
+    fi
+    tail -n +"$((before + 1))" "$facts" | cut -f 1 | sort | uniq -c
+}
+
+# build_stage STAGE NAME=VALUE... -- OPTIONS...: fails, with a fact, if it cannot be built.
+build_stage() {
+    local stage=$1 folder=$tests_folder/$1
+    local -a settings=()
+    shift
+    while [ "$1" != -- ]; do
+        settings+=("$1")
+        shift
+    done
+    shift
+    if ! (
+        [ ${#settings[@]} -eq 0 ] || export "${settings[@]}"
+        configure "$folder" --wrap-mode="$(wrap_mode test)" --werror "$@"
+    ); then
+        fact failed "$stage" configure "meson setup" "see $folder.setup.log"
+        return 1
+    fi
+    if ! compile "$folder"; then
+        fact failed "$stage" build "compiles without a warning" "see $folder.build.log"
+        return 1
+    fi
+    fact passed "$stage" build "compiles without a warning" ""
+}
+
+# meson_stage STAGE NAME=VALUE... -- OPTIONS...; test_options go to `meson test`
+test_options=()
+meson_stage() {
+    stage_title "$1"
+    if build_stage "$@"; then
+        run_meson_tests "$1" "${test_options[@]}"
+    fi
+}
+
+# Whether a program made with this sanitizer runs at all: leak checking needs ptrace, and some
+# kernels place memory where an older runtime does not expect it.
+sanitizer_works() {
+    local program=$tests_folder/probe-$1
+    printf '%s\n' 'int main(void) { return 0; }' >"$program.c"
+    clang -fsanitize="$1" "$program.c" -o "$program" >"$program.log" 2>&1 || return 1
+    ${disable_aslr:-} "$program" >>"$program.log" 2>&1
+}
+
+# sanitizer_stage STAGE SETUP SANITIZERS OPTIONS...
+sanitizer_stage() {
+    local stage=$1 setup=$2 sanitizers=$3 disable_aslr=''
+    shift 3
+    stage_title "$stage"
+    if ! sanitizer_works "$sanitizers"; then
+        if disable_aslr='setarch -R' && sanitizer_works "$sanitizers"; then
+            say "This kernel's address layout does not suit the sanitizer; running without randomisation."
+        elif disable_aslr='' && ASAN_OPTIONS=detect_leaks=0 sanitizer_works "$sanitizers"; then
+            say "Leaks cannot be looked for here (no ptrace); everything else is checked."
+            local -x ASAN_OPTIONS=detect_leaks=0
+        else
+            cat "$tests_folder/probe-$sanitizers.log"
+            fact skipped "$stage" "$sanitizers" "all of it" "no program made with this sanitizer runs here"
+            return 0
+        fi
+    fi
+    if build_stage "$stage" CC=clang CXX=clang++ -- "-Db_sanitize=$sanitizers" -Db_lundef=false \
+        -Ddefault_library=static "$@"; then
+        run_meson_tests "$stage" --setup "$setup"
+    fi
+}
+
+# tap_stage STAGE PROGRAM: the program prints TAP, and finds the gcc build in $SLUICE_BUILD/test/gcc.
+tap_stage() {
+    local log=$tests_folder/$1.log status=0
+    stage_title "$1"
+    SLUICE_BUILD=$SLUICE_BUILD "$SLUICE_ROOT/$2" >"$log" 2>&1 </dev/null || status=$?
+    collect tap "$1" "$2" "$log" "$status" >>"$facts"
+    grep -v '^ok ' "$log" || true
+}

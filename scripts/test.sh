@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Installs what is missing, then builds Sluice in every way that matters and runs all tests.
+#
+#   scripts/test.sh [options]
+#
+#   --quick        only the gcc build, its tests, and the style check
+#   --no-install   install nothing; say what is missing
+#   --clean        throw away earlier test builds first
+#   --help
+#
+# Runs on a fresh Debian 12, Debian 13 or Ubuntu 24.04, as root or with sudo (root is needed only if
+# something is missing), and asks nothing. The last line is `N passed, N failed, N skipped`; the
+# exit status is 0 if nothing failed.
+#
+# Environment: SLUICE_BUILD       folder for everything that is built (default: build)
+#              SLUICE_TEST_DATA   sample files (default: ../shared/data beside the checkout, if there)
+#              VK_DRIVER_FILES    the Vulkan drivers to test on (default: lavapipe alone)
+
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+for part in common packages mesa build stages; do
+    # shellcheck source=/dev/null
+    . "$here/lib/$part.sh"
+done
+
+install=yes quick=no clean=no
+while [ $# -gt 0 ]; do
+    case $1 in
+    --quick) quick=yes ;;
+    --no-install) install=no ;;
+    --clean) clean=yes ;;
+    --help) usage_of "$0"; exit 0 ;;
+    *) die "unknown option $1 (see --help)" ;;
+    esac
+    shift
+done
+trap give_back_build EXIT
+
+ensure_packages test "$install"
+forget_display
+select_lavapipe
+[ "$clean" = no ] || rm -rf "$SLUICE_BUILD/test"
+begin_stages
+
+# As users get it, and everything that is not about the build: headers, packages, examples, device.
+meson_stage gcc CC=gcc CXX=g++ -- -Dbuildtype=debugoptimized -Ddefault_library=both
+tap_stage style scripts/dev/check-style.sh
+if [ "$quick" = no ]; then
+    tap_stage consumer tests/consumer/run.sh
+    sanitizer_stage clang-sanitizers sanitize address,undefined -Dbuildtype=debugoptimized
+    sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Dsamples=disabled
+
+    # Every feature off, both kinds of library; replays must decide the same in all of them.
+    # What is slow has run twice by now and depends on none of this.
+    test_options=(--no-suite slow)
+    off='-Dexr=disabled -Dvulkan=disabled -Dsamples=disabled'
+    # shellcheck disable=SC2086 # lists of words
+    {
+        meson_stage gcc-O0-static CC=gcc -- $off -Doptimization=0 -Ddefault_library=static
+        meson_stage gcc-O3-shared CC=gcc -- $off -Doptimization=3 -Ddefault_library=shared
+        meson_stage clang-O0-shared CC=clang -- $off -Doptimization=0 -Ddefault_library=shared
+        meson_stage clang-O3-static CC=clang -- $off -Doptimization=3 -Ddefault_library=static
+    }
+fi
+
+end_stages

@@ -1,0 +1,30 @@
+/* A program from outside: uses the installed headers and every library that is there. */
+#include <sluice/sluice.h>
+#ifdef WITH_EXR
+#include <sluice/exr.h>
+#endif
+#ifdef WITH_VULKAN
+#include <sluice/vulkan.h>
+#endif
+
+#include <stdio.h>
+#include <string.h>
+
+int main(void)
+{
+    if (strcmp(sluiceResultString(SLUICE_SUCCESS), "SLUICE_SUCCESS") != 0)
+        return 1;
+    if (sluiceFormatTexelSize(SLUICE_FORMAT_R8G8B8A8_SRGB) != 4)
+        return 2;
+#ifdef WITH_EXR
+    SluiceExrImageSourceCreateInfo info = {.pPath = "there is no such file"};
+    SluiceImageSource *source = NULL;
+    if (sluiceCreateExrImageSource(&info, &source) != SLUICE_ERROR_FILE_NOT_FOUND)
+        return 3;
+#endif
+#ifdef WITH_VULKAN
+    sluiceDestroyVulkanStreamer(NULL);
+#endif
+    printf("sluice %d.%d.%d\n", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR, SLUICE_VERSION_PATCH);
+    return 0;
+}

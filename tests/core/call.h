@@ -1,0 +1,102 @@
+/** One call of sluice/manager.h as data, and what came out of it. */
+#ifndef TESTS_CORE_CALL_H
+#define TESTS_CORE_CALL_H
+
+#include <sluice/manager.h>
+
+#include <stdio.h>
+
+enum call_kind {
+    CALL_SET_CONFIG,
+    CALL_ADD_TEXTURE,
+    CALL_REMOVE_TEXTURE,
+    CALL_FEEDBACK,
+    CALL_MATCH_PRIMARY,
+    CALL_SET_PRIMARY,
+    CALL_TILES_TO_MAP,
+    CALL_MAPPED,
+    CALL_FAILED,
+    CALL_CANCELLED,
+    CALL_RETRY,
+    CALL_GIVEN_UP,
+    CALL_TILES_TO_CANCEL,
+    CALL_TILES_TO_UNMAP,
+    CALL_COMPLETE,
+    CALL_TRIM,
+    CALL_DEFRAGMENT,
+    CALL_EMPTY_HEAPS,
+    CALL_RELEASE_HEAP,
+    CALL_MINMIP_UPDATES,
+    CALL_WRITE_MINMIP,
+    CALL_WRITE_RECT,
+    CALL_TILE_STATE,
+    CALL_LAYOUT,
+    CALL_TEXTURE_LAYOUT,
+    CALL_STATISTICS,
+    CALL_KIND_COUNT
+};
+
+/** Which pointer of a call is NULL. `second` is the array of a list call, which makes it a query.
+ */
+enum call_null { NULL_NONE, NULL_MANAGER, NULL_FIRST, NULL_SECOND };
+
+/** Room of the arrays that calls are made with; the same number of heap answers per call. */
+#define CALL_MAX_ROOM 4096u
+#define CALL_MAX_INDICES 4096u
+#define CALL_MAX_MAP 4096u
+
+/** Only the fields that the kind needs are set. */
+struct call {
+    enum call_kind kind;
+    enum call_null null;
+    SluiceTextureId texture; ///< of SET_PRIMARY and MATCH_PRIMARY: the follower
+    SluiceTextureId primary;
+    uint64_t time, timeout, retire;
+    SluiceStreamedTextureManagerConfig config;
+    SluiceStreamedTextureDesc desc;
+    uint32_t map_width, map_height;
+    int32_t bias;
+    uint32_t streamed_levels;
+    bool null_map;
+    uint32_t room;  ///< of list calls and of DEFRAGMENT
+    uint32_t count; ///< of indices
+    uint32_t keep, heap, tile;
+    SluiceMinMipRect rect;
+    size_t pitch, size;
+    /** So many allocations of this call succeed, then none; UINT64_MAX: all do. */
+    uint64_t refuse_after;
+    /* Not cleared between calls. */
+    uint8_t map[CALL_MAX_MAP];
+    uint32_t indices[CALL_MAX_INDICES];
+};
+
+struct heap_answer {
+    SluiceResult result;
+    uint32_t id;
+};
+
+struct outcome {
+    SluiceResult result;
+    SluiceTextureId texture; ///< ADD_TEXTURE
+    uint32_t count;          ///< list calls
+    SluiceTile tiles[CALL_MAX_ROOM];
+    SluiceTileMove moves[CALL_MAX_ROOM];
+    SluiceMinMipRect rects[CALL_MAX_ROOM];
+    uint32_t heaps[CALL_MAX_ROOM];
+    uint8_t bytes[CALL_MAX_MAP]; ///< WRITE_MINMIP, WRITE_RECT
+    SluiceTileState state;       ///< TILE_STATE, with tiles[0]
+    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureStatistics statistics;
+    uint32_t answer_count; ///< of the heap allocator, in the order in which it was asked
+    struct heap_answer answers[CALL_MAX_ROOM];
+};
+
+/** Makes the call and fills in what it answered, but for the heap allocator's answers. */
+void call_make(SluiceStreamedTextureManager *manager, const struct call *call, struct outcome *out);
+/** Whether it takes a count in and out, and an array. */
+bool call_is_list(enum call_kind kind);
+const char *call_kind_name(enum call_kind kind);
+/** One line, but for feedback maps, which follow row by row. */
+void call_print(FILE *file, const struct call *call);
+
+#endif /* TESTS_CORE_CALL_H */

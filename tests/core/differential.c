@@ -1,0 +1,481 @@
+#include "core/differential.h"
+
+#include "core/check.h"
+#include "support/failing_allocator.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_HEAPS 1024
+
+/* What an application would keep: a copy of a MinMip map, brought up to date by rectangles. */
+struct published {
+    SluiceTextureId id;
+    uint8_t *texels;
+};
+
+struct differential {
+    SluiceStreamedTextureManager *manager;
+    struct naive_manager naive;
+    struct call_sequence sequence;
+    struct failing_allocator allocator;
+    struct call call;
+    struct outcome seen, expected;
+    uint32_t call_number;
+    uint32_t heap_count;
+    uint32_t heaps[MAX_HEAPS];
+    struct published published[64];
+    uint64_t coverage[CALL_KIND_COUNT][64]; ///< by result + 32
+    uint64_t entries[CALL_KIND_COUNT];      ///< of all lists that were handed out
+    uint64_t restored, textures, tiles, calls;
+    bool failed;
+    char message[512];
+};
+
+static void fail(struct differential *d, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Keeps the first message. */
+static void fail(struct differential *d, const char *format, ...)
+{
+    if (d->failed)
+        return;
+    d->failed = true;
+    int used = snprintf(d->message, sizeof d->message, "call %" PRIu32 " (%s): ", d->call_number,
+                        call_kind_name(d->call.kind));
+    va_list args;
+    va_start(args, format);
+    vsnprintf(d->message + used, sizeof d->message - (size_t)used, format, args);
+    va_end(args);
+}
+
+static bool heap_lives(const struct differential *d, uint32_t id)
+{
+    for (uint32_t i = 0; i < d->heap_count; i++)
+        if (d->heaps[i] == id)
+            return true;
+    return false;
+}
+
+static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
+{
+    struct differential *d = user;
+    if (size != (uint64_t)d->sequence.capacity * SLUICE_DEFAULT_TILE_SIZE)
+        fail(d, "a heap of %" PRIu64 " bytes was asked for", size);
+    struct heap_answer answer = call_sequence_heap_answer(&d->sequence, d->heaps, d->heap_count);
+    if (d->seen.answer_count < CALL_MAX_ROOM)
+        d->seen.answers[d->seen.answer_count++] = answer;
+    if (answer.result != SLUICE_SUCCESS)
+        return answer.result;
+    *heap_id = answer.id;
+    if (!heap_lives(d, answer.id))
+        d->heaps[d->heap_count++] = answer.id;
+    return SLUICE_SUCCESS;
+}
+
+static void release_heap(void *user, uint32_t heap_id)
+{
+    struct differential *d = user;
+    uint32_t i = 0;
+    while (i < d->heap_count && d->heaps[i] != heap_id)
+        i++;
+    if (i == d->heap_count)
+        fail(d, "heap %" PRIu32 " was released, but does not live", heap_id);
+    else
+        d->heaps[i] = d->heaps[--d->heap_count];
+}
+
+struct differential *differential_create(void)
+{
+    return naive_alloc(1, sizeof(struct differential));
+}
+
+void differential_destroy(struct differential *d)
+{
+    free(d);
+}
+
+static bool same_tile(const SluiceTile *a, const SluiceTile *b, bool with_slot)
+{
+    return a->textureId == b->textureId && a->tileIndex == b->tileIndex &&
+           a->mipLevel == b->mipLevel && a->x == b->x && a->y == b->y &&
+           (!with_slot || (a->heapId == b->heapId && a->slot == b->slot));
+}
+
+static void fail_tile(struct differential *d, const char *what, uint32_t at, const SluiceTile *a,
+                      const SluiceTile *b)
+{
+    fail(d,
+         "%s %" PRIu32 " is tile %" PRIu32 " of %" PRIx64 ", level %" PRIu32 " (%" PRIu32
+         ", %" PRIu32 "), heap %" PRIu32 " slot %" PRIu32 "; expected tile %" PRIu32 " of %" PRIx64
+         ", level %" PRIu32 " (%" PRIu32 ", %" PRIu32 "), heap %" PRIu32 " slot %" PRIu32,
+         what, at, a->tileIndex, a->textureId, a->mipLevel, a->x, a->y, a->heapId, a->slot,
+         b->tileIndex, b->textureId, b->mipLevel, b->x, b->y, b->heapId, b->slot);
+}
+
+static void compare_lists(struct differential *d)
+{
+    const struct outcome *a = &d->seen, *b = &d->expected;
+    const enum call_kind kind = d->call.kind;
+    if (a->count != b->count)
+        fail(d, "the count is %" PRIu32 ", expected %" PRIu32, a->count, b->count);
+    for (uint32_t i = 0; i < a->count && d->call.null != NULL_SECOND && !d->failed; i++) {
+        switch (kind) {
+        case CALL_TILES_TO_MAP:
+        case CALL_TILES_TO_CANCEL:
+        case CALL_TILES_TO_UNMAP:
+        case CALL_GIVEN_UP:
+            if (!same_tile(&a->tiles[i], &b->tiles[i], kind != CALL_GIVEN_UP))
+                fail_tile(d, "entry", i, &a->tiles[i], &b->tiles[i]);
+            break;
+        case CALL_DEFRAGMENT:
+            if (!same_tile(&a->moves[i].from, &b->moves[i].from, true))
+                fail_tile(d, "move", i, &a->moves[i].from, &b->moves[i].from);
+            break;
+        case CALL_MINMIP_UPDATES:
+            if (a->rects[i].textureId != b->rects[i].textureId)
+                fail(d, "rectangle %" PRIu32 " is of %" PRIx64 ", expected %" PRIx64, i,
+                     a->rects[i].textureId, b->rects[i].textureId);
+            break;
+        default: /* heaps were checked when they were taken over */ break;
+        }
+    }
+}
+
+static void compare_layouts(struct differential *d, const SluiceStreamedTextureLayout *a,
+                            const SluiceStreamedTextureLayout *b)
+{
+    bool same = memcmp(&a->desc, &b->desc, sizeof a->desc) == 0 &&
+                a->regularTileCount == b->regularTileCount && a->tileCount == b->tileCount &&
+                a->feedbackWidth == b->feedbackWidth && a->feedbackHeight == b->feedbackHeight &&
+                a->minMipWidth == b->minMipWidth && a->minMipHeight == b->minMipHeight;
+    for (uint32_t i = 0; i < b->desc.regularMipCount && same; i++)
+        same = a->levelWidthInTiles[i] == b->levelWidthInTiles[i] &&
+               a->levelHeightInTiles[i] == b->levelHeightInTiles[i] &&
+               a->levelFirstTile[i] == b->levelFirstTile[i];
+    if (!same)
+        fail(d, "the layouts differ");
+}
+
+static void compare_statistics(struct differential *d, const SluiceStreamedTextureStatistics *a,
+                               const SluiceStreamedTextureStatistics *b)
+{
+#define COMPARE(field)                                                                             \
+    if (a->field != b->field)                                                                      \
+    fail(d, "statistics: " #field " is %" PRIu64 ", expected %" PRIu64, (uint64_t)a->field,        \
+         (uint64_t)b->field)
+    COMPARE(textureCount);
+    COMPARE(tileCount);
+    COMPARE(requestedTileCount);
+    COMPARE(allocatedTileCount);
+    COMPARE(mappedTileCount);
+    COMPARE(standbyTileCount);
+    COMPARE(cancelledTileCount);
+    COMPARE(failedTileCount);
+    COMPARE(givenUpTileCount);
+    COMPARE(retiringSlotCount);
+    COMPARE(heapCount);
+    COMPARE(freeSlotCount);
+    COMPARE(handedOutTotal);
+    COMPARE(mappedTotal);
+    COMPARE(unmappedTotal);
+    COMPARE(cancelledTotal);
+    COMPARE(failedTotal);
+    COMPARE(restoredTotal);
+    COMPARE(movedTotal);
+#undef COMPARE
+    if (a->hostMemorySize != d->allocator.live_bytes)
+        fail(d, "statistics: hostMemorySize is %" PRIu64 ", expected %" PRIu64, a->hostMemorySize,
+             d->allocator.live_bytes);
+}
+
+/* Bytes that are compared for the calls that write rows, gaps between them included. */
+static size_t row_bytes(const struct call *c)
+{
+    return c->kind == CALL_WRITE_MINMIP || c->kind == CALL_WRITE_RECT ? CALL_MAX_MAP : 0;
+}
+
+static void compare_outcomes(struct differential *d)
+{
+    const struct outcome *a = &d->seen, *b = &d->expected;
+    if (d->call.null != NULL_SECOND && a->result >= 0)
+        d->entries[d->call.kind] += a->count + d->call.count;
+    if (a->result != b->result)
+        fail(d, "the result is %s, expected %s", sluiceResultString(a->result),
+             sluiceResultString(b->result));
+    if (d->naive.complaint[0])
+        fail(d, "%s", d->naive.complaint);
+    if (a->answer_count != b->answer_count)
+        fail(d, "the heap allocator was asked %" PRIu32 " times, expected %" PRIu32,
+             a->answer_count, b->answer_count);
+    if (memcmp(a->bytes, b->bytes, row_bytes(&d->call)) != 0)
+        fail(d, "the bytes written differ");
+    if (b->result < 0 || d->failed)
+        return;
+    switch (d->call.kind) {
+    case CALL_TILES_TO_MAP:
+    case CALL_GIVEN_UP:
+    case CALL_TILES_TO_CANCEL:
+    case CALL_TILES_TO_UNMAP:
+    case CALL_DEFRAGMENT:
+    case CALL_EMPTY_HEAPS:
+    case CALL_MINMIP_UPDATES: compare_lists(d); break;
+    case CALL_LAYOUT:
+    case CALL_TEXTURE_LAYOUT: compare_layouts(d, &a->layout, &b->layout); break;
+    case CALL_STATISTICS: compare_statistics(d, &a->statistics, &b->statistics); break;
+    default: break;
+    }
+}
+
+static const char *state_name(SluiceTileState state)
+{
+    static const char *const names[] = {"FREE",    "REQUESTED", "ALLOCATED", "MAPPED",
+                                        "STANDBY", "CANCELLED", "FAILED",    "GIVEN_UP"};
+    return (unsigned)state < 8 ? names[state] : "unknown";
+}
+
+static void compare_tiles(struct differential *d, const struct naive_texture *t)
+{
+    for (uint32_t i = 0; i < t->layout.tileCount && !d->failed; i++) {
+        SluiceTileState state;
+        SluiceTile tile, expected = naive_tile_info(t, i);
+        SluiceResult result = sluiceGetTileState(d->manager, t->id, i, &state, &tile);
+        if (result != SLUICE_SUCCESS)
+            fail(d, "sluiceGetTileState says %s", sluiceResultString(result));
+        else if (state != t->tiles[i].state)
+            fail(d, "tile %" PRIu32 " of %" PRIx64 " is %s, expected %s", i, t->id,
+                 state_name(state), state_name(t->tiles[i].state));
+        else if (!same_tile(&tile, &expected, naive_has_slot(&t->tiles[i])))
+            fail_tile(d, "tile", i, &tile, &expected);
+    }
+}
+
+static void compare_minmip(struct differential *d, const struct naive_texture *t)
+{
+    const size_t size = (size_t)t->layout.minMipWidth * t->layout.minMipHeight;
+    uint8_t *texels = d->seen.bytes;
+    SluiceResult result =
+        sluiceWriteMinMipData(d->manager, t->id, t->layout.minMipWidth, size, texels);
+    if (result != SLUICE_SUCCESS)
+        fail(d, "sluiceWriteMinMipData says %s", sluiceResultString(result));
+    for (size_t i = 0; i < size && !d->failed; i++)
+        if (texels[i] != t->minmip[i])
+            fail(d, "MinMip texel %zu of %" PRIx64 " is %u, expected %u", i, t->id, texels[i],
+                 t->minmip[i]);
+}
+
+static void compare_states(struct differential *d)
+{
+    SluiceStreamedTextureStatistics a, b;
+    for (uint32_t i = 0; i < d->naive.texture_room && !d->failed; i++) {
+        const struct naive_texture *t = d->naive.textures[i];
+        if (!t)
+            continue;
+        compare_tiles(d, t);
+        compare_minmip(d, t);
+    }
+    naive_statistics(&d->naive, &b);
+    d->calls++;
+    d->textures += b.textureCount;
+    d->tiles += b.tileCount;
+    if (sluiceGetStatistics(d->manager, &a) != SLUICE_SUCCESS)
+        fail(d, "sluiceGetStatistics failed");
+    compare_statistics(d, &a, &b);
+    if (d->heap_count != d->naive.heap_count)
+        fail(d, "%" PRIu32 " heaps live, expected %" PRIu32, d->heap_count, d->naive.heap_count);
+    for (uint32_t i = 0; i < d->heap_count && !d->failed; i++)
+        if (!naive_find_heap(&d->naive, d->heaps[i]))
+            fail(d, "heap %" PRIu32 " should not live", d->heaps[i]);
+    const char *fault = slc_manager_check(d->manager);
+    if (fault)
+        fail(d, "invariant: %s", fault);
+}
+
+static struct published *published_copy(struct differential *d, const struct naive_texture *t)
+{
+    struct published *p = &d->published[(uint32_t)t->id];
+    const size_t size = (size_t)t->layout.minMipWidth * t->layout.minMipHeight;
+    if (p->id == t->id)
+        return p;
+    free(p->texels);
+    *p = (struct published){t->id, naive_alloc(size, 1)};
+    memset(p->texels, 0xEE, size); /* no level */
+    return p;
+}
+
+/* Brings the published copies up to date and compares those that have no update left to read. */
+static void publish(struct differential *d)
+{
+    struct naive_manager *n = &d->naive;
+    SluiceResult ignored;
+    for (uint32_t i = 0; i < d->seen.count && !d->failed; i++) {
+        const SluiceMinMipRect *r = &d->seen.rects[i];
+        const struct naive_texture *t = naive_find(n, r->textureId, &ignored);
+        const size_t w = t->layout.minMipWidth, h = t->layout.minMipHeight;
+        const size_t at = r->y * w + r->x;
+        SluiceResult result =
+            sluiceWriteMinMipRect(d->manager, r, w, w * h - at, published_copy(d, t)->texels + at);
+        if (result != SLUICE_SUCCESS)
+            fail(d, "sluiceWriteMinMipRect says %s", sluiceResultString(result));
+    }
+    for (uint32_t i = 0; i < n->texture_room && !d->failed; i++) {
+        const struct naive_texture *t = n->textures[i];
+        if (!t || t->dirty_since)
+            continue;
+        const size_t size = (size_t)t->layout.minMipWidth * t->layout.minMipHeight;
+        if (memcmp(published_copy(d, t)->texels, t->minmip, size) != 0)
+            fail(d, "the published MinMip map of %" PRIx64 " is out of date", t->id);
+    }
+}
+
+/* A list call that fails leaves the count as it was. */
+static void check_count_is_kept(struct differential *d)
+{
+    if (call_is_list(d->call.kind) && d->call.null != NULL_FIRST && d->call.null != NULL_MANAGER &&
+        d->seen.count != d->call.room)
+        fail(d, "the failed call changed the count to %" PRIu32, d->seen.count);
+}
+
+/* Makes d->call, alone. Returns whether memory was refused. */
+static bool make_call(struct differential *d)
+{
+    const struct call *call = &d->call;
+    memset(d->seen.bytes, 0xEE, row_bytes(call));
+    if (call->refuse_after != UINT64_MAX)
+        d->allocator.refuse_from = d->allocator.calls + call->refuse_after;
+    call_make(d->manager, call, &d->seen);
+    const bool refused = d->allocator.calls > d->allocator.refuse_from;
+    d->allocator.refuse_from = UINT64_MAX;
+    d->coverage[call->kind][(d->seen.result + 32) & 63]++;
+    if (d->seen.result < 0)
+        check_count_is_kept(d);
+    return refused;
+}
+
+/* Makes d->call on both and compares; with one allocation more each time as long as they fail. */
+static void step(struct differential *d)
+{
+    struct call *call = &d->call;
+    d->call_number++;
+    bool refused = make_call(d);
+    while (d->seen.result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && !d->failed) {
+        if (!refused)
+            fail(d, "out of host memory, although no allocation was refused");
+        compare_states(d);
+        call->refuse_after++;
+        refused = make_call(d);
+    }
+    if (d->failed)
+        return;
+    if (refused && call->kind == CALL_TILES_TO_MAP && d->seen.result == SLUICE_INCOMPLETE &&
+        d->seen.count > 0 && call->null == NULL_NONE)
+        call->room = d->seen.count; /* host memory ran out after these: as if for lack of room */
+    memset(d->expected.bytes, 0xEE, row_bytes(call));
+    naive_call(&d->naive, call, &d->seen, &d->expected);
+    compare_outcomes(d);
+    if (!d->failed && call->kind == CALL_MINMIP_UPDATES && d->seen.result >= 0 &&
+        call->null != NULL_SECOND)
+        publish(d);
+    if (!d->failed)
+        compare_states(d);
+}
+
+static void start(struct differential *d, struct choice choice)
+{
+    call_sequence_start(&d->sequence, choice);
+    naive_init(&d->naive, d->sequence.capacity, d->sequence.always_packed);
+    failing_allocator_init(&d->allocator, UINT64_MAX);
+    d->heap_count = 0;
+    d->call_number = 0;
+    d->failed = false;
+    SluiceStreamedTextureManagerCreateInfo info = {
+        .heapAllocator = {d, allocate_heap, release_heap},
+        .pAllocator = &d->allocator.callbacks,
+        .heapTileCapacity = d->sequence.capacity,
+        .tileSize = SLUICE_DEFAULT_TILE_SIZE,
+        .alwaysMapPackedTiles = d->sequence.always_packed,
+    };
+    SluiceResult result = sluiceCreateStreamedTextureManager(&info, &d->manager);
+    if (result != SLUICE_SUCCESS)
+        fail(d, "sluiceCreateStreamedTextureManager says %s", sluiceResultString(result));
+}
+
+/* Repeated calls of DefragmentTiles end. */
+static void defragment_to_the_end(struct differential *d, FILE *log)
+{
+    uint64_t left = (uint64_t)d->naive.heap_count * d->naive.capacity + 1;
+    uint32_t room = choice_range(&d->sequence.choice, 1, 8);
+    uint64_t retire = choice_once_in(&d->sequence.choice, 2) ? 0 : d->naive.last_retire;
+    do {
+        memset(&d->call, 0, offsetof(struct call, map));
+        d->call.kind = CALL_DEFRAGMENT;
+        d->call.refuse_after = UINT64_MAX;
+        d->call.retire = retire;
+        d->call.room = room;
+        if (log)
+            call_print(log, &d->call);
+        step(d);
+    } while (!d->failed && d->seen.count > 0 && left-- > 0);
+    if (d->seen.count > 0)
+        fail(d, "defragmentation does not end");
+}
+
+static void finish(struct differential *d)
+{
+    d->restored += d->naive.totals.restoredTotal;
+    sluiceDestroyStreamedTextureManager(d->manager);
+    d->manager = NULL;
+    if (d->heap_count)
+        fail(d, "%" PRIu32 " heaps were not released at the end", d->heap_count);
+    if (d->allocator.live_count || d->allocator.live_bytes)
+        fail(d, "%" PRIu64 " bytes of host memory are left at the end", d->allocator.live_bytes);
+    naive_finish(&d->naive);
+    for (size_t i = 0; i < sizeof d->published / sizeof d->published[0]; i++) {
+        free(d->published[i].texels);
+        d->published[i] = (struct published){0};
+    }
+}
+
+int differential_run(struct differential *d, struct choice choice, uint32_t call_count, FILE *log,
+                     const char **message)
+{
+    start(d, choice);
+    if (log)
+        fprintf(log, "heaps of %" PRIu32 " slots, packed tiles %s\n", d->sequence.capacity,
+                d->sequence.always_packed ? "always" : "as wanted");
+    for (uint32_t i = 0; i < call_count && !d->failed && choice_goes_on(&d->sequence.choice); i++) {
+        call_sequence_next(&d->sequence, &d->naive, &d->call);
+        if (log) {
+            fprintf(log, "%5" PRIu32 ": ", d->call_number + 1);
+            call_print(log, &d->call);
+        }
+        step(d);
+        if (log)
+            fprintf(log, "       -> %s, %" PRIu32 "\n", sluiceResultString(d->seen.result),
+                    d->seen.count);
+    }
+    if (!d->failed)
+        defragment_to_the_end(d, log);
+    finish(d);
+    *message = d->message;
+    return d->failed ? -1 : (int)d->call_number;
+}
+
+void differential_print_coverage(const struct differential *d, FILE *file)
+{
+    for (int kind = 0; kind < CALL_KIND_COUNT; kind++) {
+        fprintf(file, "# %s:", call_kind_name((enum call_kind)kind));
+        if (d->entries[kind])
+            fprintf(file, " %" PRIu64 " entries,", d->entries[kind]);
+        for (int r = 0; r < 64; r++)
+            if (d->coverage[kind][r])
+                fprintf(file, " %s %" PRIu64, sluiceResultString((SluiceResult)(r - 32)),
+                        d->coverage[kind][r]);
+        fprintf(file, "\n");
+    }
+    const double calls = d->calls ? (double)d->calls : 1;
+    fprintf(file, "# %" PRIu64 " tiles restored; on average %.1f textures, %.1f tiles\n",
+            d->restored, (double)d->textures / calls, (double)d->tiles / calls);
+}

@@ -1,0 +1,181 @@
+#include "core/naive_manager.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *naive_alloc(size_t count, size_t size)
+{
+    void *memory = calloc(count ? count : 1, size);
+    if (!memory)
+        abort();
+    return memory;
+}
+
+void naive_complain(struct naive_manager *n, const char *format, ...)
+{
+    if (n->complaint[0])
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(n->complaint, sizeof n->complaint, format, args);
+    va_end(args);
+}
+
+void naive_init(struct naive_manager *n, uint32_t capacity, bool always_packed)
+{
+    *n = (struct naive_manager){.capacity = capacity, .always_packed = always_packed};
+}
+
+void naive_free_texture(struct naive_texture *t)
+{
+    for (uint32_t i = 0; i < t->map_count; i++)
+        free(t->maps[i].wanted);
+    free(t->maps);
+    free(t->tiles);
+    free(t->held);
+    free(t->last_asked);
+    free(t->minmip);
+    free(t->changed);
+    free(t);
+}
+
+void naive_finish(struct naive_manager *n)
+{
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        if (n->textures[i])
+            naive_free_texture(n->textures[i]);
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        free(n->heaps[i].slots);
+    free(n->textures);
+    free(n->removed);
+    free(n->heaps);
+    free(n->given_up);
+    *n = (struct naive_manager){0};
+}
+
+static bool was_removed(const struct naive_manager *n, SluiceTextureId id)
+{
+    for (uint32_t i = 0; i < n->removed_count; i++)
+        if (n->removed[i] == id)
+            return true;
+    return false;
+}
+
+struct naive_texture *naive_find(struct naive_manager *n, SluiceTextureId id, SluiceResult *result)
+{
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        if (n->textures[i] && n->textures[i]->id == id)
+            return n->textures[i];
+    *result = was_removed(n, id) ? SLUICE_ERROR_STALE_TEXTURE : SLUICE_ERROR_UNKNOWN_TEXTURE;
+    return NULL;
+}
+
+struct naive_heap *naive_find_heap(struct naive_manager *n, uint32_t id)
+{
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (n->heaps[i].id == id)
+            return &n->heaps[i];
+    return NULL;
+}
+
+uint32_t naive_count_slots(const struct naive_manager *n, const struct naive_heap *heap,
+                           enum naive_slot_use use)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n->capacity; i++)
+        count += heap->slots[i].use == use;
+    return count;
+}
+
+void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatistics *out)
+{
+    *out = n->totals;
+    uint32_t *counts[] = {
+        [SLUICE_TILE_STATE_REQUESTED] = &out->requestedTileCount,
+        [SLUICE_TILE_STATE_ALLOCATED] = &out->allocatedTileCount,
+        [SLUICE_TILE_STATE_MAPPED] = &out->mappedTileCount,
+        [SLUICE_TILE_STATE_STANDBY] = &out->standbyTileCount,
+        [SLUICE_TILE_STATE_CANCELLED] = &out->cancelledTileCount,
+        [SLUICE_TILE_STATE_FAILED] = &out->failedTileCount,
+        [SLUICE_TILE_STATE_GIVEN_UP] = &out->givenUpTileCount,
+    };
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        const struct naive_texture *t = n->textures[i];
+        if (!t)
+            continue;
+        out->textureCount++;
+        out->tileCount += t->layout.tileCount;
+        for (uint32_t k = 0; k < t->layout.tileCount; k++)
+            if (t->tiles[k].state != SLUICE_TILE_STATE_FREE)
+                ++*counts[t->tiles[k].state];
+    }
+    out->heapCount = n->heap_count;
+    for (uint32_t i = 0; i < n->heap_count; i++) {
+        out->retiringSlotCount += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_RETIRING);
+        out->freeSlotCount += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
+    }
+}
+
+/* Whether the manager may give this id: lowest free index, a generation never seen there. */
+static void check_new_id(struct naive_manager *n, SluiceTextureId id)
+{
+    uint32_t lowest = 0;
+    while (lowest < n->texture_room && n->textures[lowest])
+        lowest++;
+    if (id == SLUICE_NO_TEXTURE || (uint32_t)id != lowest)
+        naive_complain(n, "id %#llx is not of index %u", (unsigned long long)id, lowest);
+    else if (was_removed(n, id))
+        naive_complain(n, "id %#llx was given before", (unsigned long long)id);
+}
+
+static struct naive_texture *make_texture(struct naive_manager *n,
+                                          const SluiceStreamedTextureLayout *l, SluiceTextureId id)
+{
+    struct naive_texture *t = naive_alloc(1, sizeof *t);
+    const size_t regions = (size_t)l->feedbackWidth * l->feedbackHeight;
+    const size_t texels = (size_t)l->minMipWidth * l->minMipHeight;
+    *t = (struct naive_texture){.id = id, .layout = *l, .minmip_stale = true};
+    t->tiles = naive_alloc(l->tileCount, sizeof *t->tiles);
+    t->held = memset(naive_alloc(regions, 1), SLUICE_MIP_UNTOUCHED, regions);
+    t->minmip = memset(naive_alloc(texels, 1), SLUICE_MIP_UNTOUCHED, texels);
+    t->changed = memset(naive_alloc(texels, 1), 1, texels);
+    t->dirty_since = ++n->stamp;
+    uint32_t i = 0;
+    for (uint32_t level = 0; level < l->desc.regularMipCount; level++)
+        for (uint32_t y = 0; y < l->levelHeightInTiles[level]; y++)
+            for (uint32_t x = 0; x < l->levelWidthInTiles[level]; x++)
+                t->tiles[i++] = (struct naive_tile){.level = level, .x = x, .y = y};
+    for (uint32_t x = 0; x < l->desc.packedTileCount; x++) {
+        t->tiles[i] = (struct naive_tile){.level = l->desc.regularMipCount, .x = x, .packed = true};
+        if (n->always_packed)
+            naive_become_wanted(n, &t->tiles[i], 0);
+        i++;
+    }
+    return t;
+}
+
+SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
+                               const struct outcome *seen, struct outcome *out)
+{
+    SluiceStreamedTextureLayout layout;
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = naive_layout(&call->desc, &layout);
+    if (result != SLUICE_SUCCESS || seen->result != SLUICE_SUCCESS)
+        return result;
+    check_new_id(n, seen->texture);
+    if (n->complaint[0])
+        return result;
+    uint32_t index = (uint32_t)seen->texture;
+    if (index == n->texture_room) {
+        n->textures = realloc(n->textures, (n->texture_room + 1) * sizeof(void *));
+        if (!n->textures)
+            abort();
+        n->texture_room++;
+    }
+    n->textures[index] = make_texture(n, &layout, seen->texture);
+    out->texture = seen->texture;
+    return SLUICE_SUCCESS;
+}

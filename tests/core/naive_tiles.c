@@ -1,0 +1,198 @@
+/* What becomes of one tile, and of its slot. */
+#include "core/naive_manager.h"
+
+#include <stdlib.h>
+
+bool naive_has_slot(const struct naive_tile *tile)
+{
+    return tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_MAPPED ||
+           tile->state == SLUICE_TILE_STATE_STANDBY || tile->state == SLUICE_TILE_STATE_CANCELLED;
+}
+
+SluiceTile naive_tile_info(const struct naive_texture *t, uint32_t index)
+{
+    const struct naive_tile *tile = &t->tiles[index];
+    return (SluiceTile){t->id,
+                        index,
+                        tile->level,
+                        tile->x,
+                        tile->y,
+                        naive_has_slot(tile) ? tile->heap : 0,
+                        naive_has_slot(tile) ? tile->slot : 0};
+}
+
+struct naive_ref *naive_collect(const struct naive_manager *n, const struct naive_texture *only,
+                                SluiceTileState state, uint32_t *count)
+{
+    uint32_t room = 0;
+    struct naive_ref *refs = NULL;
+    *count = 0;
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        struct naive_texture *t = n->textures[i];
+        if (!t || (only && t != only))
+            continue;
+        for (uint32_t k = 0; k < t->layout.tileCount; k++) {
+            if (t->tiles[k].state != state)
+                continue;
+            if (*count == room) {
+                room = room ? 2 * room : 64;
+                refs = realloc(refs, room * sizeof *refs);
+                if (!refs)
+                    abort();
+            }
+            refs[(*count)++] = (struct naive_ref){t, &t->tiles[k], {0}};
+        }
+    }
+    return refs;
+}
+
+static int compare_refs(const void *a, const void *b)
+{
+    const struct naive_ref *x = a, *y = b;
+    for (int i = 0; i < 4; i++)
+        if (x->key[i] != y->key[i])
+            return x->key[i] < y->key[i] ? -1 : 1;
+    return 0;
+}
+
+void naive_sort(struct naive_ref *refs, uint32_t count)
+{
+    if (count > 1)
+        qsort(refs, count, sizeof *refs, compare_refs);
+}
+
+static struct naive_slot *slot_of(struct naive_manager *n, const struct naive_tile *tile)
+{
+    return &naive_find_heap(n, tile->heap)->slots[tile->slot];
+}
+
+void naive_free_slot(struct naive_manager *n, struct naive_tile *tile)
+{
+    slot_of(n, tile)->use = NAIVE_SLOT_FREE;
+}
+
+void naive_retire_slot(struct naive_manager *n, struct naive_tile *tile, uint64_t retire)
+{
+    bool over = retire <= n->completed;
+    *slot_of(n, tile) =
+        (struct naive_slot){over ? NAIVE_SLOT_FREE : NAIVE_SLOT_RETIRING, over ? 0 : retire};
+}
+
+void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit)
+{
+    tile->state = SLUICE_TILE_STATE_REQUESTED;
+    tile->requested_at = ++n->stamp;
+    tile->deficit = deficit;
+}
+
+void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit)
+{
+    tile->wanted = true;
+    switch (tile->state) {
+    case SLUICE_TILE_STATE_FREE: naive_request(n, tile, deficit); break;
+    case SLUICE_TILE_STATE_STANDBY:
+        tile->state = SLUICE_TILE_STATE_MAPPED;
+        tile->listed = false;
+        n->totals.restoredTotal++;
+        break;
+    case SLUICE_TILE_STATE_CANCELLED:
+        if (!tile->cancel_handed_out)
+            tile->state = SLUICE_TILE_STATE_ALLOCATED;
+        break;
+    case SLUICE_TILE_STATE_REQUESTED:
+    case SLUICE_TILE_STATE_ALLOCATED:
+    case SLUICE_TILE_STATE_MAPPED:
+    case SLUICE_TILE_STATE_FAILED:
+    case SLUICE_TILE_STATE_GIVEN_UP: abort(); /* these were wanted already */
+    }
+}
+
+void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
+{
+    tile->wanted = false;
+    tile->failures = 0;
+    switch (tile->state) {
+    case SLUICE_TILE_STATE_REQUESTED:
+    case SLUICE_TILE_STATE_FAILED:
+    case SLUICE_TILE_STATE_GIVEN_UP: tile->state = SLUICE_TILE_STATE_FREE; break;
+    case SLUICE_TILE_STATE_ALLOCATED:
+        tile->state = SLUICE_TILE_STATE_CANCELLED;
+        tile->cancel_handed_out = false;
+        tile->cancelled_at = ++n->stamp;
+        break;
+    case SLUICE_TILE_STATE_MAPPED:
+        tile->state = SLUICE_TILE_STATE_STANDBY;
+        tile->listed = false;
+        tile->standby_at = ++n->stamp;
+        break;
+    case SLUICE_TILE_STATE_CANCELLED: break;
+    case SLUICE_TILE_STATE_FREE:
+    case SLUICE_TILE_STATE_STANDBY: abort(); /* these were not wanted */
+    }
+}
+
+void naive_list_standby(struct naive_manager *n, uint64_t keep)
+{
+    uint32_t count, unlisted = 0;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &count);
+    for (uint32_t i = 0; i < count; i++)
+        if (!refs[i].tile->listed) {
+            refs[unlisted] = refs[i];
+            refs[unlisted++].key[0] = refs[i].tile->standby_at;
+        }
+    naive_sort(refs, unlisted);
+    for (uint64_t i = 0; i + keep < unlisted; i++) {
+        refs[i].tile->listed = true;
+        refs[i].tile->listed_at = ++n->stamp;
+    }
+    free(refs);
+}
+
+/* FAILED tiles in the order in which they become due. */
+static struct naive_ref *collect_failed(struct naive_manager *n, const struct naive_texture *only,
+                                        uint32_t *count)
+{
+    struct naive_ref *refs = naive_collect(n, only, SLUICE_TILE_STATE_FAILED, count);
+    for (uint32_t i = 0; i < *count; i++) {
+        /* Relative to now, moved up by half of the range: sorts serial numbers right. */
+        refs[i].key[0] = refs[i].tile->due - n->time + ((uint64_t)1 << 63);
+        refs[i].key[1] = refs[i].tile->failed_at;
+    }
+    naive_sort(refs, *count);
+    return refs;
+}
+
+void naive_retry_due(struct naive_manager *n, uint64_t now)
+{
+    uint32_t count;
+    struct naive_ref *refs = collect_failed(n, NULL, &count);
+    for (uint32_t i = 0; i < count; i++)
+        if ((int64_t)(now - refs[i].tile->due) >= 0)
+            naive_request(n, refs[i].tile, 0);
+    free(refs);
+}
+
+SluiceResult naive_retry(struct naive_manager *n, const struct call *call)
+{
+    SluiceResult result;
+    const struct naive_texture *only = NULL;
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (call->texture != SLUICE_ALL_TEXTURES && !(only = naive_find(n, call->texture, &result)))
+        return result;
+    uint32_t count;
+    struct naive_ref *refs = collect_failed(n, only, &count);
+    for (uint32_t i = 0; i < count; i++)
+        naive_request(n, refs[i].tile, 0);
+    free(refs);
+    refs = naive_collect(n, only, SLUICE_TILE_STATE_GIVEN_UP, &count);
+    for (uint32_t i = 0; i < count; i++)
+        refs[i].key[0] = refs[i].tile->given_up_at;
+    naive_sort(refs, count);
+    for (uint32_t i = 0; i < count; i++) {
+        refs[i].tile->failures = 0;
+        naive_request(n, refs[i].tile, 0);
+    }
+    free(refs);
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,342 @@
+#include "core/fixture.h"
+
+/* A texture whose only tile is packed: one load at a time. */
+static SluiceTextureId add_one_tile(struct fixture *f)
+{
+    SluiceStreamedTextureDesc desc = full_chain(64, 64, 128, 128);
+    return fixture_add(f, &desc);
+}
+
+static void fail_load(struct fixture *f, SluiceTextureId id, uint32_t tile, uint64_t time)
+{
+    CHECK_OK(sluiceReportFailedTiles(f->manager, id, 1, &tile, time));
+}
+
+static void back_off_doubles_from_failure_to_failure(void **state)
+{
+    (void)state;
+    static const uint64_t starts[] = {0, 1000, UINT64_MAX - 50};
+    for (uint32_t i = 0; i < 3; i++) {
+        struct fixture f;
+        fixture_open(&f, 16, false);
+        fixture_configure(&f, 0, 0, 6, 10);
+        SluiceTextureId id = add_one_tile(&f);
+        uint64_t time = starts[i];
+        fixture_feed(&f, id, 0, time, 1);
+        for (uint64_t delay = 10; delay <= 160; delay *= 2) {
+            CHECK_STATE(&f, id, 0, REQUESTED);
+            CHECK_OK(fixture_to_map(&f, id));
+            assert_int_equal(f.count, 1);
+            fail_load(&f, id, 0, time);
+            CHECK_STATE(&f, id, 0, FAILED);
+            fixture_feed(&f, id, 0, time + delay - 1, 1);
+            CHECK_STATE(&f, id, 0, FAILED);
+            CHECK_OK(fixture_to_map(&f, id));
+            assert_int_equal(f.count, 0);
+            time += delay;
+            fixture_feed(&f, id, 0, time, 1);
+        }
+        CHECK_OK(fixture_to_map(&f, id));
+        fail_load(&f, id, 0, time); /* the sixth */
+        CHECK_STATE(&f, id, 0, GIVEN_UP);
+        assert_int_equal(fixture_statistics(&f).failedTotal, 6);
+        fixture_close(&f);
+    }
+}
+
+static void the_slot_of_a_failed_load_is_free_at_once(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = add_one_tile(&f);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 15);
+    fail_load(&f, id, 0, 0);
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 16);
+    assert_int_equal(fixture_statistics(&f).retiringSlotCount, 0);
+    fixture_close(&f);
+}
+
+static void any_call_with_a_time_stamp_makes_due_retries_requested(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 0, 10);
+    SluiceTextureId a = add_one_tile(&f), b = add_one_tile(&f), c = add_one_tile(&f);
+    fixture_feed(&f, a, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, a));
+    fail_load(&f, a, 0, 0);
+    fixture_feed(&f, b, 0, 10, 1); /* another texture's map */
+    CHECK_STATE(&f, a, 0, REQUESTED);
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    assert_int_equal(f.count, 2);
+    fail_load(&f, a, 0, 10); /* due at 30 */
+    fail_load(&f, b, 0, 30); /* a failure brings a time stamp too */
+    CHECK_STATE(&f, a, 0, REQUESTED);
+    CHECK_OK(fixture_to_map(&f, a));
+    fail_load(&f, a, 0, 30); /* due at 70 */
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, b, c, 69, 1));
+    CHECK_STATE(&f, a, 0, FAILED);
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, b, c, 70, 1));
+    CHECK_STATE(&f, a, 0, REQUESTED);
+    fixture_close(&f);
+}
+
+static void a_refused_call_retries_nothing(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 0, 10);
+    SluiceTextureId id = add_one_tile(&f);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    fail_load(&f, id, 0, 0);
+    uint32_t tile = 0;
+    CHECK_RESULT(sluiceReportFailedTiles(f.manager, id, 1, &tile, 100),
+                 SLUICE_ERROR_INVALID_TILE_STATE);
+    CHECK_STATE(&f, id, 0, FAILED);
+    fixture_feed(&f, id, 0, 5, 1); /* and 100 was not taken over */
+    CHECK_STATE(&f, id, 0, FAILED);
+    fixture_close(&f);
+}
+
+static void five_attempts_are_the_default(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = add_one_tile(&f);
+    fixture_feed(&f, id, 0, 0, 1);
+    for (uint32_t i = 0; i < 5; i++) {
+        CHECK_OK(fixture_to_map(&f, id));
+        assert_int_equal(f.count, 1);
+        fail_load(&f, id, 0, i); /* no delay: due at once, requested by the next time stamp */
+        fixture_feed(&f, id, 0, i, 100);
+        assert_int_equal(fixture_state(&f, id, 0),
+                         i < 4 ? SLUICE_TILE_STATE_REQUESTED : SLUICE_TILE_STATE_GIVEN_UP);
+    }
+    fixture_close(&f);
+}
+
+static void a_tile_given_up_is_listed_once(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 1, 10);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    fail_load(&f, id, 2, 0);
+    fail_load(&f, id, 0, 0);
+    fail_load(&f, id, 5, 0);
+    uint32_t count = 0;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &count, NULL));
+    assert_int_equal(count, 3);
+    f.count = 2;
+    CHECK_RESULT(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles), SLUICE_INCOMPLETE);
+    assert_true(LISTED(&f, id, 2, 0));
+    f.count = 2;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
+    assert_true(LISTED(&f, id, 5));
+    assert_true(f.tiles[0].mipLevel == 2 && f.tiles[0].x == 0);
+    f.count = 2;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
+    assert_int_equal(f.count, 0);
+    fixture_feed(&f, id, 0, 1000000, 1); /* it stays given up, however long */
+    CHECK_STATE(&f, id, 0, GIVEN_UP);
+    fixture_close(&f);
+}
+
+static void all_that_is_given_up_is_listed_in_order(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    fixture_configure(&f, 0, 0, 1, 0);
+    SluiceStreamedTextureDesc desc = full_chain(2048, 2048, 128, 128);
+    SluiceTextureId id = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    uint32_t count = f.count, order[FIXTURE_ROOM], read = 0;
+    for (uint32_t i = 0; i < count; i++)
+        order[i] = f.tiles[i].tileIndex;
+    for (uint32_t i = 0; i < count; i++) { /* three are given up for every two that are read */
+        fail_load(&f, id, order[i], 0);
+        f.count = i % 3 == 2 ? 2 : 0;
+        assert_true(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles) >= 0);
+        for (uint32_t n = 0; n < f.count; n++)
+            assert_int_equal(f.tiles[n].tileIndex, order[read++]);
+    }
+    f.count = FIXTURE_ROOM;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
+    for (uint32_t n = 0; n < f.count; n++)
+        assert_int_equal(f.tiles[n].tileIndex, order[read++]);
+    assert_int_equal(read, count);
+    fixture_close(&f);
+}
+
+static void the_given_up_list_outlives_the_want_but_not_the_texture(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 1, 10);
+    SluiceTextureId a = add_one_tile(&f), b = add_one_tile(&f);
+    fixture_feed(&f, a, 0, 0, 0);
+    fixture_feed(&f, b, 0, 0, 0);
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    fail_load(&f, a, 0, 0);
+    fail_load(&f, b, 0, 0);
+    fixture_feed(&f, a, SLUICE_MIP_UNTOUCHED, 1, 0);
+    CHECK_STATE(&f, a, 0, FREE);
+    CHECK_OK(sluiceRemoveStreamedTexture(f.manager, b, 0));
+    f.count = 4;
+    CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
+    assert_true(LISTED(&f, a, 0));
+    fixture_close(&f);
+}
+
+static void a_tile_no_longer_wanted_forgets_its_failures(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 2, 0);
+    SluiceTextureId id = add_one_tile(&f);
+    for (uint64_t t = 0; t < 10; t += 2) { /* one failure each time, never two in a row */
+        fixture_feed(&f, id, 0, t, 0);
+        CHECK_OK(fixture_to_map(&f, id));
+        assert_int_equal(f.count, 1);
+        fail_load(&f, id, 0, t);
+        CHECK_STATE(&f, id, 0, FAILED);
+        fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, t + 1, 0);
+        CHECK_STATE(&f, id, 0, FREE);
+    }
+    fixture_close(&f);
+}
+
+static void a_tile_that_was_mapped_forgets_its_failures(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 2, 0);
+    SluiceTextureId id = add_one_tile(&f);
+    for (uint64_t t = 0; t < 3; t++) {
+        fixture_feed(&f, id, 0, 10 * t, 0);
+        CHECK_OK(fixture_to_map(&f, id));
+        fail_load(&f, id, 0, 10 * t);
+        CHECK_STATE(&f, id, 0, FAILED);
+        fixture_feed(&f, id, 0, 10 * t + 1, 0);
+        fixture_load(&f);
+        CHECK_STATE(&f, id, 0, MAPPED);
+        fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 10 * t + 2, 0);
+        CHECK_OK(fixture_to_unmap(&f, id, 0));
+        assert_int_equal(f.count, 1);
+    }
+    fixture_close(&f);
+}
+
+static void retry_requests_failed_tiles_then_those_given_up(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 2, 10);
+    SluiceTextureId id = fixture_add_small(&f), other = add_one_tile(&f);
+    fixture_feed(&f, other, 0, 0, 1);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    fail_load(&f, id, 3, 0);
+    fail_load(&f, id, 1, 0);
+    fixture_feed(&f, id, 0, 10, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_true(LISTED(&f, id, 3, 1)); /* in the order in which they became due */
+    fail_load(&f, id, 3, 10);
+    fail_load(&f, id, 1, 10);
+    fail_load(&f, id, 2, 10);
+    fail_load(&f, id, 0, 10);
+    fail_load(&f, other, 0, 10);
+    CHECK_STATE(&f, id, 3, GIVEN_UP);
+    CHECK_STATE(&f, id, 2, FAILED);
+    CHECK_OK(sluiceRetryFailedTiles(f.manager, id));
+    CHECK_STATE(&f, other, 0, FAILED);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_true(LISTED(&f, id, 2, 0, 3, 1));
+    fail_load(&f, id, 3, 10); /* given up: starts again from no failure */
+    CHECK_STATE(&f, id, 3, FAILED);
+    fail_load(&f, id, 2, 10); /* failed: the first failure still counts */
+    CHECK_STATE(&f, id, 2, GIVEN_UP);
+    CHECK_OK(sluiceRetryFailedTiles(f.manager, SLUICE_ALL_TEXTURES));
+    CHECK_STATE(&f, other, 0, REQUESTED);
+    CHECK_STATE(&f, id, 3, REQUESTED);
+    CHECK_STATE(&f, id, 2, REQUESTED);
+    fixture_close(&f);
+}
+
+static void a_region_stays_at_the_coarser_mip_of_what_loaded(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 1, 0);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 1);
+    CHECK_OK(fixture_to_map(&f, id));
+    fail_load(&f, id, 2, 0);
+    const uint32_t loaded[] = {5, 4, 0, 1, 3};
+    CHECK_OK(sluiceUpdateTilesMapping(f.manager, id, 5, loaded));
+    uint8_t minmip[4];
+    const uint8_t expected[4] = {0, 0, 1, 0};
+    CHECK_OK(sluiceWriteMinMipData(f.manager, id, 2, 4, minmip));
+    assert_memory_equal(minmip, expected, 4);
+    fixture_close(&f);
+}
+
+static void the_longest_delays_do_not_overflow(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, UINT32_MAX, UINT64_MAX / 4);
+    SluiceTextureId id = add_one_tile(&f);
+    uint64_t time = 0;
+    fixture_feed(&f, id, 0, time, 1);
+    for (uint32_t i = 0; i < 80; i++) { /* 2^79 times the delay */
+        CHECK_OK(fixture_to_map(&f, id));
+        assert_int_equal(f.count, 1);
+        fail_load(&f, id, 0, time);
+        uint64_t delay = i == 0 ? UINT64_MAX / 4 : UINT64_C(1) << 62; /* capped */
+        fixture_feed(&f, id, 0, time + delay - 1, 1);
+        CHECK_STATE(&f, id, 0, FAILED);
+        time += delay;
+        fixture_feed(&f, id, 0, time, 1);
+        CHECK_STATE(&f, id, 0, REQUESTED);
+    }
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(back_off_doubles_from_failure_to_failure),
+        cmocka_unit_test(the_slot_of_a_failed_load_is_free_at_once),
+        cmocka_unit_test(any_call_with_a_time_stamp_makes_due_retries_requested),
+        cmocka_unit_test(a_refused_call_retries_nothing),
+        cmocka_unit_test(five_attempts_are_the_default),
+        cmocka_unit_test(a_tile_given_up_is_listed_once),
+        cmocka_unit_test(the_given_up_list_outlives_the_want_but_not_the_texture),
+        cmocka_unit_test(a_tile_no_longer_wanted_forgets_its_failures),
+        cmocka_unit_test(a_tile_that_was_mapped_forgets_its_failures),
+        cmocka_unit_test(retry_requests_failed_tiles_then_those_given_up),
+        cmocka_unit_test(a_region_stays_at_the_coarser_mip_of_what_loaded),
+        cmocka_unit_test(the_longest_delays_do_not_overflow),
+        cmocka_unit_test(all_that_is_given_up_is_listed_in_order),
+    };
+    return RUN_TESTS(tests);
+}

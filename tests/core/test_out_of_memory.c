@@ -1,0 +1,315 @@
+#include "core/fixture.h"
+
+#include <string.h>
+
+/* One call with all that it needs, so that it can be made again. */
+struct op {
+    uint32_t kind;
+    SluiceTextureId a, b;
+    uint32_t number, room;
+    uint64_t time, retire;
+    uint8_t map[64];
+    uint32_t count;
+    uint32_t tiles[16];
+};
+
+enum { KIND_COUNT = 19 };
+
+static SluiceStreamedTextureDesc op_desc(uint32_t number)
+{
+    static const uint32_t sizes[][4] = {{256, 256, 128, 128},
+                                        {1000, 600, 128, 128},
+                                        {513, 513, 128, 64},
+                                        {64, 64, 128, 128},
+                                        {1, 700, 1, 128}};
+    const uint32_t *s = sizes[number % 5];
+    return full_chain(s[0], s[1], s[2], s[3]);
+}
+
+static uint64_t mix(uint64_t h, uint64_t value)
+{
+    h = (h ^ value) * 0x9E3779B97F4A7C15u;
+    return h ^ h >> 29;
+}
+
+static uint64_t mix_tiles(uint64_t h, uint32_t count, const SluiceTile *tiles)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        h = mix(h, tiles[i].textureId);
+        h = mix(h, (uint64_t)tiles[i].tileIndex << 32 | tiles[i].slot);
+        h = mix(h, tiles[i].heapId);
+    }
+    return mix(h, count);
+}
+
+static SluiceResult feed(struct fixture *f, const struct op *op)
+{
+    SluiceStreamedTextureLayout layout;
+    SluiceResult result = sluiceGetTextureLayout(f->manager, op->a, &layout);
+    if (result)
+        return result;
+    SluiceFeedbackDesc feedback = {op->map, layout.feedbackWidth, layout.feedbackHeight, 0, 0};
+    assert_true(feedback.width * feedback.height <= sizeof op->map);
+    return sluiceUpdateWithSamplerFeedback(f->manager, op->a, &feedback, op->time, 6);
+}
+
+static SluiceResult list(struct fixture *f, const struct op *op, uint64_t *out)
+{
+    SluiceResult result;
+    SluiceTileMove moves[16];
+    SluiceMinMipRect rects[16];
+    uint32_t count = op->room;
+    SluiceTextureId scope = op->number % 3 ? SLUICE_ALL_TEXTURES : op->a;
+    switch (op->kind) {
+    case 5:
+    case 6:
+    case 7: result = sluiceGetTilesToMap(f->manager, scope, &count, f->tiles); break;
+    case 8: result = sluiceGetTilesToUnmap(f->manager, scope, op->retire, &count, f->tiles); break;
+    case 9: result = sluiceGetTilesToCancel(f->manager, scope, &count, f->tiles); break;
+    case 10: result = sluiceGetGivenUpTiles(f->manager, &count, f->tiles); break;
+    case 11:
+        result = sluiceDefragmentTiles(f->manager, op->retire, &count, moves);
+        for (uint32_t i = 0; i < count && result >= 0; i++)
+            *out = mix(mix_tiles(*out, 1, &moves[i].from), moves[i].slot);
+        return result;
+    default:
+        result = sluiceGetMinMipUpdates(f->manager, &count, rects);
+        for (uint32_t i = 0; i < count && result >= 0; i++)
+            *out = mix(*out, rects[i].textureId ^ rects[i].x << 8 ^ rects[i].width);
+        return result;
+    }
+    if (result >= 0)
+        *out = mix_tiles(*out, count, f->tiles);
+    else
+        assert_int_equal(count, op->room);
+    f->count = count;
+    return result;
+}
+
+static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
+{
+    SluiceStreamedTextureManager *m = f->manager;
+    SluiceStreamedTextureDesc desc = op_desc(op->number);
+    SluiceStreamedTextureManagerConfig config = {op->number % 9, 0, 2, 3};
+    SluiceTextureId id = 0;
+    SluiceResult result;
+    switch (op->kind) {
+    case 0:
+        result = sluiceAddStreamedTexture(m, &desc, &id);
+        *out = mix(*out, result ? 0 : id);
+        return result;
+    case 1:
+        return op->number % 4 ? SLUICE_SUCCESS : sluiceRemoveStreamedTexture(m, op->a, op->retire);
+    case 2:
+    case 3: return feed(f, op);
+    case 4: return sluiceMatchPrimaryTexture(m, op->a, op->b, op->time, 6);
+    case 13:
+    case 14: return sluiceUpdateTilesMapping(m, op->a, op->count, op->tiles);
+    case 15: return sluiceReportFailedTiles(m, op->a, op->count, op->tiles, op->time);
+    case 16: return sluiceReportCancelledTiles(m, op->a, op->count, op->tiles, op->retire);
+    case 17:
+        if (op->number % 3 == 0)
+            return sluiceSetPrimaryTexture(m, op->a, op->number % 2 ? op->b : SLUICE_NO_TEXTURE);
+        return op->number % 3 == 1 ? sluiceRetryFailedTiles(m, op->a) : sluiceSetConfig(m, &config);
+    case 18:
+        if (op->number % 3 == 0)
+            return sluiceTrimStandbyTiles(m, op->number % 7);
+        return op->number % 3 == 1 ? sluiceCompleteRetireValue(m, op->retire - 1)
+                                   : sluiceReleaseHeap(m, op->number % 4);
+    default: return list(f, op, out);
+    }
+}
+
+/* Tiles of the texture that an answer is waited for. */
+static void choose_answers(const struct fixture *f, struct op *op, uint64_t *random)
+{
+    uint32_t count = fixture_layout(f, op->a).tileCount;
+    for (uint32_t i = 0; i < count && op->count < 16; i++) {
+        SluiceTileState s = fixture_state(f, op->a, i);
+        if ((s == SLUICE_TILE_STATE_ALLOCATED || s == SLUICE_TILE_STATE_CANCELLED) &&
+            next_random(random) % 4)
+            op->tiles[op->count++] = i;
+    }
+}
+
+static struct op random_op(const struct fixture *f, uint32_t id_count, const SluiceTextureId *ids,
+                           uint32_t step, uint64_t *random)
+{
+    struct op op = {.kind = id_count ? next_random(random) % KIND_COUNT : 0,
+                    .number = next_random(random) >> 3,
+                    .time = UINT64_MAX - 100 + step / 3,
+                    .retire = 1 + step / 5};
+    if (op.kind == 0 && id_count >= 12)
+        op.kind = 2;
+    op.room = op.number % 17;
+    if (!id_count)
+        return op;
+    op.a = ids[next_random(random) % id_count];
+    op.b = ids[next_random(random) % id_count];
+    for (uint32_t i = 0; i < sizeof op.map; i++)
+        op.map[i] = next_random(random) % 4 ? SLUICE_MIP_UNTOUCHED : next_random(random) % 4;
+    if (op.kind >= 13 && op.kind <= 16)
+        choose_answers(f, &op, random);
+    return op;
+}
+
+/* Ids of the live textures, kept by the test: lowest free index first is not assumed. */
+static uint32_t update_ids(struct fixture *f, uint32_t count, SluiceTextureId *ids,
+                           SluiceTextureId added)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (sluiceGetTileState(f->manager, ids[i], 0, NULL, NULL) == SLUICE_SUCCESS)
+            ids[kept++] = ids[i];
+    if (added)
+        ids[kept++] = added;
+    return kept;
+}
+
+/*
+ * Makes the call with room for 0, 1, 2, ... allocations until it succeeds; counts the refusals.
+ * Where memory ran out after some tiles were handed out, that counts as all the room there was.
+ */
+static uint32_t apply_under_pressure(struct fixture *f, struct op *op, uint32_t id_count,
+                                     const SluiceTextureId *ids, uint64_t *out,
+                                     SluiceResult *result)
+{
+    uint64_t digest = fixture_digest(f, id_count, ids);
+    for (uint32_t n = 0;; n++) {
+        uint64_t bytes = f->memory.live_bytes, hash = *out;
+        f->memory.refuse_from = f->memory.calls + n;
+        *result = apply(f, op, &hash);
+        bool refused = f->memory.calls > f->memory.refuse_from;
+        f->memory.refuse_from = UINT64_MAX;
+        if (refused && *result == SLUICE_INCOMPLETE && op->kind >= 5 && op->kind <= 7)
+            op->room = f->count;
+        if (*result != SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
+            *out = hash;
+            return n;
+        }
+        assert_true(fixture_digest(f, id_count, ids) == digest);
+        assert_true(f->memory.live_bytes >= bytes); /* room may be kept for the next attempt */
+        assert_true(fixture_statistics(f).hostMemorySize == f->memory.live_bytes);
+        assert_true(n < 1000);
+    }
+}
+
+/* A run under pressure and one without make the same decisions, call by call. */
+static void check_run(uint64_t seed, bool always_packed, uint32_t refused[KIND_COUNT])
+{
+    struct fixture pressed, calm;
+    fixture_open(&pressed, 5, always_packed);
+    fixture_open(&calm, 5, always_packed);
+    pressed.heaps.limit = calm.heaps.limit = 14;
+    SluiceTextureId ids[16];
+    uint32_t count = 0;
+    uint64_t random = seed;
+    for (uint32_t step = 0; step < 300; step++) {
+        struct op op = random_op(&calm, count, ids, step, &random);
+        uint64_t a = 1, b = 1;
+        SluiceResult result;
+        refused[op.kind] += apply_under_pressure(&pressed, &op, count, ids, &b, &result);
+        CHECK_RESULT(apply(&calm, &op, &a), result);
+        assert_true(a == b);
+        SluiceTextureId added = 0;
+        if (op.kind == 0) { /* the newest is the one of the greatest generation */
+            for (uint64_t i = 0; i < 16 && !added; i++)
+                for (uint64_t g = 0; g < 600 && !added; g++)
+                    if (a == mix(1, g << 32 | i))
+                        added = g << 32 | i;
+            assert_true(added);
+        }
+        count = update_ids(&calm, count, ids, added);
+        assert_true(fixture_digest(&calm, count, ids) == fixture_digest(&pressed, count, ids));
+    }
+    fixture_close(&pressed);
+    fixture_close(&calm);
+}
+
+static void every_call_survives_every_refused_allocation(void **state)
+{
+    (void)state;
+    uint32_t refused[KIND_COUNT] = {0};
+    for (uint64_t seed = 1; seed <= 40; seed++)
+        check_run(seed, seed % 2, refused);
+    static const uint32_t allocating[] = {0, 2, 4, 7}; /* the pressure was really felt */
+    for (uint32_t i = 0; i < 4; i++)
+        assert_true(refused[allocating[i]] > 0);
+}
+
+static SluiceResult take_heap(void *user, uint64_t size, uint32_t *id)
+{
+    (void)user, (void)size;
+    *id = 1;
+    return SLUICE_SUCCESS;
+}
+
+static void give_heap(void *user, uint32_t id)
+{
+    (void)user, (void)id;
+}
+
+static void creation_survives_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct failing_allocator memory;
+    SluiceStreamedTextureManagerCreateInfo info = {
+        .heapAllocator = {NULL, take_heap, give_heap},
+        .pAllocator = &memory.callbacks,
+        .heapTileCapacity = 256,
+        .tileSize = 65536,
+    };
+    SluiceStreamedTextureManager *manager = NULL;
+    uint64_t n = 0;
+    SluiceResult result;
+    do {
+        failing_allocator_init(&memory, n++);
+        manager = (SluiceStreamedTextureManager *)(uintptr_t)16;
+        result = sluiceCreateStreamedTextureManager(&info, &manager);
+        if (result) {
+            assert_null(manager);
+            assert_int_equal(memory.live_count, 0);
+        }
+    } while (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    CHECK_OK(result);
+    assert_true(n > 1);
+    sluiceDestroyStreamedTextureManager(manager);
+    assert_int_equal(memory.live_count, 0);
+}
+
+/* A heap that was made but for which there is no memory to count slots goes back, or stays usable.
+ */
+static void a_heap_is_never_lost_for_lack_of_memory(void **state)
+{
+    (void)state;
+    for (uint32_t n = 0;; n++) {
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        SluiceTextureId id = fixture_add_small(&f);
+        fixture_feed(&f, id, 0, 0, 0);
+        f.memory.refuse_from = f.memory.calls + n;
+        SluiceResult result = fixture_to_map(&f, id);
+        assert_int_equal(fixture_statistics(&f).heapCount, f.heaps.living_count);
+        f.memory.refuse_from = UINT64_MAX;
+        if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
+            assert_int_equal(f.heaps.living_count, 0);
+            CHECK_OK(fixture_to_map(&f, id));
+        } else {
+            CHECK_OK(result);
+        }
+        assert_int_equal(f.count, 6);
+        fixture_close(&f);
+        if (!result)
+            break;
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_call_survives_every_refused_allocation),
+        cmocka_unit_test(creation_survives_every_refused_allocation),
+        cmocka_unit_test(a_heap_is_never_lost_for_lack_of_memory),
+    };
+    return RUN_TESTS(tests);
+}

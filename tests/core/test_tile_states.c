@@ -1,0 +1,311 @@
+#include "core/fixture.h"
+
+static void pass(struct fixture *f, SluiceTextureId id, uint64_t time)
+{
+    fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, 0);
+}
+
+static void map_one(struct fixture *f, SluiceTextureId id, uint32_t tile)
+{
+    CHECK_OK(sluiceUpdateTilesMapping(f->manager, id, 1, &tile));
+}
+
+static void a_request_no_longer_wanted_is_free_again(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 0);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, REQUESTED);
+    assert_int_equal(fixture_statistics(&f).requestedTileCount, 6);
+    pass(&f, id, 1);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, FREE);
+    assert_int_equal(fixture_statistics(&f).requestedTileCount, 0);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_int_equal(f.count, 0);
+    assert_int_equal(f.heaps.asked, 0);
+    fixture_close(&f);
+}
+
+static void a_cancelled_load_is_never_mapped_and_its_memory_comes_back(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 0);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_int_equal(f.count, 6);
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 10);
+    pass(&f, id, 1);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, CANCELLED);
+    CHECK_OK(fixture_to_cancel(&f, id));
+    /* of the level held each region drops its tile; the parent closes with the last; then packed */
+    assert_true(LISTED(&f, id, 0, 1, 2, 3, 4, 5));
+    CHECK_OK(fixture_to_cancel(&f, id));
+    assert_int_equal(f.count, 0); /* each once */
+    const uint32_t all[] = {0, 1, 2, 3, 4, 5};
+    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 6, all, 0));
+    SluiceStreamedTextureStatistics s = fixture_statistics(&f);
+    assert_int_equal(s.freeSlotCount, 16);
+    assert_int_equal(s.mappedTotal, 0);
+    assert_int_equal(s.cancelledTotal, 6);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, FREE);
+    fixture_close(&f);
+}
+
+static void wanted_again_before_the_cancel_list_is_read_goes_on_loading(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 0);
+    CHECK_OK(fixture_to_map(&f, id));
+    SluiceTile before = fixture_tile(&f, id, 0);
+    pass(&f, id, 1);
+    fixture_feed(&f, id, 0, 2, 0);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, ALLOCATED);
+    CHECK_OK(fixture_to_cancel(&f, id));
+    assert_int_equal(f.count, 0);
+    SluiceTile after = fixture_tile(&f, id, 0);
+    assert_true(after.heapId == before.heapId && after.slot == before.slot);
+    map_one(&f, id, 0);
+    CHECK_STATE(&f, id, 0, MAPPED);
+    fixture_close(&f);
+}
+
+/* Tile 0 was listed for cancelling and is wanted again; takes three units of time. */
+static SluiceTextureId cancel_and_want_again(struct fixture *f, uint64_t time)
+{
+    SluiceTextureId id = fixture_add_small(f);
+    fixture_feed_region(f, id, 0, 0, time, 0);
+    CHECK_OK(fixture_to_map(f, id));
+    pass(f, id, time + 1);
+    CHECK_OK(fixture_to_cancel(f, id));
+    assert_int_equal(f->count, 3);
+    fixture_feed_region(f, id, 0, 0, time + 2, 0);
+    CHECK_STATE(f, id, 0, CANCELLED);
+    CHECK_OK(fixture_to_cancel(f, id));
+    assert_int_equal(f->count, 0);
+    return id;
+}
+
+static void wanted_again_after_the_listing_waits_for_the_answer(void **state)
+{
+    (void)state;
+    struct fixture f;
+    uint32_t tile = 0;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = cancel_and_want_again(&f, 0);
+    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_STATE(&f, id, 0, REQUESTED);
+    id = cancel_and_want_again(&f, 10); /* answered as mapped: it came in time */
+    map_one(&f, id, tile);
+    CHECK_STATE(&f, id, 0, MAPPED);
+    id = cancel_and_want_again(&f, 20);
+    CHECK_OK(sluiceReportFailedTiles(f.manager, id, 1, &tile, 22));
+    CHECK_STATE(&f, id, 0, FAILED);
+    id = cancel_and_want_again(&f, 30); /* and unwanted once more: forgotten */
+    pass(&f, id, 33);
+    CHECK_OK(fixture_to_cancel(&f, id));
+    assert_int_equal(f.count, 0);
+    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_STATE(&f, id, 0, FREE);
+    fixture_close(&f);
+}
+
+static void a_cancelled_tile_whose_data_arrived_is_standby(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 10, 0, 0, 0);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed_region(&f, id, 0, 0, 0, 0);
+    CHECK_OK(fixture_to_map(&f, id));
+    pass(&f, id, 1);
+    uint32_t tile = 0;
+    map_one(&f, id, tile); /* not listed yet: it may be answered all the same */
+    CHECK_STATE(&f, id, 0, STANDBY);
+    CHECK_OK(fixture_to_cancel(&f, id));
+    assert_true(LISTED(&f, id, 4, 5));
+    tile = 4;
+    CHECK_OK(sluiceReportFailedTiles(f.manager, id, 1, &tile, 1)); /* unwanted: no failure kept */
+    CHECK_STATE(&f, id, 4, FREE);
+    assert_int_equal(fixture_statistics(&f).failedTileCount, 0);
+    fixture_close(&f);
+}
+
+static void allocated_tiles_may_be_answered_as_cancelled(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed_region(&f, id, 0, 0, 0, 0);
+    CHECK_OK(fixture_to_map(&f, id));
+    uint32_t tile = 0;
+    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_STATE(&f, id, 0, REQUESTED); /* still wanted */
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_true(LISTED(&f, id, 0));
+    fixture_close(&f);
+}
+
+static SluiceTextureId all_standby(struct fixture *f, uint32_t keep)
+{
+    fixture_open(f, 16, false);
+    fixture_configure(f, keep, 0, 0, 0);
+    SluiceTextureId id = fixture_add_small(f);
+    fixture_feed(f, id, 0, 0, 0);
+    fixture_load(f);
+    pass(f, id, 1);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(f, id, i, STANDBY);
+    return id;
+}
+
+static void standby_is_restored_without_a_load(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId id = all_standby(&f, 10);
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_int_equal(f.count, 0);
+    fixture_feed(&f, id, 0, 2, 0);
+    for (uint32_t i = 0; i < 6; i++)
+        CHECK_STATE(&f, id, i, MAPPED);
+    SluiceStreamedTextureStatistics s = fixture_statistics(&f);
+    assert_int_equal(s.restoredTotal, 6);
+    assert_int_equal(s.handedOutTotal, 6);
+    assert_int_equal(s.mappedTotal, 6);
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_int_equal(f.count, 0);
+    fixture_close(&f);
+}
+
+static void standby_beyond_the_extra_is_listed_oldest_first(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId id = all_standby(&f, 2);
+    assert_int_equal(fixture_statistics(&f).standbyTileCount, 6); /* until they are handed out */
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 0, 1, 2, 3)); /* 4 closed with the last of them, 5 follows */
+    for (uint32_t i = 0; i < 4; i++)
+        CHECK_STATE(&f, id, i, FREE);
+    CHECK_STATE(&f, id, 4, STANDBY);
+    CHECK_STATE(&f, id, 5, STANDBY);
+    assert_int_equal(fixture_statistics(&f).unmappedTotal, 4);
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 14);
+    fixture_configure(&f, 0, 0, 0, 0); /* takes effect at once */
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 4, 5));
+    fixture_close(&f);
+}
+
+static void standby_ages_by_when_it_was_last_wanted(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 16, 0, 0, 0);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 0, 0, 0);
+    fixture_load(&f);
+    const uint8_t maps[][4] = {
+        {0, 0, 1, 0}, {1, 0, 1, 0}, {1, 1, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}};
+    for (uint32_t i = 0; i < 5; i++)
+        fixture_feed_map(&f, id, maps[i], 1 + i, 0);
+    /* 2, 0, 1 became standby, 0 was restored, then 0 and 3 followed */
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 0));
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 2, 1, 0, 3));
+    fixture_close(&f);
+}
+
+static void listed_for_unmapping_and_wanted_again_is_mapped_again(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId id = all_standby(&f, 0);
+    uint32_t count = 0;
+    CHECK_OK(sluiceGetTilesToUnmap(f.manager, id, 0, &count, NULL));
+    assert_int_equal(count, 6);
+    fixture_feed_region(&f, id, 0, 0, 2, 0);
+    CHECK_STATE(&f, id, 0, MAPPED);
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 1, 2, 3));
+    assert_int_equal(fixture_statistics(&f).restoredTotal, 3);
+    fixture_close(&f);
+}
+
+static void trim_lists_the_oldest_down_to_what_is_kept(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId id = all_standby(&f, 100);
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 100));
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_int_equal(f.count, 0);
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 4));
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 4)); /* those listed do not count again */
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 0, 1));
+    CHECK_OK(sluiceTrimStandbyTiles(f.manager, 0));
+    CHECK_OK(fixture_to_unmap(&f, id, 0));
+    assert_true(LISTED(&f, id, 2, 3, 4, 5));
+    assert_int_equal(fixture_statistics(&f).standbyTileCount, 0);
+    fixture_close(&f);
+}
+
+static void lists_hand_out_what_there_is_room_for(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId id = all_standby(&f, 0);
+    SluiceTile tiles[8];
+    uint32_t count = 4;
+    CHECK_RESULT(sluiceGetTilesToUnmap(f.manager, id, 0, &count, tiles), SLUICE_INCOMPLETE);
+    assert_int_equal(count, 4);
+    count = 0; /* no room at all */
+    CHECK_RESULT(sluiceGetTilesToUnmap(f.manager, id, 0, &count, tiles), SLUICE_INCOMPLETE);
+    count = 2; /* exactly the rest */
+    CHECK_OK(sluiceGetTilesToUnmap(f.manager, id, 0, &count, tiles));
+    assert_int_equal(count, 2);
+    fixture_feed(&f, id, 0, 2, 0);
+    CHECK_RESULT(fixture_to_map_at_most(&f, id, 5), SLUICE_INCOMPLETE);
+    pass(&f, id, 3); /* the sixth is free again, five are cancelled */
+    count = 3;
+    CHECK_RESULT(sluiceGetTilesToCancel(f.manager, id, &count, tiles), SLUICE_INCOMPLETE);
+    assert_int_equal(count, 3);
+    CHECK_OK(sluiceGetTilesToCancel(f.manager, id, &count, tiles));
+    assert_int_equal(count, 2);
+    fixture_close(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_request_no_longer_wanted_is_free_again),
+        cmocka_unit_test(a_cancelled_load_is_never_mapped_and_its_memory_comes_back),
+        cmocka_unit_test(wanted_again_before_the_cancel_list_is_read_goes_on_loading),
+        cmocka_unit_test(wanted_again_after_the_listing_waits_for_the_answer),
+        cmocka_unit_test(a_cancelled_tile_whose_data_arrived_is_standby),
+        cmocka_unit_test(allocated_tiles_may_be_answered_as_cancelled),
+        cmocka_unit_test(standby_is_restored_without_a_load),
+        cmocka_unit_test(standby_beyond_the_extra_is_listed_oldest_first),
+        cmocka_unit_test(standby_ages_by_when_it_was_last_wanted),
+        cmocka_unit_test(listed_for_unmapping_and_wanted_again_is_mapped_again),
+        cmocka_unit_test(trim_lists_the_oldest_down_to_what_is_kept),
+        cmocka_unit_test(lists_hand_out_what_there_is_room_for),
+    };
+    return RUN_TESTS(tests);
+}

@@ -1,0 +1,206 @@
+#include "random_app.h"
+
+#include "support/test.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool exists(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file)
+        fclose(file);
+    return file;
+}
+
+static void full_writer_ends_the_recording_and_the_manager_goes_on(void **state)
+{
+    (void)state;
+    struct trace_buffer whole;
+    record_random_run(&whole, 5, 400, false);
+    for (size_t full_at = 0; full_at <= whole.size; full_at += 1 + whole.size / 40) {
+        struct random_app app, alone;
+        struct trace_buffer buffer;
+        SluiceRecorder *recorder;
+        const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+        buffer.full_at = full_at;
+        random_app_init(&app, 5, false);
+        SluiceResult result = sluiceBeginRecording(app.manager, &writer, NULL, &recorder);
+        if (full_at < 40) {
+            CHECK_RESULT(result, SLUICE_ERROR_IO);
+            assert_null(recorder);
+        } else {
+            CHECK_OK(result);
+        }
+        random_app_run(&app, 400);
+        CHECK_RESULT(sluiceEndRecording(recorder),
+                     full_at < 40 || full_at >= whole.size ? SLUICE_SUCCESS : SLUICE_ERROR_IO);
+
+        random_app_init(&alone, 5, false);
+        random_app_run(&alone, 400);
+        SluiceStreamedTextureStatistics undisturbed;
+        CHECK_OK(sluiceGetStatistics(alone.manager, &undisturbed));
+        check_same_statistics(app.manager, &undisturbed);
+        random_app_finish(&alone);
+        random_app_finish(&app);
+        trace_buffer_free(&buffer);
+    }
+    trace_buffer_free(&whole);
+}
+
+static void recorder_without_memory_says_so_and_leaks_nothing(void **state)
+{
+    (void)state;
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct random_app app;
+        struct trace_buffer buffer;
+        struct failing_allocator memory;
+        SluiceRecorder *recorder;
+        const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+        failing_allocator_init(&memory, n);
+        random_app_init(&app, 6, false);
+        result = sluiceBeginRecording(app.manager, &writer, &memory.callbacks, &recorder);
+        random_app_run(&app, 100);
+        SluiceResult end = sluiceEndRecording(recorder);
+        result = result == SLUICE_SUCCESS ? end : result;
+        if (result != SLUICE_SUCCESS)
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        assert_int_equal(memory.live_bytes, 0);
+        random_app_finish(&app);
+        trace_buffer_free(&buffer);
+        assert_true(n < 1000);
+    }
+}
+
+static void recording_begins_with_what_was_configured_before(void **state)
+{
+    (void)state;
+    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3,
+                                                       .maxHeapCount = 2};
+    struct random_app app;
+    struct trace_buffer buffer;
+    SluiceRecorder *recorder;
+    const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceSetConfig(app.manager, &config));
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    random_app_run(&app, 400);
+    CHECK_OK(sluiceEndRecording(recorder));
+
+    const SluiceReplayInfo info = {.pData = buffer.data, .size = buffer.size};
+    SluiceReplayResult replayed;
+    CHECK_OK(sluiceReplay(&info, &replayed));
+    assert_int_equal(replayed.divergedEvent, 0);
+    assert_true(replayed.decisionHash == replayed.recordedHash);
+    check_same_statistics(app.manager, &replayed.statistics);
+    random_app_finish(&app);
+    trace_buffer_free(&buffer);
+}
+
+static void file_appears_when_the_recording_ends(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder.trace";
+    struct random_app app;
+    SluiceRecorder *recorder;
+    remove(path);
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceBeginRecordingToFile(app.manager, path, NULL, &recorder));
+    random_app_run(&app, 200);
+    assert_false(exists(path));
+    assert_true(exists("test_recorder.trace.partial"));
+    CHECK_OK(sluiceEndRecording(recorder));
+    assert_true(exists(path));
+    assert_false(exists("test_recorder.trace.partial"));
+    random_app_finish(&app);
+    remove(path);
+}
+
+static void file_of_a_failed_recording_stays_away(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder_failed.trace";
+    bool failed_late = false;
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct random_app app;
+        struct failing_allocator memory;
+        SluiceRecorder *recorder;
+        failing_allocator_init(&memory, n);
+        remove(path);
+        random_app_init(&app, 9, false);
+        result = sluiceBeginRecordingToFile(app.manager, path, &memory.callbacks, &recorder);
+        random_app_run(&app, 100);
+        if (recorder) {
+            result = sluiceEndRecording(recorder);
+            failed_late |= result != SLUICE_SUCCESS;
+        }
+        assert_true(exists(path) == (result == SLUICE_SUCCESS));
+        assert_false(exists("test_recorder_failed.trace.partial"));
+        assert_int_equal(memory.live_bytes, 0);
+        random_app_finish(&app);
+        assert_true(n < 1000);
+    }
+    assert_true(failed_late);
+    remove(path);
+}
+
+static void path_that_cannot_be_written_is_an_error(void **state)
+{
+    (void)state;
+    struct random_app app;
+    SluiceRecorder *recorder;
+    random_app_init(&app, 1, false);
+    CHECK_RESULT(sluiceBeginRecordingToFile(app.manager, "no/such/folder/x.trace", NULL, &recorder),
+                 SLUICE_ERROR_IO);
+    assert_null(recorder);
+    random_app_finish(&app);
+}
+
+static void wrong_arguments_are_refused(void **state)
+{
+    (void)state;
+    struct random_app app;
+    struct trace_buffer buffer;
+    SluiceRecorder *recorder, *second;
+    SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+    const SluiceRecordWriter none = {NULL, NULL};
+    const SluiceAllocationCallbacks half = {NULL, NULL, NULL};
+    random_app_init(&app, 1, false);
+    CHECK_RESULT(sluiceBeginRecording(NULL, &writer, NULL, &recorder), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceBeginRecording(app.manager, NULL, NULL, &recorder),
+                 SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceBeginRecording(app.manager, &none, NULL, &recorder),
+                 SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceBeginRecording(app.manager, &writer, NULL, NULL), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceBeginRecording(app.manager, &writer, &half, &recorder),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceBeginRecordingToFile(app.manager, NULL, NULL, &recorder),
+                 SLUICE_ERROR_NULL_POINTER);
+    CHECK_OK(sluiceEndRecording(NULL));
+
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    CHECK_RESULT(sluiceBeginRecording(app.manager, &writer, NULL, &second),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceEndRecording(recorder));
+    random_app_run(&app, 3);
+    CHECK_RESULT(sluiceBeginRecording(app.manager, &writer, NULL, &second),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    random_app_finish(&app);
+    trace_buffer_free(&buffer);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(full_writer_ends_the_recording_and_the_manager_goes_on),
+        cmocka_unit_test(recorder_without_memory_says_so_and_leaks_nothing),
+        cmocka_unit_test(recording_begins_with_what_was_configured_before),
+        cmocka_unit_test(file_appears_when_the_recording_ends),
+        cmocka_unit_test(file_of_a_failed_recording_stays_away),
+        cmocka_unit_test(path_that_cannot_be_written_is_an_error),
+        cmocka_unit_test(wrong_arguments_are_refused),
+    };
+    return RUN_TESTS(tests);
+}

@@ -1,0 +1,134 @@
+/* Plays a trace and prints what a manager decides: see --help and docs/replay.md. */
+#include "expect.h"
+#include "file.h"
+#include "options.h"
+#include "report.h"
+
+#include <sluice/replay.h>
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A few bytes of a trace can ask for a texture of a billion tiles, so memory has a limit. */
+struct limited_memory {
+    uint64_t left;
+};
+
+static void *allocate(void *user, size_t size, size_t alignment)
+{
+    struct limited_memory *memory = user;
+    if (size > memory->left || size > SIZE_MAX - alignment)
+        return NULL;
+    void *block = alignment <= _Alignof(max_align_t)
+                      ? malloc(size)
+                      : aligned_alloc(alignment, (size + alignment - 1) & ~(alignment - 1));
+    if (block)
+        memory->left -= size;
+    return block;
+}
+
+static void release(void *user, void *block, size_t size)
+{
+    struct limited_memory *memory = user;
+    memory->left += size;
+    free(block);
+}
+
+struct output {
+    bool dump;
+    struct expectation *expectation; ///< NULL: nothing is compared
+};
+
+static void take_line(void *user, const char *line)
+{
+    const struct output *output = user;
+    if (output->dump)
+        puts(line);
+    if (output->expectation)
+        expectation_line(output->expectation, line);
+}
+
+static void log_message(void *user, SluiceLogSeverity severity, const char *message)
+{
+    if (severity >= SLUICE_LOG_WARNING)
+        fprintf(stderr, "%s: %s\n", (const char *)user, message);
+}
+
+static SluiceResult replay(const struct options *o, const char *data, size_t size,
+                           struct output *output, SluiceReplayResult *result)
+{
+    struct limited_memory memory = {(uint64_t)o->memory_mib << 20};
+    const SluiceAllocationCallbacks callbacks = {&memory, allocate, release};
+    /* The log's user pointer is not const; it is only printed. */
+    const SluiceReplayInfo info = {
+        .pData = data,
+        .size = size,
+        .pAllocator = &callbacks,
+        .log = {(void *)(uintptr_t)o->trace, log_message},
+        .pUserData = output,
+        .pfnLine = output->dump || output->expectation ? take_line : NULL,
+        .heapTileCapacity = o->heap_tiles,
+        .maxHeapCount = o->max_heaps,
+        .standbyTileCount = o->standby,
+        .tilesPerFrame = o->budget,
+        .latency = o->latency,
+        .timeoutMicros = o->timeout_micros,
+        .pRecordPath = o->record,
+    };
+    return sluiceReplay(&info, result);
+}
+
+/* Everything but the expectation, which the caller closes. */
+static bool run(const struct options *o, struct expectation *expectation)
+{
+    char *data;
+    size_t size;
+    if (!read_file(o->trace, &data, &size)) {
+        fprintf(stderr, "sluice-replay: %s: %s\n", o->trace, strerror(errno));
+        return false;
+    }
+    struct output output = {o->dump, expectation};
+    SluiceReplayResult result = {0};
+    SluiceResult status = replay(o, data, size, &output, &result);
+    free(data);
+    if (status != SLUICE_SUCCESS) {
+        fprintf(stderr, "sluice-replay: %s: %s", o->trace, sluiceResultString(status));
+        if (status == SLUICE_ERROR_CORRUPT_DATA)
+            fprintf(stderr, " at byte %" PRIu64, result.errorOffset);
+        fprintf(stderr, " after %" PRIu64 " events, hash %016" PRIx64 "\n", result.eventCount,
+                result.decisionHash);
+        if (expectation) /* what is missing in the dump follows from this */
+            expectation->differs = true;
+        return false;
+    }
+    if (o->json)
+        print_json(&result);
+    else if (!o->dump)
+        print_report(&result);
+    return result.divergedEvent == 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o;
+    if (!parse_options(&o, argc, argv))
+        return 2;
+    if (o.help) {
+        print_help();
+        return 0;
+    }
+    struct expectation expectation;
+    if (o.expect && !expectation_open(&expectation, o.expect))
+        return 1;
+    bool good = run(&o, o.expect ? &expectation : NULL);
+    if (o.expect && !expectation_close(&expectation))
+        good = false;
+    if (fflush(stdout) != 0) {
+        fprintf(stderr, "sluice-replay: cannot write: %s\n", strerror(errno));
+        good = false;
+    }
+    return good ? 0 : 1;
+}

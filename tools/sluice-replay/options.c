@@ -1,0 +1,143 @@
+#include "options.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct options defaults = {
+    .heap_tiles = 1024,
+    .max_heaps = 0,
+    .standby = 1000,
+    .budget = 256,
+    .latency = 2,
+    .timeout_micros = 1000000,
+    .memory_mib = 4096,
+};
+
+static bool parse_u32(const char *name, const char *text, uint32_t least, uint32_t *value)
+{
+    char *end;
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (*text < '0' || *text > '9' || *end || errno || number > UINT32_MAX || number < least) {
+        fprintf(stderr, "sluice-replay: %s takes a whole number from %u to %u, not '%s'\n", name,
+                least, UINT32_MAX, text);
+        return false;
+    }
+    *value = (uint32_t)number;
+    return true;
+}
+
+static bool parse_seconds(const char *name, const char *text, uint64_t *micros)
+{
+    char *end;
+    double seconds = strtod(text, &end);
+    if (end == text || *end || !(seconds >= 1e-6 && seconds <= 1e9)) {
+        fprintf(stderr, "sluice-replay: %s takes seconds from 0.000001 to 1e9, not '%s'\n", name,
+                text);
+        return false;
+    }
+    *micros = (uint64_t)(seconds * 1e6 + 0.5);
+    return true;
+}
+
+/* An option and its value. */
+static bool parse_value(struct options *o, const char *name, const char *value)
+{
+    if (!value) {
+        fprintf(stderr, "sluice-replay: %s needs a value\n", name);
+        return false;
+    }
+    if (strcmp(name, "--expect") == 0)
+        o->expect = value;
+    else if (strcmp(name, "--record") == 0)
+        o->record = value;
+    else if (strcmp(name, "--heap-tiles") == 0)
+        return parse_u32(name, value, 1, &o->heap_tiles);
+    else if (strcmp(name, "--max-heaps") == 0)
+        return parse_u32(name, value, 0, &o->max_heaps);
+    else if (strcmp(name, "--standby") == 0)
+        return parse_u32(name, value, 0, &o->standby);
+    else if (strcmp(name, "--budget") == 0)
+        return parse_u32(name, value, 1, &o->budget);
+    else if (strcmp(name, "--latency") == 0)
+        return parse_u32(name, value, 0, &o->latency);
+    else if (strcmp(name, "--timeout") == 0)
+        return parse_seconds(name, value, &o->timeout_micros);
+    else
+        return parse_u32(name, value, 1, &o->memory_mib);
+    return true;
+}
+
+static bool takes_value(const char *name)
+{
+    static const char *const names[] = {"--expect",    "--record",  "--heap-tiles",
+                                        "--max-heaps", "--standby", "--budget",
+                                        "--latency",   "--timeout", "--memory"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
+bool parse_options(struct options *o, int argc, char **argv)
+{
+    *o = defaults;
+    for (int i = 1; i < argc; i++) {
+        const char *name = argv[i];
+        if (takes_value(name)) {
+            i++;
+            if (!parse_value(o, name, i < argc ? argv[i] : NULL))
+                return false;
+        } else if (strcmp(name, "--dump") == 0) {
+            o->dump = true;
+        } else if (strcmp(name, "--json") == 0) {
+            o->json = true;
+        } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+            o->help = true;
+        } else if (name[0] == '-') {
+            fprintf(stderr, "sluice-replay: there is no option %s\n", name);
+            return false;
+        } else if (o->trace) {
+            fprintf(stderr, "sluice-replay: one trace at a time, not also '%s'\n", name);
+            return false;
+        } else {
+            o->trace = name;
+        }
+    }
+    if (!o->trace && !o->help)
+        fprintf(stderr, "sluice-replay: a trace is needed; --help says more\n");
+    if (o->dump && o->json)
+        fprintf(stderr, "sluice-replay: --dump or --json, not both\n");
+    return (o->trace || o->help) && !(o->dump && o->json);
+}
+
+void print_help(void)
+{
+    printf("usage: sluice-replay TRACE [options]\n"
+           "\n"
+           "Plays a trace of a texture manager and prints statistics and a hash over all of its\n"
+           "decisions. TRACE is a recording (SLUICERT) or a feedback trace (SLTRACE1).\n"
+           "\n"
+           "  --dump             print every event and every decision instead\n"
+           "  --json             print the statistics as one JSON object per line\n"
+           "  --expect FILE      compare the dump, or if FILE begins with 'hash' just that line,\n"
+           "                     and name the first line that differs\n"
+           "  --record FILE      record what is played as SLUICERT\n"
+           "  --memory MIB       host memory the manager may take (%u)\n"
+           "  --help             this text\n"
+           "\n"
+           "For SLTRACE1, which has feedback but no frame loop (see docs/replay.md):\n"
+           "  --heap-tiles N     tiles per heap (%u)\n"
+           "  --max-heaps N      heaps at most, 0 for any number (%u)\n"
+           "  --standby N        tiles kept although unwanted (%u)\n"
+           "  --budget N         tiles answered per frame at most (%u)\n"
+           "  --latency N        frames from handed out to answered (%u)\n"
+           "  --timeout SECONDS  until a region that is no longer sampled lapses (%g)\n"
+           "\n"
+           "Exit status: 0 all is well; 1 the trace is damaged, its decisions differ from those\n"
+           "recorded or expected, or a file cannot be read or written; 2 wrong usage.\n",
+           defaults.memory_mib, defaults.heap_tiles, defaults.max_heaps, defaults.standby,
+           defaults.budget, defaults.latency, (double)defaults.timeout_micros / 1e6);
+}
