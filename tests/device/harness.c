@@ -23,7 +23,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
     if (data->pMessageIdName && strcmp(data->pMessageIdName, "Loader Message") == 0)
         return VK_FALSE;
     struct harness *h = user;
-    if (h->message_count++ < 10)
+    if (h->message_count++ < 10 && !h->failed)
         fprintf(stderr, "# validation: %s\n", data->pMessage);
     return VK_FALSE;
 }
@@ -188,7 +188,7 @@ static bool create_device(struct harness *h)
 /* TAP for "all skipped"; the status says the same to the build. */
 static int no_device(struct harness *h, const char *why)
 {
-    harness_finish(h);
+    harness_finish(h, 77);
     printf("1..0 # SKIP %s\n", why);
     return 77;
 }
@@ -213,8 +213,9 @@ int harness_init(struct harness *h)
     return 0;
 }
 
-void harness_finish(struct harness *h)
+int harness_finish(struct harness *h, int status)
 {
+    h->failed = status != 0;
     if (h->device) {
         h->DeviceWaitIdle(h->device);
         h->DestroyCommandPool(h->device, h->pool, NULL);
@@ -225,8 +226,11 @@ void harness_finish(struct harness *h)
             h->instance, "vkDestroyDebugUtilsMessengerEXT"))(h->instance, h->messenger, NULL);
     if (h->instance)
         h->DestroyInstance(h->instance, NULL);
+    if (status == 0 && h->message_count)
+        status = 1;
     /* The loader stays: drivers keep threads and thread-local data that outlive an unload badly. */
     *h = (struct harness){0};
+    return status;
 }
 
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)

@@ -49,6 +49,7 @@ struct harness {
     VkDebugUtilsMessengerEXT messenger;
     bool validates;
     uint32_t message_count; ///< of validation, warnings and errors
+    bool failed;            ///< a test did, so what is left behind is no news
     VkPhysicalDevice physical_device;
     VkPhysicalDeviceMemoryProperties memory;
     VkDevice device;
@@ -71,7 +72,9 @@ struct harness {
 
 /** 0; or 77, having said why there is no device to test on; or 1. */
 int harness_init(struct harness *h);
-void harness_finish(struct harness *h);
+/** Returns `status`, or 1 if that was 0 and validation complains about what is left. After a failed
+ *  test it says nothing of what that test left behind. */
+int harness_finish(struct harness *h, int status);
 
 /** Fills in handles, queues and the log; the rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);

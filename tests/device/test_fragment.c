@@ -149,7 +149,5 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
-    status = RUN_TESTS(tests);
-    harness_finish(&h);
-    return status;
+    return harness_finish(&h, RUN_TESTS(tests));
 }
