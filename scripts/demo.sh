@@ -58,4 +58,6 @@ mkdir -p "$output" "$cache"
     tee "$output/summary.txt" || die "the demo did not end well"
 
 title "Done"
-say "Pictures, frames.csv and summary: $output"
+say "The report, with pictures and figures: $output/report.html"
+say "Pictures, and the same with everything resident: $output/frame-*.png, truth-*.png"
+say "Figures: $output/frames.csv (by frame), $output/summary.txt"

@@ -51,6 +51,8 @@ if [ "$quick" = no ]; then
     sanitizer_stage clang-threads tsan thread -Dbuildtype=debugoptimized -Dsamples=disabled
 
     # Every feature off, both kinds of library; replays must decide the same in all of them.
+    # What is slow has run twice by now and depends on none of this.
+    test_options=(--no-suite slow)
     off='-Dexr=disabled -Dvulkan=disabled -Dsamples=disabled'
     # shellcheck disable=SC2086 # lists of words
     {

@@ -62,9 +62,9 @@ typedef uint64_t SluiceTextureId;
 
 typedef struct SluiceStreamedTextureManagerCreateInfo {
     SluiceHeapAllocator heapAllocator;           ///< both functions required
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free; else outlives the manager
-    uint32_t heapTileCapacity;                   ///< slots per heap, 1 to 2^20; users start with 256
-    uint32_t tileSize;                           ///< bytes per slot, > 0; 65536 for GPU tiles
+    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free; outlives the manager
+    uint32_t heapTileCapacity; ///< slots per heap, 1 to 2^20; users start with 256
+    uint32_t tileSize;         ///< bytes per slot, > 0; 65536 for GPU tiles
     bool alwaysMapPackedTiles; ///< true: packed tiles are wanted from add to remove
 } SluiceStreamedTextureManagerCreateInfo;
 
@@ -121,7 +121,7 @@ typedef struct SluiceFeedbackDesc {
      */
     const uint8_t *pMinMip;
     uint32_t width, height; ///< must be the texture's feedbackWidth and feedbackHeight
-    int32_t mipBias;        ///< levels, added to each wanted level before it is clamped to the chain
+    int32_t mipBias; ///< levels, added to each wanted level before it is clamped to the chain
     /** Only the coarsest so many regular levels are wanted; 0: all of them. */
     uint32_t streamedMipLevels;
 } SluiceFeedbackDesc;
@@ -227,7 +227,8 @@ SLUICE_API SluiceResult sluiceAddStreamedTexture(SluiceStreamedTextureManager *m
  * Errors: UNKNOWN_TEXTURE, STALE_TEXTURE, TIME_BACKWARDS (retireValue is below an earlier one).
  */
 SLUICE_API SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager *manager,
-                                                    SluiceTextureId textureId, uint64_t retireValue);
+                                                    SluiceTextureId textureId,
+                                                    uint64_t retireValue);
 
 SLUICE_API SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManager *manager,
                                                SluiceTextureId textureId,
@@ -244,8 +245,8 @@ SLUICE_API SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManage
  * and the packed tiles. Tiles that become wanted are REQUESTED or, from STANDBY, MAPPED; tiles that
  * no longer are go the other way.
  *
- * The map is read before the call returns and not kept. `timeStamp` and `timeout` share any unit the
- * caller likes; time stamps never decrease, over all textures, and may wrap past 2^64.
+ * The map is read before the call returns and not kept. `timeStamp` and `timeout` share any unit
+ * the caller likes; time stamps never decrease, over all textures, and may wrap past 2^64.
  *
  * Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE, SIZE_MISMATCH, TIME_BACKWARDS,
  *         OUT_OF_HOST_MEMORY. The manager is unchanged after any of them.
@@ -317,11 +318,13 @@ SLUICE_API SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *m
                                                  const uint32_t *pTileIndices);
 
 /**
- * Loading these ALLOCATED or CANCELLED tiles failed and nothing of theirs was written: the slots are
- * free at once. Wanted ones are FAILED and become REQUESTED again with the first call that brings a
- * time stamp of `timeStamp + retryDelay * 2^(failures - 1)` or later; after maxLoadAttempts failures
- * they are GIVEN_UP, and the MinMip map stays at the coarser level. A tile that is no longer wanted
- * forgets its failures. Errors: as sluiceUpdateTilesMapping, and TIME_BACKWARDS.
+ * Loading these ALLOCATED or CANCELLED tiles failed and nothing of theirs was written: the slots
+ * are free at once. Wanted ones are FAILED and become REQUESTED again with the first call that
+ * brings a time stamp of `timeStamp + retryDelay * 2^(failures - 1)` or later; after
+ * maxLoadAttempts failures they are GIVEN_UP, and the MinMip map stays at the coarser level. A tile
+ * that is no longer wanted forgets its failures.
+ *
+ * Errors: as sluiceUpdateTilesMapping, and TIME_BACKWARDS.
  */
 SLUICE_API SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
                                                 SluiceTextureId textureId, uint32_t tileCount,
@@ -385,9 +388,10 @@ SLUICE_API SluiceResult sluiceTrimStandbyTiles(SluiceStreamedTextureManager *man
 
 /**
  * Hands out up to `*pMoveCount` copies that empty the least used heaps into fuller ones. Tiles that
- * are MAPPED or STANDBY belong to their new slots when the call returns; the old ones come back once
- * `retireValue` has completed. No move is listed that helps to empty no heap, so repeated calls end.
- * On return `*pMoveCount` is the number written. `pMoves` must not be NULL.
+ * are MAPPED or STANDBY belong to their new slots when the call returns; the old ones come back
+ * once `retireValue` has completed. No move is listed that helps to empty no heap, so repeated
+ * calls end. On return `*pMoveCount` is the number written. `pMoves` must not be NULL.
+ *
  * Errors: NULL_POINTER, TIME_BACKWARDS.
  */
 SLUICE_API SluiceResult sluiceDefragmentTiles(SluiceStreamedTextureManager *manager,
@@ -421,7 +425,8 @@ SLUICE_API SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager
 
 /**
  * Hands out rectangles that cover every MinMip texel that changed since they were last handed out,
- * at most one per texture. A new texture is listed whole. Calling convention as sluiceGetTilesToMap.
+ * at most one per texture. A new texture is listed whole. Calling convention as
+ * sluiceGetTilesToMap.
  */
 SLUICE_API SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *manager,
                                                uint32_t *pRectCount, SluiceMinMipRect *pRects);

@@ -50,14 +50,15 @@ typedef struct SluiceVulkanDeviceCapabilities {
     bool shaderResourceResidency;    ///< residency codes exist
     bool shaderResourceMinLod;       ///< the LOD clamp operand exists
     bool residencyNonResidentStrict; ///< reads of unbound texels are 0
-    uint32_t sparseQueueFamilyIndex; ///< the best family that binds: without graphics if there is one
+    uint32_t sparseQueueFamilyIndex; ///< the best that binds: without graphics if possible
     uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
     char deviceName[256];
 } SluiceVulkanDeviceCapabilities;
 
-SLUICE_API SluiceResult sluiceGetVulkanDeviceCapabilities(
-    VkInstance instance, VkPhysicalDevice physicalDevice,
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceVulkanDeviceCapabilities *pCapabilities);
+SLUICE_API SluiceResult
+sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
+                                  PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
+                                  SluiceVulkanDeviceCapabilities *pCapabilities);
 
 /**
  * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
@@ -71,39 +72,41 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
 
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceVulkanStreamerCreateInfo {
-    VkInstance instance;             ///< required, as all handles down to device
+    VkInstance instance; ///< required, as all handles down to device
     VkPhysicalDevice physicalDevice;
     VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
     PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
-    VkQueue sparseQueue;              ///< of a family with SPARSE_BINDING; may be the drawing queue
+    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue
     uint32_t sparseQueueFamilyIndex;
-    uint32_t queueFamilyIndex;        ///< of the queue that frames are submitted to
+    uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to
     SluiceResidencyMode residencyMode;
     const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
     SluiceLogCallback log;
-    uint32_t framesInFlight;          ///< 0: 3
-    uint32_t maxTextureCount;         ///< 0: 1024
-    uint32_t texturesPerFrame;        ///< feedback maps read back per frame; 0: 10
-    uint32_t tilesPerFrame;           ///< mapped and uploaded per frame at most; 0: 256
-    uint32_t maxLoadsInFlight;        ///< 0: 4 * tilesPerFrame
-    uint32_t loaderThreadCount;       ///< 0: as sluiceCreateTileLoader
-    uint32_t heapTileCapacity;        ///< 0: 256
-    uint32_t maxHeapCount;            ///< 0: as many as the device has memory for
-    uint32_t numExtraStandbyTiles;    ///< kept although unwanted
-    /** In the unit of the time stamps: a region that no map asked for that long is no longer wanted.
-     *  0: only a texture's newest map counts, which no stochastic feedback should be used with. */
+    uint32_t framesInFlight;       ///< 0: 3
+    uint32_t maxTextureCount;      ///< 0: 1024
+    uint32_t texturesPerFrame;     ///< feedback maps read back per frame; 0: 10
+    uint32_t tilesPerFrame;        ///< mapped and uploaded per frame at most; 0: 256
+    uint32_t maxLoadsInFlight;     ///< 0: 4 * tilesPerFrame
+    uint32_t loaderThreadCount;    ///< 0: as sluiceCreateTileLoader
+    uint32_t heapTileCapacity;     ///< 0: 256
+    uint32_t maxHeapCount;         ///< 0: as many as the device has memory for
+    uint32_t numExtraStandbyTiles; ///< kept although unwanted
+    /**
+     * In the unit of the time stamps: a region that no map asked for that long is no longer wanted.
+     * 0: only a texture's newest map counts, which no stochastic feedback should be used with.
+     */
     uint64_t feedbackTimeout;
-    uint64_t retryDelay;              ///< in the same unit, see manager.h
-    bool mapEverything;               ///< every tile is wanted always: the fully resident truth
-    uint32_t maxRegionCount; ///< feedback regions, one per tile of level 0, of all textures; 0: 2^20
+    uint64_t retryDelay;     ///< in the same unit, see manager.h
+    bool mapEverything;      ///< every tile is wanted always: the fully resident truth
+    uint32_t maxRegionCount; ///< feedback regions (tiles of level 0) of all textures; 0: 2^20
 } SluiceVulkanStreamerCreateInfo;
 
 /**
  * Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED if the device has no mode that was asked for;
  *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
-SLUICE_API SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
-                                                   SluiceVulkanStreamer **pStreamer);
+SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
+    const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
 
 /**
  * Waits for the device (vkDeviceWaitIdle) and for the reads under way, then releases everything.
@@ -112,8 +115,10 @@ SLUICE_API SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCre
 SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
 
 /**
- * Waits until no read is under way and every binding submitted so far is over; frames are not waited
- * for. For tests, offline rendering and shutdown: the next frame then sees all that was asked for.
+ * Waits until no read is under way and every binding submitted so far is over; frames are not
+ * waited for. For tests, offline rendering and shutdown: the next frame then sees all that was
+ * asked for.
+ *
  * Errors: NULL_POINTER, VULKAN, DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
@@ -148,7 +153,7 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
 
-/** The image is destroyed when the frames begun so far have completed; do not draw with it again. */
+/** The image is destroyed when the frames begun so far have completed; draw with it no more. */
 SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
                                                   SluiceTextureId textureId);
 
@@ -163,9 +168,9 @@ SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
                                        SluiceVulkanBuffers *pBuffers);
 
 typedef struct SluiceStreamingFrame {
-    uint64_t frameIndex;     ///< from 1 on
-    VkSemaphore semaphore;   ///< timeline; the submission of the command buffer must
-    uint64_t signalValue;    ///< signal it with this value
+    uint64_t frameIndex;   ///< from 1 on
+    VkSemaphore semaphore; ///< timeline; the submission of the command buffer must
+    uint64_t signalValue;  ///< signal it with this value
 } SluiceStreamingFrame;
 
 /**
@@ -173,8 +178,8 @@ typedef struct SluiceStreamingFrame {
  * outside a render pass: uploads of texels that arrived, and then the MinMip maps that show them.
  *
  * The command buffer must be submitted, before that of the next frame, to the same queue of
- * queueFamilyIndex. Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are
- * not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
+ * queueFamilyIndex. Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames
+ * are not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
  *
  * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
  *         changed. OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST: the streamer can only be destroyed.
@@ -184,8 +189,10 @@ SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer
                                                   SluiceStreamingFrame *pFrame);
 
 /**
- * Records the resolve and readback of this frame's share of the feedback maps, outside a pass. Binds
- * a compute pipeline and its descriptor set 0. Errors: NULL_POINTER.
+ * Records the resolve and readback of this frame's share of the feedback maps, outside a pass.
+ * Binds a compute pipeline and its descriptor set 0.
+ *
+ * Errors: NULL_POINTER.
  */
 SLUICE_API SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer,
                                                 VkCommandBuffer commandBuffer);
@@ -196,9 +203,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
-    uint64_t feedbackMaps;      ///< read back and given to the manager
-    uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
-    uint64_t deviceMemorySize;  ///< bytes of heaps
+    uint64_t feedbackMaps;     ///< read back and given to the manager
+    uint32_t loadsInFlight;    ///< reads not collected, and uploads not recorded
+    uint64_t deviceMemorySize; ///< bytes of heaps
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

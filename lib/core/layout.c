@@ -7,13 +7,13 @@ static SluiceResult check_desc(const SluiceStreamedTextureDesc *d)
     if (d->width == 0 || d->height == 0 || d->tileWidth == 0 || d->tileHeight == 0 ||
         d->mipLevelCount == 0)
         return SLUICE_ERROR_ZERO_TILES;
+    if (d->regularMipCount > d->mipLevelCount ||
+        (d->regularMipCount < d->mipLevelCount) != (d->packedTileCount > 0))
+        return SLUICE_ERROR_INVALID_PACKED_MIPS;
     if (d->width > SLUICE_MAX_TEXTURE_SIZE || d->height > SLUICE_MAX_TEXTURE_SIZE)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (d->mipLevelCount > slc_mip_count(slc_max_u32(d->width, d->height)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (d->regularMipCount > d->mipLevelCount ||
-        (d->regularMipCount < d->mipLevelCount) != (d->packedTileCount > 0))
-        return SLUICE_ERROR_INVALID_PACKED_MIPS;
     return SLUICE_SUCCESS;
 }
 

@@ -2,6 +2,7 @@
 #include "vulkan/streamer.h"
 
 #include "base/checked.h"
+#include "base/log.h"
 
 static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const uint8_t *map,
                              uint32_t width, uint32_t height, uint64_t time_stamp, uint64_t timeout)
@@ -11,6 +12,10 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
         sluiceUpdateWithSamplerFeedback(s->manager, id, &desc, time_stamp, timeout);
     if (result == SLUICE_ERROR_STALE_TEXTURE || result == SLUICE_ERROR_UNKNOWN_TEXTURE)
         return SLUICE_SUCCESS; /* removed while its map was on its way */
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
+        slc_log(&s->info.log, SLUICE_LOG_WARNING, "no memory to take in a feedback map");
+        return SLUICE_SUCCESS; /* nothing has changed, and there will be another one */
+    }
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceUpdateWithSamplerFeedback");
     s->manager_time = time_stamp;

@@ -358,6 +358,8 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
     if (result < 0 || waits || count == 0)
         return result;
     result = sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &count, s->tiles);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return SLUICE_SUCCESS; /* they stay requested */
     if (result < 0)
         return slc_streamer_check(s, result, "sluiceGetTilesToMap");
     for (uint32_t i = 0; i < count; i++) {

@@ -106,6 +106,10 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct sparse_residency *s = sparse(residency);
+    const VkPhysicalDeviceMemoryProperties *memory = &s->caps->memory;
+    /* More than there is may not even be asked for. */
+    if (size > memory->memoryHeaps[memory->memoryTypes[s->memory_type].heapIndex].size)
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     SluiceResult result =
         slc_device_heaps_allocate(&s->heaps, s->vk, s->cb, size, s->memory_type, heap_id);
     s->base.counters.device_memory_size = s->heaps.total_size;

@@ -1,5 +1,6 @@
 #include "vulkan/sparse_image.h"
 
+#include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
 
@@ -37,7 +38,17 @@ uint32_t slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *
                                 VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
 }
 
-static const char *check_format(const struct slc_vk *vk, const VkImageCreateInfo *info)
+/* At least what the driver will say; it may not even be asked for more than it allows. */
+static uint64_t texel_bytes(const SluiceImageInfo *info)
+{
+    uint64_t texels = 0;
+    for (uint32_t level = 0; level < info->mipLevelCount; level++)
+        texels += (uint64_t)slc_mip_size(info->width, level) * slc_mip_size(info->height, level);
+    return texels * sluiceFormatTexelSize(info->format);
+}
+
+static const char *check_format(const struct slc_vk *vk, const struct slc_caps *caps,
+                                const VkImageCreateInfo *info, const SluiceImageInfo *image)
 {
     VkImageFormatProperties limits;
     if (info->format == VK_FORMAT_UNDEFINED)
@@ -55,6 +66,9 @@ static const char *check_format(const struct slc_vk *vk, const VkImageCreateInfo
     if (info->extent.width > limits.maxExtent.width ||
         info->extent.height > limits.maxExtent.height || info->mipLevels > limits.maxMipLevels)
         return "is larger than the device allows";
+    if (texel_bytes(image) > limits.maxResourceSize ||
+        texel_bytes(image) > caps->public.sparseAddressSpaceSize)
+        return "is larger than the sparse address space";
     return NULL;
 }
 
@@ -94,7 +108,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
     *image = (struct slc_sparse_image){0};
     VkImageCreateInfo create = image_create_info(slc_vk_format(info->format), info->width,
                                                  info->height, info->mipLevelCount);
-    const char *trouble = check_format(vk, &create);
+    const char *trouble = check_format(vk, caps, &create, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (!trouble) {
         result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),

@@ -62,11 +62,12 @@ build_stage() {
     fact passed "$stage" build "compiles without a warning" ""
 }
 
-# meson_stage STAGE NAME=VALUE... -- OPTIONS...
+# meson_stage STAGE NAME=VALUE... -- OPTIONS...; test_options go to `meson test`
+test_options=()
 meson_stage() {
     stage_title "$1"
     if build_stage "$@"; then
-        run_meson_tests "$1"
+        run_meson_tests "$1" "${test_options[@]}"
     fi
 }
 

@@ -31,7 +31,7 @@ static uint32_t random_region(struct choice *c, uint32_t tile)
 static uint32_t full_chain(uint32_t width, uint32_t height)
 {
     uint32_t levels = 1;
-    while ((width | height) >> levels)
+    while ((uint64_t)(width | height) >> levels)
         levels++;
     return levels;
 }
@@ -70,17 +70,16 @@ void call_sequence_desc(struct call_sequence *s, SluiceStreamedTextureDesc *desc
         SluiceStreamedTextureLayout l;
         *desc = random_desc(&s->choice);
         if (naive_layout(desc, &l) == SLUICE_SUCCESS && l.tileCount >= least &&
-            l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= 400)
+            l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= (most < 400 ? 400 : 1000))
             return;
     }
     *desc = (SluiceStreamedTextureDesc){8, 8, 2, 2, 0, 4, 4, 0, 0};
 }
 
-void call_sequence_bad_desc(struct call_sequence *s, SluiceStreamedTextureDesc *d)
+/* Makes one thing wrong with a description that was right. */
+static void spoil_desc(struct choice *c, SluiceStreamedTextureDesc *d)
 {
-    struct choice *c = &s->choice;
     const bool across = choice_once_in(c, 2);
-    call_sequence_desc(s, d);
     switch (choice_below(c, 11)) {
     case 0: *(across ? &d->width : &d->height) = 0; break;
     case 1: *(across ? &d->tileWidth : &d->tileHeight) = 0; break;
@@ -108,6 +107,14 @@ void call_sequence_bad_desc(struct call_sequence *s, SluiceStreamedTextureDesc *
         *d = (SluiceStreamedTextureDesc){1u << 20, 1u << 20, 1, 1, 0, 1u << 19, 1u << 19, 1, 1};
         break;
     }
+}
+
+void call_sequence_bad_desc(struct call_sequence *s, SluiceStreamedTextureDesc *d)
+{
+    call_sequence_desc(s, d);
+    spoil_desc(&s->choice, d);
+    if (choice_once_in(&s->choice, 3)) /* a second thing: the order of the checks shows */
+        spoil_desc(&s->choice, d);
 }
 
 static uint8_t random_texel(struct choice *c, uint32_t levels, uint32_t untouched)

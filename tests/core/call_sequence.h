@@ -18,6 +18,7 @@ struct call_sequence {
     uint32_t max_textures;
     bool small_rooms; ///< lists are mostly read in small pieces
     uint64_t time, timeout;
+    uint64_t time_spent; ///< how far time went on, or might have
     uint32_t next_heap;
     uint32_t last_map_size;
     uint8_t last_map[CALL_MAX_MAP];

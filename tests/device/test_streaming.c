@@ -127,8 +127,8 @@ static void fetch_all(struct scene *scene, uint32_t index, uint32_t stride)
 
 static void every_texel_is_where_the_source_has_it(void **state)
 {
-    const uint32_t sizes[][2] = {{600, 300}, {1, 1},   {257, 129},  {128, 128},
-                                 {1, 700},   {900, 1}, {1031, 517}, {64, 2048}};
+    const uint32_t sizes[][2] = {{600, 300}, {1, 1},      {257, 129}, {128, 128}, {1, 700},
+                                 {900, 1},   {1031, 517}, {64, 2048}, {8192, 128}};
     struct scene scene;
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
     uint32_t expected = 0;

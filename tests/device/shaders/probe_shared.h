@@ -11,7 +11,7 @@
 #define PROBE_SAMPLE 1u
 #define PROBE_FEEDBACK 2u
 #define PROBE_RESIDENCY 4u
-#define PROBE_FETCH 8u /* uv are texel coordinates, lodBias the level */
+#define PROBE_FETCH 8u  /* uv are texel coordinates, lodBias the level */
 #define PROBE_WORDS 16u /* copies feedback words instead */
 #define PROBE_TWINS 32u /* evaluates the functions that have C twins */
 

@@ -1,4 +1,4 @@
-/* Push constants of resolve/feedback.comp: one dispatch packs and clears the feedback of one texture. */
+/* Push constants of resolve/feedback.comp: a dispatch packs and clears one texture's feedback. */
 #ifndef SLUICE_SHARED_RESOLVE_H
 #define SLUICE_SHARED_RESOLVE_H
 

@@ -1,8 +1,8 @@
 /*
  * One streamed texture, as shaders see it: an element of the texture table, a std430 array.
  *
- * A region is the area of a tile of level 0. The feedback buffer has one word per region, the MinMip
- * buffer one byte, both row by row.
+ * A region is the area of a tile of level 0. The feedback buffer has one word per region, the
+ * MinMip buffer one byte, both row by row.
  */
 #ifndef SLUICE_SHARED_TEXTURE_TABLE_H
 #define SLUICE_SHARED_TEXTURE_TABLE_H
@@ -21,11 +21,11 @@
 #define SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER 3
 #define SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE 4
 
-/* A level's size is not the next finer one's halved, so tiles of a level do not cover regions exactly. */
+/* A level's size is not the next finer one's halved, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
 
 struct SluiceTextureEntry {
-    uint width;           /* texels of level 0; level l has max(1, size >> l) */
+    uint width; /* texels of level 0; level l has max(1, size >> l) */
     uint height;
     uint mipLevelCount;
     uint regularMipCount; /* levels from here on are packed */
@@ -33,9 +33,9 @@ struct SluiceTextureEntry {
     uint regionHeight;
     uint regionCountX;
     uint regionCountY;
-    uint feedbackOffset;  /* first word in the feedback buffer */
-    uint minMipOffset;    /* first byte in the MinMip buffer, a multiple of 4 */
-    uint addressModeU;    /* of the samplers that it is sampled with */
+    uint feedbackOffset; /* first word in the feedback buffer */
+    uint minMipOffset;   /* first byte in the MinMip buffer, a multiple of 4 */
+    uint addressModeU;   /* of the samplers that it is sampled with */
     uint addressModeV;
     uint flags;
     uint reserved[3];
