@@ -20,7 +20,7 @@
     X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySemaphore)            \
     X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
     X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
-    X(InvalidateMappedMemoryRanges) X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \
+    X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \
     X(WaitSemaphores)
 /* clang-format on */
 

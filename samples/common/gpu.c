@@ -59,7 +59,8 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct gpu *gpu)
     };
 }
 
-static bool create_instance(bool validation, struct gpu *gpu)
+/** `*no_driver` tells a machine without any Vulkan driver from other failures. */
+static bool create_instance(bool validation, struct gpu *gpu, bool *no_driver)
 {
     static const VkValidationFeatureEnableEXT synchronization[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
@@ -84,7 +85,9 @@ static bool create_instance(bool validation, struct gpu *gpu)
         info.enabledExtensionCount = 2;
         info.ppEnabledExtensionNames = extensions;
     }
-    if (!gpu_check(vkCreateInstance(&info, NULL, &gpu->instance), "vkCreateInstance"))
+    VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
+    *no_driver = result == VK_ERROR_INCOMPATIBLE_DRIVER;
+    if (!gpu_check(result, "vkCreateInstance"))
         return false;
     if (!validation)
         return true;
@@ -125,7 +128,8 @@ static bool can_stream(VkInstance instance, VkPhysicalDevice device,
 uint32_t gpu_list_devices(void)
 {
     struct gpu gpu = {0};
-    if (!create_instance(false, &gpu))
+    bool no_driver;
+    if (!create_instance(false, &gpu, &no_driver))
         return 0;
     VkPhysicalDevice devices[MAX_DEVICES];
     uint32_t count = enumerate_devices(gpu.instance, devices);
@@ -278,8 +282,7 @@ static bool create_device(struct gpu *gpu)
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported)
 {
     memset(gpu, 0, sizeof *gpu);
-    *unsupported = false;
-    if (create_instance(request->validation, gpu)) {
+    if (create_instance(request->validation, gpu, unsupported)) {
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         if (!*unsupported && create_device(gpu))
             return true;
@@ -349,9 +352,13 @@ bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFl
     vkGetBufferMemoryRequirements(gpu->device, buffer->buffer, &requirements);
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    bool readback = usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    if (allocate(gpu, &requirements, host, readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0,
-                 &buffer->memory) &&
+    /* Read by the host: cached. Used by shaders, atomics among them: beside them if possible. */
+    VkMemoryPropertyFlags wanted = 0;
+    if (usage == VK_BUFFER_USAGE_TRANSFER_DST_BIT)
+        wanted = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    else if (usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)
+        wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    if (allocate(gpu, &requirements, host, wanted, &buffer->memory) &&
         gpu_check(vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0),
                   "vkBindBufferMemory") &&
         gpu_check(vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped),

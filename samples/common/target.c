@@ -110,6 +110,8 @@ bool target_create(const struct gpu *gpu, uint32_t width, uint32_t height, uint3
 {
     VkSampleCountFlags supported = gpu->properties.limits.framebufferColorSampleCounts &
                                    gpu->properties.limits.framebufferDepthSampleCounts;
+    while (samples & (samples - 1)) /* down to a power of two */
+        samples &= samples - 1;
     while (samples > 1 && !(supported & samples))
         samples /= 2;
     *target = (struct target){

@@ -94,7 +94,7 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     };
     enum option_outcome outcome =
         options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
-    if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames && s->frames > 1)
+    if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
         s->rest_frames = s->frames - 1;
     return outcome;
 }

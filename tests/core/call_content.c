@@ -70,7 +70,7 @@ void call_sequence_desc(struct call_sequence *s, SluiceStreamedTextureDesc *desc
         SluiceStreamedTextureLayout l;
         *desc = random_desc(&s->choice);
         if (naive_layout(desc, &l) == SLUICE_SUCCESS && l.tileCount >= least &&
-            l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= 400)
+            l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= (most < 400 ? 400 : 1000))
             return;
     }
     *desc = (SluiceStreamedTextureDesc){8, 8, 2, 2, 0, 4, 4, 0, 0};

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#define COUNT_OF(array) ((uint32_t)(sizeof(array) / sizeof((array)[0])))
+
 /* How often each call is made, relative to the others. */
 static const uint32_t base_weights[CALL_KIND_COUNT] = {
     [CALL_SET_CONFIG] = 2,
@@ -51,14 +53,14 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
 
 void call_sequence_start(struct call_sequence *s, struct choice choice)
 {
-    static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64};
-    static const uint32_t tiles[] = {6, 30, 80, 160};
+    static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64, 65, 200};
+    static const uint32_t tiles[] = {6, 30, 80, 160, 160, 700};
     static const uint64_t times[] = {0, 1, (uint64_t)1 << 63, UINT64_MAX, UINT64_MAX - 100};
     static const uint64_t timeouts[] = {0, 1, 5, 30, 200, (uint64_t)1 << 40, UINT64_MAX};
     memset(s, 0, offsetof(struct call_sequence, last_map));
     s->choice = choice;
     struct choice *c = &s->choice;
-    s->capacity = capacities[choice_below(c, 8)];
+    s->capacity = capacities[choice_below(c, COUNT_OF(capacities))];
     s->always_packed = choice_once_in(c, 2);
     for (int k = 0; k < CALL_KIND_COUNT; k++)
         s->weights[k] = base_weights[k] * (1 + choice_below(c, 4));
@@ -69,11 +71,11 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->mistakes = choice_once_in(c, 4) ? 0 : choice_range(c, 8, 60);
     s->starving = choice_once_in(c, 2) ? 0 : choice_range(c, 3, 30);
     s->refusing = choice_once_in(c, 3) ? 0 : choice_range(c, 1, 8);
-    s->max_tiles = tiles[choice_below(c, 4)];
+    s->max_tiles = tiles[choice_below(c, COUNT_OF(tiles))];
     s->max_textures = choice_range(c, 1, 8);
     s->small_rooms = choice_once_in(c, 3);
-    s->time = choice_once_in(c, 3) ? choice_u64(c) : times[choice_below(c, 5)];
-    s->timeout = timeouts[choice_below(c, 7)];
+    s->time = choice_once_in(c, 3) ? choice_u64(c) : times[choice_below(c, COUNT_OF(times))];
+    s->timeout = timeouts[choice_below(c, COUNT_OF(timeouts))];
     s->next_heap = choice_once_in(c, 2) ? 0 : (uint32_t)choice_u64(c);
 }
 
@@ -195,14 +197,14 @@ static void make_config(struct call_sequence *s, struct call *call)
 {
     struct choice *c = &s->choice;
     static const uint64_t delays[] = {
-        0, 1, 3, 20, (uint64_t)1 << 40, (uint64_t)1 << 61, (uint64_t)1 << 62, UINT64_MAX};
+        0, 1, 2, 3, 5, 9, 20, (uint64_t)1 << 40, (uint64_t)1 << 61, (uint64_t)1 << 62, UINT64_MAX};
     SluiceStreamedTextureManagerConfig *config = &call->config;
     config->numExtraStandbyTiles = choice_once_in(c, 3)   ? 0
                                    : choice_once_in(c, 6) ? UINT32_MAX
                                                           : choice_range(c, 1, 40);
     config->maxHeapCount = choice_once_in(c, 2) ? 0 : choice_range(c, 1, 6);
     config->maxLoadAttempts = choice_below(c, 4);
-    config->retryDelay = delays[choice_below(c, 11)];
+    config->retryDelay = delays[choice_below(c, COUNT_OF(delays))];
 }
 
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)
@@ -216,7 +218,7 @@ static void make_add(struct call_sequence *s, const struct naive_manager *n, str
     const bool full = count_textures(n, &tiles) >= s->max_textures;
     if (naive_layout(&call->desc, &l) != SLUICE_SUCCESS)
         return;
-    if (full || l.tileCount > 400 || (uint64_t)l.feedbackWidth * l.feedbackHeight > 400 ||
+    if (full || l.tileCount > 1000 || (uint64_t)l.feedbackWidth * l.feedbackHeight > 1000 ||
         tiles + l.tileCount > CALL_MAX_ROOM)
         call->kind = CALL_LAYOUT;
 }

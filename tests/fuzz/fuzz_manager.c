@@ -14,24 +14,26 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static int play(const uint8_t *data, size_t size, FILE *log, const char **message)
+#define MESSAGE_SIZE 512
+
+/* Returns the number of calls, or -1 with what differs in `message`. */
+static int play(const uint8_t *data, size_t size, FILE *log, char message[MESSAGE_SIZE])
 {
     static const uint8_t nothing = 0;
     struct differential *d = differential_create();
     struct choice choice = {.bytes = size ? data : &nothing, .size = size};
-    static char kept[512];
-    int calls = differential_run(d, choice, MAX_CALLS, log, message);
-    snprintf(kept, sizeof kept, "%s", *message);
-    *message = kept;
+    const char *what;
+    int calls = differential_run(d, choice, MAX_CALLS, log, &what);
+    snprintf(message, MESSAGE_SIZE, "%s", what);
     differential_destroy(d);
     return calls;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const char *message;
-    if (play(data, size, NULL, &message) < 0) {
-        play(data, size, stderr, &message);
+    char message[MESSAGE_SIZE];
+    if (play(data, size, NULL, message) < 0) {
+        play(data, size, stderr, message);
         fprintf(stderr, "%s\n", message);
         abort();
     }
@@ -48,13 +50,13 @@ static int play_file(const char *name, uint8_t *buffer, int number)
     }
     size_t size = fread(buffer, 1, MAX_FILE_SIZE, file);
     fclose(file);
-    const char *message;
-    int calls = play(buffer, size, NULL, &message);
+    char message[MESSAGE_SIZE];
+    int calls = play(buffer, size, NULL, message);
     if (calls >= 0) {
         printf("ok %d - %s plays %d calls alike\n", number, name, calls);
         return 0;
     }
-    play(buffer, size, stderr, &message);
+    play(buffer, size, stderr, message);
     printf("not ok %d - %s\n# %s\n", number, name, message);
     return 1;
 }

@@ -1,0 +1,544 @@
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Whatever a handle stands for. */
+struct fake_object {
+    VkExtent3D extent;
+    uint32_t level_count;
+    uint64_t size;
+    void *memory;
+};
+
+/* All dispatchable handles are the device itself. */
+static struct fake_vulkan *fake_of(void *handle)
+{
+    return handle;
+}
+
+static void *make(struct fake_vulkan *fake, uint64_t size)
+{
+    struct fake_object *object = calloc(1, sizeof *object);
+    assert_non_null(object);
+    object->size = size;
+    fake->live_objects++;
+    return object;
+}
+
+static void drop(struct fake_vulkan *fake, void *object)
+{
+    if (object)
+        fake->live_objects--;
+    free(object);
+}
+
+#define OBJECT(handle) ((struct fake_object *)(handle))
+
+/* Functions that make and drop objects of which nothing is asked. */
+#define PLAIN_OBJECT(name, info_type)                                                              \
+    static VKAPI_ATTR VkResult VKAPI_CALL create_##name(                                           \
+        VkDevice device, const info_type *info, const VkAllocationCallbacks *cb, Vk##name *out)    \
+    {                                                                                              \
+        (void)info;                                                                                \
+        (void)cb;                                                                                  \
+        *out = make(fake_of(device), 0);                                                           \
+        return VK_SUCCESS;                                                                         \
+    }                                                                                              \
+    static VKAPI_ATTR void VKAPI_CALL destroy_##name(VkDevice device, Vk##name object,             \
+                                                     const VkAllocationCallbacks *cb)              \
+    {                                                                                              \
+        (void)cb;                                                                                  \
+        drop(fake_of(device), object);                                                             \
+    }
+
+PLAIN_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
+PLAIN_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
+PLAIN_OBJECT(ImageView, VkImageViewCreateInfo)
+PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
+PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
+
+static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
+                                               VkPhysicalDeviceFeatures2 *features)
+{
+    (void)device;
+    features->features = (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
+                                                    .sparseResidencyImage2D = VK_TRUE,
+                                                    .fragmentStoresAndAtomics = VK_TRUE};
+    for (VkBaseOutStructure *next = features->pNext; next; next = next->pNext)
+        if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
+            ((VkPhysicalDeviceVulkan12Features *)next)->timelineSemaphore = VK_TRUE;
+}
+
+static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
+                                                 VkPhysicalDeviceProperties2 *properties)
+{
+    (void)device;
+    properties->properties =
+        (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
+                                     .deviceName = "fake",
+                                     .limits.sparseAddressSpaceSize = 1ull << 40};
+}
+
+static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
+                                             VkPhysicalDeviceMemoryProperties *memory)
+{
+    (void)device;
+    *memory = (VkPhysicalDeviceMemoryProperties){
+        .memoryTypeCount = 1,
+        .memoryTypes = {{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                             VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                         0}},
+        .memoryHeapCount = 1,
+        .memoryHeaps = {{1ull << 40, 0}}};
+}
+
+static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *count,
+                                               VkQueueFamilyProperties *families)
+{
+    (void)device;
+    *count = 1;
+    families[0] = (VkQueueFamilyProperties){
+        .queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT,
+        .queueCount = 1};
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
+                                                 VkImageType type, VkImageTiling tiling,
+                                                 VkImageUsageFlags usage, VkImageCreateFlags flags,
+                                                 VkImageFormatProperties *properties)
+{
+    (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
+    *properties = (VkImageFormatProperties){
+        .maxExtent = {16384, 16384, 1}, .maxMipLevels = 15, .maxResourceSize = 1ull << 40};
+    return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
+}
+
+static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkFormat format,
+                                                    VkImageType type, VkSampleCountFlagBits samples,
+                                                    VkImageUsageFlags usage, VkImageTiling tiling,
+                                                    uint32_t *count,
+                                                    VkSparseImageFormatProperties *properties)
+{
+    (void)device, (void)format, (void)type, (void)samples, (void)usage, (void)tiling;
+    (void)properties;
+    *count = 1;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImageCreateInfo *info,
+                                                   const VkAllocationCallbacks *cb, VkImage *image)
+{
+    (void)cb;
+    struct fake_object *object = make(fake_of(device), 0);
+    object->extent = info->extent;
+    object->level_count = info->mipLevels;
+    *image = (VkImage)object;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_image(VkDevice device, VkImage image,
+                                                const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    struct fake_vulkan *fake = fake_of(device);
+    if (image && fake->destroyed_count < FAKE_EVENTS)
+        fake->destroyed_images[fake->destroyed_count++] = image;
+    drop(fake, image);
+}
+
+static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage image,
+                                                     VkMemoryRequirements *requirements)
+{
+    (void)device, (void)image;
+    *requirements =
+        (VkMemoryRequirements){.size = 1 << 24, .alignment = 65536, .memoryTypeBits = 1};
+}
+
+static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage image,
+                                                      uint32_t *count,
+                                                      VkSparseImageMemoryRequirements *requirements)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    const struct fake_object *object = OBJECT(image);
+    uint32_t tail = 0;
+    while (object->extent.width >> tail > FAKE_TILE || object->extent.height >> tail > FAKE_TILE)
+        tail++;
+    *count = 1;
+    *requirements = (VkSparseImageMemoryRequirements){
+        .formatProperties = {VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0},
+        .imageMipTailFirstLod = fake->tail_page_count ? tail : object->level_count,
+        .imageMipTailSize = fake->tail_page_count * 65536ull,
+        .imageMipTailOffset = 1ull << 30};
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo *info,
+                                                    const VkAllocationCallbacks *cb,
+                                                    VkBuffer *buffer)
+{
+    (void)cb;
+    *buffer = make(fake_of(device), info->size);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_buffer(VkDevice device, VkBuffer buffer,
+                                                 const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), buffer);
+}
+
+static VKAPI_ATTR void VKAPI_CALL buffer_requirements(VkDevice device, VkBuffer buffer,
+                                                      VkMemoryRequirements *requirements)
+{
+    (void)device;
+    *requirements = (VkMemoryRequirements){OBJECT(buffer)->size, 16, 1};
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo *info,
+                                               const VkAllocationCallbacks *cb,
+                                               VkDeviceMemory *memory)
+{
+    (void)cb;
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_object *object = make(fake, info->allocationSize);
+    fake->live_memory += info->allocationSize;
+    *memory = (VkDeviceMemory)object;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory memory,
+                                              const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    if (!memory)
+        return;
+    fake_of(device)->live_memory -= OBJECT(memory)->size;
+    free(OBJECT(memory)->memory);
+    drop(fake_of(device), memory);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buffer,
+                                                  VkDeviceMemory memory, VkDeviceSize offset)
+{
+    (void)device, (void)offset;
+    OBJECT(buffer)->memory = memory; /* the object, whose memory comes when it is mapped */
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory,
+                                                 VkDeviceSize offset, VkDeviceSize size,
+                                                 VkMemoryMapFlags flags, void **data)
+{
+    (void)device, (void)offset, (void)size, (void)flags;
+    OBJECT(memory)->memory = calloc(1, OBJECT(memory)->size);
+    *data = OBJECT(memory)->memory;
+    return *data ? VK_SUCCESS : VK_ERROR_MEMORY_MAP_FAILED;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_semaphore(VkDevice device,
+                                                       const VkSemaphoreCreateInfo *info,
+                                                       const VkAllocationCallbacks *cb,
+                                                       VkSemaphore *semaphore)
+{
+    (void)info, (void)cb;
+    *semaphore = make(fake_of(device), 0);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore semaphore,
+                                                    const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), semaphore);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL counter_value(VkDevice device, VkSemaphore semaphore,
+                                                    uint64_t *value)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    /* until the first bind tells which one is its, both stand at 0 */
+    bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
+    *value = semaphore == fake->frame_semaphore ? fake->frame_value : binds ? fake->bind_value : 0;
+    return VK_SUCCESS;
+}
+
+/* Both timelines stand still unless the test moves them. */
+static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
+                                                      const VkSemaphoreWaitInfo *info,
+                                                      uint64_t timeout)
+{
+    (void)device, (void)info, (void)timeout;
+    return VK_SUCCESS;
+}
+
+static void note_bind(struct fake_vulkan *fake, const struct fake_bind *bind)
+{
+    assert_true(fake->bind_count < FAKE_EVENTS);
+    fake->binds[fake->bind_count++] = *bind;
+}
+
+static void note_tiles(struct fake_vulkan *fake, VkImage image, const VkSparseImageMemoryBind *b)
+{
+    const struct fake_object *object = OBJECT(image);
+    uint32_t level = b->subresource.mipLevel;
+    uint32_t width = object->extent.width >> level ? object->extent.width >> level : 1;
+    uint32_t height = object->extent.height >> level ? object->extent.height >> level : 1;
+    uint32_t x = (uint32_t)b->offset.x, y = (uint32_t)b->offset.y;
+    /* whole tiles, or up to the edge; one row */
+    assert_true(x % FAKE_TILE == 0 && y % FAKE_TILE == 0);
+    assert_true(b->extent.width % FAKE_TILE == 0 || x + b->extent.width == width);
+    assert_true(b->extent.height == FAKE_TILE || y + b->extent.height == height);
+    for (uint32_t i = 0; i * FAKE_TILE < b->extent.width; i++)
+        note_bind(fake, &(struct fake_bind){image, level, x / FAKE_TILE + i, y / FAKE_TILE,
+                                            b->memory, b->memoryOffset + i * 65536ull});
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
+                                                  const VkBindSparseInfo *info, VkFence fence)
+{
+    (void)fence;
+    struct fake_vulkan *fake = fake_of(queue);
+    assert_int_equal(count, 1);
+    for (uint32_t i = 0; i < info->imageBindCount; i++)
+        for (uint32_t j = 0; j < info->pImageBinds[i].bindCount; j++)
+            note_tiles(fake, info->pImageBinds[i].image, &info->pImageBinds[i].pBinds[j]);
+    for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
+        for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
+            const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
+            assert_int_equal(b->size, 65536);
+            uint32_t page = (uint32_t)((b->resourceOffset - (1ull << 30)) / 65536);
+            note_bind(fake, &(struct fake_bind){info->pImageOpaqueBinds[i].image, FAKE_TAIL, page,
+                                                0, b->memory, b->memoryOffset});
+        }
+    const VkTimelineSemaphoreSubmitInfo *timeline = info->pNext;
+    assert_int_equal(timeline->pSignalSemaphoreValues[0], fake->submitted_bind_value + 1);
+    /* batches have no order but for this */
+    assert_int_equal(timeline->pWaitSemaphoreValues[0], fake->submitted_bind_value);
+    fake->bind_semaphore = info->pSignalSemaphores[0];
+    fake->submitted_bind_value++;
+    fake->bind_calls++;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuffer buffer,
+                                                VkImage image, VkImageLayout layout, uint32_t count,
+                                                const VkBufferImageCopy *regions)
+{
+    (void)buffer, (void)layout;
+    struct fake_vulkan *fake = fake_of(commands);
+    assert_false(fake->published);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(fake->copy_count < FAKE_EVENTS);
+        fake->copies[fake->copy_count++] =
+            (struct fake_copy){image, regions[i].imageSubresource.mipLevel,
+                               (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
+                               (uint32_t)regions[i].imageOffset.y / FAKE_TILE};
+    }
+}
+
+static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t write_count,
+                                              const VkWriteDescriptorSet *writes,
+                                              uint32_t copy_count,
+                                              const VkCopyDescriptorSet *copies)
+{
+    (void)write_count, (void)copy_count, (void)copies;
+    fake_of(device)->resolved = OBJECT(writes[0].pBufferInfo[1].buffer);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
+                                                    const VkDescriptorSetAllocateInfo *info,
+                                                    VkDescriptorSet *sets)
+{
+    (void)info;
+    sets[0] = (VkDescriptorSet)fake_of(device); /* never looked at */
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache,
+                                                       uint32_t count,
+                                                       const VkComputePipelineCreateInfo *infos,
+                                                       const VkAllocationCallbacks *cb,
+                                                       VkPipeline *pipelines)
+{
+    (void)cache, (void)infos, (void)cb, (void)count;
+    pipelines[0] = make(fake_of(device), 0);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_pipeline(VkDevice device, VkPipeline pipeline,
+                                                   const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), pipeline);
+}
+
+static VKAPI_ATTR void VKAPI_CALL push_constants(VkCommandBuffer commands, VkPipelineLayout layout,
+                                                 VkShaderStageFlags stages, uint32_t offset,
+                                                 uint32_t size, const void *values)
+{
+    (void)layout, (void)stages, (void)offset;
+    memcpy(fake_of(commands)->push, values, size);
+}
+
+/* The resolve pass, with the feedback that the test wants. */
+static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y,
+                                           uint32_t z)
+{
+    (void)x, (void)y, (void)z;
+    struct fake_vulkan *fake = fake_of(commands);
+    uint8_t *bytes = OBJECT(fake->resolved->memory)->memory;
+    for (uint32_t i = 0; i < fake->push[1]; i++)
+        bytes[fake->push[2] * 4 + i] = fake->want(fake->user, fake->push[0] + i);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
+{
+    (void)device;
+    return VK_SUCCESS;
+}
+
+/* The MinMip maps: they may only show what was copied before. */
+static VKAPI_ATTR void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer from, VkBuffer to,
+                                              uint32_t count, const VkBufferCopy *regions)
+{
+    (void)from, (void)to, (void)count, (void)regions;
+    fake_of(commands)->published = true;
+}
+
+/* The rest leaves no trace here. */
+static VKAPI_ATTR void VKAPI_CALL bind_sets(VkCommandBuffer commands, VkPipelineBindPoint point,
+                                            VkPipelineLayout layout, uint32_t first, uint32_t count,
+                                            const VkDescriptorSet *sets, uint32_t offset_count,
+                                            const uint32_t *offsets)
+{
+    (void)commands, (void)point, (void)layout, (void)first, (void)count, (void)sets;
+    (void)offset_count, (void)offsets;
+}
+
+static VKAPI_ATTR void VKAPI_CALL bind_pipeline(VkCommandBuffer commands, VkPipelineBindPoint point,
+                                                VkPipeline pipeline)
+{
+    (void)commands, (void)point, (void)pipeline;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fill_buffer(VkCommandBuffer commands, VkBuffer buffer,
+                                              VkDeviceSize offset, VkDeviceSize size, uint32_t data)
+{
+    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+}
+
+static VKAPI_ATTR void VKAPI_CALL update_buffer(VkCommandBuffer commands, VkBuffer buffer,
+                                                VkDeviceSize offset, VkDeviceSize size,
+                                                const void *data)
+{
+    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+}
+
+static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, VkPipelineStageFlags from,
+                                          VkPipelineStageFlags to, VkDependencyFlags flags,
+                                          uint32_t memory_count, const VkMemoryBarrier *memory,
+                                          uint32_t buffer_count,
+                                          const VkBufferMemoryBarrier *buffers,
+                                          uint32_t image_count, const VkImageMemoryBarrier *images)
+{
+    (void)commands, (void)from, (void)to, (void)flags, (void)memory_count, (void)memory;
+    (void)buffer_count, (void)buffers, (void)image_count, (void)images;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device,
+                                                                    const char *name);
+
+#define ENTRY(name, function)                                                                      \
+    {                                                                                              \
+        "vk" #name, (PFN_vkVoidFunction)function                                                   \
+    }
+static const struct {
+    const char *name;
+    PFN_vkVoidFunction function;
+} functions[] = {
+    ENTRY(GetDeviceProcAddr, get_device_function),
+    ENTRY(GetPhysicalDeviceFeatures2, get_features),
+    ENTRY(GetPhysicalDeviceImageFormatProperties, get_format),
+    ENTRY(GetPhysicalDeviceMemoryProperties, get_memory),
+    ENTRY(GetPhysicalDeviceProperties2, get_properties),
+    ENTRY(GetPhysicalDeviceQueueFamilyProperties, get_families),
+    ENTRY(GetPhysicalDeviceSparseImageFormatProperties, get_sparse_format),
+    ENTRY(AllocateDescriptorSets, allocate_sets),
+    ENTRY(AllocateMemory, allocate),
+    ENTRY(BindBufferMemory, bind_buffer),
+    ENTRY(CmdBindDescriptorSets, bind_sets),
+    ENTRY(CmdBindPipeline, bind_pipeline),
+    ENTRY(CmdCopyBuffer, copy_buffer),
+    ENTRY(CmdFillBuffer, fill_buffer),
+    ENTRY(CmdPipelineBarrier, barrier),
+    ENTRY(CmdUpdateBuffer, update_buffer),
+    ENTRY(CmdCopyBufferToImage, copy_to_image),
+    ENTRY(CmdDispatch, dispatch),
+    ENTRY(CmdPushConstants, push_constants),
+    ENTRY(CreateBuffer, create_buffer),
+    ENTRY(CreateComputePipelines, create_pipelines),
+    ENTRY(CreateDescriptorPool, create_DescriptorPool),
+    ENTRY(CreateDescriptorSetLayout, create_DescriptorSetLayout),
+    ENTRY(CreateImage, create_image),
+    ENTRY(CreateImageView, create_ImageView),
+    ENTRY(CreatePipelineLayout, create_PipelineLayout),
+    ENTRY(CreateSemaphore, create_semaphore),
+    ENTRY(CreateShaderModule, create_ShaderModule),
+    ENTRY(DestroyBuffer, destroy_buffer),
+    ENTRY(DestroyDescriptorPool, destroy_DescriptorPool),
+    ENTRY(DestroyDescriptorSetLayout, destroy_DescriptorSetLayout),
+    ENTRY(DestroyImage, destroy_image),
+    ENTRY(DestroyImageView, destroy_ImageView),
+    ENTRY(DestroyPipeline, destroy_pipeline),
+    ENTRY(DestroyPipelineLayout, destroy_PipelineLayout),
+    ENTRY(DestroySemaphore, destroy_semaphore),
+    ENTRY(DestroyShaderModule, destroy_ShaderModule),
+    ENTRY(DeviceWaitIdle, wait_idle),
+    ENTRY(FreeMemory, free_memory),
+    ENTRY(GetBufferMemoryRequirements, buffer_requirements),
+    ENTRY(GetImageMemoryRequirements, image_requirements),
+    ENTRY(GetImageSparseMemoryRequirements, sparse_requirements),
+    ENTRY(GetSemaphoreCounterValue, counter_value),
+    ENTRY(MapMemory, map_memory),
+    ENTRY(QueueBindSparse, bind_sparse),
+    ENTRY(UpdateDescriptorSets, update_sets),
+    ENTRY(WaitSemaphores, wait_semaphores),
+};
+
+static PFN_vkVoidFunction find(const char *name)
+{
+    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++)
+        if (strcmp(functions[i].name, name) == 0)
+            return functions[i].function;
+    return NULL;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device,
+                                                                    const char *name)
+{
+    (void)device;
+    return find(name);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance instance,
+                                                                      const char *name)
+{
+    (void)instance;
+    return find(name);
+}
+
+void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info)
+{
+    info->instance = (VkInstance)(void *)fake;
+    info->physicalDevice = (VkPhysicalDevice)(void *)fake;
+    info->device = (VkDevice)(void *)fake;
+    info->pfnGetInstanceProcAddr = get_instance_function;
+    info->sparseQueue = (VkQueue)(void *)fake;
+}
+
+VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake)
+{
+    return (VkCommandBuffer)(void *)fake;
+}

@@ -1,0 +1,59 @@
+/**
+ * A Vulkan device that does nothing but take notes, so that the order in which a streamer binds,
+ * copies and publishes can be checked with any timing of frames and of the binding queue.
+ *
+ * Images are RGBA8 with tiles of 128x128. Feedback is what the test says it is.
+ */
+#ifndef TESTS_VULKAN_FAKE_VULKAN_H
+#define TESTS_VULKAN_FAKE_VULKAN_H
+
+#include <sluice/vulkan.h>
+
+#define FAKE_TILE 128u
+#define FAKE_TAIL UINT32_MAX
+#define FAKE_EVENTS 4096u
+
+/** One page; merged runs are taken apart. */
+struct fake_bind {
+    VkImage image;
+    uint32_t level, x, y;  ///< in tiles; level FAKE_TAIL: page x of the tail
+    VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
+    uint64_t offset;
+};
+
+struct fake_copy {
+    VkImage image;
+    uint32_t level, x, y; ///< in tiles
+};
+
+struct fake_vulkan {
+    uint32_t tail_page_count; ///< 0: no tail
+
+    /** What the two timelines stand at; the test sets them. */
+    uint64_t frame_value, bind_value;
+    uint64_t submitted_bind_value;
+    VkSemaphore bind_semaphore;
+    VkSemaphore frame_semaphore; ///< set by the test once a frame has told
+
+    /** What happened since the test last set the counts to 0. */
+    struct fake_bind binds[FAKE_EVENTS];
+    struct fake_copy copies[FAKE_EVENTS];
+    VkImage destroyed_images[FAKE_EVENTS];
+    uint32_t bind_count, copy_count, destroyed_count, bind_calls;
+    bool published; ///< copies to images are over: MinMip maps were copied
+
+    uint64_t live_objects; ///< created and not destroyed
+    uint64_t live_memory;  ///< bytes
+
+    void *user;
+    /** The feedback of one region, by its index in the feedback buffer. */
+    uint8_t (*want)(void *user, uint32_t region);
+
+    struct fake_object *resolved; ///< the buffer of the second binding
+    uint32_t push[3];
+};
+
+void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);
+VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake);
+
+#endif /* TESTS_VULKAN_FAKE_VULKAN_H */

@@ -1,0 +1,320 @@
+/*
+ * The promises of the frame loop, with frames and bindings that finish when they like:
+ * - texels are copied only into tiles whose binding is over,
+ * - MinMip maps show only tiles that are bound and were copied to since,
+ * - no binding of a tile changes, and no image goes, while a frame that may read it is incomplete,
+ * - no page belongs to two tiles.
+ */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
+
+struct tile {
+    VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
+    uint64_t offset;
+    uint64_t batch; ///< of the last change
+    bool copied;    ///< since it was bound
+};
+
+struct texture {
+    bool used;
+    SluiceVulkanTexture texture;
+    SluiceImageSource *source;
+    SluiceStreamedTextureLayout layout;
+    struct tile tiles[MAX_TILES];
+    bool visible[HISTORY][MAX_TILES]; ///< by frame
+    uint64_t removed_frame;           ///< when not used, but `removed`
+    bool removed;
+};
+
+struct model {
+    struct fake_vulkan fake;
+    SluiceVulkanStreamer *streamer;
+    struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
+    uint64_t frame;
+    uint64_t applied_batch;
+    uint32_t window; ///< seed of what the camera sees
+};
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+/* A few wanted regions that change with the window. */
+static uint8_t want(void *user, uint32_t region)
+{
+    const struct model *m = user;
+    uint32_t h = (region / 6 + m->window) * 0x9E3779B1u;
+    h ^= h >> 15;
+    return h % 4 == 0 ? (uint8_t)(h >> 8 & 3) : SLUICE_MIP_UNTOUCHED;
+}
+
+static void model_add(struct model *m)
+{
+    const uint32_t sizes[][2] = {{1024, 1024}, {1500, 700}, {2048, 256}, {100, 100}, {512, 1000}};
+    uint32_t i = 0;
+    while (i < 2 * TEXTURES && (m->textures[i].used || m->textures[i].removed))
+        i++;
+    if (i == 2 * TEXTURES)
+        return; /* the removed ones are not gone yet */
+    const uint32_t *size = sizes[rand() % 5];
+    struct texture *t = &m->textures[i];
+    *t = (struct texture){.used = true};
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo info = {.width = size[0],
+                            .height = size[1],
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
+    SluiceVulkanTextureCreateInfo create = {.source = t->source};
+    CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
+    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
+                                    t->texture.textureId, &t->layout));
+    assert_true(t->layout.tileCount <= MAX_TILES);
+}
+
+static struct texture *find_image(struct model *m, VkImage image)
+{
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++)
+        if ((m->textures[i].used || m->textures[i].removed) &&
+            m->textures[i].texture.image == image)
+            return &m->textures[i];
+    fail_msg("an image that is gone");
+    return NULL;
+}
+
+static uint32_t tile_index(const struct texture *t, uint32_t level, uint32_t x, uint32_t y)
+{
+    const SluiceStreamedTextureLayout *l = &t->layout;
+    if (level == FAKE_TAIL)
+        return l->regularTileCount + x;
+    if (level >= l->desc.regularMipCount)
+        return l->regularTileCount + level - l->desc.regularMipCount;
+    return l->levelFirstTile[level] + y * l->levelWidthInTiles[level] + x;
+}
+
+/* No incomplete frame before this one may show the tile. */
+static void check_unseen(const struct model *m, const struct texture *t, uint32_t tile)
+{
+    for (uint64_t f = m->fake.frame_value + 1; f < m->frame; f++)
+        if (t->visible[f % HISTORY][tile])
+            fail_msg("frame %llu rebinds tile %u, which frame %llu may still read",
+                     (unsigned long long)m->frame, tile, (unsigned long long)f);
+}
+
+static void check_pages(const struct model *m)
+{
+    for (uint32_t a = 0; a < 2 * TEXTURES; a++)
+        for (uint32_t i = 0; i < m->textures[a].layout.tileCount; i++) {
+            const struct tile *tile = &m->textures[a].tiles[i];
+            if (!tile->memory)
+                continue;
+            for (uint32_t b = 0; b <= a; b++)
+                for (uint32_t j = 0; j < (a == b ? i : m->textures[b].layout.tileCount); j++)
+                    assert_false(m->textures[b].tiles[j].memory == tile->memory &&
+                                 m->textures[b].tiles[j].offset == tile->offset);
+        }
+}
+
+static void take_destroyed(struct model *m)
+{
+    for (uint32_t d = 0; d < m->fake.destroyed_count; d++) {
+        struct texture *t = find_image(m, m->fake.destroyed_images[d]);
+        assert_true(t->removed);
+        assert_true(t->removed_frame <= m->fake.frame_value);
+        for (uint32_t i = 0; i < t->layout.tileCount; i++)
+            assert_true(t->tiles[i].batch <= m->fake.bind_value);
+        sluiceDestroyImageSource(t->source);
+        *t = (struct texture){0};
+    }
+}
+
+static void take_binds(struct model *m)
+{
+    for (uint32_t i = 0; i < m->fake.bind_count; i++) {
+        const struct fake_bind *bind = &m->fake.binds[i];
+        struct texture *t = find_image(m, bind->image);
+        uint32_t index = tile_index(t, bind->level, bind->x, bind->y);
+        check_unseen(m, t, index);
+        struct tile *tile = &t->tiles[index];
+        assert_true(tile->batch < m->fake.submitted_bind_value); /* once in a batch */
+        *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value, false};
+    }
+    assert_true(m->fake.bind_calls <= 1);
+    check_pages(m);
+}
+
+static void check_copied_into(const struct model *m, const struct tile *tile)
+{
+    assert_true(tile->memory != VK_NULL_HANDLE);
+    assert_true(tile->batch <= m->fake.bind_value);
+}
+
+static void take_copies(struct model *m)
+{
+    for (uint32_t i = 0; i < m->fake.copy_count; i++) {
+        const struct fake_copy *copy = &m->fake.copies[i];
+        struct texture *t = find_image(m, copy->image);
+        const SluiceStreamedTextureLayout *l = &t->layout;
+        if (copy->level < l->desc.regularMipCount) {
+            struct tile *tile = &t->tiles[tile_index(t, copy->level, copy->x, copy->y)];
+            check_copied_into(m, tile);
+            tile->copied = true;
+            continue;
+        }
+        for (uint32_t j = l->regularTileCount; j < l->tileCount; j++) {
+            check_copied_into(m, &t->tiles[j]);
+            t->tiles[j].copied = true;
+        }
+    }
+}
+
+static uint32_t take_visible(struct model *m)
+{
+    uint32_t count = 0;
+    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++) {
+        struct texture *t = &m->textures[i];
+        for (uint32_t j = 0; t->used && j < t->layout.tileCount; j++) {
+            SluiceTileState state;
+            CHECK_OK(sluiceGetTileState(manager, t->texture.textureId, j, &state, NULL));
+            bool shown = state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
+            t->visible[m->frame % HISTORY][j] = shown;
+            if (!shown)
+                continue;
+            count++;
+            check_copied_into(m, &t->tiles[j]);
+            assert_true(t->tiles[j].copied);
+        }
+    }
+    return count;
+}
+
+static uint64_t advance(uint64_t value, uint64_t end)
+{
+    return value + (uint64_t)rand() % (end - value + 1);
+}
+
+static uint32_t model_frame(struct model *m, uint64_t time)
+{
+    struct fake_vulkan *fake = &m->fake;
+    fake->bind_count = fake->copy_count = fake->destroyed_count = fake->bind_calls = 0;
+    fake->published = false;
+    fake->frame_value = advance(fake->frame_value, m->frame);
+    if (rand() % 4 == 0) /* slow at times, so that batches pile up */
+        fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
+    if (rand() % 2)
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
+    SluiceStreamingFrame frame;
+    SluiceResult result =
+        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, &frame);
+    if (result == SLUICE_NOT_READY) {
+        assert_int_equal(m->frame - fake->frame_value, FRAMES_IN_FLIGHT);
+        return 0;
+    }
+    CHECK_OK(result);
+    fake->frame_semaphore = frame.semaphore;
+    m->frame = frame.frameIndex;
+    take_destroyed(m);
+    take_binds(m);
+    take_copies(m);
+    uint32_t visible = take_visible(m);
+    CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(fake)));
+    return visible;
+}
+
+static void remove_any(struct model *m)
+{
+    struct texture *t = &m->textures[rand() % (2 * TEXTURES)];
+    if (!t->used)
+        return;
+    CHECK_OK(sluiceRemoveVulkanTexture(m->streamer, t->texture.textureId));
+    t->used = false;
+    t->removed = true;
+    t->removed_frame = m->frame;
+    model_add(m);
+}
+
+static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps, unsigned seed)
+{
+    static struct model model; /* large */
+    struct model *m = &model;
+    *m = (struct model){.fake = {.tail_page_count = tail_page_count, .want = want, .user = m}};
+    SluiceVulkanStreamerCreateInfo info = {.framesInFlight = FRAMES_IN_FLIGHT,
+                                           .tilesPerFrame = 24,
+                                           .maxTextureCount = 3 * TEXTURES,
+                                           .texturesPerFrame = 3,
+                                           .loaderThreadCount = 1,
+                                           .heapTileCapacity = heap_capacity,
+                                           .maxHeapCount = heaps,
+                                           .feedbackTimeout = 2,
+                                           .maxRegionCount = 1 << 14};
+    fake_vulkan_fill(&m->fake, &info);
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    srand(seed);
+    for (int i = 0; i < TEXTURES; i++)
+        model_add(m);
+    uint64_t shown = 0;
+    for (uint64_t step = 1; step <= 1500; step++) {
+        /* back and forth: tiles are wanted again just after they were given up */
+        if (step % 3 == 0)
+            m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
+        if (step % 50 == 0)
+            remove_any(m);
+        shown += model_frame(m, step);
+    }
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
+    assert_true(shown > 10000);
+    assert_true(stats.tilesUnmapped > 500);
+    /* whatever is bound now is never looked at again */
+    m->fake.destroyed_count = 0;
+    sluiceDestroyVulkanStreamer(m->streamer);
+    assert_int_equal(m->fake.live_objects, 0);
+    assert_int_equal(m->fake.live_memory, 0);
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++)
+        sluiceDestroyImageSource(m->textures[i].source);
+}
+
+static void promises_hold_without_a_tail(void **state)
+{
+    (void)state;
+    run(0, 64, 6, 41);
+}
+
+static void promises_hold_with_a_tail_of_one_page(void **state)
+{
+    (void)state;
+    run(1, 64, 6, 42);
+}
+
+static void promises_hold_with_a_tail_of_many_pages_and_little_memory(void **state)
+{
+    (void)state;
+    run(5, 32, 3, 43);
+}
+
+static void promises_hold_with_room_for_everything(void **state)
+{
+    (void)state;
+    run(2, 256, 0, 44);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(promises_hold_without_a_tail),
+        cmocka_unit_test(promises_hold_with_a_tail_of_one_page),
+        cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
+        cmocka_unit_test(promises_hold_with_room_for_everything),
+    };
+    return RUN_TESTS(tests);
+}
