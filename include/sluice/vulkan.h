@@ -23,15 +23,7 @@
 #include <sluice/manager.h>
 #include <sluice/replay.h>
 
-#ifndef VK_NO_PROTOTYPES
-#define SLUICE_UNDEF_VK_NO_PROTOTYPES
-#define VK_NO_PROTOTYPES
-#endif
 #include <vulkan/vulkan_core.h>
-#ifdef SLUICE_UNDEF_VK_NO_PROTOTYPES
-#undef VK_NO_PROTOTYPES
-#undef SLUICE_UNDEF_VK_NO_PROTOTYPES
-#endif
 
 #ifdef __cplusplus
 extern "C" {
