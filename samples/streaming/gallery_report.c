@@ -108,7 +108,7 @@ static void add_plots(struct report *report, const struct measure *measure, bool
     static const struct plot_line times[] = {{"frame", frame_time_value},
                                              {"the application's thread", host_time_value}};
     if (compared)
-        add_plot(report, measure, "Difference to everything resident", "dB, the top is equality",
+        add_plot(report, measure, "Difference to everything resident", "dB (equality at the top)",
                  80.0, psnr, 1);
     if (measure->counting)
         add_plot(report, measure, "Missing detail", "% of the streamed pixels", 0.0, missing, 1);
