@@ -4,7 +4,7 @@
 #
 #   scripts/demo.sh [options] [-- options of samples/streaming; -- --help lists them]
 #
-#   scripts/demo.sh -- --generate-scale 4      small pictures: made and shown in a few minutes
+#   scripts/demo.sh -- --generate-scale 4      smaller pictures, sooner
 #   scripts/demo.sh -- --images FOLDER         your own OpenEXR files
 #
 #   --output DIR   where pictures and report go      (default: build/demo-out)
