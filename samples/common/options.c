@@ -154,7 +154,8 @@ static const struct option *find_option(const struct option *options, size_t opt
 
 static void explain_bad_value(const struct option *option, const char *text)
 {
-    fprintf(stderr, "--%s %s: wants %s", option->name, text, option->operand);
+    fprintf(stderr, "--%s%s%s: wants %s", option->name, *text ? " " : "", text,
+            option->operand ? option->operand : "no value");
     if (option->kind == OPTION_UINT || option->kind == OPTION_REAL || option->kind == OPTION_SIZE)
         fprintf(stderr, " from %g to %g", option->minimum, option->maximum);
     fprintf(stderr, "\n");
