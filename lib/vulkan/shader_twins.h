@@ -75,7 +75,14 @@ static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twi
         return SLC_TWIN_LOD_LIMIT;
     float n = slc_twin_clamp_anisotropy(max_anisotropy);
     float major2 = fmaxf(x2, y2);
-    float minor2 = fmaxf(fminf(x2, y2), major2 / (n * n));
+    float minor2 = fminf(x2, y2);
+    float sum = x2 + y2;
+    if (n > 1.0f && sum > 1.0e-30f && sum < 1.0e30f) {
+        float area = (dx.x * dy.y - dx.y * dy.x) / sum;
+        minor2 = fminf(minor2, 2.0f * area * area * sum /
+                                   (1.0f + sqrtf(fmaxf(1.0f - 4.0f * area * area, 0.0f))));
+    }
+    minor2 = fmaxf(minor2, major2 / (n * n));
     float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
     lod += lod_bias;
     if (!(lod >= -SLC_TWIN_LOD_LIMIT))
@@ -146,37 +153,32 @@ static inline void slc_twin_region_range(float coordinate, float below, float ab
 
 static inline struct slc_twin_footprint
 slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_twin_vec2 uv,
-                           struct slc_twin_vec2 half_axis, uint32_t coarsest_level)
+                           struct slc_twin_vec2 half_box, uint32_t coarsest_level)
 {
     float below =
         entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
     uint32_t width = entry->width >> coarsest_level, height = entry->height >> coarsest_level;
     float texel_x = 1.0f / (float)(width ? width : 1);
     float texel_y = 1.0f / (float)(height ? height : 1);
-    float axis_x = fabsf(half_axis.x), axis_y = fabsf(half_axis.y);
     struct slc_twin_footprint footprint;
-    slc_twin_region_range(uv.x, below * texel_x + axis_x, SLC_TWIN_APRON * texel_x + axis_x,
+    slc_twin_region_range(uv.x, below * texel_x + half_box.x, SLC_TWIN_APRON * texel_x + half_box.x,
                           entry->addressModeU, (float)entry->width / (float)entry->regionWidth,
                           entry->regionCountX, footprint.x);
-    slc_twin_region_range(uv.y, below * texel_y + axis_y, SLC_TWIN_APRON * texel_y + axis_y,
+    slc_twin_region_range(uv.y, below * texel_y + half_box.y, SLC_TWIN_APRON * texel_y + half_box.y,
                           entry->addressModeV, (float)entry->height / (float)entry->regionHeight,
                           entry->regionCountY, footprint.y);
     return footprint;
 }
 
-static inline struct slc_twin_vec2 slc_twin_half_axis(const struct SluiceTextureEntry *entry,
-                                                      struct slc_twin_vec2 dx,
-                                                      struct slc_twin_vec2 dy, float lod_bias,
-                                                      float max_anisotropy)
+static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
+                                                     struct slc_twin_vec2 dy, float lod_bias,
+                                                     float max_anisotropy)
 {
     if (!(max_anisotropy > 1.0f))
         return (struct slc_twin_vec2){0.0f, 0.0f};
-    float w = (float)entry->width, h = (float)entry->height;
-    float x2 = dx.x * w * (dx.x * w) + dx.y * h * (dx.y * h);
-    float y2 = dy.x * w * (dy.x * w) + dy.y * h * (dy.y * h);
     float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
-    struct slc_twin_vec2 major = x2 >= y2 ? dx : dy;
-    return (struct slc_twin_vec2){0.5f * scale * major.x, 0.5f * scale * major.y};
+    return (struct slc_twin_vec2){0.5f * scale * sqrtf(dx.x * dx.x + dy.x * dy.x),
+                                  0.5f * scale * sqrtf(dx.y * dx.y + dy.y * dy.y)};
 }
 
 /* feedback.glsl: what one sample marks */
@@ -197,9 +199,9 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
     struct slc_twin_wants wants;
     wants.level =
         slc_twin_finest_level(lod, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    wants.regions = slc_twin_compute_footprint(
-        entry, uv, slc_twin_half_axis(entry, dx, dy, lod_bias, max_anisotropy),
-        slc_twin_coarsest_level(lod, entry->mipLevelCount));
+    wants.regions =
+        slc_twin_compute_footprint(entry, uv, slc_twin_half_box(dx, dy, lod_bias, max_anisotropy),
+                                   slc_twin_coarsest_level(lod, entry->mipLevelCount));
     return wants;
 }
 

@@ -44,7 +44,7 @@ void scene_remove(struct scene *scene, uint32_t texture);
 struct scene_aim {
     double left, top, width, height; ///< a window in uv
     double min_lod, max_lod;
-    double max_ratio; ///< longer to shorter derivative; 0: equal and along the axes
+    double max_ratio; ///< of the derivatives' lengths, at any angles; 0: equal, along the axes
     float bias;
 };
 void scene_aim(struct scene *scene, uint32_t texture, uint32_t count, const struct scene_aim *aim);
@@ -60,9 +60,13 @@ void scene_settle(struct scene *scene, uint32_t frame_count);
 void scene_clear_outputs(struct scene *scene);
 /** Waits for the device; samples of all textures that touched what is not resident. */
 uint64_t scene_non_resident(struct scene *scene);
+/** The level that a device would begin with which takes the axes of the ellipse of dx and dy. */
+double scene_ellipse_lod(const struct ProbeOutput *out, const struct scene_texture *texture);
+
 /**
  * Fails the test if a sample of PATTERN_LEVEL shows a finer level than it was allowed to, which is
- * also what texels that are not resident look like. Independent of residency codes.
+ * also what texels that are not resident look like. Independent of residency codes. Or if a device
+ * with another rule for anisotropy than this one's would show such a level.
  */
 void scene_check_levels(const struct scene *scene);
 /** Samples of all textures that are coarser than they should be. */

@@ -68,12 +68,12 @@ static void run(struct scene *scene, uint32_t texture, uint32_t count, uint32_t 
 static void random_input(struct ProbeInput *in, const struct SluiceTextureEntry *e, bool extreme)
 {
     double scale = exp2(draw() * (e->mipLevelCount + 2) - 2), angle = draw() * 6.283;
-    double ratio = rand() % 2 ? 1 : 1 + draw() * 20;
+    double ratio = rand() % 2 ? 1 : 1 + draw() * 20, skew = rand() % 2 ? 1 : draw();
     *in = (struct ProbeInput){
         .uv = {(float)(draw() * 3 - 1), (float)(draw() * 3 - 1)},
         .dx = {(float)(cos(angle) * scale / e->width), (float)(sin(angle) * scale / e->height)},
-        .dy = {(float)(-sin(angle) * scale * ratio / e->width),
-               (float)(cos(angle) * scale * ratio / e->height)},
+        .dy = {(float)(-sin(angle * skew) * scale * ratio / e->width),
+               (float)(cos(angle * skew) * scale * ratio / e->height)},
         .lodBias = rand() % 3 ? 0.0f : (float)(draw() * 4 - 2),
         .maxAnisotropy = rand() % 2 ? 1.0f : (float)(1 << rand() % 5)};
     if (rand() % 3 == 0) /* on the border of a region, or half a texel beside it */
@@ -276,9 +276,9 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
         /* rounding may go one level or one texel further than the twin */
         float margin = slc_twin_lod_margin(in->maxAnisotropy) + 2e-3f;
         wants.level = slc_twin_finest_level(lod, margin, e.mipLevelCount);
-        struct slc_twin_vec2 axis = slc_twin_half_axis(
-            &e, (struct slc_twin_vec2){in->dx[0], in->dx[1]},
-            (struct slc_twin_vec2){in->dy[0], in->dy[1]}, in->lodBias, in->maxAnisotropy);
+        struct slc_twin_vec2 axis = slc_twin_half_box((struct slc_twin_vec2){in->dx[0], in->dx[1]},
+                                                      (struct slc_twin_vec2){in->dy[0], in->dy[1]},
+                                                      in->lodBias, in->maxAnisotropy);
         axis.x = fabsf(axis.x) + 0.01f / (float)e.width;
         axis.y = fabsf(axis.y) + 0.01f / (float)e.height;
         wants.regions =

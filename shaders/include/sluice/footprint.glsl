@@ -67,23 +67,20 @@ uvec3 sluiceRegionRange(float coordinate, float below, float above, uint address
 }
 
 /**
- * Around `uv`, for samples of levels up to `coarsestLevel`. `halfAxis` is half of the longer
- * derivative where the sampler is anisotropic, in units of uv, and 0 where it is not.
+ * Around `uv`, for samples of levels up to `coarsestLevel`; `halfBox` as sluiceHalfBox.
  */
-SluiceFootprint sluiceComputeFootprint(SluiceTextureEntry entry, vec2 uv, vec2 halfAxis,
+SluiceFootprint sluiceComputeFootprint(SluiceTextureEntry entry, vec2 uv, vec2 halfBox,
                                        uint coarsestLevel)
 {
     float below = (entry.flags & SLUICE_TEXTURE_FLAG_UNEVEN) != 0u ? SLUICE_APRON_UNEVEN : SLUICE_APRON;
     float texelX = 1.0 / float(max(entry.width >> coarsestLevel, 1u));
     float texelY = 1.0 / float(max(entry.height >> coarsestLevel, 1u));
-    float axisX = abs(halfAxis.x);
-    float axisY = abs(halfAxis.y);
     SluiceFootprint footprint;
-    footprint.x = sluiceRegionRange(uv.x, below * texelX + axisX, SLUICE_APRON * texelX + axisX,
+    footprint.x = sluiceRegionRange(uv.x, below * texelX + halfBox.x, SLUICE_APRON * texelX + halfBox.x,
                                     entry.addressModeU,
                                     float(entry.width) / float(entry.regionWidth),
                                     entry.regionCountX);
-    footprint.y = sluiceRegionRange(uv.y, below * texelY + axisY, SLUICE_APRON * texelY + axisY,
+    footprint.y = sluiceRegionRange(uv.y, below * texelY + halfBox.y, SLUICE_APRON * texelY + halfBox.y,
                                     entry.addressModeV,
                                     float(entry.height) / float(entry.regionHeight),
                                     entry.regionCountY);
@@ -96,18 +93,17 @@ bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
 }
 
 /**
- * Half of the longer derivative, 0 without anisotropy. A positive LOD bias makes it longer: some
- * devices scale the footprint with it, and so do explicit derivatives that hold the bias.
+ * Half the size of the box around the ellipse that the derivatives span, 0 without anisotropy:
+ * whichever of its axes a device takes its samples along, they are inside. A positive LOD bias makes
+ * it larger: some devices scale the footprint with it, and so do explicit derivatives that hold the
+ * bias.
  */
-vec2 sluiceHalfAxis(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+vec2 sluiceHalfBox(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
         return vec2(0.0);
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 tx = dx * size;
-    vec2 ty = dy * size;
     float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
-    return 0.5 * scale * (dot(tx, tx) >= dot(ty, ty) ? dx : dy);
+    return 0.5 * scale * vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
 }
 
 #endif

@@ -3,7 +3,9 @@
  *
  * Vulkan lets implementations approximate; those measured pick a level up to 0.09 finer than the
  * formula without anisotropy and 0.14 finer with it. Whoever must not miss a level subtracts
- * sluiceLodMargin. C twin: lib/vulkan/shader_twins.h.
+ * sluiceLodMargin. With anisotropy some devices take the lengths of the two derivatives, and some the
+ * axes of the ellipse that they span, whose shorter axis is shorter where the derivatives are not
+ * at right angles; here the finer of the two counts. C twin: lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_LOD_GLSL
 #define SLUICE_LOD_GLSL
@@ -35,7 +37,13 @@ float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
         return SLUICE_LOD_LIMIT;
     float n = sluiceClampAnisotropy(maxAnisotropy);
     float major2 = max(x2, y2);
-    float minor2 = max(min(x2, y2), major2 / (n * n));
+    float minor2 = min(x2, y2);
+    float sum = x2 + y2;
+    if (n > 1.0 && sum > 1.0e-30 && sum < 1.0e30) { /* beyond, the squares leave the range */
+        float area = (dx.x * dy.y - dx.y * dy.x) / sum; /* -1/2 to 1/2 */
+        minor2 = min(minor2, 2.0 * area * area * sum / (1.0 + sqrt(max(1.0 - 4.0 * area * area, 0.0))));
+    }
+    minor2 = max(minor2, major2 / (n * n));
     float lod = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
     lod += lodBias;
     if (!(lod >= -SLUICE_LOD_LIMIT))

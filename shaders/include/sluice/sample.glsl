@@ -54,18 +54,20 @@ uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at)
 }
 
 /**
- * Lengthens a derivative to at least `scale` texels. The longer one stays, so an anisotropic
- * footprint keeps its length and loses only its narrowness.
+ * Derivatives for a footprint that is nowhere narrower than `width` texels. The longer derivative
+ * stays, so an anisotropic footprint keeps its length; the other one is put at a right angle to it,
+ * because two that are nearly parallel are a narrow footprint, however long they are.
  */
-vec2 sluiceLengthen(vec2 derivative, vec2 size, float scale, vec2 otherwise)
+void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
 {
-    vec2 texels = derivative * size;
-    float texelLength = length(texels);
-    if (texelLength >= scale)
-        return derivative;
-    if (!(texelLength > 1.0e-15)) /* 0, denormal or NaN: it has no direction */
-        return otherwise * scale / size;
-    return derivative * (scale / texelLength);
+    vec2 tx = dx * size;
+    vec2 ty = dy * size;
+    vec2 major = dot(tx, tx) >= dot(ty, ty) ? tx : ty;
+    float majorLength = length(major);
+    /* 0, denormal or NaN: it has no direction */
+    vec2 direction = majorLength > 1.0e-15 ? major / majorLength : vec2(1.0, 0.0);
+    dx = direction * (majorLength >= width ? majorLength : width) / size;
+    dy = vec2(-direction.y, direction.x) * width / size;
 }
 
 bool sluiceIsFinite(vec2 v)
@@ -96,13 +98,12 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
     s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
-    float scale = s.plain ? 0.0 : exp2(SLUICE_LOD_POINT);
+    float width = exp2(SLUICE_LOD_POINT);
 
-    vec2 halfAxis =
-        clamped ? vec2(0.0) : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
+    vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
     uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
-        uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfAxis, coarsest));
+        uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfBox, coarsest));
         if (there == SLUICE_MIP_UNTOUCHED) {
             s.level = SLUICE_MIP_UNTOUCHED;
             s.plain = false;
@@ -116,17 +117,15 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         if (tries >= SLUICE_CLAMP_STEPS)
             break;
         if (maxAnisotropy > 1.0)
-            halfAxis = max(abs(halfAxis), vec2(0.5 * exp2(float(s.level))) / size);
+            halfBox = max(halfBox, vec2(exp2(float(s.level))) / size);
     }
     if (clamped) {
         s.plain = false;
         s.lod = float(s.level) + margin;
-        scale = exp2(s.lod);
+        width = exp2(s.lod);
     }
-    if (!s.plain) {
-        s.dx = sluiceLengthen(s.dx, size, scale, vec2(1.0, 0.0));
-        s.dy = sluiceLengthen(s.dy, size, scale, vec2(0.0, 1.0));
-    }
+    if (!s.plain)
+        sluiceWiden(s.dx, s.dy, size, width);
     return s;
 }
 

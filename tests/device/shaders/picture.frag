@@ -47,6 +47,10 @@ void main()
     outputs[at].level = s.level;
     outputs[at].wantedLevel = s.wantedLevel;
     outputs[at].lod = s.lod;
+    outputs[at].footprint[0] = floatBitsToUint(s.dx.x);
+    outputs[at].footprint[1] = floatBitsToUint(s.dx.y);
+    outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
+    outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
 #ifdef PROBE_CODES
     outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                       bias, anisotropy);

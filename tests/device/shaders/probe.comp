@@ -38,7 +38,7 @@ void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotr
     vec2 size = vec2(entry.width, entry.height);
     float lod = sluiceComputeLod(dx * size, dy * size, bias, anisotropy);
     SluiceFootprint f =
-        sluiceComputeFootprint(entry, uv, sluiceHalfAxis(entry, dx, dy, bias, anisotropy),
+        sluiceComputeFootprint(entry, uv, sluiceHalfBox(dx, dy, bias, anisotropy),
                                sluiceCoarsestLevel(lod, entry.mipLevelCount));
     outputs[at].lod = lod;
     outputs[at].wantedLevel =
@@ -83,6 +83,10 @@ void main()
         outputs[at].level = s.level;
         outputs[at].wantedLevel = s.wantedLevel;
         outputs[at].lod = s.lod;
+        outputs[at].footprint[0] = floatBitsToUint(s.dx.x);
+        outputs[at].footprint[1] = floatBitsToUint(s.dx.y);
+        outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
+        outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
     }
 #ifdef PROBE_CODES
     if ((params.flags & PROBE_RESIDENCY) != 0u)

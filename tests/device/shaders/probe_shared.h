@@ -35,7 +35,7 @@ struct ProbeOutput {
     uint nonResident; /* summed over the dispatches */
     uint wantedLevel;
     float lod;
-    uint footprint[6];
+    uint footprint[6]; /* of samples: the bits of dx and dy that textureGrad gets */
     uint reserved;
 };
 SLUICE_SHARED_SIZE(struct ProbeOutput, 64)
