@@ -134,11 +134,13 @@ typedef struct SluiceVulkanTextureCreateInfo {
 
 typedef struct SluiceVulkanTexture {
     SluiceTextureId textureId;
-    VkImage image;         ///< in VK_IMAGE_LAYOUT_GENERAL once a frame was begun after adding it
+    /** In VK_IMAGE_LAYOUT_GENERAL once a frame was begun after adding it, and for good: one part is
+     *  copied to while another is sampled. Validation layers may call that slow. */
+    VkImage image;
     VkImageView imageView; ///< 2D, all levels
     VkFormat format;
     uint32_t width, height, mipLevelCount;
-    uint32_t tableIndex; ///< index in the texture table, for the shader functions
+    uint32_t tableIndex; ///< place in the texture table, for the shader functions
 } SluiceVulkanTexture;
 
 /**
@@ -153,7 +155,11 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
 
-/** The image is destroyed when the frames begun so far have completed; draw with it no more. */
+/**
+ * The image is destroyed when the frames begun so far have completed; do not draw with it again.
+ * Until then its place counts towards maxTextureCount. Errors: NULL_POINTER, UNKNOWN_TEXTURE,
+ * STALE_TEXTURE.
+ */
 SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
                                                   SluiceTextureId textureId);
 
@@ -190,9 +196,8 @@ SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer
 
 /**
  * Records the resolve and readback of this frame's share of the feedback maps, outside a pass.
- * Binds a compute pipeline and its descriptor set 0.
- *
- * Errors: NULL_POINTER.
+ * Binds a compute pipeline and its descriptor set 0. Errors: NULL_POINTER; INVALID_ARGUMENT if no
+ * frame was begun since the last call.
  */
 SLUICE_API SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer,
                                                 VkCommandBuffer commandBuffer);

@@ -171,6 +171,9 @@ SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBu
 {
     if (!streamer || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
+    if (streamer->ended_frame == streamer->frame)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    streamer->ended_frame = streamer->frame;
     slc_feedback_record(streamer, commandBuffer);
     return SLUICE_SUCCESS;
 }

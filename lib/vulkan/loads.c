@@ -2,7 +2,8 @@
  * From tiles that the manager wants to texels in staging slots, and on to the residency.
  *
  * A tile is bound when its texels have arrived, not when its load begins: a load that fails or is
- * cancelled then never touches a page table (docs/decisions/bind-on-arrival.md).
+ * cancelled then never touches a page table
+ * (docs/decisions/0020-tiles-are-bound-when-their-texels-arrive.md).
  */
 #include "vulkan/streamer.h"
 

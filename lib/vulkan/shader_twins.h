@@ -66,6 +66,18 @@ static inline float slc_twin_lod_margin(float max_anisotropy)
     return max_anisotropy > 1.0f ? 0.1875f : 0.125f;
 }
 
+static inline struct slc_twin_vec2 slc_twin_ellipse_axes2(struct slc_twin_vec2 dx,
+                                                          struct slc_twin_vec2 dy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    float along = dx.x * dy.x + dx.y * dy.y;
+    float across = dx.x * dy.y - dx.y * dy.x;
+    float half2 = 0.5f * (x2 - y2);
+    float major2 = 0.5f * (x2 + y2) + sqrtf(half2 * half2 + along * along);
+    return (struct slc_twin_vec2){major2, major2 > 0.0f ? across / major2 * across : 0.0f};
+}
+
 static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
                                          float lod_bias, float max_anisotropy)
 {
@@ -74,8 +86,13 @@ static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twi
     if (!(x2 >= 0.0f && y2 >= 0.0f)) /* NaN */
         return SLC_TWIN_LOD_LIMIT;
     float n = slc_twin_clamp_anisotropy(max_anisotropy);
-    float major2 = fmaxf(x2, y2);
-    float minor2 = fmaxf(fminf(x2, y2), major2 / (n * n));
+    float minor2 = fmaxf(x2, y2);
+    if (n > 1.0f) {
+        if (minor2 >= 1.0e18f)
+            return SLC_TWIN_LOD_LIMIT;
+        struct slc_twin_vec2 axes2 = slc_twin_ellipse_axes2(dx, dy);
+        minor2 = fmaxf(axes2.y, axes2.x / (n * n));
+    }
     float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
     lod += lod_bias;
     if (!(lod >= -SLC_TWIN_LOD_LIMIT))
@@ -164,19 +181,15 @@ slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_tw
     return footprint;
 }
 
-static inline struct slc_twin_vec2 slc_twin_half_axis(const struct SluiceTextureEntry *entry,
-                                                      struct slc_twin_vec2 dx,
+static inline struct slc_twin_vec2 slc_twin_half_axis(struct slc_twin_vec2 dx,
                                                       struct slc_twin_vec2 dy, float lod_bias,
                                                       float max_anisotropy)
 {
     if (!(max_anisotropy > 1.0f))
         return (struct slc_twin_vec2){0.0f, 0.0f};
-    float w = (float)entry->width, h = (float)entry->height;
-    float x2 = dx.x * w * (dx.x * w) + dx.y * h * (dx.y * h);
-    float y2 = dy.x * w * (dy.x * w) + dy.y * h * (dy.y * h);
     float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
-    struct slc_twin_vec2 major = x2 >= y2 ? dx : dy;
-    return (struct slc_twin_vec2){0.5f * scale * major.x, 0.5f * scale * major.y};
+    return (struct slc_twin_vec2){0.5f * scale * (fabsf(dx.x) + fabsf(dy.x)),
+                                  0.5f * scale * (fabsf(dx.y) + fabsf(dy.y))};
 }
 
 /* feedback.glsl: what one sample marks */
@@ -197,9 +210,9 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
     struct slc_twin_wants wants;
     wants.level =
         slc_twin_finest_level(lod, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    wants.regions = slc_twin_compute_footprint(
-        entry, uv, slc_twin_half_axis(entry, dx, dy, lod_bias, max_anisotropy),
-        slc_twin_coarsest_level(lod, entry->mipLevelCount));
+    wants.regions =
+        slc_twin_compute_footprint(entry, uv, slc_twin_half_axis(dx, dy, lod_bias, max_anisotropy),
+                                   slc_twin_coarsest_level(lod, entry->mipLevelCount));
     return wants;
 }
 

@@ -90,6 +90,7 @@ struct SluiceVulkanStreamer {
 
     VkSemaphore semaphore; ///< of frames
     uint64_t frame;        ///< the last one begun
+    uint64_t ended_frame;  ///< the last one that sluiceEndStreamingFrame was called for
     uint64_t completed_frame;
     uint64_t retired;      ///< the last value that the manager was told
     uint64_t time_stamp;   ///< of the last frame begun

@@ -48,7 +48,9 @@ struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width,
 float pattern_tolerance(SluiceFormat format)
 {
     switch (format) {
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: return 0.006f; /* half a step at the bright end */
+    case SLUICE_FORMAT_R8G8B8A8_SRGB:
+        return 0.0089f; /* a step at the bright end: half to
+                           encode, half that devices may decode by */
     case SLUICE_FORMAT_R16_SFLOAT:
     case SLUICE_FORMAT_R16G16_SFLOAT:
     case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return 0.0005f;

@@ -276,9 +276,9 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
         /* rounding may go one level or one texel further than the twin */
         float margin = slc_twin_lod_margin(in->maxAnisotropy) + 2e-3f;
         wants.level = slc_twin_finest_level(lod, margin, e.mipLevelCount);
-        struct slc_twin_vec2 axis = slc_twin_half_axis(
-            &e, (struct slc_twin_vec2){in->dx[0], in->dx[1]},
-            (struct slc_twin_vec2){in->dy[0], in->dy[1]}, in->lodBias, in->maxAnisotropy);
+        struct slc_twin_vec2 axis = slc_twin_half_axis((struct slc_twin_vec2){in->dx[0], in->dx[1]},
+                                                       (struct slc_twin_vec2){in->dy[0], in->dy[1]},
+                                                       in->lodBias, in->maxAnisotropy);
         axis.x = fabsf(axis.x) + 0.01f / (float)e.width;
         axis.y = fabsf(axis.y) + 0.01f / (float)e.height;
         wants.regions =
@@ -377,7 +377,7 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
-    status = cmocka_run_group_tests_name("feedback", tests, NULL, NULL);
+    status = RUN_TESTS(tests);
     harness_finish(&h);
     return status;
 }

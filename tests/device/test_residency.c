@@ -97,7 +97,7 @@ static void anisotropic_frames_touch_nothing_that_is_not_there(void **state)
 {
     struct harness *h = *state;
     if (!h->anisotropy)
-        skip();
+        SKIP_TEST("the device has no anisotropic filtering");
     srand(22);
     churn(h, 16.0f, 400);
     churn(h, 2.0f, 200);
@@ -115,7 +115,7 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
-    status = cmocka_run_group_tests_name("residency", tests, NULL, NULL);
+    status = RUN_TESTS(tests);
     harness_finish(&h);
     return status;
 }

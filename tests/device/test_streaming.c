@@ -246,7 +246,7 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
-    status = cmocka_run_group_tests_name("streaming", tests, NULL, NULL);
+    status = RUN_TESTS(tests);
     harness_finish(&h);
     return status;
 }

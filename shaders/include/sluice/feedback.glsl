@@ -39,7 +39,7 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
     uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
     SluiceFootprint at = sluiceComputeFootprint(
-        entry, uv, sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy), coarsest);
+        entry, uv, sluiceHalfAxis(dx, dy, lodBias, maxAnisotropy), coarsest);
     sluiceMarkRegion(entry, at.x.x, at.y.x, level);
     if (sluiceFootprintIsOneRegion(at))
         return;

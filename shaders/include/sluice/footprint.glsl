@@ -96,18 +96,15 @@ bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
 }
 
 /**
- * Half of the longer derivative, 0 without anisotropy. A positive LOD bias makes it longer: some
- * devices scale the footprint with it, and so do explicit derivatives that hold the bias.
+ * Half of the box around the ellipse that the derivatives span, 0 without anisotropy. A positive LOD
+ * bias makes it larger: some devices scale the footprint with it, and so do explicit derivatives that hold the bias.
  */
-vec2 sluiceHalfAxis(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+vec2 sluiceHalfAxis(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
         return vec2(0.0);
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 tx = dx * size;
-    vec2 ty = dy * size;
     float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
-    return 0.5 * scale * (dot(tx, tx) >= dot(ty, ty) ? dx : dy);
+    return 0.5 * scale * (abs(dx) + abs(dy));
 }
 
 #endif

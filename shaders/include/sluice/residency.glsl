@@ -52,9 +52,10 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     float coarse = ceil(clamp(s.lod, 0.0, last));
     uint taps = 1u;
     vec2 axis = vec2(0.0);
-    if (maxAnisotropy > 1.0) {
+    if (maxAnisotropy > 1.0 && s.plain) { /* what is not plain is round: one tap */
         taps = 9u;
-        axis = 2.0 * sluiceHalfAxis(entry, s.dx, s.dy, 0.0, maxAnisotropy);
+        vec2 size = vec2(entry.width, entry.height);
+        axis = length(s.dx * size) >= length(s.dy * size) ? s.dx : s.dy;
     }
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {

@@ -53,21 +53,6 @@ uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at)
     return level;
 }
 
-/**
- * Lengthens a derivative to at least `scale` texels. The longer one stays, so an anisotropic
- * footprint keeps its length and loses only its narrowness.
- */
-vec2 sluiceLengthen(vec2 derivative, vec2 size, float scale, vec2 otherwise)
-{
-    vec2 texels = derivative * size;
-    float texelLength = length(texels);
-    if (texelLength >= scale)
-        return derivative;
-    if (!(texelLength > 1.0e-15)) /* 0, denormal or NaN: it has no direction */
-        return otherwise * scale / size;
-    return derivative * (scale / texelLength);
-}
-
 bool sluiceIsFinite(vec2 v)
 {
     return abs(v.x) <= 3.0e38 && abs(v.y) <= 3.0e38;
@@ -96,10 +81,9 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
     s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
-    float scale = s.plain ? 0.0 : exp2(SLUICE_LOD_POINT);
 
     vec2 halfAxis =
-        clamped ? vec2(0.0) : sluiceHalfAxis(entry, dx, dy, lodBias, maxAnisotropy);
+        clamped ? vec2(0.0) : sluiceHalfAxis(dx, dy, lodBias, maxAnisotropy);
     uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
         uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfAxis, coarsest));
@@ -115,17 +99,18 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         coarsest = min(s.level + 1u, entry.mipLevelCount - 1u);
         if (tries >= SLUICE_CLAMP_STEPS)
             break;
-        if (maxAnisotropy > 1.0)
-            halfAxis = max(abs(halfAxis), vec2(0.5 * exp2(float(s.level))) / size);
+        halfAxis = vec2(0.0); /* a clamped sample is round, see below */
     }
     if (clamped) {
         s.plain = false;
         s.lod = float(s.level) + margin;
-        scale = exp2(s.lod);
     }
     if (!s.plain) {
-        s.dx = sluiceLengthen(s.dx, size, scale, vec2(1.0, 0.0));
-        s.dy = sluiceLengthen(s.dy, size, scale, vec2(0.0, 1.0));
+        /* Round, because samplers may take a ratio for the next one that they support: for any
+           other than 1 they may choose a finer level than the derivatives say. */
+        float scale = exp2(clamped ? s.lod : SLUICE_LOD_POINT);
+        s.dx = vec2(scale / size.x, 0.0);
+        s.dy = vec2(0.0, scale / size.y);
     }
     return s;
 }

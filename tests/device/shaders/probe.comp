@@ -38,7 +38,7 @@ void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotr
     vec2 size = vec2(entry.width, entry.height);
     float lod = sluiceComputeLod(dx * size, dy * size, bias, anisotropy);
     SluiceFootprint f =
-        sluiceComputeFootprint(entry, uv, sluiceHalfAxis(entry, dx, dy, bias, anisotropy),
+        sluiceComputeFootprint(entry, uv, sluiceHalfAxis(dx, dy, bias, anisotropy),
                                sluiceCoarsestLevel(lod, entry.mipLevelCount));
     outputs[at].lod = lod;
     outputs[at].wantedLevel =
