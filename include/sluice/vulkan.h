@@ -119,7 +119,7 @@ SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
  * waited for. For tests, offline rendering and shutdown: the next frame then sees all that was
  * asked for.
  *
- * Errors: NULL_POINTER, VULKAN, DEVICE_LOST.
+ * Errors: NULL_POINTER, OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
@@ -188,7 +188,8 @@ typedef struct SluiceStreamingFrame {
  * are not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
  *
  * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
- *         changed. OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST: the streamer can only be destroyed.
+ *         changed. OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST: the streamer can
+ *         only be destroyed.
  */
 SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                                   VkCommandBuffer commandBuffer, uint64_t timeStamp,
