@@ -102,8 +102,11 @@ typedef struct SluiceVulkanStreamerCreateInfo {
 } SluiceVulkanStreamerCreateInfo;
 
 /**
- * Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED if the device has no mode that was asked for;
- *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
+ *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
+ *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
+ *         LIMIT_EXCEEDED if maxTextureCount or maxRegionCount need a storage buffer beyond the
+ *         device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);

@@ -93,7 +93,8 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
     properties->properties =
         (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
                                      .deviceName = "fake",
-                                     .limits.sparseAddressSpaceSize = 1ull << 40};
+                                     .limits = {.sparseAddressSpaceSize = 1ull << 40,
+                                                .maxStorageBufferRange = 1u << 27}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
