@@ -6,7 +6,8 @@
 #include <assert.h>
 #include <stdint.h>
 typedef uint32_t uint;
-#define SLUICE_SHARED_SIZE(type, size) static_assert(sizeof(type) == (size), #type)
+/* Brings its semicolon: one on its own is an error before GLSL 4.60. */
+#define SLUICE_SHARED_SIZE(type, size) static_assert(sizeof(type) == (size), #type);
 #else
 #define SLUICE_SHARED_SIZE(type, size)
 #endif
