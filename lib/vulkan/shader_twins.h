@@ -78,6 +78,12 @@ static inline struct slc_twin_vec2 slc_twin_ellipse_axes2(struct slc_twin_vec2 d
     return (struct slc_twin_vec2){major2, major2 > 0.0f ? across / major2 * across : 0.0f};
 }
 
+static inline float slc_twin_clamp_lod_bias(float lod_bias)
+{
+    return lod_bias >= -SLC_TWIN_LOD_LIMIT ? fminf(lod_bias, SLC_TWIN_LOD_LIMIT)
+                                           : -SLC_TWIN_LOD_LIMIT;
+}
+
 static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
                                          float lod_bias, float max_anisotropy)
 {
@@ -94,7 +100,7 @@ static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twi
         minor2 = fmaxf(axes2.y, axes2.x / (n * n));
     }
     float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
-    lod += lod_bias;
+    lod += slc_twin_clamp_lod_bias(lod_bias);
     if (!(lod >= -SLC_TWIN_LOD_LIMIT))
         return -SLC_TWIN_LOD_LIMIT;
     return fminf(lod, SLC_TWIN_LOD_LIMIT);
