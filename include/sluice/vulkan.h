@@ -100,8 +100,11 @@ typedef struct SluiceVulkanStreamerCreateInfo {
 } SluiceVulkanStreamerCreateInfo;
 
 /**
- * Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED if the device has no mode that was asked for;
- *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
+ *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
+ *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
+ *         LIMIT_EXCEEDED if maxTextureCount or maxRegionCount need a storage buffer beyond the
+ *         device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -117,7 +120,7 @@ SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
  * waited for. For tests, offline rendering and shutdown: the next frame then sees all that was
  * asked for.
  *
- * Errors: NULL_POINTER, VULKAN, DEVICE_LOST.
+ * Errors: NULL_POINTER, OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
@@ -144,8 +147,8 @@ typedef struct SluiceVulkanTexture {
 /**
  * Creates the image of a source and starts to stream it. The format is the source's.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode; UNKNOWN_TEXTURE and
- *         STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
+ *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
  *         size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what the source says;
  *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
@@ -186,7 +189,8 @@ typedef struct SluiceStreamingFrame {
  * are not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
  *
  * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
- *         changed. OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST: the streamer can only be destroyed.
+ *         changed. OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST: the streamer can
+ *         only be destroyed.
  */
 SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                                   VkCommandBuffer commandBuffer, uint64_t timeStamp,

@@ -171,6 +171,11 @@ static bool take_operands(const struct option *option, int argc, char *const *ar
     }
     if (option->kind == OPTION_LIST) {
         struct option_list *list = option->value;
+        if (equals || list->count > 0) {
+            fprintf(stderr, "--%s: give it once, with all of %s behind it\n", option->name,
+                    option->operand);
+            return false;
+        }
         list->items = argv + *index + 1;
         for (list->count = 0; *index + 1 < argc && strncmp(argv[*index + 1], "--", 2) != 0;
              ++*index)

@@ -174,6 +174,10 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
         measure_print_text(figures, figure_count);
     if (written && !settings->json)
         printf("pictures, frames.csv and report.html are in %s\n", settings->output);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        perror("the figures could not be written");
+        return false;
+    }
     return written;
 }
 
