@@ -2,7 +2,10 @@
 # Installs what is missing, builds Sluice and streams the gallery: a room hung with large pictures,
 # of which only the tiles that are seen are kept in memory.
 #
-#   scripts/demo.sh [options] [-- options of samples/streaming]
+#   scripts/demo.sh [options] [-- options of samples/streaming; -- --help lists them]
+#
+#   scripts/demo.sh -- --generate-scale 4      smaller pictures, sooner
+#   scripts/demo.sh -- --images FOLDER         your own OpenEXR files
 #
 #   --output DIR   where pictures and report go      (default: build/demo-out)
 #   --cache DIR    where generated images are kept   (default: build/demo-cache)
@@ -52,6 +55,16 @@ else
     say "No GPU was found: running on the CPU (lavapipe)."
 fi
 
+# What shows no gallery needs no folders and leaves no report.
+for option in "$@"; do
+    case $option in
+    --help | -h | --list-devices)
+        "$folder/samples/streaming/streaming" "$option"
+        exit
+        ;;
+    esac
+done
+
 title "Streaming the gallery"
 mkdir -p "$output" "$cache"
 "$folder/samples/streaming/streaming" --output "$output" --cache "$cache" --compare --json "$@" |
@@ -61,3 +74,4 @@ title "Done"
 say "The report, with pictures and figures: $output/report.html"
 say "Pictures, and the same with everything resident: $output/frame-*.png, truth-*.png"
 say "Figures: $output/frames.csv (by frame), $output/summary.txt"
+say "Next: your own OpenEXR files by '-- --images FOLDER'; all that can be set by '-- --help'."

@@ -52,6 +52,7 @@ if [ "$quick" = no ]; then
 
     # Every feature off, both kinds of library; replays must decide the same in all of them.
     # What is slow has run twice by now and depends on none of this.
+    # shellcheck disable=SC2034 # read by meson_stage
     test_options=(--no-suite slow)
     off='-Dexr=disabled -Dvulkan=disabled -Dsamples=disabled'
     # shellcheck disable=SC2086 # lists of words

@@ -37,7 +37,8 @@ SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manag
 
 /**
  * The same into a file, which is written as `pPath` with ".partial" appended and gets its name when
- * the recording ends: `pPath` is complete or, after an error, as it was before. Errors: also IO.
+ * the recording ends: `pPath` is complete or, after an error, as it was before. A device or a pipe
+ * is written to as it stands. Errors: also IO.
  */
 SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager,
                                                    const char *pPath,

@@ -12,6 +12,9 @@
  *     sluiceEndStreamingFrame(streamer, commandBuffer);
  *     vkQueueSubmit: signal frame.semaphore with frame.signalValue
  *
+ * The barriers for what the streamer owns are recorded here; the application's need not name it.
+ * docs/frame-loop.md goes through it step by step, docs/examples/vulkan.c is a whole program.
+ *
  * Nothing here waits for the GPU, but for sluiceDestroyVulkanStreamer and
  * sluiceWaitVulkanStreamerIdle. Thread safety: external on the streamer and, during
  * sluiceBeginStreamingFrame, on the sparse queue.
@@ -23,15 +26,7 @@
 #include <sluice/manager.h>
 #include <sluice/replay.h>
 
-#ifndef VK_NO_PROTOTYPES
-#define SLUICE_UNDEF_VK_NO_PROTOTYPES
-#define VK_NO_PROTOTYPES
-#endif
 #include <vulkan/vulkan_core.h>
-#ifdef SLUICE_UNDEF_VK_NO_PROTOTYPES
-#undef VK_NO_PROTOTYPES
-#undef SLUICE_UNDEF_VK_NO_PROTOTYPES
-#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,11 +45,13 @@ typedef struct SluiceVulkanDeviceCapabilities {
     bool shaderResourceResidency;    ///< residency codes exist
     bool shaderResourceMinLod;       ///< the LOD clamp operand exists
     bool residencyNonResidentStrict; ///< reads of unbound texels are 0
-    uint32_t sparseQueueFamilyIndex; ///< the best that binds: without graphics if possible
+    /** The best that binds: without graphics if possible, perhaps useless for anything else. */
+    uint32_t sparseQueueFamilyIndex;
     uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
     char deviceName[256];
 } SluiceVulkanDeviceCapabilities;
 
+/** Errors: NULL_POINTER, UNSUPPORTED if pfnGetInstanceProcAddr lacks a function. */
 SLUICE_API SluiceResult
 sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
                                   PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
@@ -62,7 +59,8 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
 
 /**
  * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
- * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). Fields that the caller set stay set.
+ * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
+ * and for what else he needs, which stays set. No extension is needed. `pLog` may be NULL.
  * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
@@ -72,21 +70,21 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
 
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceVulkanStreamerCreateInfo {
-    VkInstance instance; ///< required, as all handles down to device
+    VkInstance instance; ///< required, as all handles down to device; of Vulkan 1.2
     VkPhysicalDevice physicalDevice;
     VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
     PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
     VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue
     uint32_t sparseQueueFamilyIndex;
-    uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to
+    uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to: it must compute
     SluiceResidencyMode residencyMode;
     const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
     SluiceLogCallback log;
-    uint32_t framesInFlight;       ///< 0: 3
-    uint32_t maxTextureCount;      ///< 0: 1024
+    uint32_t framesInFlight;       ///< at most 16; 0: 3
+    uint32_t maxTextureCount;      ///< at most 2^20; 0: 1024
     uint32_t texturesPerFrame;     ///< feedback maps read back per frame; 0: 10
-    uint32_t tilesPerFrame;        ///< mapped and uploaded per frame at most; 0: 256
-    uint32_t maxLoadsInFlight;     ///< 0: 4 * tilesPerFrame
+    uint32_t tilesPerFrame;        ///< mapped and uploaded per frame at most, to 2^14; 0: 256
+    uint32_t maxLoadsInFlight;     ///< at most 2^16; 0: 4 * tilesPerFrame, at least 64
     uint32_t loaderThreadCount;    ///< 0: as sluiceCreateTileLoader
     uint32_t heapTileCapacity;     ///< 0: 256
     uint32_t maxHeapCount;         ///< 0: as many as the device has memory for
@@ -98,12 +96,15 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint64_t feedbackTimeout;
     uint64_t retryDelay;     ///< in the same unit, see manager.h
     bool mapEverything;      ///< every tile is wanted always: the fully resident truth
-    uint32_t maxRegionCount; ///< feedback regions (tiles of level 0) of all textures; 0: 2^20
+    uint32_t maxRegionCount; ///< feedback regions (tiles of level 0), at most 2^28; 0: 2^20
 } SluiceVulkanStreamerCreateInfo;
 
 /**
- * Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED if the device has no mode that was asked for;
- *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
+ *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
+ *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
+ *         LIMIT_EXCEEDED if maxTextureCount or maxRegionCount need a storage buffer beyond the
+ *         device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -119,7 +120,7 @@ SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
  * waited for. For tests, offline rendering and shutdown: the next frame then sees all that was
  * asked for.
  *
- * Errors: NULL_POINTER, VULKAN, DEVICE_LOST.
+ * Errors: NULL_POINTER, OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
@@ -146,8 +147,8 @@ typedef struct SluiceVulkanTexture {
 /**
  * Creates the image of a source and starts to stream it. The format is the source's.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode; UNKNOWN_TEXTURE and
- *         STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
+ *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
  *         size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what the source says;
  *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
@@ -188,7 +189,8 @@ typedef struct SluiceStreamingFrame {
  * are not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
  *
  * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
- *         changed. OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST: the streamer can only be destroyed.
+ *         changed. OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST: the streamer can
+ *         only be destroyed.
  */
 SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                                   VkCommandBuffer commandBuffer, uint64_t timeStamp,

@@ -1,15 +1,17 @@
+#define _POSIX_C_SOURCE 200809L
 #include "replay/record_file.h"
 
 #include "base/alloc.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct slc_record_file {
     SluiceAllocationCallbacks cb;
     FILE *stream;
     char *path;      ///< owned
-    char *temporary; ///< owned
+    char *temporary; ///< owned; written until the end, as `path` if that is a device or a pipe
     size_t temporary_size;
 };
 
@@ -38,7 +40,9 @@ SluiceResult slc_record_file_open(const SluiceAllocationCallbacks *cb, const cha
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
     strcpy(file->temporary, path);
-    strcat(file->temporary, suffix);
+    struct stat status;
+    if (stat(path, &status) != 0 || S_ISREG(status.st_mode))
+        strcat(file->temporary, suffix);
     file->stream = fopen(file->temporary, "wb");
     if (!file->stream) {
         release(file);
@@ -59,8 +63,9 @@ SluiceResult slc_record_file_close(struct slc_record_file *file, bool keep)
     if (!file)
         return SLUICE_SUCCESS;
     bool written = fclose(file->stream) == 0;
-    bool named = keep && written && rename(file->temporary, file->path) == 0;
-    if (!named)
+    bool direct = strcmp(file->temporary, file->path) == 0;
+    bool named = keep && written && (direct || rename(file->temporary, file->path) == 0);
+    if (!named && !direct)
         remove(file->temporary);
     release(file);
     return named || !keep ? SLUICE_SUCCESS : SLUICE_ERROR_IO;

@@ -44,6 +44,7 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     out->shaderResourceMinLod = features.features.shaderResourceMinLod;
     out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
     out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
+    caps->max_storage_buffer_range = p->limits.maxStorageBufferRange;
     memcpy(out->deviceName, p->deviceName, sizeof out->deviceName);
     bool vulkan12 = p->apiVersion >= VK_API_VERSION_1_2;
     caps->timeline_semaphore = vulkan12 && features12.timelineSemaphore;

@@ -7,6 +7,7 @@
 struct slc_caps {
     SluiceVulkanDeviceCapabilities public;
     VkPhysicalDeviceMemoryProperties memory;
+    uint32_t max_storage_buffer_range; ///< bytes
     bool timeline_semaphore;
 };
 

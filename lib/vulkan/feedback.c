@@ -89,6 +89,8 @@ void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     slc_resolve_bind(&s->resolve, &s->vk, commands);
     for (uint32_t i = 0; i < share; i++) {
         const struct slc_texture *texture = &s->textures[next_primary(s)];
+        if (texture->added_frame == s->frame)
+            continue; /* the next frame clears what an older texture left in its regions */
         uint32_t word;
         if (!slc_readback_add(&s->readback, slot, texture->id, texture->layout.feedbackWidth,
                               texture->layout.feedbackHeight, &word))

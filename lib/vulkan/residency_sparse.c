@@ -6,7 +6,6 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
-#include "base/log.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
 #include "vulkan/sparse_image.h"
@@ -427,14 +426,8 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = create_semaphore(s);
-    if (result == SLUICE_SUCCESS) {
-        s->memory_type = slc_sparse_memory_type(s->vk, s->caps);
-        if (s->memory_type == UINT32_MAX) {
-            slc_log(&s->vk->log, SLUICE_LOG_ERROR,
-                    "%s has no device-local memory for sparse images", s->caps->public.deviceName);
-            result = SLUICE_ERROR_UNSUPPORTED;
-        }
-    }
+    if (result == SLUICE_SUCCESS)
+        result = slc_sparse_memory_type(s->vk, s->caps, &s->memory_type);
     if (result != SLUICE_SUCCESS) {
         destroy(&s->base);
         return result;

@@ -66,6 +66,12 @@ static inline float slc_twin_lod_margin(float max_anisotropy)
     return max_anisotropy > 1.0f ? 0.1875f : 0.125f;
 }
 
+static inline float slc_twin_clamp_lod_bias(float lod_bias)
+{
+    return lod_bias >= -SLC_TWIN_LOD_LIMIT ? fminf(lod_bias, SLC_TWIN_LOD_LIMIT)
+                                           : -SLC_TWIN_LOD_LIMIT;
+}
+
 static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
                                          float lod_bias, float max_anisotropy)
 {
@@ -84,7 +90,7 @@ static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twi
     }
     minor2 = fmaxf(minor2, major2 / (n * n));
     float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
-    lod += lod_bias;
+    lod += slc_twin_clamp_lod_bias(lod_bias);
     if (!(lod >= -SLC_TWIN_LOD_LIMIT))
         return -SLC_TWIN_LOD_LIMIT;
     return fminf(lod, SLC_TWIN_LOD_LIMIT);

@@ -24,18 +24,26 @@ static VkImageCreateInfo image_create_info(VkFormat format, uint32_t width, uint
         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
 }
 
-uint32_t slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps)
+SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,
+                                    uint32_t *memory_type)
 {
     VkImageCreateInfo info = image_create_info(VK_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
     VkImage image;
-    if (vk->CreateImage(vk->device, &info, NULL, &image) != VK_SUCCESS)
-        return UINT32_MAX;
+    SluiceResult result =
+        slc_vk_result(vk, vk->CreateImage(vk->device, &info, NULL, &image), "vkCreateImage");
+    if (result != SLUICE_SUCCESS)
+        return result;
     VkMemoryRequirements memory;
     vk->GetImageMemoryRequirements(vk->device, image, &memory);
     vk->DestroyImage(vk->device, image, NULL);
     /* Asked for explicitly: the first allowed type may be plain system memory. */
-    return slc_find_memory_type(&caps->memory, memory.memoryTypeBits,
-                                VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
+    *memory_type = slc_find_memory_type(&caps->memory, memory.memoryTypeBits,
+                                        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
+    if (*memory_type != UINT32_MAX)
+        return SLUICE_SUCCESS;
+    slc_log(&vk->log, SLUICE_LOG_ERROR, "%s has no device-local memory for sparse images",
+            caps->public.deviceName);
+    return SLUICE_ERROR_UNSUPPORTED;
 }
 
 /* At least what the driver will say; it may not even be asked for more than it allows. */

@@ -20,7 +20,8 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
                                      const SluiceImageInfo *info);
 void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_vk *vk);
 
-/** Device-local memory that sparse images can be bound to; UINT32_MAX if there is none. */
-uint32_t slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps);
+/** Device-local memory that sparse images can be bound to. Errors: as above. */
+SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,
+                                    uint32_t *memory_type);
 
 #endif /* SLC_VULKAN_SPARSE_IMAGE_H */

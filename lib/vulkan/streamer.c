@@ -108,15 +108,33 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
 }
 
+/* Shaders see each of the storage buffers as a whole. */
+static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
+{
+    uint64_t limit = s->caps.max_storage_buffer_range;
+    const char *setting = NULL;
+    if ((uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry) > limit)
+        setting = "maxTextureCount";
+    else if ((uint64_t)s->regions.size * slc_max_u32(4, s->info.framesInFlight) > limit)
+        setting = "maxRegionCount";
+    if (!setting)
+        return SLUICE_SUCCESS;
+    slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s needs a storage buffer beyond the %llu bytes of %s",
+            setting, (unsigned long long)limit, s->caps.public.deviceName);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
+}
+
 static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 {
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     uint64_t regions = s->regions.size;
-    SluiceResult result =
-        slc_buffer_init(&s->texture_table, &s->vk, &s->caps,
-                        (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry),
-                        usage, SLC_BUFFER_DEVICE);
+    SluiceResult result = check_buffer_sizes(s);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_buffer_init(&s->texture_table, &s->vk, &s->caps,
+                            (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry),
+                            usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
         result =
             slc_buffer_init(&s->feedback, &s->vk, &s->caps, regions * 4, usage, SLC_BUFFER_DEVICE);

@@ -44,6 +44,7 @@ struct slc_texture {
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;
     uint32_t primary_place; ///< in primaries; SLC_NONE for followers
+    uint64_t added_frame;   ///< the last one begun before; its feedback and table entry come later
     uint64_t removed_frame;
     uint32_t unit_count; ///< staging slots that name it
 

@@ -124,6 +124,7 @@ static SluiceResult build(SluiceVulkanStreamer *s, uint32_t index,
     struct slc_texture *texture = &s->textures[index];
     *texture = (struct slc_texture){.source = info->source,
                                     .primary_id = info->primaryId,
+                                    .added_frame = s->frame,
                                     .address_modes = {info->addressModeU, info->addressModeV}};
     SluiceResult result = sluiceGetImageInfo(info->source, &texture->info);
     if (result == SLUICE_SUCCESS)

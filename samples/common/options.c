@@ -154,7 +154,8 @@ static const struct option *find_option(const struct option *options, size_t opt
 
 static void explain_bad_value(const struct option *option, const char *text)
 {
-    fprintf(stderr, "--%s %s: wants %s", option->name, text, option->operand);
+    fprintf(stderr, "--%s%s%s: wants %s", option->name, *text ? " " : "", text,
+            option->operand ? option->operand : "no value");
     if (option->kind == OPTION_UINT || option->kind == OPTION_REAL || option->kind == OPTION_SIZE)
         fprintf(stderr, " from %g to %g", option->minimum, option->maximum);
     fprintf(stderr, "\n");
@@ -170,6 +171,11 @@ static bool take_operands(const struct option *option, int argc, char *const *ar
     }
     if (option->kind == OPTION_LIST) {
         struct option_list *list = option->value;
+        if (equals || list->count > 0) {
+            fprintf(stderr, "--%s: give it once, with all of %s behind it\n", option->name,
+                    option->operand);
+            return false;
+        }
         list->items = argv + *index + 1;
         for (list->count = 0; *index + 1 < argc && strncmp(argv[*index + 1], "--", 2) != 0;
              ++*index)

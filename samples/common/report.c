@@ -16,7 +16,7 @@ static const char *const style =
     "color:#222;background:#fbfaf8}h1,h2{font-weight:600}h2{margin-top:2em;font-size:1.15em}"
     "table{border-collapse:collapse}td{padding:.15em 1.2em .15em 0;border-bottom:1px solid #e3e0da}"
     "td:nth-child(2){text-align:right;font-variant-numeric:tabular-nums}"
-    "pre{background:#efece6;padding:.7em;overflow-x:auto}svg{background:#fff;border:1px solid "
+    "pre{background:#efece6;padding:.7em;white-space:pre-wrap}svg{background:#fff;border:1px solid "
     "#e3e0da}figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}"
     "figure img{max-width:480px;width:100%;display:block}figcaption{font-size:.85em;color:#555}"
     ".k{font-size:.85em;margin-right:1.2em}";
@@ -78,11 +78,12 @@ void report_begin_table(struct report *report)
     fputs("<table>\n", report->file);
 }
 
-void report_row(struct report *report, const char *name, const char *value, const char *unit)
+void report_row(struct report *report, const char *name, const char *value, const char *unit,
+                const char *meaning)
 {
-    const char *const cells[] = {name, value, unit};
+    const char *const cells[] = {name, value, unit, meaning};
     fputs("<tr>", report->file);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4 && cells[i]; i++)
         put_element(report->file, "td", cells[i]);
     fputs("</tr>\n", report->file);
 }
@@ -139,10 +140,16 @@ static void put_axes(FILE *file, const struct report_plot *plot, double maximum)
     for (double frame = 0.0; frame < (double)plot->value_count; frame += frame_step)
         fprintf(file, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.0f</text>",
                 plot_x(plot, frame), PLOT_HEIGHT - 7, frame);
+}
+
+/** Over the lines, with a rim that keeps the name readable. */
+static void put_mark(FILE *file, const struct report_plot *plot)
+{
     if (plot->mark >= 0.0)
         fprintf(file,
                 "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#999\" "
-                "stroke-dasharray=\"4 3\"/><text x=\"%.1f\" y=\"%d\">%s</text>",
+                "stroke-dasharray=\"4 3\"/><text x=\"%.1f\" y=\"%d\" stroke=\"#fff\" "
+                "stroke-width=\"4\" paint-order=\"stroke\">%s</text>",
                 plot_x(plot, plot->mark), plot_x(plot, plot->mark), MARGIN_TOP,
                 PLOT_HEIGHT - MARGIN_BOTTOM, plot_x(plot, plot->mark) + 4.0, MARGIN_TOP + 12,
                 plot->mark_name);
@@ -178,6 +185,7 @@ void report_plot(struct report *report, const struct report_plot *plot)
     put_axes(file, plot, maximum);
     for (size_t s = 0; s < plot->series_count; s++)
         put_series(file, plot, &plot->series[s], colors[s % COLOR_COUNT], maximum);
+    put_mark(file, plot);
     fputs("</svg><div>", file);
     for (size_t s = 0; s < plot->series_count; s++) {
         fprintf(file, "<span class=\"k\" style=\"color:%s\">&#9632; ", colors[s % COLOR_COUNT]);

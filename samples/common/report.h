@@ -33,9 +33,10 @@ void report_heading(struct report *report, const char *text);
 void report_text(struct report *report, const char *text);
 /** The same in fixed-width letters. */
 void report_code(struct report *report, const char *text);
-/** Rows of name, value, unit. */
+/** Rows of name, value, unit, and what it means, which may be NULL. */
 void report_begin_table(struct report *report);
-void report_row(struct report *report, const char *name, const char *value, const char *unit);
+void report_row(struct report *report, const char *name, const char *value, const char *unit,
+                const char *meaning);
 void report_end_table(struct report *report);
 void report_plot(struct report *report, const struct report_plot *plot);
 /** Pictures stand beside each other between begin and end. */

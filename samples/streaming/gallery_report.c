@@ -108,7 +108,7 @@ static void add_plots(struct report *report, const struct measure *measure, bool
     static const struct plot_line times[] = {{"frame", frame_time_value},
                                              {"the application's thread", host_time_value}};
     if (compared)
-        add_plot(report, measure, "Difference to everything resident", "dB, the top is equality",
+        add_plot(report, measure, "Difference to everything resident", "dB (equality at the top)",
                  80.0, psnr, 1);
     if (measure->counting)
         add_plot(report, measure, "Missing detail", "% of the streamed pixels", 0.0, missing, 1);
@@ -127,7 +127,7 @@ static void add_figures(struct report *report, const struct measure *measure)
         char buffer[32];
         if (!isnan(figures[i].value))
             report_row(report, figures[i].name, measure_format(figures[i].value, buffer),
-                       figures[i].unit);
+                       figures[i].unit, figures[i].meaning);
     }
     report_end_table(report);
 }
@@ -166,7 +166,7 @@ static void add_pictures(struct report *report, const struct picture_list *pictu
         snprintf(size, sizeof size, "%u x %u", pictures->pictures[i].info.width,
                  pictures->pictures[i].info.height);
         report_row(report, pictures->pictures[i].path, size,
-                   sluiceFormatString(pictures->pictures[i].info.format));
+                   sluiceFormatString(pictures->pictures[i].info.format), NULL);
     }
     report_end_table(report);
 }

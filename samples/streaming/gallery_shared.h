@@ -19,7 +19,7 @@ struct GalleryLight {
     float direction[3];
     float cosInner; /* full light within this angle */
 };
-SLUICE_SHARED_SIZE(struct GalleryLight, 32);
+SLUICE_SHARED_SIZE(struct GalleryLight, 32)
 
 /* What changes from frame to frame. */
 struct GalleryFrame {
@@ -34,7 +34,7 @@ struct GalleryFrame {
     uint latticeFrame; /* the lattice's step; GALLERY_NO_TEXTURE: random instead */
     uint highlight;    /* 1: tint what is coarser than wanted */
 };
-SLUICE_SHARED_SIZE(struct GalleryFrame, 112);
+SLUICE_SHARED_SIZE(struct GalleryFrame, 112)
 
 /* Push constants of one draw. */
 struct GalleryDraw {
@@ -47,7 +47,7 @@ struct GalleryDraw {
     float color[3];
     float reliefScale; /* texels of relief that stand for its height */
 };
-SLUICE_SHARED_SIZE(struct GalleryDraw, 48);
+SLUICE_SHARED_SIZE(struct GalleryDraw, 48)
 
 /* What the counting pass finds. */
 struct GalleryCounts {
@@ -56,6 +56,6 @@ struct GalleryCounts {
     uint missingPixels; /* pixels coarser than wanted */
     uint missingLevels; /* levels that they miss together */
 };
-SLUICE_SHARED_SIZE(struct GalleryCounts, 16);
+SLUICE_SHARED_SIZE(struct GalleryCounts, 16)
 
 #endif

@@ -44,43 +44,43 @@ static bool is_written(const struct walk *walk, uint32_t frame)
     }
 }
 
-static bool write_picture(const struct walk *walk, const struct view *view, bool truth,
+static bool write_picture(const struct walk *walk, const uint8_t *pixels, bool truth,
                           uint32_t frame)
 {
     const struct settings *settings = &walk->gallery->settings;
     char path[4096];
     gallery_report_picture_path(settings->output, truth, frame, path, sizeof path);
-    return png_file_write(path, view_pixels(view, frame % VIEW_FRAMES_IN_FLIGHT), settings->size[0],
-                          settings->size[1]);
+    return png_file_write(path, pixels, settings->size[0], settings->size[1]);
 }
 
 /** Waits for a frame that was submitted earlier and looks at what came out. */
 static bool collect_frame(struct walk *walk, uint32_t frame)
 {
     struct gallery *gallery = walk->gallery;
+    const struct view *streamed = &gallery->streamed, *truth = &gallery->truth;
     struct frame_record *record = &walk->measure->frames[frame];
     uint32_t slot = frame % VIEW_FRAMES_IN_FLIGHT;
-    bool compare = gallery->settings.compare;
-    if (!view_wait(&gallery->streamed, slot))
+    if (!view_wait(streamed, slot))
         return false;
-    record->gpu_seconds = view_gpu_seconds(&gallery->streamed, slot);
-    record->counts = view_counts(&gallery->streamed, slot);
+    record->gpu_seconds = view_gpu_seconds(streamed, slot);
+    record->counts = view_counts(streamed, slot);
     record->psnr = NAN;
-    if (compare) {
-        uint32_t truth_slot =
-            (gallery->truth.frame_index - (gallery->streamed.frame_index - frame)) %
-            VIEW_FRAMES_IN_FLIGHT;
-        if (!view_wait(&gallery->truth, truth_slot) ||
-            sluiceComputePsnr8(view_pixels(&gallery->streamed, slot),
-                               view_pixels(&gallery->truth, truth_slot), gallery->target.width,
-                               gallery->target.height, 4, &record->psnr) != SLUICE_SUCCESS)
+    const uint8_t *pixels = view_pixels(streamed, slot), *truth_pixels = NULL;
+    if (gallery->settings.compare) {
+        /* The truth has drawn more frames: those in which it was filled. */
+        uint32_t ago = streamed->frame_index - frame;
+        uint32_t truth_slot = (truth->frame_index - ago) % VIEW_FRAMES_IN_FLIGHT;
+        truth_pixels = view_pixels(truth, truth_slot);
+        if (!view_wait(truth, truth_slot) ||
+            sluiceComputePsnr8(pixels, truth_pixels, gallery->target.width, gallery->target.height,
+                               4, &record->psnr) != SLUICE_SUCCESS)
             return false;
     }
     if (!is_written(walk, frame))
         return true;
     walk->written_frames[walk->written_count++] = frame;
-    return write_picture(walk, &gallery->streamed, false, frame) &&
-           (!compare || write_picture(walk, &gallery->truth, true, frame));
+    return write_picture(walk, pixels, false, frame) &&
+           (!truth_pixels || write_picture(walk, truth_pixels, true, frame));
 }
 
 /** Draws one frame, in both views if they are compared. */
@@ -174,6 +174,10 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
         measure_print_text(figures, figure_count);
     if (written && !settings->json)
         printf("pictures, frames.csv and report.html are in %s\n", settings->output);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        perror("the figures could not be written");
+        return false;
+    }
     return written;
 }
 

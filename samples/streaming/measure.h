@@ -32,6 +32,7 @@ struct figure {
     const char *name;
     double value; ///< NaN: there is none
     const char *unit;
+    const char *meaning; ///< for the report
 };
 
 #define MEASURE_MAX_FIGURES 24

@@ -62,7 +62,7 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_UINT, "textures-per-frame", "N", &s->textures_per_frame,
          "feedback maps read back per frame", 1, 65536},
         {OPTION_UINT, "tiles-per-frame", "N", &s->tiles_per_frame,
-         "tiles mapped and uploaded per frame at most", 1, 65536},
+         "tiles mapped and uploaded per frame at most", 1, 8192},
         {OPTION_REAL, "timeout", "SECONDS", &s->timeout, "tiles not wanted for so long are let go",
          0.001, 86400},
         {OPTION_UINT, "standby", "N", &s->standby, "tiles kept although unwanted", 0, 4294967295.0},
@@ -94,6 +94,10 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     };
     enum option_outcome outcome =
         options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
+    if (outcome == OPTIONS_RUN && (s->samples & (s->samples - 1))) {
+        fprintf(stderr, "--samples %u: wants 1, 2, 4 or 8\n", s->samples);
+        return OPTIONS_ERROR;
+    }
     if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
         s->rest_frames = s->frames - 1;
     return outcome;

@@ -31,6 +31,19 @@ check() { # name, figure, condition
 }
 
 failed=0
+
+# What cannot be meant is refused before anything is done.
+refuse() {
+    status=0
+    "$streaming" --output "$folder/refused" "$@" >/dev/null 2>&1 || status=$?
+    [ "$status" -eq 2 ] || { echo "not refused: $*" >&2; failed=1; }
+}
+refuse --images="$folder"
+refuse --images "$folder" --images "$folder"
+refuse --samples 3
+refuse --tiles-per-frame 16385
+[ ! -e "$folder/refused" ] || failed=1
+
 walk compared --frames 60 --rest-frames 30 --compare --validation
 if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/compared.log"; then
     echo "there are no validation layers: walking without them" >&2

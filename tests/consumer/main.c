@@ -5,6 +5,7 @@
 #endif
 #ifdef WITH_VULKAN
 #include <sluice/vulkan.h>
+#include <vulkan/vulkan.h> /* behind it: the application's Vulkan is as it was */
 #endif
 
 #include <stdio.h>
@@ -23,6 +24,7 @@ int main(void)
         return 3;
 #endif
 #ifdef WITH_VULKAN
+    (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */
     sluiceDestroyVulkanStreamer(NULL);
 #endif
     printf("sluice %d.%d.%d\n", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR, SLUICE_VERSION_PATCH);

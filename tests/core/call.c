@@ -1,6 +1,8 @@
 #include "core/call.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const char *const names[CALL_KIND_COUNT] = {
     [CALL_SET_CONFIG] = "SetConfig",
@@ -63,25 +65,43 @@ static SluiceResult make_list_call(SluiceStreamedTextureManager *m, const struct
     }
 }
 
+/* In memory of exactly that size, so that reading beyond it is seen. */
+static void *exact_copy(const void *data, size_t size)
+{
+    void *copy = malloc(size ? size : 1);
+    if (!copy)
+        abort();
+    return memcpy(copy, data, size);
+}
+
 static SluiceResult make_answer(SluiceStreamedTextureManager *m, const struct call *c)
 {
-    const uint32_t *indices = c->null == NULL_FIRST ? NULL : c->indices;
+    SluiceResult result;
+    uint32_t *copy = exact_copy(c->indices, c->count * sizeof *copy);
+    const uint32_t *indices = c->null == NULL_FIRST ? NULL : copy;
     if (c->kind == CALL_MAPPED)
-        return sluiceUpdateTilesMapping(m, c->texture, c->count, indices);
-    if (c->kind == CALL_FAILED)
-        return sluiceReportFailedTiles(m, c->texture, c->count, indices, c->time);
-    return sluiceReportCancelledTiles(m, c->texture, c->count, indices, c->retire);
+        result = sluiceUpdateTilesMapping(m, c->texture, c->count, indices);
+    else if (c->kind == CALL_FAILED)
+        result = sluiceReportFailedTiles(m, c->texture, c->count, indices, c->time);
+    else
+        result = sluiceReportCancelledTiles(m, c->texture, c->count, indices, c->retire);
+    free(copy);
+    return result;
 }
 
 static SluiceResult make_feedback(SluiceStreamedTextureManager *m, const struct call *c)
 {
-    SluiceFeedbackDesc desc = {.pMinMip = c->null_map ? NULL : c->map,
+    uint64_t size = (uint64_t)c->map_width * c->map_height;
+    uint8_t *copy = exact_copy(c->map, size < CALL_MAX_MAP ? (size_t)size : CALL_MAX_MAP);
+    SluiceFeedbackDesc desc = {.pMinMip = c->null_map ? NULL : copy,
                                .width = c->map_width,
                                .height = c->map_height,
                                .mipBias = c->bias,
                                .streamedMipLevels = c->streamed_levels};
-    return sluiceUpdateWithSamplerFeedback(m, c->texture, c->null == NULL_FIRST ? NULL : &desc,
-                                           c->time, c->timeout);
+    SluiceResult result = sluiceUpdateWithSamplerFeedback(
+        m, c->texture, c->null == NULL_FIRST ? NULL : &desc, c->time, c->timeout);
+    free(copy);
+    return result;
 }
 
 static SluiceResult make_add(SluiceStreamedTextureManager *m, const struct call *c,

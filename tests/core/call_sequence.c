@@ -278,6 +278,20 @@ static void make_answer(struct call_sequence *s, struct naive_manager *n, struct
     call->indices[call->count++] = index;
 }
 
+/* Empty, or reaching out of the map. */
+static void spoil_rect(struct choice *c, SluiceMinMipRect *r)
+{
+    const uint32_t value = choice_once_in(c, 2) ? UINT32_MAX : r->width + r->height + 1000;
+    switch (choice_below(c, 6)) {
+    case 0: r->width = 0; break;
+    case 1: r->height = 0; break;
+    case 2: r->width = value; break;
+    case 3: r->height = value; break;
+    case 4: r->x = value; break;
+    default: r->y = value; break;
+    }
+}
+
 static void make_write(struct call_sequence *s, struct naive_manager *n, struct call *call)
 {
     struct choice *c = &s->choice;
@@ -296,7 +310,7 @@ static void make_write(struct call_sequence *s, struct naive_manager *n, struct 
         r.width = choice_range(c, 1, r.width - r.x);
         r.height = choice_range(c, 1, r.height - r.y);
         if (mistake(s))
-            r.width = choice_once_in(c, 2) ? UINT32_MAX : r.width + (t ? t->layout.minMipWidth : 1);
+            spoil_rect(c, &r);
     }
     call->rect = r;
     call->pitch = r.width + (choice_once_in(c, 2) ? 0 : choice_below(c, 5));

@@ -338,10 +338,39 @@ static void check_count_is_kept(struct differential *d)
         fail(d, "the failed call changed the count to %" PRIu32, d->seen.count);
 }
 
+/* The entry behind the room of a list, which nobody may write. */
+static void *entry_behind(struct differential *d, size_t *size)
+{
+    struct outcome *out = &d->seen;
+    const uint32_t room = d->call.room;
+    *size = 0;
+    if (!call_is_list(d->call.kind) || room >= CALL_MAX_ROOM)
+        return NULL;
+    switch (d->call.kind) {
+    case CALL_DEFRAGMENT: *size = sizeof out->moves[0]; return &out->moves[room];
+    case CALL_EMPTY_HEAPS: *size = sizeof out->heaps[0]; return &out->heaps[room];
+    case CALL_MINMIP_UPDATES: *size = sizeof out->rects[0]; return &out->rects[room];
+    default: *size = sizeof out->tiles[0]; return &out->tiles[room];
+    }
+}
+
+static void check_behind(struct differential *d)
+{
+    size_t size;
+    const uint8_t *bytes = entry_behind(d, &size);
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i] != 0xEE)
+            fail(d, "more was written than there was room for");
+}
+
 /* Makes d->call, alone. Returns whether memory was refused. */
 static bool make_call(struct differential *d)
 {
     const struct call *call = &d->call;
+    size_t size;
+    void *behind = entry_behind(d, &size);
+    if (behind)
+        memset(behind, 0xEE, size);
     memset(d->seen.bytes, 0xEE, row_bytes(call));
     if (call->refuse_after != UINT64_MAX)
         d->allocator.refuse_from = d->allocator.calls + call->refuse_after;
@@ -351,6 +380,7 @@ static bool make_call(struct differential *d)
     d->coverage[call->kind][(d->seen.result + 32) & 63]++;
     if (d->seen.result < 0)
         check_count_is_kept(d);
+    check_behind(d);
     return refused;
 }
 

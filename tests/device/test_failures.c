@@ -347,6 +347,27 @@ static void wrong_arguments_are_refused_and_change_nothing(void **state)
     harness_check_silence(h);
 }
 
+static void storage_buffers_beyond_the_device_limit_are_refused(void **state)
+{
+    struct harness *h = *state;
+    VkPhysicalDeviceProperties properties;
+    h->GetPhysicalDeviceProperties(h->physical_device, &properties);
+    if (properties.limits.maxStorageBufferRange >= 1u << 30)
+        SKIP_TEST("the device has room for the largest buffer that can be asked for");
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount =
+                                               properties.limits.maxStorageBufferRange / 4 + 4};
+    harness_fill(h, &info);
+    SluiceVulkanStreamer *streamer;
+    h->quiet = true;
+    CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_LIMIT_EXCEEDED);
+    info.maxRegionCount = 1 << 10;
+    info.maxTextureCount = properties.limits.maxStorageBufferRange / 64 + 1;
+    SluiceResult result = sluiceCreateVulkanStreamer(&info, &streamer);
+    assert_true(result == SLUICE_ERROR_LIMIT_EXCEEDED || result == SLUICE_ERROR_INVALID_ARGUMENT);
+    h->quiet = false;
+    harness_check_silence(h);
+}
+
 static void image_beyond_the_sparse_address_space_is_refused(void **state)
 {
     struct harness *h = *state;
@@ -414,6 +435,7 @@ int main(void)
         cmocka_unit_test(creation_survives_every_allocation_failure),
         cmocka_unit_test(adding_and_streaming_survive_every_allocation_failure),
         cmocka_unit_test(wrong_arguments_are_refused_and_change_nothing),
+        cmocka_unit_test(storage_buffers_beyond_the_device_limit_are_refused),
         cmocka_unit_test(image_beyond_the_sparse_address_space_is_refused),
         cmocka_unit_test(begin_refuses_time_that_goes_back_and_too_many_frames),
     };

@@ -4,6 +4,7 @@
 
 #include "support/test.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -118,6 +119,27 @@ static void lattice_settles_a_picture_in_seventy_frames(void **state)
     compare_with_truth(*state, 2048, 2048, 1, true, 74);
 }
 
+/* The device clamps the bias of an implicit sample, at maxSamplerLodBias, which may be as low as 2.
+ */
+static void any_lod_bias_shows_only_what_is_there(void **state)
+{
+    const float biases[] = {20, 40, 1e30f, INFINITY, -20, -40, -1e30f, -INFINITY, NAN};
+    const double heights[] = {1e-8, 1e-6, 1e-3, 1, 1e3};
+    for (uint32_t b = 0; b < sizeof biases / sizeof biases[0]; b++) {
+        struct picture p;
+        picture_init(&p, *state, false, 2048, 2048, 1);
+        for (uint32_t i = 0; i < sizeof heights / sizeof heights[0]; i++) {
+            look(&p, 0, 0, heights[i], 1.0 / 100, biases[b]);
+            for (uint32_t frame = 0; frame < 4; frame++) {
+                frames(&p, 1);
+                check_levels(&p);
+            }
+        }
+        assert_int_equal(scene_non_resident(&p.scene), 0);
+        picture_finish(&p);
+    }
+}
+
 static void moving_camera_never_shows_what_is_not_there(void **state)
 {
     struct harness *h = *state;
@@ -145,6 +167,7 @@ int main(void)
         cmocka_unit_test(settled_trilinear_picture_is_that_of_a_resident_texture),
         cmocka_unit_test(settled_anisotropic_picture_is_that_of_a_resident_texture),
         cmocka_unit_test(lattice_settles_a_picture_in_seventy_frames),
+        cmocka_unit_test(any_lod_bias_shows_only_what_is_there),
         cmocka_unit_test(moving_camera_never_shows_what_is_not_there),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

@@ -87,6 +87,40 @@ static void churn(struct harness *h, float anisotropy, uint32_t frame_count)
     scene_finish(&scene);
 }
 
+static void far_coordinates_touch_nothing_that_is_not_there(void **state)
+{
+    const float far[] = {1e3f, 262144.0f, 1e6f, -1e6f, 1e7f, 1e9f, -1e18f, 1e30f, 3e38f};
+    const VkSamplerAddressMode modes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                          VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+                                          VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    const struct scene_aim corner = {0.01, 0.01, 0.02, 0.02, 0.2, 0.3, 0, 0};
+    struct scene scene;
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    uint32_t textures[6];
+    for (uint32_t i = 0; i < 6; i++) {
+        uint32_t size = i < 3 ? 2048 : 1500;
+        textures[i] = scene_add_as(
+            &scene, pattern_source(PATTERN_LEVEL, size, size, SLUICE_FORMAT_R8G8B8A8_UNORM),
+            modes[i % 3], modes[i % 3], 1, SLUICE_NO_TEXTURE);
+        scene_aim(&scene, textures[i], 64, &corner);
+    }
+    scene_settle(&scene, 14);
+    assert_int_equal(scene_missing(&scene), 0);
+    for (uint32_t f = 0; f < sizeof far / sizeof far[0]; f++) {
+        for (uint32_t i = 0; i < 6; i++) {
+            scene.textures[textures[i]].no_feedback = true; /* only the corner stays resident */
+            scene_aim(&scene, textures[i], 64, &corner);
+            struct ProbeInput *inputs = scene_inputs(&scene, textures[i]);
+            for (uint32_t j = 0; j < 64; j++)
+                inputs[j].uv[0] += far[f], inputs[j].uv[1] += far[f];
+        }
+        scene_settle(&scene, 1);
+        scene_check_levels(&scene);
+        assert_int_equal(scene_non_resident(&scene), 0);
+    }
+    scene_finish(&scene);
+}
+
 static void thousand_trilinear_frames_touch_nothing_that_is_not_there(void **state)
 {
     srand(21);
@@ -110,6 +144,7 @@ int main(void)
     if (status)
         return status;
     struct CMUnitTest tests[] = {
+        cmocka_unit_test(far_coordinates_touch_nothing_that_is_not_there),
         cmocka_unit_test(thousand_trilinear_frames_touch_nothing_that_is_not_there),
         cmocka_unit_test(anisotropic_frames_touch_nothing_that_is_not_there),
     };

@@ -1,9 +1,13 @@
+#define _POSIX_C_SOURCE 200809L
 #include "random_app.h"
 
 #include "support/test.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static bool exists(const char *path)
 {
@@ -158,6 +162,31 @@ static void path_that_cannot_be_written_is_an_error(void **state)
     random_app_finish(&app);
 }
 
+static void pipe_is_written_to_and_not_replaced(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder.pipe";
+    remove(path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    int reader = open(path, O_RDWR); /* so that nobody waits for the other end */
+    assert_true(reader >= 0);
+    struct random_app app;
+    SluiceRecorder *recorder;
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceBeginRecordingToFile(app.manager, path, NULL, &recorder));
+    random_app_run(&app, 3);
+    CHECK_OK(sluiceEndRecording(recorder));
+    random_app_finish(&app);
+    struct stat status;
+    assert_int_equal(stat(path, &status), 0);
+    assert_true(S_ISFIFO(status.st_mode));
+    char magic[4] = {0};
+    assert_int_equal(read(reader, magic, 4), 4);
+    close(reader);
+    assert_int_equal(remove(path), 0);
+    assert_false(exists("test_recorder.pipe.partial"));
+}
+
 static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
@@ -200,6 +229,7 @@ int main(void)
         cmocka_unit_test(file_appears_when_the_recording_ends),
         cmocka_unit_test(file_of_a_failed_recording_stays_away),
         cmocka_unit_test(path_that_cannot_be_written_is_an_error),
+        cmocka_unit_test(pipe_is_written_to_and_not_replaced),
         cmocka_unit_test(wrong_arguments_are_refused),
     };
     return RUN_TESTS(tests);

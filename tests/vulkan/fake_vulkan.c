@@ -19,6 +19,19 @@ static struct fake_vulkan *fake_of(void *handle)
     return handle;
 }
 
+/* Counts the calls of functions that may fail. */
+static VkResult next_call(struct fake_vulkan *fake)
+{
+    return ++fake->calls == fake->failing_call ? fake->failure : VK_SUCCESS;
+}
+
+#define MAY_FAIL(handle)                                                                           \
+    do {                                                                                           \
+        VkResult status = next_call(fake_of(handle));                                              \
+        if (status != VK_SUCCESS)                                                                  \
+            return status;                                                                         \
+    } while (0)
+
 static void *make(struct fake_vulkan *fake, uint64_t size)
 {
     struct fake_object *object = calloc(1, sizeof *object);
@@ -44,6 +57,7 @@ static void drop(struct fake_vulkan *fake, void *object)
     {                                                                                              \
         (void)info;                                                                                \
         (void)cb;                                                                                  \
+        MAY_FAIL(device);                                                                          \
         *out = make(fake_of(device), 0);                                                           \
         return VK_SUCCESS;                                                                         \
     }                                                                                              \
@@ -79,7 +93,8 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
     properties->properties =
         (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
                                      .deviceName = "fake",
-                                     .limits.sparseAddressSpaceSize = 1ull << 40};
+                                     .limits = {.sparseAddressSpaceSize = 1ull << 40,
+                                                .maxStorageBufferRange = 1u << 27}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
@@ -130,6 +145,7 @@ static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkF
 static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImageCreateInfo *info,
                                                    const VkAllocationCallbacks *cb, VkImage *image)
 {
+    MAY_FAIL(device);
     (void)cb;
     struct fake_object *object = make(fake_of(device), 0);
     object->extent = info->extent;
@@ -177,6 +193,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBuf
                                                     const VkAllocationCallbacks *cb,
                                                     VkBuffer *buffer)
 {
+    MAY_FAIL(device);
     (void)cb;
     *buffer = make(fake_of(device), info->size);
     return VK_SUCCESS;
@@ -200,6 +217,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
                                                const VkAllocationCallbacks *cb,
                                                VkDeviceMemory *memory)
 {
+    MAY_FAIL(device);
     (void)cb;
     struct fake_vulkan *fake = fake_of(device);
     struct fake_object *object = make(fake, info->allocationSize);
@@ -222,6 +240,7 @@ static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory me
 static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buffer,
                                                   VkDeviceMemory memory, VkDeviceSize offset)
 {
+    MAY_FAIL(device);
     (void)device, (void)offset;
     OBJECT(buffer)->memory = memory; /* the object, whose memory comes when it is mapped */
     return VK_SUCCESS;
@@ -231,6 +250,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory
                                                  VkDeviceSize offset, VkDeviceSize size,
                                                  VkMemoryMapFlags flags, void **data)
 {
+    MAY_FAIL(device);
     (void)device, (void)offset, (void)size, (void)flags;
     OBJECT(memory)->memory = calloc(1, OBJECT(memory)->size);
     *data = OBJECT(memory)->memory;
@@ -242,6 +262,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_semaphore(VkDevice device,
                                                        const VkAllocationCallbacks *cb,
                                                        VkSemaphore *semaphore)
 {
+    MAY_FAIL(device);
     (void)info, (void)cb;
     *semaphore = make(fake_of(device), 0);
     return VK_SUCCESS;
@@ -257,6 +278,7 @@ static VKAPI_ATTR void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore
 static VKAPI_ATTR VkResult VKAPI_CALL counter_value(VkDevice device, VkSemaphore semaphore,
                                                     uint64_t *value)
 {
+    MAY_FAIL(device);
     struct fake_vulkan *fake = fake_of(device);
     /* until the first bind tells which one is its, both stand at 0 */
     bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
@@ -269,6 +291,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
                                                       const VkSemaphoreWaitInfo *info,
                                                       uint64_t timeout)
 {
+    MAY_FAIL(device);
     (void)device, (void)info, (void)timeout;
     return VK_SUCCESS;
 }
@@ -298,6 +321,7 @@ static void note_tiles(struct fake_vulkan *fake, VkImage image, const VkSparseIm
 static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
                                                   const VkBindSparseInfo *info, VkFence fence)
 {
+    MAY_FAIL(queue);
     (void)fence;
     struct fake_vulkan *fake = fake_of(queue);
     assert_int_equal(count, 1);
@@ -351,6 +375,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
                                                     const VkDescriptorSetAllocateInfo *info,
                                                     VkDescriptorSet *sets)
 {
+    MAY_FAIL(device);
     (void)info;
     sets[0] = (VkDescriptorSet)fake_of(device); /* never looked at */
     return VK_SUCCESS;
@@ -362,6 +387,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipeli
                                                        const VkAllocationCallbacks *cb,
                                                        VkPipeline *pipelines)
 {
+    MAY_FAIL(device);
     (void)cache, (void)infos, (void)cb, (void)count;
     pipelines[0] = make(fake_of(device), 0);
     return VK_SUCCESS;

@@ -42,6 +42,10 @@ struct fake_vulkan {
     uint32_t bind_count, copy_count, destroyed_count, bind_calls;
     bool published; ///< copies to images are over: MinMip maps were copied
 
+    /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
+    uint64_t calls, failing_call;
+    VkResult failure;
+
     uint64_t live_objects; ///< created and not destroyed
     uint64_t live_memory;  ///< bytes
 

@@ -309,6 +309,35 @@ static void promises_hold_with_room_for_everything(void **state)
     run(2, 256, 0, 44);
 }
 
+/* Its regions still hold what was asked of a texture that is gone; they are cleared by the next. */
+static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
+{
+    (void)state;
+    static struct model model; /* large */
+    struct model *m = &model;
+    *m = (struct model){.fake = {.tail_page_count = 1, .want = want, .user = m}};
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .feedbackTimeout = 2};
+    fake_vulkan_fill(&m->fake, &info);
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    for (uint64_t i = 1; i <= 3; i++) {
+        SluiceStreamingFrame frame;
+        VkCommandBuffer commands = fake_vulkan_commands(&m->fake);
+        CHECK_OK(sluiceBeginStreamingFrame(m->streamer, commands, i, &frame));
+        if (i == 1)
+            model_add(m);
+        CHECK_OK(sluiceEndStreamingFrame(m->streamer, commands));
+        m->fake.frame_semaphore = frame.semaphore;
+        m->fake.frame_value = frame.signalValue;
+        SluiceVulkanStreamerStatistics stats;
+        sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
+        assert_int_equal(stats.feedbackMaps,
+                         i == 3); /* of the second frame, heard of in the third */
+    }
+    sluiceDestroyVulkanStreamer(m->streamer);
+    sluiceDestroyImageSource(m->textures[0].source);
+    assert_int_equal(m->fake.live_objects, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +345,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_a_tail_of_one_page),
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
         cmocka_unit_test(promises_hold_with_room_for_everything),
+        cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),
     };
     return RUN_TESTS(tests);
 }

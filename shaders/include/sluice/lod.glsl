@@ -19,6 +19,12 @@ float sluiceClampAnisotropy(float maxAnisotropy)
     return maxAnisotropy > 1.0 ? min(maxAnisotropy, 16.0) : 1.0;
 }
 
+/** The LOD bias that counts: -32 to 32, -32 for NaN. */
+float sluiceClampLodBias(float lodBias)
+{
+    return lodBias >= -SLUICE_LOD_LIMIT ? min(lodBias, SLUICE_LOD_LIMIT) : -SLUICE_LOD_LIMIT;
+}
+
 /** How far the sampler's level may lie below the computed one. */
 float sluiceLodMargin(float maxAnisotropy)
 {
@@ -45,7 +51,7 @@ float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     }
     minor2 = max(minor2, major2 / (n * n));
     float lod = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
-    lod += lodBias;
+    lod += sluiceClampLodBias(lodBias);
     if (!(lod >= -SLUICE_LOD_LIMIT))
         return -SLUICE_LOD_LIMIT;
     return min(lod, SLUICE_LOD_LIMIT);

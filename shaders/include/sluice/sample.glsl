@@ -20,6 +20,9 @@
 #define SLUICE_FALLBACK_COLOR vec4(0.5, 0.5, 0.5, 1.0)
 #endif
 
+/* Samplers clamp the bias of implicit samples; each device takes at least this (maxSamplerLodBias). */
+#define SLUICE_MAX_IMPLICIT_LOD_BIAS 2.0
+
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
@@ -93,7 +96,7 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
                     : sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
     s.level = s.wantedLevel;
-    float biasScale = exp2(clamp(lodBias, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT));
+    float biasScale = exp2(sluiceClampLodBias(lodBias));
     s.dx = clamped ? vec2(0.0) : dx * biasScale;
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
@@ -169,7 +172,7 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
     /* The quad decides as one, because implicit derivatives need all of it. */
-    if (!sluiceAnyInQuad(!s.plain))
+    if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
         return texture(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;

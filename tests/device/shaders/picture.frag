@@ -2,7 +2,7 @@
  * A textured floor up to the horizon, sampled with the fragments' own derivatives. Colours and
  * checks go to a buffer, so that no rounding hides a difference.
  */
-#version 460
+#version 450
 #extension GL_GOOGLE_include_directive : require
 
 #include "sluice/shared/texture_table.h"

@@ -1,5 +1,5 @@
 /* One triangle over the whole target. */
-#version 460
+#version 450
 
 void main()
 {

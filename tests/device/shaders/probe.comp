@@ -1,5 +1,5 @@
 /* Samples, writes feedback and checks residency at given places. Built with and without PROBE_CODES. */
-#version 460
+#version 450
 #extension GL_GOOGLE_include_directive : require
 
 #include "sluice/shared/texture_table.h"

@@ -26,7 +26,7 @@ struct ProbeInput {
     float lodBias;
     float maxAnisotropy;
 };
-SLUICE_SHARED_SIZE(struct ProbeInput, 32);
+SLUICE_SHARED_SIZE(struct ProbeInput, 32)
 
 struct ProbeOutput {
     float color[4];
@@ -38,7 +38,7 @@ struct ProbeOutput {
     uint footprint[6]; /* of samples: the bits of dx and dy that textureGrad gets */
     uint reserved;
 };
-SLUICE_SHARED_SIZE(struct ProbeOutput, 64);
+SLUICE_SHARED_SIZE(struct ProbeOutput, 64)
 
 struct ProbeParams {
     uint tableIndex;
@@ -46,6 +46,6 @@ struct ProbeParams {
     uint count;
     uint flags;
 };
-SLUICE_SHARED_SIZE(struct ProbeParams, 16);
+SLUICE_SHARED_SIZE(struct ProbeParams, 16)
 
 #endif

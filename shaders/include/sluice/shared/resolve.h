@@ -11,6 +11,6 @@ struct SluiceResolveParams {
     uint regionCount;
     uint resolvedOffset; /* first word in the readback buffer; four regions per word */
 };
-SLUICE_SHARED_SIZE(struct SluiceResolveParams, 12);
+SLUICE_SHARED_SIZE(struct SluiceResolveParams, 12)
 
 #endif

@@ -40,6 +40,6 @@ struct SluiceTextureEntry {
     uint flags;
     uint reserved[3];
 };
-SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 64);
+SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 64)
 
 #endif

@@ -1,4 +1,7 @@
-/* What lets one header be read by C and by GLSL: only 32-bit scalars and arrays of them. */
+/*
+ * What lets one header be read by C and by GLSL: only 32-bit scalars and arrays of them.
+ * SLUICE_SHARED_SIZE brings its own semicolon, because GLSL before 4.60 takes none on its own.
+ */
 #ifndef SLUICE_SHARED_TYPES_H
 #define SLUICE_SHARED_TYPES_H
 
@@ -6,7 +9,7 @@
 #include <assert.h>
 #include <stdint.h>
 typedef uint32_t uint;
-#define SLUICE_SHARED_SIZE(type, size) static_assert(sizeof(type) == (size), #type)
+#define SLUICE_SHARED_SIZE(type, size) static_assert(sizeof(type) == (size), #type);
 #else
 #define SLUICE_SHARED_SIZE(type, size)
 #endif

@@ -1,0 +1,374 @@
+/*
+ * Streams one procedural texture into a compute shader (vulkan.comp): everything that a renderer
+ * does for Sluice, without the rest of a renderer. Exit status 77: no device can stream.
+ */
+#include <sluice/vulkan.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "vulkan_comp.h" /* the SPIR-V */
+
+#define FRAME_COUNT 8
+
+struct answer {              /* as in vulkan.comp */
+    uint32_t missing_levels; /* 255: nothing is there yet */
+    uint32_t padding[3];
+    float color[4];
+};
+
+struct app {
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    VkQueue queue;
+    uint32_t family;
+    SluiceVulkanStreamer *streamer;
+    SluiceVulkanTexture texture;
+    VkBuffer answer_buffer;
+    VkDeviceMemory answer_memory;
+    struct answer *answer; /* mapped */
+    VkSampler sampler;
+    VkDescriptorSetLayout set_layout;
+    VkDescriptorPool set_pool;
+    VkDescriptorSet set;
+    VkPipelineLayout pipeline_layout;
+    VkPipeline pipeline;
+    VkCommandPool command_pool;
+    VkCommandBuffer commands;
+};
+
+static void check(bool good, const char *what)
+{
+    if (!good) {
+        fprintf(stderr, "%s failed\n", what);
+        exit(1);
+    }
+}
+#define VK(call) check((call) == VK_SUCCESS, #call)
+#define SLUICE(call) check((call) == SLUICE_SUCCESS, #call)
+
+static void print_message(void *pUserData, SluiceLogSeverity severity, const char *pMessage)
+{
+    (void)pUserData, (void)severity;
+    fprintf(stderr, "%s\n", pMessage);
+}
+static const SluiceLogCallback log_callback = {NULL, print_message};
+
+/* One family that draws and binds is simplest. Where they differ, create a queue of each. */
+static bool choose_family(struct app *app)
+{
+    VkQueueFamilyProperties families[16];
+    uint32_t count = 16;
+    vkGetPhysicalDeviceQueueFamilyProperties(app->physical_device, &count, families);
+    const VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT;
+    for (app->family = 0; app->family < count; app->family++)
+        if ((families[app->family].queueFlags & wanted) == wanted)
+            return true;
+    return false;
+}
+
+/** The first device that can stream; on success `*features`, `*vulkan12` are what it must have. */
+static bool choose_device(struct app *app, VkPhysicalDeviceFeatures *features,
+                          VkPhysicalDeviceVulkan12Features *vulkan12)
+{
+    VkPhysicalDevice devices[16];
+    uint32_t count = 16;
+    if (vkEnumeratePhysicalDevices(app->instance, &count, devices) < 0)
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        app->physical_device = devices[i];
+        if (sluiceRequireVulkanFeatures(app->instance, devices[i], vkGetInstanceProcAddr,
+                                        &log_callback, features, vulkan12) == SLUICE_SUCCESS &&
+            choose_family(app))
+            return true;
+    }
+    return false;
+}
+
+static void create_device(struct app *app)
+{
+    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                     .apiVersion = VK_API_VERSION_1_2};
+    VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                     .pApplicationInfo = &application};
+    VK(vkCreateInstance(&instance, NULL, &app->instance));
+
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &vulkan12};
+    if (!choose_device(app, &features.features, &vulkan12))
+        exit(77);
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                     .queueFamilyIndex = app->family,
+                                     .queueCount = 1,
+                                     .pQueuePriorities = &priority};
+    VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                 .pNext = &features,
+                                 .queueCreateInfoCount = 1,
+                                 .pQueueCreateInfos = &queue};
+    VK(vkCreateDevice(app->physical_device, &device, NULL, &app->device));
+    vkGetDeviceQueue(app->device, app->family, 0, &app->queue);
+}
+
+static void create_streamer(struct app *app, SluiceImageSource *source)
+{
+    SluiceVulkanStreamerCreateInfo info = {.instance = app->instance,
+                                           .physicalDevice = app->physical_device,
+                                           .device = app->device,
+                                           .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                           .sparseQueue = app->queue,
+                                           .sparseQueueFamilyIndex = app->family,
+                                           .queueFamilyIndex = app->family,
+                                           .log = log_callback,
+                                           .feedbackTimeout = 20}; /* frames: see draw_frame */
+    SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
+    SluiceVulkanTextureCreateInfo texture = {.source = source};
+    SLUICE(sluiceAddVulkanTexture(app->streamer, &texture, &app->texture));
+}
+
+static uint32_t find_host_memory(const struct app *app, uint32_t type_bits)
+{
+    const VkMemoryPropertyFlags wanted =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    VkPhysicalDeviceMemoryProperties memory;
+    vkGetPhysicalDeviceMemoryProperties(app->physical_device, &memory);
+    for (uint32_t i = 0; i < memory.memoryTypeCount; i++)
+        if ((type_bits >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted)
+            return i;
+    check(false, "finding host memory");
+    return 0;
+}
+
+static void create_answer(struct app *app)
+{
+    VkBufferCreateInfo buffer = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                 .size = sizeof(struct answer),
+                                 .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+    VK(vkCreateBuffer(app->device, &buffer, NULL, &app->answer_buffer));
+    VkMemoryRequirements needs;
+    vkGetBufferMemoryRequirements(app->device, app->answer_buffer, &needs);
+    VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                   .allocationSize = needs.size,
+                                   .memoryTypeIndex = find_host_memory(app, needs.memoryTypeBits)};
+    VK(vkAllocateMemory(app->device, &memory, NULL, &app->answer_memory));
+    VK(vkBindBufferMemory(app->device, app->answer_buffer, app->answer_memory, 0));
+    VK(vkMapMemory(app->device, app->answer_memory, 0, VK_WHOLE_SIZE, 0, (void **)&app->answer));
+}
+
+static void create_set_layout(struct app *app)
+{
+    VkDescriptorSetLayoutBinding bindings[5];
+    for (uint32_t i = 0; i < 5; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            i,
+            i < 4 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            1, VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = 5,
+                                            .pBindings = bindings};
+    VK(vkCreateDescriptorSetLayout(app->device, &info, NULL, &app->set_layout));
+}
+
+static void create_set(struct app *app)
+{
+    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4},
+                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}};
+    VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                       .maxSets = 1,
+                                       .poolSizeCount = 2,
+                                       .pPoolSizes = sizes};
+    VK(vkCreateDescriptorPool(app->device, &pool, NULL, &app->set_pool));
+    VkDescriptorSetAllocateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                       .descriptorPool = app->set_pool,
+                                       .descriptorSetCount = 1,
+                                       .pSetLayouts = &app->set_layout};
+    VK(vkAllocateDescriptorSets(app->device, &set, &app->set));
+
+    /* The buffers stay the same, also when textures are added. The image stays in GENERAL. */
+    SluiceVulkanBuffers own;
+    sluiceGetVulkanBuffers(app->streamer, &own);
+    const VkDescriptorBufferInfo buffers[] = {{own.textureTable, 0, VK_WHOLE_SIZE},
+                                              {own.minMip, 0, VK_WHOLE_SIZE},
+                                              {own.feedback, 0, VK_WHOLE_SIZE},
+                                              {app->answer_buffer, 0, VK_WHOLE_SIZE}};
+    const VkDescriptorImageInfo image = {app->sampler, app->texture.imageView,
+                                         VK_IMAGE_LAYOUT_GENERAL};
+    const VkWriteDescriptorSet writes[] = {
+        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+         .dstSet = app->set,
+         .dstBinding = 0,
+         .descriptorCount = 4,
+         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         .pBufferInfo = buffers},
+        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+         .dstSet = app->set,
+         .dstBinding = 4,
+         .descriptorCount = 1,
+         .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         .pImageInfo = &image}};
+    vkUpdateDescriptorSets(app->device, 2, writes, 0, NULL);
+}
+
+static void create_pipeline(struct app *app)
+{
+    const VkPushConstantRange constants = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(uint32_t)};
+    VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                         .setLayoutCount = 1,
+                                         .pSetLayouts = &app->set_layout,
+                                         .pushConstantRangeCount = 1,
+                                         .pPushConstantRanges = &constants};
+    VK(vkCreatePipelineLayout(app->device, &layout, NULL, &app->pipeline_layout));
+    VkShaderModuleCreateInfo code = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                     .codeSize = sizeof vulkan_comp,
+                                     .pCode = vulkan_comp};
+    VkShaderModule module;
+    VK(vkCreateShaderModule(app->device, &code, NULL, &module));
+    VkComputePipelineCreateInfo pipeline = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = module,
+                  .pName = "main"},
+        .layout = app->pipeline_layout};
+    VK(vkCreateComputePipelines(app->device, VK_NULL_HANDLE, 1, &pipeline, NULL, &app->pipeline));
+    vkDestroyShaderModule(app->device, module, NULL);
+}
+
+/* What sample.glsl asks of a sampler: no bias of its own, all levels, the texture's address modes.
+ */
+static void create_sampler(struct app *app)
+{
+    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                .magFilter = VK_FILTER_LINEAR,
+                                .minFilter = VK_FILTER_LINEAR,
+                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                .maxLod = VK_LOD_CLAMP_NONE};
+    VK(vkCreateSampler(app->device, &info, NULL, &app->sampler));
+}
+
+static void create_commands(struct app *app)
+{
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                    .queueFamilyIndex = app->family};
+    VK(vkCreateCommandPool(app->device, &pool, NULL, &app->command_pool));
+    VkCommandBufferAllocateInfo buffers = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = app->command_pool,
+                                           .commandBufferCount = 1};
+    VK(vkAllocateCommandBuffers(app->device, &buffers, &app->commands));
+}
+
+static void submit(const struct app *app, const SluiceStreamingFrame *frame)
+{
+    VkTimelineSemaphoreSubmitInfo values = {.sType =
+                                                VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                            .signalSemaphoreValueCount = 1,
+                                            .pSignalSemaphoreValues = &frame->signalValue};
+    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                         .pNext = &values,
+                         .commandBufferCount = 1,
+                         .pCommandBuffers = &app->commands,
+                         .signalSemaphoreCount = 1,
+                         .pSignalSemaphores = &frame->semaphore};
+    VK(vkQueueSubmit(app->queue, 1, &info, VK_NULL_HANDLE));
+}
+
+static void wait_for(const struct app *app, const SluiceStreamingFrame *frame)
+{
+    VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &frame->semaphore,
+                                .pValues = &frame->signalValue};
+    VK(vkWaitSemaphores(app->device, &info, UINT64_MAX));
+}
+
+static void draw_frame(struct app *app, uint64_t time_stamp)
+{
+    *app->answer = (struct answer){0};
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    SluiceStreamingFrame frame;
+    VK(vkBeginCommandBuffer(app->commands, &begin));
+    SLUICE(sluiceBeginStreamingFrame(app->streamer, app->commands, time_stamp, &frame));
+
+    vkCmdBindPipeline(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline);
+    vkCmdBindDescriptorSets(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline_layout, 0,
+                            1, &app->set, 0, NULL);
+    vkCmdPushConstants(app->commands, app->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                       sizeof app->texture.tableIndex, &app->texture.tableIndex);
+    vkCmdDispatch(app->commands, 8, 8, 1);
+
+    SLUICE(sluiceEndStreamingFrame(app->streamer, app->commands));
+    VkMemoryBarrier to_host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                               .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
+    vkCmdPipelineBarrier(app->commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                         VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, NULL, 0, NULL);
+    VK(vkEndCommandBuffer(app->commands));
+    submit(app, &frame);
+
+    /* So that every run is the same. A renderer waits for an older frame, and for no reads. */
+    wait_for(app, &frame);
+    SLUICE(sluiceWaitVulkanStreamerIdle(app->streamer));
+}
+
+static void destroy(struct app *app)
+{
+    sluiceDestroyVulkanStreamer(app->streamer); /* waits for the device */
+    vkDestroyCommandPool(app->device, app->command_pool, NULL);
+    vkDestroyPipeline(app->device, app->pipeline, NULL);
+    vkDestroyPipelineLayout(app->device, app->pipeline_layout, NULL);
+    vkDestroyDescriptorPool(app->device, app->set_pool, NULL);
+    vkDestroyDescriptorSetLayout(app->device, app->set_layout, NULL);
+    vkDestroySampler(app->device, app->sampler, NULL);
+    vkDestroyBuffer(app->device, app->answer_buffer, NULL);
+    vkFreeMemory(app->device, app->answer_memory, NULL);
+    vkDestroyDevice(app->device, NULL);
+    vkDestroyInstance(app->instance, NULL);
+}
+
+static void paint_ramp(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
+                       uint32_t height, float rgba[4])
+{
+    (void)pUserData;
+    rgba[0] = ((float)x + 0.5f) / (float)width;
+    rgba[1] = ((float)y + 0.5f) / (float)height;
+    rgba[2] = mipLevel > 0 ? 1.0f : 0.0f;
+    rgba[3] = 1.0f;
+}
+
+int main(void)
+{
+    const SluiceProceduralImage image = {NULL, paint_ramp};
+    const SluiceImageInfo info = {
+        .width = 4096, .height = 4096, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "ramp"};
+    SluiceImageSource *source = NULL;
+    SLUICE(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+
+    struct app app = {0};
+    create_device(&app);
+    create_streamer(&app, source);
+    create_answer(&app);
+    create_sampler(&app);
+    create_set_layout(&app);
+    create_set(&app);
+    create_pipeline(&app);
+    create_commands(&app);
+    for (uint64_t frame = 0; frame < FRAME_COUNT; frame++) {
+        draw_frame(&app, frame);
+        SluiceVulkanStreamerStatistics now;
+        sluiceGetVulkanStreamerStatistics(app.streamer, &now);
+        printf("frame %u: %u levels missing, %u of %u tiles mapped\n", (unsigned)frame,
+               app.answer->missing_levels, now.manager.mappedTileCount,
+               (unsigned)now.manager.tileCount);
+    }
+    const float *color = app.answer->color;
+    printf("colour %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);
+    bool sharp = app.answer->missing_levels == 0 && color[2] == 0.0f;
+    destroy(&app);
+    sluiceDestroyImageSource(source);
+    return sharp ? 0 : 1;
+}

@@ -1,0 +1,175 @@
+/* Every Vulkan call that may fail does so once, with each of the results that it may have. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+enum { FRAMES = 12 };
+
+static const struct {
+    VkResult from;
+    SluiceResult to;
+} failures[] = {
+    {VK_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_HOST_MEMORY},
+    {VK_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_OUT_OF_DEVICE_MEMORY},
+    {VK_ERROR_DEVICE_LOST, SLUICE_ERROR_DEVICE_LOST},
+    {VK_ERROR_UNKNOWN, SLUICE_ERROR_VULKAN},
+};
+enum { FAILURES = sizeof failures / sizeof failures[0] };
+
+static uint8_t want_all(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return 0;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static SluiceImageSource *grey_source(void)
+{
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo info = {
+        .width = 512, .height = 512, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+    return source;
+}
+
+static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **streamer)
+{
+    SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16,
+                                           .maxTextureCount = 4,
+                                           .maxRegionCount = 256,
+                                           .loaderThreadCount = 1,
+                                           .feedbackTimeout = 100};
+    fake_vulkan_fill(fake, &info);
+    return sluiceCreateVulkanStreamer(&info, streamer);
+}
+
+static void check_nothing_left(const struct fake_vulkan *fake)
+{
+    assert_int_equal(fake->live_objects, 0);
+    assert_int_equal(fake->live_memory, 0);
+}
+
+static void creation_survives_every_failing_call(void **state)
+{
+    (void)state;
+    for (size_t f = 0; f < FAILURES; f++)
+        for (uint64_t n = 1;; n++) {
+            static struct fake_vulkan fake; /* large */
+            fake = (struct fake_vulkan){
+                .tail_page_count = 1, .failing_call = n, .failure = failures[f].from};
+            SluiceVulkanStreamer *streamer;
+            SluiceResult result = create(&fake, &streamer);
+            assert_true((result == SLUICE_SUCCESS) == (streamer != NULL));
+            bool failed = fake.calls >= n;
+            if (failed)
+                CHECK_RESULT(result, failures[f].to);
+            sluiceDestroyVulkanStreamer(streamer);
+            check_nothing_left(&fake);
+            if (!failed)
+                break;
+        }
+}
+
+static void adding_survives_every_failing_call(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    fake = (struct fake_vulkan){.tail_page_count = 1};
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(create(&fake, &streamer));
+    SluiceVulkanTextureCreateInfo info = {.source = grey_source()};
+    SluiceVulkanTexture texture;
+    uint64_t objects = fake.live_objects;
+    for (size_t f = 0; f < FAILURES; f++)
+        for (uint64_t n = 1;; n++) {
+            fake.calls = 0;
+            fake.failing_call = n;
+            fake.failure = failures[f].from;
+            SluiceResult result = sluiceAddVulkanTexture(streamer, &info, &texture);
+            if (fake.calls < n) {
+                CHECK_OK(result);
+                break;
+            }
+            CHECK_RESULT(result, failures[f].to);
+            assert_int_equal(fake.live_objects, objects + 2 * f); /* images and views */
+        }
+    fake.failing_call = 0;
+    sluiceDestroyVulkanStreamer(streamer);
+    check_nothing_left(&fake);
+    sluiceDestroyImageSource(info.source);
+}
+
+/* Frames that complete at once, until one fails. */
+static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer)
+{
+    for (uint64_t i = 1; i <= FRAMES; i++) {
+        fake->bind_count = fake->copy_count = 0;
+        fake->published = false;
+        fake->bind_value = fake->submitted_bind_value;
+        SluiceStreamingFrame frame;
+        SluiceResult result = sluiceWaitVulkanStreamerIdle(streamer);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(fake), i, &frame);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        CHECK_OK(sluiceEndStreamingFrame(streamer, fake_vulkan_commands(fake)));
+        fake->frame_semaphore = frame.semaphore;
+        fake->frame_value = frame.signalValue;
+    }
+    return SLUICE_SUCCESS;
+}
+
+/* All that may be done with a streamer whose frame failed is to destroy it. */
+static void frames_survive_every_failing_call(void **state)
+{
+    (void)state;
+    uint32_t refused_heaps = 0;
+    for (size_t f = 0; f < FAILURES; f++)
+        for (uint64_t n = 1;; n++) {
+            static struct fake_vulkan fake; /* large */
+            fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_all};
+            SluiceVulkanStreamer *streamer;
+            CHECK_OK(create(&fake, &streamer));
+            SluiceVulkanTextureCreateInfo info = {.source = grey_source()};
+            SluiceVulkanTexture texture;
+            CHECK_OK(sluiceAddVulkanTexture(streamer, &info, &texture));
+            fake.calls = 0;
+            fake.failing_call = n;
+            fake.failure = failures[f].from;
+            SluiceResult result = stream(&fake, streamer);
+            bool failed = fake.calls >= n;
+            SluiceVulkanStreamerStatistics stats;
+            sluiceGetVulkanStreamerStatistics(streamer, &stats);
+            if (result == SLUICE_SUCCESS) {
+                /* a heap that the device refuses is only a smaller budget */
+                refused_heaps += failed;
+                assert_int_equal(stats.tilesMapped, 16 + 4 + 1);
+            } else {
+                assert_true(failed);
+                CHECK_RESULT(result, failures[f].to);
+            }
+            sluiceDestroyVulkanStreamer(streamer);
+            check_nothing_left(&fake);
+            sluiceDestroyImageSource(info.source);
+            if (!failed)
+                break;
+        }
+    assert_int_equal(refused_heaps, FAILURES);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(creation_survives_every_failing_call),
+        cmocka_unit_test(adding_survives_every_failing_call),
+        cmocka_unit_test(frames_survive_every_failing_call),
+    };
+    return RUN_TESTS(tests);
+}
