@@ -148,9 +148,9 @@ typedef struct SluiceVulkanTexture {
  * Creates the image of a source and starts to stream it. The format is the source's.
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
- *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device cannot stream that format or
- *         size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what the source says;
- *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device
+ * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what
+ * the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,

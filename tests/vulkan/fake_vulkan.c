@@ -90,11 +90,10 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties2 *properties)
 {
     (void)device;
-    properties->properties =
-        (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
-                                     .deviceName = "fake",
-                                     .limits = {.sparseAddressSpaceSize = 1ull << 40,
-                                                .maxStorageBufferRange = 1u << 27}};
+    properties->properties = (VkPhysicalDeviceProperties){
+        .apiVersion = VK_API_VERSION_1_2,
+        .deviceName = "fake",
+        .limits = {.sparseAddressSpaceSize = 1ull << 40, .maxStorageBufferRange = 1u << 27}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
