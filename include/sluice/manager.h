@@ -324,7 +324,7 @@ SLUICE_API SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *m
  * maxLoadAttempts failures they are GIVEN_UP, and the MinMip map stays at the coarser level. A tile
  * that is no longer wanted forgets its failures.
  *
- * Errors: as sluiceUpdateTilesMapping, and TIME_BACKWARDS.
+ * Errors: as sluiceUpdateTilesMapping, TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
                                                 SluiceTextureId textureId, uint32_t tileCount,
@@ -354,7 +354,7 @@ SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *man
  * These CANCELLED tiles were not loaded and never mapped: their slots come back once `retireValue`
  * has completed (0: at once; a bind or copy that was already recorded names its frame's value).
  * ALLOCATED tiles may be given back in the same way; wanted ones are REQUESTED again.
- * Errors: as sluiceUpdateTilesMapping, and TIME_BACKWARDS.
+ * Errors: as sluiceUpdateTilesMapping, TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
                                                    SluiceTextureId textureId, uint32_t tileCount,
@@ -390,9 +390,10 @@ SLUICE_API SluiceResult sluiceTrimStandbyTiles(SluiceStreamedTextureManager *man
  * Hands out up to `*pMoveCount` copies that empty the least used heaps into fuller ones. Tiles that
  * are MAPPED or STANDBY belong to their new slots when the call returns; the old ones come back
  * once `retireValue` has completed. No move is listed that helps to empty no heap, so repeated
- * calls end. On return `*pMoveCount` is the number written. `pMoves` must not be NULL.
+ * calls end. A tile may move more than once in a call: make the copies in the order of the list. On
+ * return `*pMoveCount` is the number written. `pMoves` must not be NULL.
  *
- * Errors: NULL_POINTER, TIME_BACKWARDS.
+ * Errors: NULL_POINTER, TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceDefragmentTiles(SluiceStreamedTextureManager *manager,
                                               uint64_t retireValue, uint32_t *pMoveCount,
@@ -418,7 +419,10 @@ SLUICE_API SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager
                                               SluiceTextureId textureId, size_t rowPitch,
                                               size_t size, uint8_t *pMinMip);
 
-/** The same for a rectangle of the map, whose first texel goes to pMinMip[0]. */
+/**
+ * The same for a rectangle of the map, whose first texel goes to pMinMip[0]. Errors: also
+ * INVALID_ARGUMENT if it is empty or leaves the map.
+ */
 SLUICE_API SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
                                               const SluiceMinMipRect *pRect, size_t rowPitch,
                                               size_t size, uint8_t *pMinMip);

@@ -109,10 +109,12 @@ static SluiceResult defragment(slc_manager *m, uint64_t retire_value, uint32_t *
     if (slc_retire_is_backwards(m, retire_value))
         return SLUICE_ERROR_TIME_BACKWARDS;
     uint32_t room = *count, written = 0;
-    /* One node per move stays behind; no more can be moved than tiles are resident. */
+    /* One node per move stays behind. A heap that was emptied is not filled again in the same call,
+     * so no tile moves more often than there are heaps. */
     uint64_t movable = (uint64_t)m->state_counts[SLUICE_TILE_STATE_MAPPED] +
                        m->state_counts[SLUICE_TILE_STATE_STANDBY];
-    if (!slc_reserve_nodes(m, movable < room ? movable : room))
+    uint64_t most = movable * m->heaps.live_count;
+    if (!slc_reserve_nodes(m, most < room ? most : room))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (retire_value)
         m->last_retire = retire_value;

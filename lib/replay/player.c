@@ -103,7 +103,8 @@ static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind
     case SLC_CALL_GET_TILES_TO_UNMAP: return s.standbyTileCount;
     case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* some may have been tried again since */
     case SLC_CALL_GET_MINMIP_UPDATES: return s.textureCount;
-    case SLC_CALL_DEFRAGMENT: return (uint64_t)s.mappedTileCount + s.standbyTileCount;
+    case SLC_CALL_DEFRAGMENT: /* a tile moves out of each heap once at most */
+        return ((uint64_t)s.mappedTileCount + s.standbyTileCount) * s.heapCount;
     default: return 0;
     }
 }

@@ -157,7 +157,8 @@ SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager, c
         *pRecorder = NULL;
     if (!manager || !pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
-    if (!slc_allocator_is_valid(pAllocator))
+    /* Before the file is opened: the recorder that is there may be writing to this very one. */
+    if (!slc_allocator_is_valid(pAllocator) || slc_manager_is_used(manager))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     struct slc_record_file *file;

@@ -1,5 +1,7 @@
 #include "core/fixture.h"
 
+#include "support/thin_heaps.h"
+
 static void say_nothing_wanted(struct fixture *f, SluiceTextureId id, uint64_t time)
 {
     fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, time, 0);
@@ -347,6 +349,23 @@ static void loads_under_way_do_not_move(void **state)
     fixture_close(&f);
 }
 
+static void tiles_that_move_twice_in_one_call_are_counted_twice(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, THIN_HEAPS_CAPACITY, false);
+    thin_heaps_make(f.manager);
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, THIN_HEAPS_TILES);
+    SluiceTileMove moves[64];
+    uint32_t count = 64, retiring = fixture_statistics(&f).retiringSlotCount;
+    CHECK_OK(sluiceDefragmentTiles(f.manager, 7, &count, moves));
+    assert_int_equal(count, THIN_HEAPS_MOVES);
+    assert_int_equal(fixture_statistics(&f).retiringSlotCount, retiring + THIN_HEAPS_MOVES);
+    CHECK_OK(sluiceCompleteRetireValue(f.manager, 7));
+    assert_int_equal(empty_heaps(&f), 8);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -361,6 +380,7 @@ int main(void)
         cmocka_unit_test(repeated_defragmentation_ends_in_the_fewest_heaps),
         cmocka_unit_test(loads_under_way_do_not_move),
         cmocka_unit_test(large_heaps_are_filled_fullest_first_too),
+        cmocka_unit_test(tiles_that_move_twice_in_one_call_are_counted_twice),
     };
     return RUN_TESTS(tests);
 }

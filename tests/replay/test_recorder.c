@@ -150,6 +150,26 @@ static void file_of_a_failed_recording_stays_away(void **state)
     remove(path);
 }
 
+static void second_recorder_is_refused_and_leaves_the_file_of_the_first(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder_twice.trace";
+    struct random_app app;
+    SluiceRecorder *first, *second;
+    remove(path);
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceBeginRecordingToFile(app.manager, path, NULL, &first));
+    random_app_run(&app, 200);
+    CHECK_RESULT(sluiceBeginRecordingToFile(app.manager, path, NULL, &second),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_null(second);
+    random_app_run(&app, 200);
+    CHECK_OK(sluiceEndRecording(first));
+    assert_true(exists(path));
+    random_app_finish(&app);
+    remove(path);
+}
+
 static void path_that_cannot_be_written_is_an_error(void **state)
 {
     (void)state;
@@ -228,6 +248,7 @@ int main(void)
         cmocka_unit_test(recording_begins_with_what_was_configured_before),
         cmocka_unit_test(file_appears_when_the_recording_ends),
         cmocka_unit_test(file_of_a_failed_recording_stays_away),
+        cmocka_unit_test(second_recorder_is_refused_and_leaves_the_file_of_the_first),
         cmocka_unit_test(path_that_cannot_be_written_is_an_error),
         cmocka_unit_test(pipe_is_written_to_and_not_replaced),
         cmocka_unit_test(wrong_arguments_are_refused),

@@ -3,6 +3,7 @@
 
 #include "core/observer.h"
 #include "support/test.h"
+#include "support/thin_heaps.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,6 +154,50 @@ static void null_pointers_are_refused(void **state)
     CHECK_RESULT(sluiceReplay(&info, &result), SLUICE_ERROR_INVALID_ARGUMENT);
 }
 
+static SluiceResult next_heap(void *user, uint64_t size, uint32_t *heap_id)
+{
+    (void)size;
+    *heap_id = (*(uint32_t *)user)++;
+    return SLUICE_SUCCESS;
+}
+
+static void ignore_heap(void *user, uint32_t heap_id)
+{
+    (void)user;
+    (void)heap_id;
+}
+
+static void more_moves_than_tiles_replay(void **state)
+{
+    (void)state;
+    uint32_t heap_count = 0;
+    const SluiceStreamedTextureManagerCreateInfo create = {
+        .heapAllocator = {&heap_count, next_heap, ignore_heap},
+        .heapTileCapacity = THIN_HEAPS_CAPACITY,
+        .tileSize = 1,
+    };
+    SluiceStreamedTextureManager *manager;
+    SluiceRecorder *recorder;
+    struct trace_buffer trace;
+    const SluiceRecordWriter writer = trace_buffer_writer(&trace);
+    CHECK_OK(sluiceCreateStreamedTextureManager(&create, &manager));
+    CHECK_OK(sluiceBeginRecording(manager, &writer, NULL, &recorder));
+    thin_heaps_make(manager);
+    SluiceTileMove moves[64];
+    uint32_t count = 64;
+    CHECK_OK(sluiceDefragmentTiles(manager, 7, &count, moves));
+    assert_int_equal(count, THIN_HEAPS_MOVES);
+    CHECK_OK(sluiceEndRecording(recorder));
+    sluiceDestroyStreamedTextureManager(manager);
+
+    SluiceReplayResult result;
+    const SluiceReplayInfo info = replay_info(&trace);
+    CHECK_OK(sluiceReplay(&info, &result));
+    assert_int_equal(result.divergedEvent, 0);
+    assert_true(result.statistics.movedTotal == THIN_HEAPS_MOVES);
+    trace_buffer_free(&trace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -160,6 +205,7 @@ int main(void)
         cmocka_unit_test(replay_recorded_again_is_the_same_trace_with_the_same_dump),
         cmocka_unit_test(dump_does_not_change_the_hash),
         cmocka_unit_test(replay_without_memory_says_so_and_leaks_nothing),
+        cmocka_unit_test(more_moves_than_tiles_replay),
         cmocka_unit_test(null_pointers_are_refused),
     };
     return RUN_TESTS(tests);

@@ -30,7 +30,8 @@ report help_names_defaults $?
 
 wrong=0
 for arguments in '' '--no-such-option x' 'a b' 'a --latency' 'a --latency -1' 'a --budget 0' \
-    'a --latency 4294967296' 'a --timeout nan' 'a --timeout 0' 'a --dump --json' 'a --standby 1x'; do
+    'a --latency 4294967296' 'a --timeout nan' 'a --timeout 0' 'a --dump --json' 'a --standby 1x' \
+    'a --heap-tiles 1048577'; do
     # shellcheck disable=SC2086
     status 2 "$replay" $arguments && [ -s "$folder/err" ] || wrong=1
 done

@@ -15,14 +15,15 @@ static const struct options defaults = {
     .memory_mib = 4096,
 };
 
-static bool parse_u32(const char *name, const char *text, uint32_t least, uint32_t *value)
+static bool parse_u32(const char *name, const char *text, uint32_t least, uint32_t most,
+                      uint32_t *value)
 {
     char *end;
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
-    if (*text < '0' || *text > '9' || *end || errno || number > UINT32_MAX || number < least) {
+    if (*text < '0' || *text > '9' || *end || errno || number > most || number < least) {
         fprintf(stderr, "sluice-replay: %s takes a whole number from %u to %u, not '%s'\n", name,
-                least, UINT32_MAX, text);
+                least, most, text);
         return false;
     }
     *value = (uint32_t)number;
@@ -54,19 +55,19 @@ static bool parse_value(struct options *o, const char *name, const char *value)
     else if (strcmp(name, "--record") == 0)
         o->record = value;
     else if (strcmp(name, "--heap-tiles") == 0)
-        return parse_u32(name, value, 1, &o->heap_tiles);
+        return parse_u32(name, value, 1, 1u << 20, &o->heap_tiles);
     else if (strcmp(name, "--max-heaps") == 0)
-        return parse_u32(name, value, 0, &o->max_heaps);
+        return parse_u32(name, value, 0, UINT32_MAX, &o->max_heaps);
     else if (strcmp(name, "--standby") == 0)
-        return parse_u32(name, value, 0, &o->standby);
+        return parse_u32(name, value, 0, UINT32_MAX, &o->standby);
     else if (strcmp(name, "--budget") == 0)
-        return parse_u32(name, value, 1, &o->budget);
+        return parse_u32(name, value, 1, UINT32_MAX, &o->budget);
     else if (strcmp(name, "--latency") == 0)
-        return parse_u32(name, value, 0, &o->latency);
+        return parse_u32(name, value, 0, UINT32_MAX, &o->latency);
     else if (strcmp(name, "--timeout") == 0)
         return parse_seconds(name, value, &o->timeout_micros);
     else
-        return parse_u32(name, value, 1, &o->memory_mib);
+        return parse_u32(name, value, 1, UINT32_MAX, &o->memory_mib);
     return true;
 }
 
