@@ -51,25 +51,46 @@ static uint8_t least_asked(const uint8_t *asked, uint32_t pitch, struct slc_tile
     return least;
 }
 
+/** What a follower region wants of the least level asked for in what it overlaps. */
+static uint8_t follower_level(uint8_t least, int offset, int last)
+{
+    if (least == SLUICE_MIP_UNTOUCHED)
+        return least;
+    int level = least + offset;
+    level = level < 0 ? 0 : level;
+    return (uint8_t)(level > last ? last : level);
+}
+
+/*
+ * Neighbours that overlap the same regions of the primary share one answer. Without that, thin
+ * regions of one texture under thick ones of the other would cost the product of their counts.
+ */
 static void make_map(const struct slc_texture *p, const uint8_t *asked, const struct slc_texture *f,
                      uint8_t *map)
 {
     const SluiceStreamedTextureDesc *pd = &p->desc, *fd = &f->desc;
-    int offset = level_offset(pd, fd);
+    int offset = level_offset(pd, fd), last = (int)fd->mipLevelCount - 1;
+    struct slc_tile_range r = {0, 1, 0, 0}; /* no range: y0 is behind y1 */
     for (uint32_t y = 0; y < f->feedback_height; y++) {
-        struct slc_tile_range r;
+        uint8_t *row = map + (size_t)y * f->feedback_width;
+        uint32_t y0, y1;
         overlap(y, fd->feedbackRegionHeight, fd->height, pd->feedbackRegionHeight, pd->height,
-                p->feedback_height, &r.y0, &r.y1);
+                p->feedback_height, &y0, &y1);
+        if (y0 == r.y0 && y1 == r.y1) {
+            memcpy(row, row - f->feedback_width, f->feedback_width);
+            continue;
+        }
+        r = (struct slc_tile_range){1, y0, 0, y1};
         for (uint32_t x = 0; x < f->feedback_width; x++) {
+            uint32_t x0, x1;
             overlap(x, fd->feedbackRegionWidth, fd->width, pd->feedbackRegionWidth, pd->width,
-                    p->feedback_width, &r.x0, &r.x1);
-            uint8_t least = least_asked(asked, p->feedback_width, r);
-            if (least != SLUICE_MIP_UNTOUCHED) {
-                int level = least + offset, last = (int)fd->mipLevelCount - 1;
-                level = level < 0 ? 0 : level;
-                least = (uint8_t)(level > last ? last : level);
+                    p->feedback_width, &x0, &x1);
+            if (x0 == r.x0 && x1 == r.x1) {
+                row[x] = row[x - 1];
+                continue;
             }
-            map[(size_t)y * f->feedback_width + x] = least;
+            r.x0 = x0, r.x1 = x1;
+            row[x] = follower_level(least_asked(asked, p->feedback_width, r), offset, last);
         }
     }
 }
