@@ -372,6 +372,26 @@ static void followers_stand_alone_when_their_primary_is_removed(void **state)
     fixture_close(&f);
 }
 
+/* 349 526 regions against 2^20: looking at each pair would take hours. */
+static void thin_regions_under_thick_ones_do_not_multiply(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    const uint32_t most = SLUICE_MAX_TEXTURE_SIZE;
+    SluiceStreamedTextureDesc wide = full_chain(most, most, most, most);
+    wide.feedbackRegionWidth = 3;
+    wide.feedbackRegionHeight = most;
+    SluiceStreamedTextureDesc tall = full_chain(1, most, 1, most);
+    tall.feedbackRegionWidth = UINT32_MAX;
+    tall.feedbackRegionHeight = 1;
+    SluiceTextureId primary = fixture_add(&f, &wide), follower = fixture_add(&f, &tall);
+    fixture_feed_region(&f, primary, 349525, 0, 0, 0);
+    CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, follower, 0, 0));
+    assert_int_equal(finest_requested(&f, follower), 0);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -388,6 +408,7 @@ int main(void)
         cmocka_unit_test(followers_stand_alone_when_their_primary_is_removed),
         cmocka_unit_test(an_empty_map_of_the_primary_is_a_map),
         cmocka_unit_test(followers_leave_their_set_one_by_one),
+        cmocka_unit_test(thin_regions_under_thick_ones_do_not_multiply),
     };
     return RUN_TESTS(tests);
 }
