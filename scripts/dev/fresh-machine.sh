@@ -77,10 +77,10 @@ copy_network_settings() {
 }
 
 clone() {
-    rm -rf "$system/root/work/sluice"
-    mkdir -p "$system/root/work"
-    git clone --quiet --no-hardlinks "$SLUICE_ROOT" "$system/root/work/sluice"
-    git -C "$system/root/work/sluice" checkout --quiet "$(git -C "$SLUICE_ROOT" rev-parse "$revision")"
+    rm -rf "$system/root/check/sluice"
+    mkdir -p "$system/root/check"
+    git clone --quiet --no-hardlinks "$SLUICE_ROOT" "$system/root/check/sluice"
+    git -C "$system/root/check/sluice" checkout --quiet "$(git -C "$SLUICE_ROOT" rev-parse "$revision")"
 }
 
 # In mount and process namespaces of its own, so that nothing is left mounted or running.
@@ -95,8 +95,8 @@ inside() {
         mount -t sysfs sysfs "$system/sys" 2>/dev/null || mount --rbind /sys "$system/sys"
         mount --rbind /dev "$system/dev"
         if [ -d "$shared" ]; then
-            mkdir -p "$system/root/work/shared"
-            mount --bind -o ro "$shared" "$system/root/work/shared"
+            mkdir -p "$system/root/check/shared"
+            mount --bind -o ro "$shared" "$system/root/check/shared"
         fi
         exec chroot "$system" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"
     ' inside "$system" "${SLUICE_SHARED:-$SLUICE_ROOT/../shared}" "$@" </dev/null
@@ -116,7 +116,7 @@ for command in "${list[@]}"; do
     title "$suite: $command"
     SECONDS=0
     # From another folder than the checkout, because that must not matter.
-    if inside bash -c "cd / && /root/work/sluice/$command"; then
+    if inside bash -c "cd / && /root/check/sluice/$command"; then
         result="ended well"
     else
         result="failed" status=1
