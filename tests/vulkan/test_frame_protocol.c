@@ -184,6 +184,8 @@ static uint32_t take_visible(struct model *m)
     const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
     for (uint32_t i = 0; i < 2 * TEXTURES; i++) {
         struct texture *t = &m->textures[i];
+        for (uint32_t j = 0; t->removed && j < t->layout.tileCount; j++)
+            t->visible[m->frame % HISTORY][j] = false; /* not drawn with any more */
         for (uint32_t j = 0; t->used && j < t->layout.tileCount; j++) {
             SluiceTileState state;
             CHECK_OK(sluiceGetTileState(manager, t->texture.textureId, j, &state, NULL));
