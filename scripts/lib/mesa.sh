@@ -17,27 +17,28 @@ mesa_give_up() {
         "tests that need it are skipped, the demo needs another device"
 }
 
-# The suite of this distribution that has a later Mesa.
+# The suite of this distribution that has a later Mesa, and which of its components are needed: the
+# machine's own, or what fits together with a later libllvm, which Mesa brings and clang shares.
 mesa_later_suite() {
     # shellcheck disable=SC2154 # both from read_distribution
     case $distribution in
-    debian) say "$codename-backports" ;;
-    ubuntu) say "$codename-updates" ;;
+    debian) suite=$codename-backports components='' ;;
+    ubuntu) suite=$codename-updates components='main universe' ;;
     *) return 1 ;;
     esac
 }
 
 # ensure_mesa INSTALL
 ensure_mesa() {
-    local suite
+    local suite components
     mesa_is_recent && return 0
     [ "$1" = no ] && { mesa_give_up "nothing may be installed"; return 0; }
-    suite=$(mesa_later_suite) || { mesa_give_up "no later suite known for $distribution"; return 0; }
+    mesa_later_suite || { mesa_give_up "no later suite known for $distribution"; return 0; }
     become_root || { mesa_give_up "run as root or with sudo to install it"; return 0; }
 
     title "Mesa $(mesa_version) has no sparse residency: taking a later one from $suite"
     if ! distribution_targets | grep -q "|$suite|"; then
-        add_suite "$suite" "$codename" "$suite" "" || { mesa_give_up "no source to derive $suite from"; return 0; }
+        add_suite "$suite" "$codename" "$suite" "$components" || { mesa_give_up "no source to derive $suite from"; return 0; }
         apt_update
     fi
     if ! distribution_targets | grep -q "|$suite|"; then
