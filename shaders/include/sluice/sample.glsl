@@ -73,9 +73,10 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
     dy = vec2(-direction.y, direction.x) * width / size;
 }
 
+/** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
 bool sluiceIsFinite(vec2 v)
 {
-    return abs(v.x) <= 3.0e38 && abs(v.y) <= 3.0e38;
+    return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
 }
 
 /**
