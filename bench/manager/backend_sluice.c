@@ -1,5 +1,9 @@
 /**
- * Sluice's manager behind the functions that the feedback-replay harness (backend.h) asks for.
+ * Sluice's manager behind the functions that the feedback-replay harness (backend.h) asks for. In
+ * the harness's folder, with Sluice installed:
+ *
+ *     cc -std=c11 -O2 -I. replay.c SLUICE/bench/manager/backend_sluice.c \
+ *         $(pkg-config --cflags --libs sluice) -lpthread -o replay
  *
  * Public API only. Lists are fetched once per frame for all textures, in `allocate`, and then
  * handed to the harness texture by texture. At most IN_FLIGHT tiles are out at a time: what waits

@@ -131,7 +131,8 @@ void slc_tile_heaps_finish(struct slc_tile_heaps *h)
     *h = (struct slc_tile_heaps){0};
 }
 
-SluiceResult slc_tile_heaps_reserve(struct slc_tile_heaps *h)
+/** Room for one more heap in the table. */
+static SluiceResult reserve_entry(struct slc_tile_heaps *h)
 {
     if (h->live_count < h->room)
         return SLUICE_SUCCESS; /* a dead entry or room behind the end */
@@ -157,7 +158,7 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
     struct slc_tile_heap heap = {0};
     heap.free_slots = slc_alloc(h->cb, h->capacity, sizeof *heap.free_slots);
     heap.nodes = slc_calloc(h->cb, h->capacity, sizeof *heap.nodes);
-    if (!heap.free_slots || !heap.nodes || slc_tile_heaps_reserve(h) != SLUICE_SUCCESS) {
+    if (!heap.free_slots || !heap.nodes || reserve_entry(h) != SLUICE_SUCCESS) {
         free_books(h, &heap);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }

@@ -35,9 +35,6 @@ SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocatio
 /** Releases every heap. A zeroed struct is fine. */
 void slc_tile_heaps_finish(struct slc_tile_heaps *h);
 
-/** Room for one more heap, so that slc_tile_heaps_add needs no memory of its own but the heap's. */
-SluiceResult slc_tile_heaps_reserve(struct slc_tile_heaps *h);
-
 /**
  * Asks the allocator for a heap. `*answer` is what it said, `*heap_id` its id. OUT_OF_HOST_MEMORY
  * without asking if there is no memory for the books.

@@ -1,8 +1,8 @@
 /*
  * The level of detail that a sampler will choose, computed from derivatives.
  *
- * Vulkan lets implementations approximate; those measured pick a level up to 0.09 finer than the
- * formula without anisotropy and 0.14 finer with it. Whoever must not miss a level subtracts
+ * Vulkan lets implementations approximate; docs/drivers.md has what was measured: up to 0.12 finer
+ * than the formula. Whoever must not miss a level subtracts
  * sluiceLodMargin. With anisotropy some devices take the lengths of the two derivatives, and some the
  * axes of the ellipse that they span, whose shorter axis is shorter where the derivatives are not
  * at right angles; here the finer of the two counts. C twin: lib/vulkan/shader_twins.h.
