@@ -5,9 +5,10 @@
  *     cc -std=c11 -O2 -I. replay.c SLUICE/bench/manager/backend_sluice.c \
  *         $(pkg-config --cflags --libs sluice) -lpthread -o replay
  *
- * Public API only. Lists are fetched once per frame for all textures, in `allocate`, and then
- * handed to the harness texture by texture. At most IN_FLIGHT tiles are out at a time: what waits
- * in the manager is still ordered by need and can still be dropped, what waits in a queue is not.
+ * run.sh does that and more. Public API only. Lists are fetched once per frame for all textures, in
+ * `allocate`, and then handed to the harness texture by texture. At most IN_FLIGHT tiles are out at
+ * a time: what waits in the manager is still ordered by need and can still be dropped, what waits
+ * in a queue is not.
  */
 #include "backend.h"
 
@@ -15,18 +16,28 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { IN_FLIGHT = 768, UNMAP_ROOM = 65536 };
 
-struct tile_lists {
+/** What the manager listed this frame, and the same tile indices grouped by texture. */
+struct tile_list {
     SluiceTile *tiles;
+    uint32_t *grouped;
     uint32_t count, room;
+};
+
+struct group {
+    uint32_t first, count; ///< in tile_list.grouped
 };
 
 struct per_texture {
     SluiceTextureId id;
-    uint32_t map_first, map_count, unmap_first, unmap_count;
+    struct group map, unmap;
+    uint32_t feedback_width, feedback_height;
+    uint32_t min_mip_width, min_mip_height;
     uint32_t regular_mips;
+    bool has_packed_tiles;
 };
 
 struct bench_manager {
@@ -36,8 +47,8 @@ struct bench_manager {
     uint32_t *spare_heaps; ///< added by the harness, not yet taken by the manager
     uint32_t spare_count, spare_room;
     uint32_t heap_tiles, in_flight;
-    struct tile_lists map, unmap;
-    uint32_t *changed;
+    struct tile_list map, unmap;
+    uint32_t *changed; ///< textures with tiles in map or unmap, the neediest first
     uint32_t changed_count;
 };
 
@@ -73,14 +84,25 @@ static void release_heap(void *user, uint32_t heap_id)
     (void)heap_id;
 }
 
+static void init_list(struct tile_list *list, uint32_t room)
+{
+    list->room = room;
+    list->tiles = grow(NULL, room * sizeof *list->tiles);
+    list->grouped = grow(NULL, room * sizeof *list->grouped);
+}
+
+static void finish_list(struct tile_list *list)
+{
+    free(list->tiles);
+    free(list->grouped);
+}
+
 static void *create(uint32_t heap_tiles, uint32_t standby_tiles)
 {
     struct bench_manager *m = grow(NULL, sizeof *m);
     *m = (struct bench_manager){.heap_tiles = heap_tiles};
-    m->map.room = IN_FLIGHT;
-    m->map.tiles = grow(NULL, IN_FLIGHT * sizeof *m->map.tiles);
-    m->unmap.room = UNMAP_ROOM;
-    m->unmap.tiles = grow(NULL, UNMAP_ROOM * sizeof *m->unmap.tiles);
+    init_list(&m->map, IN_FLIGHT);
+    init_list(&m->unmap, UNMAP_ROOM);
     SluiceStreamedTextureManagerCreateInfo info = {
         .heapAllocator = {m, take_spare_heap, release_heap},
         .heapTileCapacity = heap_tiles,
@@ -99,8 +121,8 @@ static void destroy(void *backend_manager)
     sluiceDestroyStreamedTextureManager(m->manager);
     free(m->textures);
     free(m->spare_heaps);
-    free(m->map.tiles);
-    free(m->unmap.tiles);
+    finish_list(&m->map);
+    finish_list(&m->unmap);
     free(m->changed);
     free(m);
 }
@@ -125,7 +147,16 @@ static uint32_t add_texture(void *backend_manager, const slt_texture *t)
         .feedbackRegionHeight = t->fbRegionH,
     };
     struct per_texture *texture = &m->textures[m->texture_count];
-    *texture = (struct per_texture){.regular_mips = t->regularMips};
+    *texture = (struct per_texture){
+        .feedback_width = t->fbW,
+        .feedback_height = t->fbH,
+        .min_mip_width = 1,
+        .min_mip_height = 1,
+        .regular_mips = t->regularMips,
+        .has_packed_tiles = t->packedTiles > 0,
+    };
+    if (t->regularMips > 0)
+        slt_mip_tiles(t, 0, &texture->min_mip_width, &texture->min_mip_height);
     check(sluiceAddStreamedTexture(m->manager, &desc, &texture->id), "add");
     return m->texture_count++; /* ids are dense from 0 as long as nothing is removed */
 }
@@ -134,12 +165,11 @@ static void feedback(void *backend_manager, uint32_t id, uint8_t *map, double se
                      double timeout)
 {
     struct bench_manager *m = backend_manager;
-    SluiceStreamedTextureLayout layout;
-    check(sluiceGetTextureLayout(m->manager, m->textures[id].id, &layout), "layout");
+    const struct per_texture *t = &m->textures[id];
     SluiceFeedbackDesc desc = {
-        .pMinMip = map, .width = layout.feedbackWidth, .height = layout.feedbackHeight};
-    check(sluiceUpdateWithSamplerFeedback(m->manager, m->textures[id].id, &desc,
-                                          (uint64_t)(seconds * 1e6), (uint64_t)(timeout * 1e6)),
+        .pMinMip = map, .width = t->feedback_width, .height = t->feedback_height};
+    check(sluiceUpdateWithSamplerFeedback(m->manager, t->id, &desc, (uint64_t)(seconds * 1e6),
+                                          (uint64_t)(timeout * 1e6)),
           "feedback");
 }
 
@@ -171,80 +201,88 @@ static void add_heap(void *backend_manager, uint32_t heap_id)
     m->spare_heaps[m->spare_count++] = heap_id;
 }
 
-static int by_texture(const void *a, const void *b)
+static struct per_texture *note_changed(struct bench_manager *m, const SluiceTile *tile)
 {
-    const SluiceTile *x = a, *y = b;
-    if (x->textureId != y->textureId)
-        return (uint32_t)x->textureId < (uint32_t)y->textureId ? -1 : 1;
-    /* coarse first within a texture, as the manager listed them */
-    if (x->mipLevel != y->mipLevel)
-        return x->mipLevel > y->mipLevel ? -1 : 1;
-    return x->tileIndex < y->tileIndex ? -1 : x->tileIndex > y->tileIndex;
-}
-
-static struct per_texture *note_changed(struct bench_manager *m, uint32_t index)
-{
+    uint32_t index = (uint32_t)tile->textureId;
     struct per_texture *texture = &m->textures[index];
-    if (texture->map_count == 0 && texture->unmap_count == 0)
+    if (texture->map.count == 0 && texture->unmap.count == 0)
         m->changed[m->changed_count++] = index;
     return texture;
 }
 
+/** Leaves each group empty, with its place found; `put` fills it. */
+static uint32_t place(struct group *group, uint32_t first)
+{
+    uint32_t next = first + group->count;
+    *group = (struct group){.first = first};
+    return next;
+}
+
+static void put(struct tile_list *list, struct group *group, uint32_t tile_index)
+{
+    list->grouped[group->first + group->count++] = tile_index;
+}
+
+/** Keeps the manager's order, coarse levels first, within each texture. */
 static void group_by_texture(struct bench_manager *m)
 {
-    qsort(m->map.tiles, m->map.count, sizeof *m->map.tiles, by_texture);
-    qsort(m->unmap.tiles, m->unmap.count, sizeof *m->unmap.tiles, by_texture);
+    for (uint32_t i = 0; i < m->map.count; i++)
+        note_changed(m, &m->map.tiles[i])->map.count++;
+    for (uint32_t i = 0; i < m->unmap.count; i++)
+        note_changed(m, &m->unmap.tiles[i])->unmap.count++;
+    uint32_t map_next = 0, unmap_next = 0;
+    for (uint32_t i = 0; i < m->changed_count; i++) {
+        struct per_texture *texture = &m->textures[m->changed[i]];
+        map_next = place(&texture->map, map_next);
+        unmap_next = place(&texture->unmap, unmap_next);
+    }
     for (uint32_t i = 0; i < m->map.count; i++) {
-        struct per_texture *texture = note_changed(m, (uint32_t)m->map.tiles[i].textureId);
-        if (texture->map_count++ == 0)
-            texture->map_first = i;
+        const SluiceTile *tile = &m->map.tiles[i];
+        put(&m->map, &m->textures[(uint32_t)tile->textureId].map, tile->tileIndex);
     }
     for (uint32_t i = 0; i < m->unmap.count; i++) {
-        struct per_texture *texture = note_changed(m, (uint32_t)m->unmap.tiles[i].textureId);
-        if (texture->unmap_count++ == 0)
-            texture->unmap_first = i;
+        const SluiceTile *tile = &m->unmap.tiles[i];
+        put(&m->unmap, &m->textures[(uint32_t)tile->textureId].unmap, tile->tileIndex);
     }
+}
+
+static void forget_changed(struct bench_manager *m)
+{
+    for (uint32_t i = 0; i < m->changed_count; i++) {
+        m->textures[m->changed[i]].map.count = 0;
+        m->textures[m->changed[i]].unmap.count = 0;
+    }
+    m->changed_count = 0;
 }
 
 static void allocate(void *backend_manager)
 {
     struct bench_manager *m = backend_manager;
-    for (uint32_t i = 0; i < m->changed_count; i++)
-        m->textures[m->changed[i]].map_count = m->textures[m->changed[i]].unmap_count = 0;
-    m->changed_count = 0;
+    forget_changed(m);
     m->unmap.count = m->unmap.room;
     check(
         sluiceGetTilesToUnmap(m->manager, SLUICE_ALL_TEXTURES, 0, &m->unmap.count, m->unmap.tiles),
         "unmap");
-    m->map.count = IN_FLIGHT - m->in_flight;
+    m->map.count = m->map.room - m->in_flight;
     check(sluiceGetTilesToMap(m->manager, SLUICE_ALL_TEXTURES, &m->map.count, m->map.tiles), "map");
     m->in_flight += m->map.count;
     group_by_texture(m);
 }
 
-static void copy_list(be_list *list, const SluiceTile *tiles, uint32_t count)
-{
-    if (list->cap < count) {
-        list->cap = count;
-        list->v = grow(list->v, count * sizeof *list->v);
-    }
-    for (uint32_t i = 0; i < count; i++)
-        list->v[i] = tiles[i].tileIndex;
-    list->n = count;
-}
+/* The harness only reads its lists, so they may point here until the next `allocate`. */
 
 static void to_unmap(void *backend_manager, uint32_t id, be_list *list)
 {
     struct bench_manager *m = backend_manager;
-    const struct per_texture *t = &m->textures[id];
-    copy_list(list, m->unmap.tiles + t->unmap_first, t->unmap_count);
+    const struct group *group = &m->textures[id].unmap;
+    *list = (be_list){.v = m->unmap.grouped + group->first, .n = group->count};
 }
 
 static void to_map(void *backend_manager, uint32_t id, be_list *list)
 {
     struct bench_manager *m = backend_manager;
-    const struct per_texture *t = &m->textures[id];
-    copy_list(list, m->map.tiles + t->map_first, t->map_count);
+    const struct group *group = &m->textures[id].map;
+    *list = (be_list){.v = m->map.grouped + group->first, .n = group->count};
 }
 
 static void mapped(void *backend_manager, uint32_t id, const uint32_t *tiles, uint32_t count)
@@ -258,15 +296,19 @@ static void minmip(void *backend_manager, uint32_t id, uint8_t *out, uint32_t *w
                    uint32_t *height)
 {
     struct bench_manager *m = backend_manager;
-    SluiceStreamedTextureLayout layout;
-    check(sluiceGetTextureLayout(m->manager, m->textures[id].id, &layout), "layout");
-    *width = layout.minMipWidth;
-    *height = layout.minMipHeight;
+    const struct per_texture *t = &m->textures[id];
+    *width = t->min_mip_width;
+    *height = t->min_mip_height;
     size_t size = (size_t)*width * *height;
-    check(sluiceWriteMinMipData(m->manager, m->textures[id].id, *width, size, out), "minmip");
-    for (size_t i = 0; i < size; i++) /* the harness counts levels: nothing there is one more */
+    check(sluiceWriteMinMipData(m->manager, t->id, *width, size, out), "minmip");
+    /* The harness counts levels: nothing there is one more. With packed tiles a map says so
+     * everywhere or nowhere. */
+    uint8_t nothing = (uint8_t)(t->regular_mips + 1);
+    if (t->has_packed_tiles && out[0] == SLUICE_MIP_UNTOUCHED)
+        memset(out, nothing, size);
+    for (size_t i = 0; !t->has_packed_tiles && i < size; i++)
         if (out[i] == SLUICE_MIP_UNTOUCHED)
-            out[i] = (uint8_t)(m->textures[id].regular_mips + 1);
+            out[i] = nothing;
 }
 
 static be_stats stats(void *backend_manager)
@@ -281,13 +323,7 @@ static be_stats stats(void *backend_manager)
 static void changed(void *backend_manager, be_list *ids)
 {
     struct bench_manager *m = backend_manager;
-    if (ids->cap < m->changed_count) {
-        ids->cap = m->changed_count;
-        ids->v = grow(ids->v, ids->cap * sizeof *ids->v);
-    }
-    for (uint32_t i = 0; i < m->changed_count; i++)
-        ids->v[i] = m->changed[i];
-    ids->n = m->changed_count;
+    *ids = (be_list){.v = m->changed, .n = m->changed_count};
 }
 
 const backend BACKEND = {"sluice", create,        destroy,  add_texture, feedback,
