@@ -45,11 +45,12 @@ static void time_untouched(void)
     rig_drain(&rig);
     uint8_t *map = must_allocate(region_count(&desc));
     memset(map, SLUICE_MIP_UNTOUCHED, region_count(&desc));
+    SluiceFeedbackDesc feedback = map_for(&desc, map);
     samples_init(&samples, repetitions(2000));
     for (uint32_t i = 0; i < samples.room; i++) {
         uint64_t start = now_ns();
         for (uint32_t k = 0; k < BATCH; k++)
-            rig_feedback(&rig, id, &desc, map, STEP, TIMEOUT);
+            rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         samples_add(&samples, (double)(now_ns() - start) / BATCH);
     }
     figure_times("feedback.untouched", &samples);
@@ -70,15 +71,16 @@ static void time_window(void)
     SluiceTextureId id = rig_add(&rig, &desc);
     uint8_t *map = must_allocate(region_count(&desc));
     draw_window(&desc, map, 0, &random);
+    SluiceFeedbackDesc feedback = map_for(&desc, map);
     for (uint32_t i = 0; i < 16; i++) {
-        rig_feedback(&rig, id, &desc, map, STEP, TIMEOUT);
+        rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         rig_drain(&rig);
     }
     samples_init(&samples, repetitions(2000));
     for (uint32_t i = 0; i < samples.room; i++) {
         uint64_t start = now_ns();
         for (uint32_t k = 0; k < BATCH; k++)
-            rig_feedback(&rig, id, &desc, map, STEP, TIMEOUT);
+            rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         samples_add(&samples, (double)(now_ns() - start) / BATCH);
     }
     figure_times("feedback.window", &samples);
@@ -101,14 +103,15 @@ static void time_stochastic(void)
     for (uint32_t i = 0; i < MAPS; i++)
         draw_window(&desc, maps + (size_t)i * size, 300, &random);
     for (uint32_t i = 0; i < MAPS; i++) {
-        rig_feedback(&rig, id, &desc, maps + (size_t)i * size, STEP, TIMEOUT);
+        SluiceFeedbackDesc feedback = map_for(&desc, maps + (size_t)i * size);
+        rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         rig_drain(&rig);
     }
     samples_init(&samples, repetitions(5000));
     for (uint32_t i = 0; i < samples.room; i++) {
-        const uint8_t *map = maps + (size_t)(i % MAPS) * size;
+        SluiceFeedbackDesc feedback = map_for(&desc, maps + (size_t)(i % MAPS) * size);
         uint64_t start = now_ns();
-        rig_feedback(&rig, id, &desc, map, STEP, TIMEOUT);
+        rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         samples_add(&samples, (double)(now_ns() - start));
     }
     figure_times("feedback.stochastic", &samples);
@@ -125,12 +128,13 @@ static void time_all_first(void)
     rig_init(&rig, 1024, &keep_everything, ROOM);
     SluiceStreamedTextureDesc desc = square_desc(SIZE, TILE);
     uint8_t *map = must_allocate(region_count(&desc)); /* level 0 everywhere */
+    SluiceFeedbackDesc feedback = map_for(&desc, map);
     samples_init(&samples, repetitions(400));
     for (uint32_t i = 0; i < samples.room; i++) {
         SluiceTextureId id = rig_add(&rig, &desc);
         rig_drain(&rig);
         uint64_t start = now_ns();
-        rig_feedback(&rig, id, &desc, map, STEP, TIMEOUT);
+        rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         samples_add(&samples, (double)(now_ns() - start));
         if (i == 0)
             figure("feedback.all_first.requested", NULL, rig_statistics(&rig).requestedTileCount,
@@ -158,15 +162,16 @@ static void time_all_alternating(uint64_t timeout, const char *to_fine, const ch
     uint32_t size = region_count(&desc);
     uint8_t *maps = must_allocate((size_t)2 * size);
     memset(maps + size, 1, size);
+    SluiceFeedbackDesc feedback[2] = {map_for(&desc, maps), map_for(&desc, maps + size)};
     for (uint32_t i = 0; i < 16; i++) {
-        rig_feedback(&rig, id, &desc, maps + (i % 2) * size, STEP, timeout);
+        rig_feedback(&rig, id, &feedback[i % 2], STEP, timeout);
         rig_drain(&rig);
     }
     for (uint32_t k = 0; k < 2; k++)
         samples_init(&samples[k], repetitions(2000));
     for (uint32_t i = 0; i < samples[0].room * 2; i++) {
         uint64_t start = now_ns();
-        rig_feedback(&rig, id, &desc, maps + (i % 2) * size, STEP, timeout);
+        rig_feedback(&rig, id, &feedback[i % 2], STEP, timeout);
         samples_add(&samples[i % 2], (double)(now_ns() - start));
     }
     figure_times(to_fine, &samples[0]);
@@ -192,12 +197,14 @@ struct pair {
     SluiceStreamedTextureDesc desc; ///< of the primary
     SluiceTextureId primary, follower;
     uint8_t *maps;
+    SluiceFeedbackDesc feedback[MAPS];
     uint32_t map_count;
 };
 
-static const uint8_t *pair_map(const struct pair *pair, uint32_t i)
+/** The primary gets its `i`th map. */
+static void lead(struct pair *pair, uint32_t i)
 {
-    return pair->maps + (size_t)(i % pair->map_count) * region_count(&pair->desc);
+    rig_feedback(&pair->rig, pair->primary, &pair->feedback[i % pair->map_count], STEP, TIMEOUT);
 }
 
 static void match(struct pair *pair)
@@ -216,10 +223,13 @@ static void pair_init(struct pair *pair, const SluiceStreamedTextureDesc *follow
     pair->primary = rig_add(&pair->rig, &pair->desc);
     pair->follower = rig_add(&pair->rig, follower);
     pair->maps = must_allocate((size_t)pair->map_count * region_count(&pair->desc));
-    for (uint32_t i = 0; i < pair->map_count; i++)
-        draw_window(&pair->desc, pair->maps + (size_t)i * region_count(&pair->desc), drop, &random);
+    for (uint32_t i = 0; i < pair->map_count; i++) {
+        uint8_t *map = pair->maps + (size_t)i * region_count(&pair->desc);
+        draw_window(&pair->desc, map, drop, &random);
+        pair->feedback[i] = map_for(&pair->desc, map);
+    }
     for (uint32_t i = 0; i < MAPS; i++) {
-        rig_feedback(&pair->rig, pair->primary, &pair->desc, pair_map(pair, i), STEP, TIMEOUT);
+        lead(pair, i);
         match(pair);
         rig_drain(&pair->rig);
     }
@@ -239,7 +249,7 @@ static void time_match(const char *name, const SluiceStreamedTextureDesc *follow
     pair_init(&pair, follower, drop);
     samples_init(&samples, repetitions(2000));
     for (uint32_t i = 0; i < samples.room; i++) {
-        rig_feedback(&pair.rig, pair.primary, &pair.desc, pair_map(&pair, i), STEP, TIMEOUT);
+        lead(&pair, i);
         uint64_t start = now_ns();
         match(&pair);
         samples_add(&samples, (double)(now_ns() - start));
@@ -264,10 +274,10 @@ static void time_permanent_follower(void)
         must(sluiceSetPrimaryTexture(pair.rig.manager, pair.follower, primary), "set primary");
         /* not timed: the first call after the change refills the history */
         for (uint32_t k = 0; k < 8; k++)
-            rig_feedback(&pair.rig, pair.primary, &pair.desc, pair.maps, STEP, TIMEOUT);
+            lead(&pair, 0);
         uint64_t start = now_ns();
         for (uint32_t k = 0; k < BATCH; k++)
-            rig_feedback(&pair.rig, pair.primary, &pair.desc, pair.maps, STEP, TIMEOUT);
+            lead(&pair, 0);
         samples_add(&samples[i % 2], (double)(now_ns() - start) / BATCH);
     }
     figure_times("follow.permanent_with_primary", &samples[1]);

@@ -116,14 +116,11 @@ static uint32_t regions(uint32_t size, uint32_t region)
     return (size + region - 1) / region;
 }
 
-void rig_feedback(struct rig *rig, SluiceTextureId id, const SluiceStreamedTextureDesc *desc,
-                  const uint8_t *map, uint64_t step, uint64_t timeout)
+void rig_feedback(struct rig *rig, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
+                  uint64_t step, uint64_t timeout)
 {
-    SluiceFeedbackDesc feedback = {.pMinMip = map,
-                                   .width = regions(desc->width, desc->feedbackRegionWidth),
-                                   .height = regions(desc->height, desc->feedbackRegionHeight)};
     rig->time += step;
-    must(sluiceUpdateWithSamplerFeedback(rig->manager, id, &feedback, rig->time, timeout),
+    must(sluiceUpdateWithSamplerFeedback(rig->manager, id, feedback, rig->time, timeout),
          "feedback");
 }
 
@@ -138,4 +135,11 @@ uint32_t region_count(const SluiceStreamedTextureDesc *desc)
 {
     return regions(desc->width, desc->feedbackRegionWidth) *
            regions(desc->height, desc->feedbackRegionHeight);
+}
+
+SluiceFeedbackDesc map_for(const SluiceStreamedTextureDesc *desc, const uint8_t *map)
+{
+    return (SluiceFeedbackDesc){.pMinMip = map,
+                                .width = regions(desc->width, desc->feedbackRegionWidth),
+                                .height = regions(desc->height, desc->feedbackRegionHeight)};
 }

@@ -39,13 +39,16 @@ SluiceStreamedTextureDesc square_desc(uint32_t size, uint32_t tile);
 
 SluiceTextureId rig_add(struct rig *rig, const SluiceStreamedTextureDesc *desc);
 
-/** Advances the time by `step` and brings a map of the size that desc asks for. */
-void rig_feedback(struct rig *rig, SluiceTextureId id, const SluiceStreamedTextureDesc *desc,
-                  const uint8_t *map, uint64_t step, uint64_t timeout);
+/** Advances the time by `step` and brings a map. */
+void rig_feedback(struct rig *rig, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
+                  uint64_t step, uint64_t timeout);
 
 SluiceStreamedTextureStatistics rig_statistics(const struct rig *rig);
 
 /** Regions of one map. */
 uint32_t region_count(const SluiceStreamedTextureDesc *desc);
+
+/** A map of the size that the texture has. */
+SluiceFeedbackDesc map_for(const SluiceStreamedTextureDesc *desc, const uint8_t *map);
 
 #endif /* BENCH_RIG_H */
