@@ -59,8 +59,8 @@ static void time_untouched(void)
     rig_finish(&rig);
 }
 
-/** The same window again and again, everything in it mapped. */
-static void time_window(void)
+/** The same map again and again, a window or level 0 everywhere, everything in it mapped. */
+static void time_unchanged(const char *name, bool everywhere)
 {
     enum { BATCH = 16 };
     struct rig rig;
@@ -70,7 +70,8 @@ static void time_window(void)
     SluiceStreamedTextureDesc desc = square_desc(SIZE, TILE);
     SluiceTextureId id = rig_add(&rig, &desc);
     uint8_t *map = must_allocate(region_count(&desc));
-    draw_window(&desc, map, 0, &random);
+    if (!everywhere)
+        draw_window(&desc, map, 0, &random);
     SluiceFeedbackDesc feedback = map_for(&desc, map);
     for (uint32_t i = 0; i < 16; i++) {
         rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
@@ -83,7 +84,7 @@ static void time_window(void)
             rig_feedback(&rig, id, &feedback, STEP, TIMEOUT);
         samples_add(&samples, (double)(now_ns() - start) / BATCH);
     }
-    figure_times("feedback.window", &samples);
+    figure_times(name, &samples);
     samples_finish(&samples);
     free(map);
     rig_finish(&rig);
@@ -185,7 +186,8 @@ static void time_all_alternating(uint64_t timeout, const char *to_fine, const ch
 void bench_feedback(void)
 {
     time_untouched();
-    time_window();
+    time_unchanged("feedback.window", false);
+    time_unchanged("feedback.all", true);
     time_stochastic();
     time_all_first();
     time_all_alternating(TIMEOUT, "feedback.all_held_fine", "feedback.all_held_coarse");
