@@ -244,6 +244,9 @@ follower of the window: half size | - | - | follow.half_size.median | copy.4096_
 follower of the window: other tiles | - | - | follow.other_tiles.median | copy.4096_bytes.median
 follower of the window: 30 % missing | - | - | follow.equal_stochastic.median | copy.4096_bytes.median
 follower of the window: permanent | 1131 | 5 | follow.permanent.median | copy.4096_bytes.median
+memcpy of 4096 bytes | - | - | copy.4096_bytes.median |
+memcpy of the maps of a t1000 frame | - | - | floor.t1000.median |
+memcpy of the maps of a t10000 frame | - | - | floor.t10000.median |
 100000 idle textures: frame | 1014 | <1 | idle.100000_textures.median |
 add a texture: typical | 0.5 | 0.5 | add.median |
 add a texture: worst of 100000 | 590000 | 200 | add.worst |
