@@ -18,7 +18,7 @@ static SluiceResult check_tile(slc_manager *m, const struct slc_texture *t, uint
 {
     if (tile >= t->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
-    uint32_t node = slc_find_node(m, t, tile);
+    uint32_t node = slc_find_node(t, tile);
     if (!node || !is_in_flight(&m->nodes[node]) || m->nodes[node].flags & NODE_SEEN)
         return SLUICE_ERROR_INVALID_TILE_STATE;
     m->nodes[node].flags |= NODE_SEEN;
@@ -36,7 +36,7 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uin
     if (result != SLUICE_SUCCESS)
         checked--;
     for (uint32_t i = 0; i < checked; i++)
-        m->nodes[slc_find_node(m, t, tiles[i])].flags &= (uint8_t)~NODE_SEEN;
+        m->nodes[slc_find_node(t, tiles[i])].flags &= (uint8_t)~NODE_SEEN;
     return result;
 }
 
@@ -89,8 +89,8 @@ static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_valu
     m->cancelled_total++;
     if (!wanted)
         return;
-    slc_tile_wanted(m, t, tile, level, 0);
-    m->nodes[slc_find_node(m, t, tile)].failures = failures;
+    slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level, 0);
+    m->nodes[slc_find_node(t, tile)].failures = failures;
 }
 
 /** Room for the reports of `count` tiles that may be given up. */
@@ -121,7 +121,7 @@ static SluiceResult update_mapping(slc_manager *m, SluiceTextureId id, uint32_t 
     struct slc_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < count; i++)
-        answer_mapped(m, slc_find_node(m, t, tiles[i]));
+        answer_mapped(m, slc_find_node(t, tiles[i]));
     return result;
 }
 
@@ -138,7 +138,7 @@ static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t c
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     slc_advance_time(m, time);
     for (uint32_t i = 0; i < count; i++)
-        answer_failed(m, slc_find_node(m, t, tiles[i]), time);
+        answer_failed(m, slc_find_node(t, tiles[i]), time);
     return SLUICE_SUCCESS;
 }
 
@@ -156,7 +156,7 @@ static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_
     if (retire_value)
         m->last_retire = retire_value;
     for (uint32_t i = 0; i < count; i++)
-        answer_cancelled(m, slc_find_node(m, t, tiles[i]), retire_value);
+        answer_cancelled(m, slc_find_node(t, tiles[i]), retire_value);
     return SLUICE_SUCCESS;
 }
 

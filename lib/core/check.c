@@ -77,7 +77,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     const struct slc_node *n = &m->nodes[node];
     REQUIRE(n->texture == t->index);
     REQUIRE(n->tile < t->tile_count);
-    REQUIRE(slc_find_node(m, t, n->tile) == node);
+    REQUIRE(slc_find_node(t, n->tile) == node);
     REQUIRE(n->level == slc_tile_place(t, n->tile).level);
     REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
     REQUIRE(has_slot(n->state) == (n->heap != SLC_NONE));
@@ -87,7 +87,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     if (n->state == SLUICE_TILE_STATE_CANCELLED && n->flags & SLC_NODE_WANTED)
         wanted = true;
     if (n->tile < t->regular_tile_count)
-        REQUIRE(wanted == (t->state->want_counts[n->tile] > 0));
+        REQUIRE(wanted == (t->state->cells[n->tile].wants > 0));
     else
         REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
     return NULL;
@@ -114,9 +114,9 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
         return NULL;
     uint32_t with_node = 0;
     for (uint32_t i = 0; i < t->regular_tile_count; i++) {
-        with_node += t->state->nodes[i] != 0;
-        if (t->state->want_counts[i] > 0)
-            REQUIRE(t->state->nodes[i] != 0);
+        with_node += t->state->cells[i].node != 0;
+        if (t->state->cells[i].wants > 0)
+            REQUIRE(t->state->cells[i].node != 0);
     }
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;

@@ -1,4 +1,7 @@
+#include "core/history.h"
 #include "core/wants.h"
+
+#include "base/bytes.h"
 
 static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
                                    const SluiceFeedbackDesc *f, uint64_t time,
@@ -14,22 +17,52 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
     return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
 }
 
+/** Scratch for the maps of a texture and of those that follow it. */
+static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t, bool followers)
+{
+    size_t largest = slc_padded(slc_region_count(t));
+    uint64_t bytes = largest;
+    for (uint32_t f = followers ? t->first_follower : SLC_NONE; f != SLC_NONE;
+         f = slc_texture_at(m, f)->next_follower) {
+        size_t padded = slc_padded(slc_region_count(slc_texture_at(m, f)));
+        bytes += padded;
+        largest = padded > largest ? padded : largest;
+    }
+    return slc_wants_reserve_scratch(m, bytes, largest);
+}
+
+static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
+                            const SluiceFeedbackDesc *feedback)
+{
+    struct slc_wants_need need = {0};
+    SluiceResult result = reserve_scratch(m, t, true);
+    if (result == SLUICE_SUCCESS)
+        result = slc_wants_prepare(m, t, feedback, &need);
+    for (uint32_t f = t->first_follower; f != SLC_NONE && result == SLUICE_SUCCESS;
+         f = slc_texture_at(m, f)->next_follower) {
+        const struct slc_texture_state *s = t->state;
+        const uint8_t *asked = !s ? NULL : s->next ? s->next : s->asked;
+        result = slc_wants_prepare_follower(m, t, asked, slc_texture_at(m, f), &need);
+    }
+    if (result == SLUICE_SUCCESS)
+        result = slc_wants_reserve(m, &need);
+    if (result == SLUICE_SUCCESS)
+        return result;
+    slc_wants_abandon(m, t);
+    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
+        slc_wants_abandon(m, slc_texture_at(m, f));
+    return result;
+}
+
 static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
                            uint64_t time, uint64_t timeout)
 {
     struct slc_texture *t;
     SluiceResult result = check_feedback(m, id, feedback, time, &t);
-    struct slc_wants_need need = {0};
     if (result == SLUICE_SUCCESS)
-        result = slc_wants_prepare(m, t, feedback, &need);
-    for (uint32_t f = result == SLUICE_SUCCESS ? t->first_follower : SLC_NONE;
-         f != SLC_NONE && result == SLUICE_SUCCESS; f = slc_texture_at(m, f)->next_follower)
-        result = slc_wants_prepare_follower(m, t, true, slc_texture_at(m, f), &need);
-    if (result == SLUICE_SUCCESS)
-        result = slc_wants_reserve(m, &need);
+        result = prepare(m, t, feedback);
     if (result != SLUICE_SUCCESS)
         return result;
-
     slc_advance_time(m, time);
     slc_wants_commit(m, t, time, timeout);
     for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
@@ -67,13 +100,17 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (slc_time_is_backwards(m, time))
         return SLUICE_ERROR_TIME_BACKWARDS;
-    struct slc_wants_need need = {0};
-    if (p->has_map) {
-        result = slc_wants_prepare_follower(m, p, false, t, &need);
+    if (p->has_map && (p->state || t->state)) {
+        struct slc_wants_need need = {0};
+        result = reserve_scratch(m, t, false);
+        if (result == SLUICE_SUCCESS)
+            result = slc_wants_prepare_follower(m, p, p->state ? p->state->asked : NULL, t, &need);
         if (result == SLUICE_SUCCESS)
             result = slc_wants_reserve(m, &need);
-        if (result != SLUICE_SUCCESS)
+        if (result != SLUICE_SUCCESS) {
+            slc_wants_abandon(m, t);
             return result;
+        }
     }
     slc_advance_time(m, time);
     if (p->has_map)

@@ -1,6 +1,7 @@
 #include "core/wants.h"
 
-#include "base/checked.h"
+#include "base/bytes.h"
+#include "core/history.h"
 
 #include <string.h>
 
@@ -23,21 +24,45 @@ static int level_offset(const SluiceStreamedTextureDesc *primary,
     return d;
 }
 
-/** Regions of the primary that overlap a region of the follower along one axis, inclusive. */
-static void overlap(uint32_t region, uint32_t region_size, uint32_t size, uint32_t primary_region,
-                    uint32_t primary_size, uint32_t primary_count, uint32_t *first, uint32_t *last)
+/*
+ * [begin, end) of region i, over `size`, against [j * r, (j + 1) * r), over `primary_size`: the
+ * quotients that give the first and the last j grow by the same step from region to region, so one
+ * division per axis serves them all.
+ */
+struct axis {
+    uint64_t unit; ///< size * r
+    uint64_t step, remainder_step;
+    uint64_t quotient, remainder; ///< of begin * primary_size / unit
+    uint64_t end;                 ///< size * primary_size - 1: the last region may be cut off
+    uint32_t primary_count;
+};
+
+static struct axis make_axis(uint32_t region_size, uint32_t size, uint32_t primary_region,
+                             uint32_t primary_size, uint32_t primary_count)
 {
-    uint64_t begin = (uint64_t)region * region_size, end = begin + region_size;
-    if (end > size)
-        end = size;
-    /* [begin, end) / size against [i * r, (i + 1) * r) / primary_size */
-    uint64_t unit = (uint64_t)size * primary_region;
-    *first = (uint32_t)(begin * primary_size / unit);
-    *last = (uint32_t)((end * primary_size - 1) / unit);
-    if (*first >= primary_count)
-        *first = primary_count - 1;
-    if (*last >= primary_count)
-        *last = primary_count - 1;
+    struct axis a = {.unit = (uint64_t)size * primary_region,
+                     .end = (uint64_t)size * primary_size - 1,
+                     .primary_count = primary_count};
+    uint64_t advance = (uint64_t)region_size * primary_size;
+    a.step = advance / a.unit;
+    a.remainder_step = advance % a.unit;
+    return a;
+}
+
+/** Regions of the primary that overlap the next region of the follower, inclusive. */
+static void next_overlap(struct axis *a, uint32_t *first, uint32_t *last)
+{
+    *first = (uint32_t)a->quotient;
+    a->quotient += a->step;
+    a->remainder += a->remainder_step;
+    if (a->remainder >= a->unit) {
+        a->remainder -= a->unit;
+        a->quotient++;
+    }
+    /* (end * primary_size - 1) / unit, where the next begin is this end */
+    *last = (uint32_t)(a->remainder > 0 ? a->quotient : a->quotient - 1);
+    if (*last >= a->primary_count) /* the follower's last region reaches beyond the texture */
+        *last = a->primary_count - 1;
 }
 
 static uint8_t least_asked(const uint8_t *asked, uint32_t pitch, struct slc_tile_range r)
@@ -70,21 +95,24 @@ static void make_map(const struct slc_texture *p, const uint8_t *asked, const st
 {
     const SluiceStreamedTextureDesc *pd = &p->desc, *fd = &f->desc;
     int offset = level_offset(pd, fd), last = (int)fd->mipLevelCount - 1;
+    struct axis down = make_axis(fd->feedbackRegionHeight, fd->height, pd->feedbackRegionHeight,
+                                 pd->height, p->feedback_height);
+    const struct axis along = make_axis(fd->feedbackRegionWidth, fd->width, pd->feedbackRegionWidth,
+                                        pd->width, p->feedback_width);
     struct slc_tile_range r = {0, 1, 0, 0}; /* no range: y0 is behind y1 */
     for (uint32_t y = 0; y < f->feedback_height; y++) {
         uint8_t *row = map + (size_t)y * f->feedback_width;
         uint32_t y0, y1;
-        overlap(y, fd->feedbackRegionHeight, fd->height, pd->feedbackRegionHeight, pd->height,
-                p->feedback_height, &y0, &y1);
+        next_overlap(&down, &y0, &y1);
         if (y0 == r.y0 && y1 == r.y1) {
             memcpy(row, row - f->feedback_width, f->feedback_width);
             continue;
         }
         r = (struct slc_tile_range){1, y0, 0, y1};
+        struct axis across = along;
         for (uint32_t x = 0; x < f->feedback_width; x++) {
             uint32_t x0, x1;
-            overlap(x, fd->feedbackRegionWidth, fd->width, pd->feedbackRegionWidth, pd->width,
-                    p->feedback_width, &x0, &x1);
+            next_overlap(&across, &x0, &x1);
             if (x0 == r.x0 && x1 == r.x1) {
                 row[x] = row[x - 1];
                 continue;
@@ -95,22 +123,41 @@ static void make_map(const struct slc_texture *p, const uint8_t *asked, const st
     }
 }
 
+/** Regions lie on regions, levels on levels. */
+static bool has_same_regions(const struct slc_texture *p, const struct slc_texture *f)
+{
+    const SluiceStreamedTextureDesc *a = &p->desc, *b = &f->desc;
+    return a->width == b->width && a->height == b->height &&
+           a->feedbackRegionWidth == b->feedbackRegionWidth &&
+           a->feedbackRegionHeight == b->feedbackRegionHeight;
+}
+
+static void copy_map(const uint8_t *asked, const struct slc_texture *f, uint8_t *map)
+{
+    slc_block last = slc_block_of((uint8_t)(f->desc.mipLevelCount - 1));
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    for (size_t i = 0; i < slc_padded(slc_region_count(f)); i += SLC_BLOCK) {
+        slc_block a = slc_load_block(asked + i);
+        slc_store_block(map + i, slc_min_block(a, last) | slc_equal_block(a, untouched));
+    }
+}
+
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
-                                        bool prepared, struct slc_texture *follower,
+                                        const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need)
 {
-    const struct slc_texture_state *ps = primary->state;
-    if (!ps && !follower->state)
+    if (!asked && !follower->state)
         return SLUICE_SUCCESS; /* an empty map onto nothing */
-    SluiceResult result = slc_make_state(m, follower);
+    SluiceResult result = slc_state_make(m, follower);
     if (result != SLUICE_SUCCESS)
         return result;
-    struct slc_texture_state *s = follower->state;
-    if (ps)
-        make_map(primary, prepared ? ps->next_asked : ps->asked, follower, s->next_asked);
+    uint8_t *map = slc_wants_take_map(m, follower, need);
+    if (!asked)
+        memset(map, SLUICE_MIP_UNTOUCHED, slc_region_count(follower));
+    else if (has_same_regions(primary, follower))
+        copy_map(asked, follower, map);
     else
-        memset(s->next_asked, SLUICE_MIP_UNTOUCHED,
-               (size_t)follower->feedback_width * follower->feedback_height);
-    slc_wants_add_need(follower, need);
+        make_map(primary, asked, follower, map);
+    slc_wants_add_need(m, follower, map, need);
     return SLUICE_SUCCESS;
 }

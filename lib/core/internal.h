@@ -10,6 +10,7 @@
 #include <assert.h>
 
 #define SLC_NONE UINT32_MAX
+#define SLC_UNALIGNED 255
 
 /** One regular level, in tiles. */
 struct slc_level {
@@ -54,25 +55,34 @@ struct slc_requests {
     uint64_t next_sequence;
 };
 
-/** A region's finer level that newer maps miss; see wants.c. */
-struct slc_decay {
-    uint64_t time; ///< of the last map that asked for the level
-    uint32_t region;
-    uint32_t older;      ///< of the same region: a finer level; 0: none
-    uint32_t prev, next; ///< in the texture, by time
-    uint8_t level;
+/** One regular tile of a texture that was sampled. */
+struct slc_cell {
+    uint32_t wants; ///< regions that want it and children that are wanted
+    uint32_t node;  ///< 0: FREE
 };
 
-/** Per-tile and per-region memory, made when a texture is first sampled. */
+#define SLC_MAX_SPANS 6
+
+/** Maps that count as one: the least level that any of them asked for. See history.c. */
+struct slc_span {
+    uint64_t begin, end; ///< times of the first and of the last map
+    uint32_t weight;     ///< in maps
+    uint8_t below;       ///< only levels below this are still in the map
+    uint8_t *map;        ///< [padded regions], owned; stays for reuse when the span is dropped
+};
+
+/** Per-tile and per-region memory, made when a texture is first sampled. One allocation. */
 struct slc_texture_state {
-    uint32_t *want_counts; ///< [regular tiles]: regions that want it and children that are wanted
-    uint32_t *nodes;       ///< [regular tiles]: node index, 0: FREE
-    uint32_t *decays;      ///< [regions]: newest slc_decay, 0: none
-    uint8_t *asked;        ///< [regions]: what the last map asked for (a, not w)
-    uint8_t *next_asked;   ///< [regions]: the map being merged
-    uint8_t *held;         ///< [regions]: w, SLUICE_MIP_UNTOUCHED for nothing
-    uint8_t *min_mip;      ///< [minMipHeight][minMipWidth]
-    struct slc_list decay_list; ///< oldest first
+    size_t size;                          ///< bytes of the allocation
+    struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
+    uint32_t span_count;
+    uint32_t bias;          ///< of the manager when `held` was computed
+    struct slc_cell *cells; ///< [regular tiles]
+    uint8_t *asked;         ///< [padded regions]: what the last map asked for (a, not w)
+    uint8_t *least;         ///< [padded regions]: the least over all spans
+    uint8_t *held;       ///< [padded regions]: `least` with the global bias; what wants stand for
+    uint8_t *min_mip;    ///< [minMipHeight][minMipWidth]
+    const uint8_t *next; ///< in the manager's scratch: the map being merged, NULL: as `asked`
 };
 
 struct slc_texture {
@@ -85,6 +95,7 @@ struct slc_texture {
     uint32_t regular_tile_count, tile_count;
     uint32_t feedback_width, feedback_height;
     uint32_t min_mip_width, min_mip_height;
+    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
     struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
     struct slc_texture_state *state; ///< owned, NULL until sampled
     uint32_t *packed_nodes;          ///< owned, [packedTileCount], NULL if there are none
@@ -92,9 +103,12 @@ struct slc_texture {
     uint32_t first_node;             ///< of all nodes of the texture
     uint32_t regular_nodes;          ///< nodes of regular tiles
     uint32_t requested_count;
-    uint32_t held_regions;                                 ///< that hold anything
-    uint64_t map_time;                                     ///< of the last map
-    uint32_t primary;                                      ///< index, SLC_NONE
+    uint32_t held_regions;           ///< that hold anything
+    uint64_t map_time;               ///< of the last map
+    uint64_t interval, timeout;      ///< between the last two maps; of the last one
+    uint32_t hits, returns;          ///< how reliable maps are; see slc_maps_to_believe
+    uint32_t visit_prev, visit_next; ///< among textures with a state, indices, SLC_NONE
+    uint32_t primary;                ///< index, SLC_NONE
     uint32_t first_follower, last_follower, next_follower; ///< indices, SLC_NONE
     uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1;       ///< exclusive ends
     uint32_t dirty_prev, dirty_next;                       ///< indices, SLC_NONE
@@ -136,10 +150,19 @@ struct SluiceStreamedTextureManager {
     struct slc_requests requests;
     struct slc_list standby, unmapping, cancelled, failed, given_up, retiring;
 
-    struct slc_decay *decays; ///< owned, [decay_room]; [0] unused
-    uint32_t decay_room, decay_end, free_decay, free_decay_count;
-    struct slc_change *changes; ///< owned scratch
+    struct slc_change *changes; ///< owned scratch, [change_room]
     uint32_t change_room;
+    uint8_t *scratch; ///< owned, for the maps of one call
+    size_t scratch_room;
+    uint32_t visit_first, visit_last; ///< textures with a state, the longest without a map first
+    uint32_t visited_count;
+    uint32_t bias;              ///< global mip bias in sixteenths of a level
+    uint32_t bias_maps;         ///< merged since it was looked at last
+    uint32_t bias_failed;       ///< the last one with which too much was wanted,
+    uint64_t bias_failed_limit; ///< for so many slots
+    uint64_t bias_demand;       ///< tiles wanted once it had been raised; 0: not known yet
+    bool starved;                    ///< the last hand-out stopped for lack of slots
+    bool refused;               ///< the heap allocator's last answer
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
     uint32_t report_first, report_end, report_room;
@@ -175,6 +198,21 @@ bool slc_retire_is_backwards(const slc_manager *m, uint64_t retire_value);
 /** Moves the clock on and makes due retries REQUESTED. */
 void slc_advance_time(slc_manager *m, uint64_t time);
 
+/** The list of textures with a state. */
+void slc_visit_append(slc_manager *m, struct slc_texture *t);
+void slc_visit_remove(slc_manager *m, struct slc_texture *t);
+/** Its turn to be forgotten comes last. */
+void slc_visit_renew(slc_manager *m, struct slc_texture *t);
+
+/* history.c */
+/** Whether the texture's last map asks for the tile; packed tiles always are. */
+bool slc_is_asked_for(const slc_manager *m, uint32_t node);
+
+/* bias.c */
+/** What the global bias adds in each region of a texture, in the scratch; NULL for nothing. */
+void slc_update_bias(slc_manager *m);
+const uint8_t *slc_bias_map(slc_manager *m, const struct slc_texture *t, size_t padded);
+
 /* layout.c */
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_texture *t);
 void slc_write_layout(const struct slc_texture *t, SluiceStreamedTextureLayout *layout);
@@ -205,10 +243,13 @@ struct slc_tile_range slc_region_tiles(const struct slc_texture *t, uint32_t reg
 /* node.c: nodes, lists, the moves between states */
 /** Makes sure that `count` nodes can be taken. */
 bool slc_reserve_nodes(slc_manager *m, uint64_t count);
-uint32_t slc_find_node(const slc_manager *m, const struct slc_texture *t, uint32_t tile);
-void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level,
-                     uint32_t deficit);
-void slc_tile_unwanted(slc_manager *m, struct slc_texture *t, uint32_t tile);
+/** Where a tile keeps its node; NULL for a regular one without a state. */
+uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile);
+uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile);
+/** `cell` is where the tile keeps its node. */
+void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                     uint32_t level, uint32_t deficit);
+void slc_tile_unwanted(slc_manager *m, uint32_t node);
 /** Changes the state and moves the node to the end of that state's list. */
 void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state);
 /** REQUESTED again with deficit 0. */
@@ -228,11 +269,13 @@ void slc_list_standby(slc_manager *m, uint32_t keep);
 void slc_node_fail(slc_manager *m, uint32_t node, uint64_t time);
 /** The most useful REQUESTED tile, 0 if there is none. */
 uint32_t slc_first_request(const slc_manager *m);
+/** The one after it in the queue, 0 at the end. */
+uint32_t slc_next_request(const slc_manager *m, uint32_t node);
 SluiceTile slc_node_tile(const slc_manager *m, uint32_t node);
 void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node);
 void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node);
 
-/* wants.c */
+/* history.c */
 void slc_state_destroy(slc_manager *m, struct slc_texture *t);
 
 /* minmip.c */

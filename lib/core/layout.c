@@ -17,6 +17,16 @@ static SluiceResult check_desc(const SluiceStreamedTextureDesc *d)
     return SLUICE_SUCCESS;
 }
 
+/** log2 of the regions per tile along one axis where they are 1, 2, 4...: see tiles_of in wants.c
+ */
+static uint8_t region_shift(uint32_t region, uint32_t tile)
+{
+    uint8_t shift = 0;
+    while (shift < 31 && (uint64_t)region << shift < tile)
+        shift++;
+    return (uint64_t)region << shift == tile ? shift : SLC_UNALIGNED;
+}
+
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_texture *t)
 {
     SluiceResult result = check_desc(desc);
@@ -29,6 +39,9 @@ SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct sl
         t->desc.feedbackRegionHeight = desc->tileHeight;
     t->feedback_width = slc_div_up_u32(desc->width, t->desc.feedbackRegionWidth);
     t->feedback_height = slc_div_up_u32(desc->height, t->desc.feedbackRegionHeight);
+
+    t->region_shift_x = region_shift(t->desc.feedbackRegionWidth, desc->tileWidth);
+    t->region_shift_y = region_shift(t->desc.feedbackRegionHeight, desc->tileHeight);
 
     uint64_t tiles = 0; /* at most 2 * 2^40 regular ones, so it fits */
     for (uint32_t l = 0; l < desc->regularMipCount; l++) {

@@ -93,17 +93,53 @@ static uint32_t requests_in_scope(const slc_manager *m, const struct slc_texture
     return scope ? scope->requested_count : m->requests.count;
 }
 
+/** Requests that may be passed over in one call, so that a call's cost has a bound. */
+enum { MAX_PASSED_OVER = 4096 };
+
+/** Where the next request comes from: a texture's sorted keys, or the queues of all. */
+struct request_walk {
+    const struct request_key *keys; ///< NULL: all textures
+    uint32_t at, count;             ///< in keys
+    uint32_t node;                  ///< 0: the end
+};
+
+static struct request_walk first_request(const slc_manager *m, const struct request_key *keys,
+                                         uint32_t count)
+{
+    if (keys)
+        return (struct request_walk){keys, 0, count, count ? keys[0].node : 0};
+    return (struct request_walk){.node = slc_first_request(m)};
+}
+
+/** To be called before the state of the walk's node changes. */
+static void next_request(const slc_manager *m, struct request_walk *w)
+{
+    if (w->keys)
+        w->node = ++w->at < w->count ? w->keys[w->at].node : 0;
+    else
+        w->node = slc_next_request(m, w->node);
+}
+
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
-    uint32_t room = *count, written = 0;
+    uint32_t room = *count, written = 0, passed_over = 0;
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
-    while (written < room && requests_in_scope(m, scope) > 0) {
-        uint32_t node = scope ? keys[written].node : slc_first_request(m);
+    struct request_walk walk = first_request(m, keys, requests_in_scope(m, scope));
+    if (scope && !keys)
+        walk.node = 0;
+    while (written < room && walk.node && passed_over < MAX_PASSED_OVER) {
+        uint32_t node = walk.node;
+        if (m->starved && !slc_is_asked_for(m, node)) {
+            next_request(m, &walk);
+            passed_over++;
+            continue;
+        }
         result = take_slot(m, node, &refused);
         if (result != SLUICE_SUCCESS)
             break;
+        next_request(m, &walk);
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }
@@ -112,6 +148,8 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);
+    if (room > 0)
+        m->starved = result == SLUICE_BUDGET_REACHED;
     if (result == SLUICE_BUDGET_REACHED)
         list_standby_for(m, slc_min_u32(left, room - written));
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)

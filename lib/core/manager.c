@@ -57,18 +57,17 @@ sluiceCreateStreamedTextureManager(const SluiceStreamedTextureManagerCreateInfo 
     m->info.pAllocator = pCreateInfo->pAllocator ? &m->given : NULL;
     m->cb = (SluiceAllocationCallbacks){m, count_allocate, count_free};
     m->host_memory_size = sizeof *m;
-    m->dirty_first = m->dirty_last = SLC_NONE;
+    m->dirty_first = m->dirty_last = m->visit_first = m->visit_last = SLC_NONE;
     result = slc_tile_heaps_init(&m->heaps, &m->cb, &pCreateInfo->heapAllocator,
                                  pCreateInfo->heapTileCapacity, pCreateInfo->tileSize);
     if (result != SLUICE_SUCCESS)
         goto fail;
-    /* Index 0 of both pools stands for none. */
-    if (!slc_reserve_nodes(m, 1) || !slc_reserve_decays(m, 1)) {
+    /* Index 0 stands for none. */
+    if (!slc_reserve_nodes(m, 1)) {
         result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         goto fail;
     }
     m->node_end = 1;
-    m->decay_end = 1;
     *pManager = m;
     return SLUICE_SUCCESS;
 
@@ -98,7 +97,7 @@ void sluiceDestroyStreamedTextureManager(SluiceStreamedTextureManager *manager)
     slc_free(&m->cb, m->chunks, m->chunk_room, sizeof *m->chunks);
     slc_free(&m->cb, m->free_indices, m->free_index_room, sizeof *m->free_indices);
     slc_free(&m->cb, m->nodes, m->node_room, sizeof *m->nodes);
-    slc_free(&m->cb, m->decays, m->decay_room, sizeof *m->decays);
+    slc_free(&m->cb, m->scratch, m->scratch_room, 1);
     slc_free(&m->cb, m->changes, m->change_room, sizeof *m->changes);
     slc_free(&m->cb, m->given_up_reports, m->report_room, sizeof *m->given_up_reports);
     SluiceAllocationCallbacks given = m->given;
@@ -203,7 +202,7 @@ SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *manager,
         return result;
     if (tileIndex >= t->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
-    uint32_t node = slc_find_node(manager, t, tileIndex);
+    uint32_t node = slc_find_node(t, tileIndex);
     if (pState)
         *pState = node ? (SluiceTileState)manager->nodes[node].state : SLUICE_TILE_STATE_FREE;
     if (pTile && node) {
@@ -316,7 +315,8 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
     slc_min_mip_dirty_all(m, t);
     if (m->info.alwaysMapPackedTiles)
         for (uint32_t i = 0; i < desc->packedTileCount; i++)
-            slc_tile_wanted(m, t, t->regular_tile_count + i, desc->regularMipCount, 0);
+            slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
+                            desc->regularMipCount, 0);
     *id = slc_texture_id(t);
     return SLUICE_SUCCESS;
 }
@@ -404,6 +404,41 @@ SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager *manager,
                             .result = remove_texture(manager, textureId, retireValue)};
     slc_notify(manager, &call);
     return call.result;
+}
+
+/* Textures by their last map ---------------------------------------------------------------- */
+
+void slc_visit_append(slc_manager *m, struct slc_texture *t)
+{
+    t->visit_prev = m->visit_last;
+    t->visit_next = SLC_NONE;
+    if (m->visit_last != SLC_NONE)
+        slc_texture_at(m, m->visit_last)->visit_next = t->index;
+    else
+        m->visit_first = t->index;
+    m->visit_last = t->index;
+    m->visited_count++;
+}
+
+void slc_visit_remove(slc_manager *m, struct slc_texture *t)
+{
+    if (t->visit_prev != SLC_NONE)
+        slc_texture_at(m, t->visit_prev)->visit_next = t->visit_next;
+    else
+        m->visit_first = t->visit_next;
+    if (t->visit_next != SLC_NONE)
+        slc_texture_at(m, t->visit_next)->visit_prev = t->visit_prev;
+    else
+        m->visit_last = t->visit_prev;
+    m->visited_count--;
+}
+
+void slc_visit_renew(slc_manager *m, struct slc_texture *t)
+{
+    if (m->visit_last == t->index)
+        return;
+    slc_visit_remove(m, t);
+    slc_visit_append(m, t);
 }
 
 /* Sets -------------------------------------------------------------------------------------- */

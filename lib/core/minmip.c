@@ -18,7 +18,7 @@ uint8_t slc_min_mip_floor(const struct slc_texture *t)
 
 static bool is_resident(const slc_manager *m, const struct slc_texture *t, struct slc_place p)
 {
-    uint32_t node = t->state->nodes[slc_tile_index(t, p)];
+    uint32_t node = t->state->cells[slc_tile_index(t, p)].node;
     return node && (m->nodes[node].state == SLUICE_TILE_STATE_MAPPED ||
                     m->nodes[node].state == SLUICE_TILE_STATE_STANDBY);
 }

@@ -95,6 +95,24 @@ uint32_t slc_first_request(const slc_manager *m)
     return r->lists[class][deficit].head;
 }
 
+uint32_t slc_next_request(const slc_manager *m, uint32_t node)
+{
+    const struct slc_requests *r = &m->requests;
+    const struct slc_node *n = &m->nodes[node];
+    if (n->next)
+        return n->next;
+    uint32_t class = request_class(m, n);
+    uint32_t deficits = r->deficits[class] & ((1u << n->deficit) - 1);
+    if (!deficits) {
+        uint32_t classes = r->classes & ((1u << class) - 1);
+        if (!classes)
+            return 0;
+        class = 31u - (uint32_t)__builtin_clz(classes);
+        deficits = r->deficits[class];
+    }
+    return r->lists[class][31u - (uint32_t)__builtin_clz(deficits)].head;
+}
+
 /** Takes the node out of the list that its state keeps it in, if any. */
 static void leave_list(slc_manager *m, uint32_t node)
 {
@@ -154,17 +172,16 @@ bool slc_reserve_nodes(slc_manager *m, uint64_t count)
     return true;
 }
 
-static uint32_t *node_cell(const slc_manager *m, const struct slc_texture *t, uint32_t tile)
+uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)
 {
-    (void)m;
     if (tile >= t->regular_tile_count)
         return &t->packed_nodes[tile - t->regular_tile_count];
-    return t->state ? &t->state->nodes[tile] : NULL;
+    return t->state ? &t->state->cells[tile].node : NULL;
 }
 
-uint32_t slc_find_node(const slc_manager *m, const struct slc_texture *t, uint32_t tile)
+uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
 {
-    const uint32_t *cell = node_cell(m, t, tile);
+    const uint32_t *cell = slc_node_cell(t, tile);
     return cell ? *cell : 0;
 }
 
@@ -180,7 +197,8 @@ static uint32_t pop_node(slc_manager *m)
     return m->node_end++;
 }
 
-static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level)
+static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                          uint32_t level)
 {
     uint32_t node = pop_node(m);
     m->nodes[node] = (struct slc_node){
@@ -194,7 +212,7 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t tile, 
     if (t->first_node)
         m->nodes[t->first_node].texture_prev = node;
     t->first_node = node;
-    *node_cell(m, t, tile) = node;
+    *cell = node;
     t->regular_nodes += tile < t->regular_tile_count;
     m->state_counts[SLUICE_TILE_STATE_FREE]++;
     return node;
@@ -214,7 +232,7 @@ static void detach_node(slc_manager *m, uint32_t node)
 {
     struct slc_node *n = &m->nodes[node];
     struct slc_texture *t = slc_texture_at(m, n->texture);
-    *node_cell(m, t, n->tile) = 0;
+    *slc_node_cell(t, n->tile) = 0;
     t->regular_nodes -= n->tile < t->regular_tile_count;
     if (n->texture_prev)
         m->nodes[n->texture_prev].texture_next = n->texture_next;
@@ -343,12 +361,12 @@ SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 
 /* What wants do to a tile ------------------------------------------------------------------- */
 
-void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level,
-                     uint32_t deficit)
+void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                     uint32_t level, uint32_t deficit)
 {
-    uint32_t node = slc_find_node(m, t, tile);
+    uint32_t node = *cell;
     if (!node) {
-        node = take_node(m, t, tile, level);
+        node = take_node(m, t, cell, tile, level);
         m->nodes[node].deficit = (uint8_t)deficit;
         slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);
         return;
@@ -366,9 +384,8 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t tile, uint3
     }
 }
 
-void slc_tile_unwanted(slc_manager *m, struct slc_texture *t, uint32_t tile)
+void slc_tile_unwanted(slc_manager *m, uint32_t node)
 {
-    uint32_t node = slc_find_node(m, t, tile);
     assert(node);
     switch (m->nodes[node].state) {
     case SLUICE_TILE_STATE_ALLOCATED:

@@ -4,31 +4,41 @@
 
 #include "core/internal.h"
 
-/** What a commit will need at most, added up over the textures of one call. */
+/** What the commits of one call will need at most, and how much scratch its maps have taken. */
 struct slc_wants_need {
-    uint64_t nodes, decays, changes;
+    uint64_t nodes;
+    size_t regions; ///< of the largest map, padded
+    size_t scratch; ///< bytes in use
 };
 
-/** Puts what the map asks for into the texture's next_asked. Changes nothing that can be seen. */
+/** Room for the maps of one call: `bytes` padded bytes in all, and one map of `largest`. */
+SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t largest);
+
+/** Puts what the map asks for into the scratch. Changes nothing that can be seen. */
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
                                const SluiceFeedbackDesc *feedback, struct slc_wants_need *need);
 
-/** The same for a follower; `prepared` says that the primary's own map is in its next_asked. */
+/** The same for a follower; `asked` is what the primary's map asks for, NULL for an empty one. */
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
-                                        bool prepared, struct slc_texture *follower,
+                                        const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need);
 
-/** Makes the per-tile and per-region memory if it is not there yet. */
-SluiceResult slc_make_state(slc_manager *m, struct slc_texture *t);
-/** Makes sure that `count` decays can be taken. */
-bool slc_reserve_decays(slc_manager *m, uint64_t count);
-/** Adds what merging next_asked can need. */
-void slc_wants_add_need(const struct slc_texture *t, struct slc_wants_need *need);
+/** Takes room for the texture's map from the scratch. */
+uint8_t *slc_wants_take_map(slc_manager *m, struct slc_texture *t, struct slc_wants_need *need);
+/** state->next is complete: adds what merging it can need. */
+void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *next,
+                        struct slc_wants_need *need);
 
 /** Makes room for the commits. */
 SluiceResult slc_wants_reserve(slc_manager *m, const struct slc_wants_need *need);
 
-/** Merges next_asked. Cannot fail. */
+/** Merges state->next. Cannot fail. */
 void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
+
+/** A preparation came to nothing: gives back what it made. */
+void slc_wants_abandon(slc_manager *m, struct slc_texture *t);
+
+/** As if nothing had ever been asked for: all wants go. */
+void slc_wants_forget(slc_manager *m, struct slc_texture *t);
 
 #endif /* SLC_CORE_WANTS_H */

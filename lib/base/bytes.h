@@ -1,0 +1,100 @@
+/** Sixteen bytes at a time. Arrays that are walked this way are padded to whole blocks. */
+#ifndef SLC_BASE_BYTES_H
+#define SLC_BASE_BYTES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#elif defined(__ARM_NEON)
+#include <arm_neon.h>
+#endif
+
+#define SLC_BLOCK 16
+
+/** Element by element; comparisons give 255 where they hold. */
+typedef uint8_t slc_block __attribute__((vector_size(SLC_BLOCK)));
+
+/** Bytes of an array of `count` with the padding. */
+static inline size_t slc_padded(size_t count)
+{
+    return (count + SLC_BLOCK - 1) / SLC_BLOCK * SLC_BLOCK;
+}
+
+static inline slc_block slc_load_block(const uint8_t *bytes)
+{
+    slc_block b;
+    memcpy(&b, bytes, sizeof b);
+    return b;
+}
+
+static inline void slc_store_block(uint8_t *bytes, slc_block b)
+{
+    memcpy(bytes, &b, sizeof b);
+}
+
+static inline slc_block slc_block_of(uint8_t byte)
+{
+    return (slc_block){0} + byte;
+}
+
+static inline slc_block slc_min_block(slc_block a, slc_block b)
+{
+#if defined(__SSE2__)
+    return (slc_block)_mm_min_epu8((__m128i)a, (__m128i)b);
+#elif defined(__ARM_NEON)
+    return (slc_block)vminq_u8((uint8x16_t)a, (uint8x16_t)b);
+#else
+    slc_block less = (slc_block)(a < b);
+    return (a & less) | (b & ~less);
+#endif
+}
+
+static inline slc_block slc_max_block(slc_block a, slc_block b)
+{
+    return ~slc_min_block(~a, ~b);
+}
+
+/** 255 where the bytes are equal. */
+static inline slc_block slc_equal_block(slc_block a, slc_block b)
+{
+    return (slc_block)(a == b);
+}
+
+/** Bit i: byte i of the two differs. */
+static inline uint32_t slc_block_difference(slc_block a, slc_block b)
+{
+#if defined(__SSE2__)
+    return 0xFFFFu ^ (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8((__m128i)a, (__m128i)b));
+#else
+    uint64_t words[2];
+    slc_block differ = ~slc_equal_block(a, b);
+    uint32_t bits = 0;
+    memcpy(words, &differ, sizeof words);
+    if (!(words[0] | words[1]))
+        return 0;
+    for (uint32_t i = 0; i < SLC_BLOCK; i++)
+        bits |= (uint32_t)(differ[i] & 1) << i;
+    return bits;
+#endif
+}
+
+/** Sum of the bytes. */
+static inline uint32_t slc_block_sum(slc_block b)
+{
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < SLC_BLOCK; i++)
+        sum += b[i];
+    return sum;
+}
+
+/** Whether all `count` bytes, > 0, have this value. */
+static inline bool slc_bytes_are(const uint8_t *bytes, size_t count, uint8_t value)
+{
+    return bytes[0] == value && memcmp(bytes, bytes + 1, count - 1) == 0;
+}
+
+#endif /* SLC_BASE_BYTES_H */

@@ -1,0 +1,90 @@
+#include "core/internal.h"
+
+#include "base/checked.h"
+
+#include <string.h>
+
+/*
+ * When more tiles are wanted than there can be slots, every region of every texture wants a coarser
+ * level than it asks for. The bias counts in sixteenths of a level: an ordered dither over blocks
+ * of regions and over textures turns the fraction into whole levels, so that the demand follows the
+ * bias smoothly. A change works on a texture when its next map comes, so the bias rests until every
+ * texture has had a map.
+ */
+
+enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT = 3 };
+
+static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
+{
+    static const uint8_t thresholds[4][4] = {
+        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+    return (uint8_t)((thresholds[y % 4][x % 4] + 7 * texture) % STEPS);
+}
+
+const uint8_t *slc_bias_map(slc_manager *m, const struct slc_texture *t, size_t padded)
+{
+    if (m->bias == 0)
+        return NULL;
+    uint8_t *map = m->scratch + m->scratch_room - padded;
+    uint8_t whole = (uint8_t)(m->bias / STEPS), part = (uint8_t)(m->bias % STEPS);
+    memset(map, whole, padded);
+    if (part == 0)
+        return map;
+    for (uint32_t y = 0; y < t->feedback_height; y++) {
+        uint8_t *row = map + (size_t)y * t->feedback_width;
+        for (uint32_t x = 0; x < t->feedback_width; x += BLOCK)
+            if (dither(t->index, x / BLOCK, y / BLOCK) < part)
+                memset(row + x, whole + 1, slc_min_u32(BLOCK, t->feedback_width - x));
+    }
+    return map;
+}
+
+/** Slots that there can be, as far as is known. */
+static uint64_t slot_limit(const slc_manager *m)
+{
+    uint64_t heaps = m->config.maxHeapCount ? m->config.maxHeapCount : UINT32_MAX;
+    if (m->refused && m->heaps.live_count < heaps)
+        heaps = m->heaps.live_count;
+    return heaps * m->heaps.capacity * OVERCOMMIT;
+}
+
+static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit)
+{
+    m->bias_failed = m->bias;
+    m->bias_failed_limit = limit;
+    m->bias_demand = 0;
+    /* A level is a factor of 4 in tiles: a step is one of 4^(1/16). */
+    for (uint32_t step = 0; step < STEPS && wanted > limit && m->bias < MAX_BIAS; step++) {
+        wanted = wanted * 60097 / 65536;
+        m->bias++;
+    }
+}
+
+/** A step down that was too far before is tried again only if something is different. */
+static bool may_lower(slc_manager *m, uint64_t wanted, uint64_t limit)
+{
+    if (wanted + wanted / 8 > limit)
+        return false;
+    if (m->bias - 1 > m->bias_failed || limit > m->bias_failed_limit)
+        return true;
+    return wanted + wanted / 8 <= m->bias_demand;
+}
+
+void slc_update_bias(slc_manager *m)
+{
+    uint64_t limit = slot_limit(m);
+    uint64_t wanted = (uint64_t)m->state_counts[SLUICE_TILE_STATE_REQUESTED] +
+                      m->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
+                      m->state_counts[SLUICE_TILE_STATE_MAPPED];
+    if ((m->bias == 0 && wanted <= limit) || m->bias_maps < m->visited_count)
+        return;
+    m->bias_maps = 0;
+    if (wanted > limit) {
+        raise_bias(m, wanted, limit);
+        return;
+    }
+    if (m->bias_demand == 0)
+        m->bias_demand = wanted;
+    if (may_lower(m, wanted, limit))
+        m->bias--;
+}

@@ -1,0 +1,323 @@
+#include "core/history.h"
+
+#include "base/alloc.h"
+#include "base/bytes.h"
+#include "base/checked.h"
+
+/*
+ * A region holds the least level of all maps within the timeout. The maps themselves are not kept:
+ * those that lie close together in time share a span, which keeps their least level per region. A
+ * span ends a quarter of the timeout after it began, so few are alive at a time, and all work is on
+ * whole arrays of bytes: how often regions flicker between maps costs nothing.
+ */
+
+/* Memory ------------------------------------------------------------------------------------ */
+
+SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
+{
+    size_t padded = slc_padded(slc_region_count(t));
+    size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
+    struct slc_texture_state *s = t->state;
+    if (!s) {
+        size_t cells = t->regular_tile_count * sizeof(struct slc_cell);
+        size_t size = sizeof *s + cells + 3 * padded + texels;
+        s = slc_alloc(&m->cb, size, 1);
+        if (!s)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        *s = (struct slc_texture_state){.size = size, .bias = 0};
+        s->cells = (struct slc_cell *)(s + 1);
+        memset(s->cells, 0, cells);
+        s->asked = (uint8_t *)(s->cells + t->regular_tile_count);
+        s->least = s->asked + padded;
+        s->held = s->least + padded;
+        s->min_mip = s->held + padded;
+        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded);
+        memset(s->min_mip, slc_min_mip_floor(t), texels);
+        slc_visit_append(m, t);
+        t->state = s;
+    }
+    if (s->span_count < SLC_MAX_SPANS && !s->spans[s->span_count].map) {
+        s->spans[s->span_count].map = slc_alloc(&m->cb, padded, 1);
+        if (!s->spans[s->span_count].map)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    return SLUICE_SUCCESS;
+}
+
+void slc_state_destroy(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_texture_state *s = t->state;
+    if (!s)
+        return;
+    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
+        slc_free(&m->cb, s->spans[i].map, slc_padded(slc_region_count(t)), 1);
+    slc_free(&m->cb, s, s->size, 1);
+    slc_visit_remove(m, t);
+    t->state = NULL;
+}
+
+/* Spans ------------------------------------------------------------------------------------- */
+
+/*
+ * A region that is sampled shows in a map with some chance q only. Of maps that show it, those that
+ * follow one that showed it too are hits, those that follow one that missed it returns, so
+ * returns / hits estimates x = (1 - q) / q; a camera that moves on makes no returns. n misses in a
+ * row have the chance (1 - q)^n, and 14 (x + 1/2) >= ln(10^-6) / ln(1 - q).
+ */
+uint32_t slc_maps_to_believe(const struct slc_texture *t)
+{
+    if (t->returns == 0)
+        return 1;
+    return slc_min_u32(14 * t->returns / (t->hits + 1) + 7, 4096);
+}
+
+static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns)
+{
+    t->hits += hits;
+    t->returns += returns;
+    if (t->hits + t->returns >= 4096) {
+        t->hits /= 2;
+        t->returns /= 2;
+    }
+}
+
+/** How many maps this one stands for: where nothing at all is seen, every region agrees. */
+static uint32_t map_weight(const struct slc_texture *t, const uint8_t *map)
+{
+    if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+        return 1;
+    return slc_max_u32(t->held_regions, 1);
+}
+
+static uint32_t add_weights(uint32_t a, uint32_t b)
+{
+    return a < UINT32_MAX - b ? a + b : UINT32_MAX;
+}
+
+/** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
+static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region_shift)
+{
+    uint8_t level = 0;
+    for (needed >>= 2 * region_shift; needed > newer; needed >>= 2)
+        level++;
+    return level;
+}
+
+/** Removes levels from `below` on. */
+static void thin_span(struct slc_span *span, size_t padded, uint8_t below)
+{
+    slc_block limit = slc_block_of(below);
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block v = slc_load_block(span->map + i);
+        slc_store_block(span->map + i, v | slc_equal_block(slc_max_block(v, limit), v));
+    }
+    span->below = below;
+}
+
+static void drop_spans(struct slc_texture_state *s, uint32_t count)
+{
+    struct slc_span old[SLC_MAX_SPANS];
+    memcpy(old, s->spans, sizeof old);
+    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
+        s->spans[i] = old[(i + count) % SLC_MAX_SPANS];
+    s->span_count -= count;
+}
+
+/** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
+static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint32_t weight,
+                  uint32_t needed)
+{
+    struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
+    uint32_t newer = weight, dropped = 0;
+    bool changed = false;
+    shift = shift == SLC_UNALIGNED ? 0 : slc_min_u32(shift, 8);
+    for (uint32_t i = s->span_count; i-- > 0;) {
+        struct slc_span *span = &s->spans[i];
+        uint32_t own = span->weight;
+        if (time - span->end >= timeout) {
+            uint8_t below = first_unbelieved(newer, needed, shift);
+            dropped += below == 0;
+            changed |= below < span->below;
+            if (below > 0 && below < span->below)
+                thin_span(span, padded, below);
+        }
+        newer = add_weights(newer, own);
+    }
+    drop_spans(s, dropped);
+    return changed;
+}
+
+/** Takes the map into the newest span or a new one. Returns whether it is new. */
+static bool join_span(struct slc_texture_state *s, uint64_t time, uint64_t timeout, uint32_t weight,
+                      uint32_t needed)
+{
+    struct slc_span *newest = s->span_count ? &s->spans[s->span_count - 1] : NULL;
+    if (newest && (s->span_count == SLC_MAX_SPANS || time - newest->begin < timeout / 4 ||
+                   newest->weight < needed / 4)) {
+        newest->end = time;
+        newest->weight = add_weights(newest->weight, weight);
+        newest->below = SLUICE_MIP_UNTOUCHED;
+        return false;
+    }
+    newest = &s->spans[s->span_count++];
+    newest->begin = newest->end = time;
+    newest->weight = weight;
+    newest->below = SLUICE_MIP_UNTOUCHED;
+    return true;
+}
+
+/* Merging ----------------------------------------------------------------------------------- */
+
+static uint32_t note_changes(slc_manager *m, uint32_t count, size_t first, const uint8_t *held,
+                             uint32_t bits)
+{
+    while (bits) {
+        uint32_t i = (uint32_t)__builtin_ctz(bits);
+        bits &= bits - 1;
+        m->changes[count++] = (struct slc_change){(uint32_t)first + i, held[i]};
+    }
+    return count;
+}
+
+/** Counts, of the regions that `next` shows again, those that `asked` showed and missed. */
+static void count_hits(const struct slc_texture_state *s, size_t padded, uint32_t *hits,
+                       uint32_t *returns)
+{
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    for (size_t i = 0; i < padded;) {
+        size_t end = i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
+        slc_block hit_sum = slc_block_of(0), return_sum = hit_sum;
+        for (; i < end; i += SLC_BLOCK) {
+            slc_block next = slc_load_block(s->next + i), least = slc_load_block(s->least + i);
+            slc_block again = slc_equal_block(slc_min_block(next, least), next) &
+                              ~slc_equal_block(least, untouched);
+            slc_block seen = slc_equal_block(slc_load_block(s->asked + i), least);
+            hit_sum -= again & seen; /* 255 is -1 */
+            return_sum -= again & ~seen;
+        }
+        *hits += slc_block_sum(hit_sum);
+        *returns += slc_block_sum(return_sum);
+    }
+}
+
+/** The common case: no span was dropped and no bias is there. */
+static uint32_t merge_finer(slc_manager *m, struct slc_texture_state *s, size_t padded, bool fresh)
+{
+    uint8_t *span = s->spans[s->span_count - 1].map;
+    uint32_t count = 0;
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block next = slc_load_block(s->next + i), held = slc_load_block(s->held + i);
+        slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
+        slc_store_block(s->asked + i, next);
+        slc_block least = slc_min_block(held, next);
+        uint32_t bits = slc_block_difference(least, held);
+        if (!bits)
+            continue;
+        count = note_changes(m, count, i, s->held + i, bits);
+        slc_store_block(s->held + i, least);
+        slc_store_block(s->least + i, least);
+    }
+    return count;
+}
+
+static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fresh)
+{
+    uint8_t *span = s->spans[s->span_count - 1].map;
+    const uint8_t *next = s->next ? s->next : s->asked;
+    if (fresh)
+        memcpy(span, next, padded);
+    for (size_t i = 0; i < padded && !fresh; i += SLC_BLOCK)
+        slc_store_block(span + i,
+                        slc_min_block(slc_load_block(span + i), slc_load_block(next + i)));
+    if (s->next)
+        memcpy(s->asked, s->next, padded);
+}
+
+/** Computes everything anew from the spans. */
+static uint32_t merge_all(slc_manager *m, struct slc_texture *t, size_t padded, bool fresh)
+{
+    struct slc_texture_state *s = t->state;
+    merge_into_span(s, padded, fresh);
+    const uint8_t *bias = slc_bias_map(m, t, padded);
+    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    uint32_t count = 0;
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block least = slc_load_block(s->spans[0].map + i);
+        for (uint32_t k = 1; k < s->span_count; k++)
+            least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+        slc_store_block(s->least + i, least);
+        slc_block held = least;
+        if (bias)
+            held = slc_min_block(least + slc_load_block(bias + i), last) |
+                   slc_equal_block(least, untouched);
+        uint32_t bits = slc_block_difference(held, slc_load_block(s->held + i));
+        if (!bits)
+            continue;
+        count = note_changes(m, count, i, s->held + i, bits);
+        slc_store_block(s->held + i, held);
+    }
+    s->bias = m->bias;
+    return count;
+}
+
+uint32_t slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+{
+    struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    if (s->next) {
+        uint32_t hits = 0, returns = 0;
+        count_hits(s, padded, &hits, &returns);
+        count_returns(t, hits, returns);
+    }
+    uint32_t weight = map_weight(t, s->next ? s->next : s->asked);
+    uint32_t needed = slc_maps_to_believe(t);
+    bool lapsed = lapse(t, time, timeout, weight, needed);
+    bool fresh = join_span(s, time, timeout, weight, needed);
+    if (lapsed || s->bias != 0 || m->bias != 0)
+        return merge_all(m, t, padded, fresh);
+    if (s->next)
+        return merge_finer(m, s, padded, fresh);
+    if (fresh)
+        memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
+    return 0;
+}
+
+/* Asking ------------------------------------------------------------------------------------ */
+
+/** Regions along one axis that touch the tiles [tile << level, (tile + 1) << level) of level 0. */
+static void regions_under(uint32_t tile, uint32_t level, bool last, uint32_t tile_size,
+                          uint32_t region_size, uint32_t region_count, uint32_t *first,
+                          uint32_t *end)
+{
+    uint64_t begin = ((uint64_t)tile << level) * tile_size;
+    uint64_t beyond = ((uint64_t)(tile + 1) << level) * tile_size;
+    *first = (uint32_t)(begin / region_size);
+    uint64_t regions = (beyond + region_size - 1) / region_size;
+    *end = last || regions > region_count ? region_count : (uint32_t)regions;
+}
+
+bool slc_is_asked_for(const slc_manager *m, uint32_t node)
+{
+    const struct slc_node *n = &m->nodes[node];
+    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    if (n->tile >= t->regular_tile_count)
+        return true;
+    const SluiceStreamedTextureDesc *d = &t->desc;
+    struct slc_place p = slc_tile_place(t, n->tile);
+    const struct slc_level *grid = &t->levels[p.level];
+    uint32_t x0, x1, y0, y1;
+    regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
+                  t->feedback_width, &x0, &x1);
+    regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
+                  t->feedback_height, &y0, &y1);
+    for (uint32_t y = y0; y < y1; y++) {
+        const uint8_t *row = t->state->asked + (size_t)y * t->feedback_width;
+        for (uint32_t x = x0; x < x1; x++)
+            if (row[x] <= p.level)
+                return true;
+    }
+    return false;
+}

@@ -1,0 +1,24 @@
+/** What the maps of a texture asked for, region by region. */
+#ifndef SLC_CORE_HISTORY_H
+#define SLC_CORE_HISTORY_H
+
+#include "core/internal.h"
+
+static inline size_t slc_region_count(const struct slc_texture *t)
+{
+    return (size_t)t->feedback_width * t->feedback_height;
+}
+
+/** Makes the per-tile and per-region memory if it is not there yet, and room for one more span. */
+SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t);
+
+/** Newer maps that must miss a level before it is believed to be gone. */
+uint32_t slc_maps_to_believe(const struct slc_texture *t);
+
+/**
+ * Merges state->next into the history. Writes the regions whose held level changes to m->changes,
+ * which has room for all, in row-major order, and returns their number.
+ */
+uint32_t slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
+
+#endif /* SLC_CORE_HISTORY_H */
