@@ -91,6 +91,22 @@ static inline uint32_t slc_block_sum(slc_block b)
     return sum;
 }
 
+/** out[i] = min(in[2 i], in[2 i + 1]), i < count. Both are written and read in whole blocks. */
+static inline void slc_halve_bytes(const uint8_t *in, uint32_t count, uint8_t *out)
+{
+    uint32_t i = 0;
+#if defined(__SSE2__)
+    for (; i < count; i += SLC_BLOCK / 2) {
+        __m128i v = (__m128i)slc_load_block(in + 2 * i);
+        __m128i least = _mm_min_epu8(_mm_and_si128(v, _mm_set1_epi16(255)), _mm_srli_epi16(v, 8));
+        _mm_storel_epi64((__m128i *)(void *)(out + i), _mm_packus_epi16(least, least));
+    }
+#else
+    for (; i < count; i++)
+        out[i] = in[2 * i] < in[2 * i + 1] ? in[2 * i] : in[2 * i + 1];
+#endif
+}
+
 /** Whether all `count` bytes, > 0, have this value. */
 static inline bool slc_bytes_are(const uint8_t *bytes, size_t count, uint8_t value)
 {

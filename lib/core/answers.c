@@ -19,9 +19,9 @@ static SluiceResult check_tile(slc_manager *m, const struct slc_texture *t, uint
     if (tile >= t->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tile);
-    if (!node || !is_in_flight(&m->nodes[node]) || m->nodes[node].flags & NODE_SEEN)
+    if (!node || !is_in_flight(slc_node_at(m, node)) || slc_node_at(m, node)->flags & NODE_SEEN)
         return SLUICE_ERROR_INVALID_TILE_STATE;
-    m->nodes[node].flags |= NODE_SEEN;
+    slc_node_at(m, node)->flags |= NODE_SEEN;
     return SLUICE_SUCCESS;
 }
 
@@ -36,7 +36,7 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uin
     if (result != SLUICE_SUCCESS)
         checked--;
     for (uint32_t i = 0; i < checked; i++)
-        m->nodes[slc_find_node(t, tiles[i])].flags &= (uint8_t)~NODE_SEEN;
+        slc_node_at(m, slc_find_node(t, tiles[i]))->flags &= (uint8_t)~NODE_SEEN;
     return result;
 }
 
@@ -56,7 +56,7 @@ static bool is_wanted(const struct slc_node *n)
 
 static void answer_mapped(slc_manager *m, uint32_t node)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     n->failures = 0;
     slc_node_set_state(m, node,
                        is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
@@ -67,12 +67,12 @@ static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 {
     m->failed_total++;
     slc_node_free_slot(m, node);
-    if (!is_wanted(&m->nodes[node])) {
+    if (!is_wanted(slc_node_at(m, node))) {
         slc_node_release(m, node);
         return;
     }
     slc_node_fail(m, node, time);
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     if (n->state == SLUICE_TILE_STATE_GIVEN_UP)
         m->given_up_reports[m->report_end++] =
             (struct slc_given_up){slc_texture_id(slc_texture_at(m, n->texture)), n->tile};
@@ -81,16 +81,16 @@ static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 /** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
 static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
-    bool wanted = is_wanted(&m->nodes[node]);
-    uint32_t tile = m->nodes[node].tile, level = m->nodes[node].level;
-    uint32_t failures = m->nodes[node].failures;
-    struct slc_texture *t = slc_texture_at(m, m->nodes[node].texture);
+    bool wanted = is_wanted(slc_node_at(m, node));
+    uint32_t tile = slc_node_at(m, node)->tile, level = slc_node_at(m, node)->level;
+    uint32_t failures = slc_node_at(m, node)->failures;
+    struct slc_texture *t = slc_texture_at(m, slc_node_at(m, node)->texture);
     slc_node_retire(m, node, retire_value);
     m->cancelled_total++;
     if (!wanted)
         return;
     slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level, 0);
-    m->nodes[slc_find_node(t, tile)].failures = failures;
+    slc_node_at(m, slc_find_node(t, tile))->failures = failures;
 }
 
 /** Room for the reports of `count` tiles that may be given up. */
@@ -213,11 +213,11 @@ static void retry_list(slc_manager *m, struct slc_list *list, const struct slc_t
                        bool forget)
 {
     for (uint32_t node = list->head, next; node; node = next) {
-        next = m->nodes[node].next;
-        if (scope && m->nodes[node].texture != scope->index)
+        next = slc_node_at(m, node)->next;
+        if (scope && slc_node_at(m, node)->texture != scope->index)
             continue;
         if (forget)
-            m->nodes[node].failures = 0;
+            slc_node_at(m, node)->failures = 0;
         slc_node_request_again(m, node);
     }
 }

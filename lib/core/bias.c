@@ -1,4 +1,4 @@
-#include "core/internal.h"
+#include "core/wants.h"
 
 #include "base/checked.h"
 
@@ -25,7 +25,7 @@ const uint8_t *slc_bias_map(slc_manager *m, const struct slc_texture *t, size_t 
 {
     if (m->bias == 0)
         return NULL;
-    uint8_t *map = m->scratch + m->scratch_room - padded;
+    uint8_t *map = slc_wants_work(m, t);
     uint8_t whole = (uint8_t)(m->bias / STEPS), part = (uint8_t)(m->bias % STEPS);
     memset(map, whole, padded);
     if (part == 0)

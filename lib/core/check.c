@@ -19,9 +19,9 @@ static bool has_slot(uint8_t state)
 static const char *check_list(const slc_manager *m, const struct slc_list *list, uint8_t state)
 {
     uint32_t count = 0, previous = 0;
-    for (uint32_t node = list->head; node; node = m->nodes[node].next) {
-        REQUIRE(m->nodes[node].prev == previous);
-        REQUIRE(m->nodes[node].state == state);
+    for (uint32_t node = list->head; node; node = slc_node_at(m, node)->next) {
+        REQUIRE(slc_node_at(m, node)->prev == previous);
+        REQUIRE(slc_node_at(m, node)->state == state);
         REQUIRE(count < m->node_end);
         previous = node;
         count++;
@@ -74,7 +74,7 @@ static const char *check_lists(const slc_manager *m)
 
 static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     REQUIRE(n->texture == t->index);
     REQUIRE(n->tile < t->tile_count);
     REQUIRE(slc_find_node(t, n->tile) == node);
@@ -87,7 +87,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     if (n->state == SLUICE_TILE_STATE_CANCELLED && n->flags & SLC_NODE_WANTED)
         wanted = true;
     if (n->tile < t->regular_tile_count)
-        REQUIRE(wanted == (t->state->cells[n->tile].wants > 0));
+        REQUIRE(wanted == (t->state->under[n->tile] <= n->level));
     else
         REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
     return NULL;
@@ -96,13 +96,16 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
 static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
-    for (uint32_t node = t->first_node; node; node = m->nodes[node].texture_next) {
+    for (uint32_t tile = 0; tile < t->tile_count; tile++) {
+        uint32_t node = slc_find_node(t, tile);
+        if (!node)
+            continue;
         const char *wrong = check_node(m, t, node);
         if (wrong)
             return wrong;
-        uint8_t state = m->nodes[node].state;
+        uint8_t state = slc_node_at(m, node)->state;
         requested += state == SLUICE_TILE_STATE_REQUESTED;
-        if (m->nodes[node].tile >= t->regular_tile_count)
+        if (slc_node_at(m, node)->tile >= t->regular_tile_count)
             resident_packed +=
                 state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
         count++;
@@ -114,9 +117,9 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
         return NULL;
     uint32_t with_node = 0;
     for (uint32_t i = 0; i < t->regular_tile_count; i++) {
-        with_node += t->state->cells[i].node != 0;
-        if (t->state->cells[i].wants > 0)
-            REQUIRE(t->state->cells[i].node != 0);
+        with_node += t->state->nodes[i] != 0;
+        if (t->state->under[i] <= slc_tile_place(t, i).level)
+            REQUIRE(t->state->nodes[i] != 0);
     }
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;
@@ -137,9 +140,9 @@ static const char *check_heaps(const slc_manager *m)
             uint32_t node = h->nodes[slot];
             if (!node)
                 continue;
-            REQUIRE(m->nodes[node].heap == i && m->nodes[node].slot == slot);
+            REQUIRE(slc_node_at(m, node)->heap == i && slc_node_at(m, node)->slot == slot);
             used++;
-            retiring += m->nodes[node].state == SLC_NODE_RETIRING;
+            retiring += slc_node_at(m, node)->state == SLC_NODE_RETIRING;
         }
         REQUIRE(used + h->free_count == m->heaps.capacity);
         REQUIRE(retiring == h->retiring_count);

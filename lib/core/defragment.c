@@ -12,7 +12,7 @@ static uint32_t live_slots(const slc_manager *m, uint32_t heap)
 
 static bool is_movable(const slc_manager *m, uint32_t node)
 {
-    uint8_t state = m->nodes[node].state;
+    uint8_t state = slc_node_at(m, node)->state;
     return state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY ||
            state == SLC_NODE_RETIRING; /* leaves by itself */
 }
@@ -76,7 +76,7 @@ static void leave_slot(slc_manager *m, uint32_t heap, uint32_t slot, uint64_t re
 static void move_tile(slc_manager *m, uint32_t node, uint32_t destination, uint64_t retire_value,
                       SluiceTileMove *move)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     uint32_t heap = n->heap, slot = n->slot;
     move->from = slc_node_tile(m, node);
     n->slot = slc_tile_heaps_take_from(&m->heaps, destination, node);
@@ -94,7 +94,7 @@ static uint32_t empty_heap(slc_manager *m, uint32_t source, uint64_t retire_valu
     uint32_t count = 0;
     for (uint32_t slot = 0; slot < m->heaps.capacity && count < room; slot++) {
         uint32_t node = m->heaps.heaps[source].nodes[slot];
-        if (!node || m->nodes[node].state == SLC_NODE_RETIRING)
+        if (!node || slc_node_at(m, node)->state == SLC_NODE_RETIRING)
             continue;
         uint32_t destination = find_destination(m, source);
         assert(destination != SLC_NONE); /* can_be_emptied counted the room */

@@ -20,15 +20,15 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
 /** Scratch for the maps of a texture and of those that follow it. */
 static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t, bool followers)
 {
-    size_t largest = slc_padded(slc_region_count(t));
-    uint64_t bytes = largest;
+    size_t work = slc_wants_work_size(t);
+    uint64_t bytes = slc_padded(slc_region_count(t));
     for (uint32_t f = followers ? t->first_follower : SLC_NONE; f != SLC_NONE;
          f = slc_texture_at(m, f)->next_follower) {
-        size_t padded = slc_padded(slc_region_count(slc_texture_at(m, f)));
-        bytes += padded;
-        largest = padded > largest ? padded : largest;
+        size_t own = slc_wants_work_size(slc_texture_at(m, f));
+        bytes += slc_padded(slc_region_count(slc_texture_at(m, f)));
+        work = own > work ? own : work;
     }
-    return slc_wants_reserve_scratch(m, bytes, largest);
+    return slc_wants_reserve_scratch(m, bytes, work);
 }
 
 static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
@@ -45,7 +45,8 @@ static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
         result = slc_wants_prepare_follower(m, t, asked, slc_texture_at(m, f), &need);
     }
     if (result == SLUICE_SUCCESS)
-        result = slc_wants_reserve(m, &need);
+        result =
+            slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS)
         return result;
     slc_wants_abandon(m, t);
@@ -106,7 +107,8 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
         if (result == SLUICE_SUCCESS)
             result = slc_wants_prepare_follower(m, p, p->state ? p->state->asked : NULL, t, &need);
         if (result == SLUICE_SUCCESS)
-            result = slc_wants_reserve(m, &need);
+            result =
+                slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         if (result != SLUICE_SUCCESS) {
             slc_wants_abandon(m, t);
             return result;

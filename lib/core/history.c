@@ -19,19 +19,21 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
     size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
     struct slc_texture_state *s = t->state;
     if (!s) {
-        size_t cells = t->regular_tile_count * sizeof(struct slc_cell);
-        size_t size = sizeof *s + cells + 3 * padded + texels;
+        size_t nodes = t->regular_tile_count * sizeof *s->nodes;
+        size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
+        size_t size = sizeof *s + nodes + under + 3 * padded + texels;
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){.size = size, .bias = 0};
-        s->cells = (struct slc_cell *)(s + 1);
-        memset(s->cells, 0, cells);
-        s->asked = (uint8_t *)(s->cells + t->regular_tile_count);
+        *s = (struct slc_texture_state){.size = size, .bias = m->bias};
+        s->nodes = (uint32_t *)(s + 1);
+        s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
         s->least = s->asked + padded;
         s->held = s->least + padded;
-        s->min_mip = s->held + padded;
-        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded);
+        s->under = s->held + padded;
+        s->min_mip = s->under + under;
+        memset(s->nodes, 0, nodes);
+        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
         memset(s->min_mip, slc_min_mip_floor(t), texels);
         slc_visit_append(m, t);
         t->state = s;
@@ -170,15 +172,10 @@ static bool join_span(struct slc_texture_state *s, uint64_t time, uint64_t timeo
 
 /* Merging ----------------------------------------------------------------------------------- */
 
-static uint32_t note_changes(slc_manager *m, uint32_t count, size_t first, const uint8_t *held,
-                             uint32_t bits)
+/** Sums of bytes hold for 255 blocks. */
+static inline size_t batch_end(size_t i, size_t padded)
 {
-    while (bits) {
-        uint32_t i = (uint32_t)__builtin_ctz(bits);
-        bits &= bits - 1;
-        m->changes[count++] = (struct slc_change){(uint32_t)first + i, held[i]};
-    }
-    return count;
+    return i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
 }
 
 /** Counts, of the regions that `next` shows again, those that `asked` showed and missed. */
@@ -187,9 +184,8 @@ static void count_hits(const struct slc_texture_state *s, size_t padded, uint32_
 {
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     for (size_t i = 0; i < padded;) {
-        size_t end = i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
         slc_block hit_sum = slc_block_of(0), return_sum = hit_sum;
-        for (; i < end; i += SLC_BLOCK) {
+        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
             slc_block next = slc_load_block(s->next + i), least = slc_load_block(s->least + i);
             slc_block again = slc_equal_block(slc_min_block(next, least), next) &
                               ~slc_equal_block(least, untouched);
@@ -202,24 +198,41 @@ static void count_hits(const struct slc_texture_state *s, size_t padded, uint32_
     }
 }
 
-/** The common case: no span was dropped and no bias is there. */
-static uint32_t merge_finer(slc_manager *m, struct slc_texture_state *s, size_t padded, bool fresh)
+/** What a pass over all regions did. */
+struct merged {
+    bool changed;     ///< some region holds another level
+    uint32_t touched; ///< regions that hold anything
+};
+
+/** Takes over the held levels of 255 blocks at most. */
+static inline void hold(struct slc_texture_state *s, size_t i, slc_block held, slc_block *touched,
+                        struct merged *result)
+{
+    *touched -= ~slc_equal_block(held, slc_block_of(SLUICE_MIP_UNTOUCHED)); /* 255 is -1 */
+    if (!slc_block_difference(held, slc_load_block(s->held + i)))
+        return;
+    slc_store_block(s->held + i, held);
+    result->changed = true;
+}
+
+/** The common case: nothing lapsed and no bias is there, so levels only get finer. */
+static struct merged merge_finer(struct slc_texture_state *s, size_t padded, bool fresh)
 {
     uint8_t *span = s->spans[s->span_count - 1].map;
-    uint32_t count = 0;
-    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block next = slc_load_block(s->next + i), held = slc_load_block(s->held + i);
-        slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
-        slc_store_block(s->asked + i, next);
-        slc_block least = slc_min_block(held, next);
-        uint32_t bits = slc_block_difference(least, held);
-        if (!bits)
-            continue;
-        count = note_changes(m, count, i, s->held + i, bits);
-        slc_store_block(s->held + i, least);
-        slc_store_block(s->least + i, least);
+    struct merged result = {0};
+    for (size_t i = 0; i < padded;) {
+        slc_block touched = slc_block_of(0);
+        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
+            slc_block next = slc_load_block(s->next + i);
+            slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
+            slc_store_block(s->asked + i, next);
+            slc_block least = slc_min_block(slc_load_block(s->least + i), next);
+            slc_store_block(s->least + i, least);
+            hold(s, i, least, &touched, &result);
+        }
+        result.touched += slc_block_sum(touched);
     }
-    return count;
+    return result;
 }
 
 static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fresh)
@@ -236,34 +249,33 @@ static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fre
 }
 
 /** Computes everything anew from the spans. */
-static uint32_t merge_all(slc_manager *m, struct slc_texture *t, size_t padded, bool fresh)
+static struct merged merge_all(slc_manager *m, struct slc_texture *t, size_t padded, bool fresh)
 {
     struct slc_texture_state *s = t->state;
     merge_into_span(s, padded, fresh);
     const uint8_t *bias = slc_bias_map(m, t, padded);
     slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    uint32_t count = 0;
-    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block least = slc_load_block(s->spans[0].map + i);
-        for (uint32_t k = 1; k < s->span_count; k++)
-            least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
-        slc_store_block(s->least + i, least);
-        slc_block held = least;
-        if (bias)
-            held = slc_min_block(least + slc_load_block(bias + i), last) |
-                   slc_equal_block(least, untouched);
-        uint32_t bits = slc_block_difference(held, slc_load_block(s->held + i));
-        if (!bits)
-            continue;
-        count = note_changes(m, count, i, s->held + i, bits);
-        slc_store_block(s->held + i, held);
+    struct merged result = {0};
+    for (size_t i = 0; i < padded;) {
+        slc_block touched = slc_block_of(0);
+        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
+            slc_block least = slc_load_block(s->spans[0].map + i);
+            for (uint32_t k = 1; k < s->span_count; k++)
+                least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+            slc_store_block(s->least + i, least);
+            slc_block held = least;
+            if (bias)
+                held = slc_min_block(least + slc_load_block(bias + i), last) |
+                       slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
+            hold(s, i, held, &touched, &result);
+        }
+        result.touched += slc_block_sum(touched);
     }
     s->bias = m->bias;
-    return count;
+    return result;
 }
 
-uint32_t slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+bool slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
@@ -276,13 +288,18 @@ uint32_t slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time,
     uint32_t needed = slc_maps_to_believe(t);
     bool lapsed = lapse(t, time, timeout, weight, needed);
     bool fresh = join_span(s, time, timeout, weight, needed);
-    if (lapsed || s->bias != 0 || m->bias != 0)
-        return merge_all(m, t, padded, fresh);
-    if (s->next)
-        return merge_finer(m, s, padded, fresh);
-    if (fresh)
-        memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
-    return 0;
+    struct merged result;
+    if (lapsed || s->bias != m->bias || (s->next && m->bias != 0)) {
+        result = merge_all(m, t, padded, fresh);
+    } else if (s->next) {
+        result = merge_finer(s, padded, fresh);
+    } else {
+        if (fresh)
+            memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
+        return false;
+    }
+    t->held_regions = result.touched;
+    return result.changed;
 }
 
 /* Asking ------------------------------------------------------------------------------------ */
@@ -301,7 +318,7 @@ static void regions_under(uint32_t tile, uint32_t level, bool last, uint32_t til
 
 bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
     if (n->tile >= t->regular_tile_count)
         return true;

@@ -16,9 +16,9 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t);
 uint32_t slc_maps_to_believe(const struct slc_texture *t);
 
 /**
- * Merges state->next into the history. Writes the regions whose held level changes to m->changes,
- * which has room for all, in row-major order, and returns their number.
+ * Merges state->next into the history and counts the regions that hold something. Returns whether
+ * any of them holds another level than before.
  */
-uint32_t slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
+bool slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
 
 #endif /* SLC_CORE_HISTORY_H */

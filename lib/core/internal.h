@@ -30,9 +30,8 @@ enum slc_node_flags {
 struct slc_node {
     uint32_t texture; ///< index; SLC_NONE for retiring slots
     uint32_t tile;
-    uint32_t prev, next;                 ///< in the list of its state
-    uint32_t texture_prev, texture_next; ///< among the nodes of its texture
-    uint32_t heap, slot;                 ///< heap is an index, SLC_NONE without memory
+    uint32_t prev, next; ///< in the list of its state
+    uint32_t heap, slot; ///< heap is an index, SLC_NONE without memory
     uint32_t failures;
     uint8_t state, level, deficit, flags;
     uint64_t order; ///< REQUESTED: sequence; FAILED: due; retiring: retire value
@@ -55,12 +54,6 @@ struct slc_requests {
     uint64_t next_sequence;
 };
 
-/** One regular tile of a texture that was sampled. */
-struct slc_cell {
-    uint32_t wants; ///< regions that want it and children that are wanted
-    uint32_t node;  ///< 0: FREE
-};
-
 #define SLC_MAX_SPANS 6
 
 /** Maps that count as one: the least level that any of them asked for. See history.c. */
@@ -76,11 +69,12 @@ struct slc_texture_state {
     size_t size;                          ///< bytes of the allocation
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
-    uint32_t bias;          ///< of the manager when `held` was computed
-    struct slc_cell *cells; ///< [regular tiles]
-    uint8_t *asked;         ///< [padded regions]: what the last map asked for (a, not w)
-    uint8_t *least;         ///< [padded regions]: the least over all spans
-    uint8_t *held;       ///< [padded regions]: `least` with the global bias; what wants stand for
+    uint32_t bias;   ///< of the manager when `held` was computed
+    uint32_t *nodes; ///< [regular tiles]: node index, 0: FREE
+    uint8_t *under;  ///< [regular tiles + a block]: the least level held in a region under the tile
+    uint8_t *asked;  ///< [padded regions]: what the last map asked for (a, not w)
+    uint8_t *least;  ///< [padded regions]: the least over all spans
+    uint8_t *held;   ///< [padded regions]: `least` with the global bias; what wants stand for
     uint8_t *min_mip;    ///< [minMipHeight][minMipWidth]
     const uint8_t *next; ///< in the manager's scratch: the map being merged, NULL: as `asked`
 };
@@ -100,7 +94,6 @@ struct slc_texture {
     struct slc_texture_state *state; ///< owned, NULL until sampled
     uint32_t *packed_nodes;          ///< owned, [packedTileCount], NULL if there are none
     uint32_t packed_resident;        ///< packed tiles MAPPED or STANDBY
-    uint32_t first_node;             ///< of all nodes of the texture
     uint32_t regular_nodes;          ///< nodes of regular tiles
     uint32_t requested_count;
     uint32_t held_regions;           ///< that hold anything
@@ -115,12 +108,7 @@ struct slc_texture {
 };
 
 #define SLC_TEXTURES_PER_CHUNK 64
-
-/** A region whose held level changes in the call under way. */
-struct slc_change {
-    uint32_t region;
-    uint8_t old_held;
-};
+#define SLC_NODES_PER_CHUNK 1024
 
 struct slc_given_up {
     SluiceTextureId texture_id;
@@ -144,14 +132,13 @@ struct SluiceStreamedTextureManager {
     uint32_t free_index_count, free_index_room;
     uint64_t tile_count;
 
-    struct slc_node *nodes; ///< owned, [node_room]; [0] unused
-    uint32_t node_room, node_end, free_node, free_node_count;
+    struct slc_node **node_chunks; ///< owned, [node_chunk_room]; node 0 is unused
+    uint32_t node_chunk_count, node_chunk_room;
+    uint32_t node_end, free_node, free_node_count;
     uint32_t state_counts[8]; ///< nodes by SluiceTileState
     struct slc_requests requests;
     struct slc_list standby, unmapping, cancelled, failed, given_up, retiring;
 
-    struct slc_change *changes; ///< owned scratch, [change_room]
-    uint32_t change_room;
     uint8_t *scratch; ///< owned, for the maps of one call
     size_t scratch_room;
     uint32_t visit_first, visit_last; ///< textures with a state, the longest without a map first
@@ -161,7 +148,7 @@ struct SluiceStreamedTextureManager {
     uint32_t bias_failed;       ///< the last one with which too much was wanted,
     uint64_t bias_failed_limit; ///< for so many slots
     uint64_t bias_demand;       ///< tiles wanted once it had been raised; 0: not known yet
-    bool starved;                    ///< the last hand-out stopped for lack of slots
+    bool starved;               ///< the last hand-out stopped for lack of slots
     bool refused;               ///< the heap allocator's last answer
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
@@ -184,6 +171,10 @@ typedef SluiceStreamedTextureManager slc_manager;
 static inline struct slc_texture *slc_texture_at(const slc_manager *m, uint32_t index)
 {
     return &m->chunks[index / SLC_TEXTURES_PER_CHUNK][index % SLC_TEXTURES_PER_CHUNK];
+}
+static inline struct slc_node *slc_node_at(const slc_manager *m, uint32_t node)
+{
+    return &m->node_chunks[node / SLC_NODES_PER_CHUNK][node % SLC_NODES_PER_CHUNK];
 }
 static inline SluiceTextureId slc_texture_id(const struct slc_texture *t)
 {

@@ -8,7 +8,7 @@
 
 static bool in_scope(const slc_manager *m, const struct slc_texture *scope, uint32_t node)
 {
-    return !scope || m->nodes[node].texture == scope->index;
+    return !scope || slc_node_at(m, node)->texture == scope->index;
 }
 
 static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list,
@@ -17,7 +17,7 @@ static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list
     if (!scope)
         return list->count;
     uint32_t count = 0;
-    for (uint32_t node = list->head; node; node = m->nodes[node].next)
+    for (uint32_t node = list->head; node; node = slc_node_at(m, node)->next)
         count += in_scope(m, scope, node);
     return count;
 }
@@ -27,7 +27,7 @@ static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list
 /** A free slot for the node, from a new heap if need be. */
 static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     if (slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
         return SLUICE_SUCCESS;
     uint32_t limit = m->config.maxHeapCount;
@@ -76,9 +76,10 @@ static struct request_key *sort_requests(const slc_manager *m, const struct slc_
     if (!keys)
         return NULL;
     uint32_t count = 0;
-    for (uint32_t node = t->first_node; node; node = m->nodes[node].texture_next) {
-        const struct slc_node *n = &m->nodes[node];
-        if (n->state != SLUICE_TILE_STATE_REQUESTED)
+    for (uint32_t tile = 0; tile < t->tile_count; tile++) {
+        uint32_t node = slc_find_node(t, tile);
+        const struct slc_node *n = slc_node_at(m, node);
+        if (!node || n->state != SLUICE_TILE_STATE_REQUESTED)
             continue;
         uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
         keys[count++] = (struct request_key){class << 8 | n->deficit, node, n->order};
@@ -195,7 +196,7 @@ static SluiceResult take_list(slc_manager *m, struct slc_list *list,
     uint32_t room = *count, written = 0;
     uint32_t node = list->head;
     while (node) {
-        uint32_t next = m->nodes[node].next;
+        uint32_t next = slc_node_at(m, node)->next;
         if (in_scope(m, scope, node)) {
             if (written == room)
                 break;
@@ -218,7 +219,7 @@ static void take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     (void)retire_value;
     slc_list_remove(m, &m->cancelled, node);
-    m->nodes[node].flags |= SLC_NODE_LISTED;
+    slc_node_at(m, node)->flags |= SLC_NODE_LISTED;
 }
 
 static SluiceResult get_tiles_to_unmap(slc_manager *m, SluiceTextureId id, uint64_t retire_value,

@@ -96,9 +96,10 @@ void sluiceDestroyStreamedTextureManager(SluiceStreamedTextureManager *manager)
         slc_free(&m->cb, m->chunks[i], SLC_TEXTURES_PER_CHUNK, sizeof(struct slc_texture));
     slc_free(&m->cb, m->chunks, m->chunk_room, sizeof *m->chunks);
     slc_free(&m->cb, m->free_indices, m->free_index_room, sizeof *m->free_indices);
-    slc_free(&m->cb, m->nodes, m->node_room, sizeof *m->nodes);
+    for (uint32_t i = 0; i < m->node_chunk_count; i++)
+        slc_free(&m->cb, m->node_chunks[i], SLC_NODES_PER_CHUNK, sizeof(struct slc_node));
+    slc_free(&m->cb, m->node_chunks, m->node_chunk_room, sizeof *m->node_chunks);
     slc_free(&m->cb, m->scratch, m->scratch_room, 1);
-    slc_free(&m->cb, m->changes, m->change_room, sizeof *m->changes);
     slc_free(&m->cb, m->given_up_reports, m->report_room, sizeof *m->given_up_reports);
     SluiceAllocationCallbacks given = m->given;
     slc_free(&given, m, 1, sizeof *m);
@@ -152,7 +153,7 @@ void slc_advance_time(slc_manager *m, uint64_t time)
 {
     m->has_time = true;
     m->time = time;
-    while (m->failed.head && (int64_t)(time - m->nodes[m->failed.head].order) >= 0)
+    while (m->failed.head && (int64_t)(time - slc_node_at(m, m->failed.head)->order) >= 0)
         slc_node_request_again(m, m->failed.head);
 }
 
@@ -204,7 +205,8 @@ SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *manager,
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tileIndex);
     if (pState)
-        *pState = node ? (SluiceTileState)manager->nodes[node].state : SLUICE_TILE_STATE_FREE;
+        *pState =
+            node ? (SluiceTileState)slc_node_at(manager, node)->state : SLUICE_TILE_STATE_FREE;
     if (pTile && node) {
         *pTile = slc_node_tile(manager, node);
     } else if (pTile) {
@@ -379,8 +381,9 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
     unfollow(m, t);
     while (t->first_follower != SLC_NONE)
         unfollow(m, slc_texture_at(m, t->first_follower));
-    while (t->first_node)
-        slc_node_retire(m, t->first_node, retire_value);
+    for (uint32_t tile = 0; tile < t->tile_count; tile++)
+        if (slc_find_node(t, tile))
+            slc_node_retire(m, slc_find_node(t, tile), retire_value);
     forget_reports(m, id);
     slc_min_mip_forget(m, t);
     destroy_texture_memory(m, t);

@@ -18,9 +18,9 @@ uint8_t slc_min_mip_floor(const struct slc_texture *t)
 
 static bool is_resident(const slc_manager *m, const struct slc_texture *t, struct slc_place p)
 {
-    uint32_t node = t->state->cells[slc_tile_index(t, p)].node;
-    return node && (m->nodes[node].state == SLUICE_TILE_STATE_MAPPED ||
-                    m->nodes[node].state == SLUICE_TILE_STATE_STANDBY);
+    uint32_t node = t->state->nodes[slc_tile_index(t, p)];
+    return node && (slc_node_at(m, node)->state == SLUICE_TILE_STATE_MAPPED ||
+                    slc_node_at(m, node)->state == SLUICE_TILE_STATE_STANDBY);
 }
 
 /** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */

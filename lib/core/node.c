@@ -6,10 +6,10 @@
 
 void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node)
 {
-    m->nodes[node].prev = list->tail;
-    m->nodes[node].next = 0;
+    slc_node_at(m, node)->prev = list->tail;
+    slc_node_at(m, node)->next = 0;
     if (list->tail)
-        m->nodes[list->tail].next = node;
+        slc_node_at(m, list->tail)->next = node;
     else
         list->head = node;
     list->tail = node;
@@ -18,13 +18,13 @@ void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node)
 
 void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node)
 {
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     if (n->prev)
-        m->nodes[n->prev].next = n->next;
+        slc_node_at(m, n->prev)->next = n->next;
     else
         list->head = n->next;
     if (n->next)
-        m->nodes[n->next].prev = n->prev;
+        slc_node_at(m, n->next)->prev = n->prev;
     else
         list->tail = n->prev;
     list->count--;
@@ -34,18 +34,18 @@ void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node)
 static void insert_by_due(slc_manager *m, struct slc_list *list, uint32_t node)
 {
     uint32_t after = list->tail;
-    while (after && (int64_t)(m->nodes[after].order - m->nodes[node].order) > 0)
-        after = m->nodes[after].prev;
+    while (after && (int64_t)(slc_node_at(m, after)->order - slc_node_at(m, node)->order) > 0)
+        after = slc_node_at(m, after)->prev;
     if (after == list->tail) {
         slc_list_append(m, list, node);
         return;
     }
-    uint32_t before = after ? m->nodes[after].next : list->head;
-    m->nodes[node].prev = after;
-    m->nodes[node].next = before;
-    m->nodes[before].prev = node;
+    uint32_t before = after ? slc_node_at(m, after)->next : list->head;
+    slc_node_at(m, node)->prev = after;
+    slc_node_at(m, node)->next = before;
+    slc_node_at(m, before)->prev = node;
     if (after)
-        m->nodes[after].next = node;
+        slc_node_at(m, after)->next = node;
     else
         list->head = node;
     list->count++;
@@ -60,7 +60,7 @@ static uint32_t request_class(const slc_manager *m, const struct slc_node *n)
 static void request_append(slc_manager *m, uint32_t node)
 {
     struct slc_requests *r = &m->requests;
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     uint32_t class = request_class(m, n);
     n->order = r->next_sequence++;
     slc_list_append(m, &r->lists[class][n->deficit], node);
@@ -73,7 +73,7 @@ static void request_append(slc_manager *m, uint32_t node)
 static void request_remove(slc_manager *m, uint32_t node)
 {
     struct slc_requests *r = &m->requests;
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     uint32_t class = request_class(m, n);
     struct slc_list *list = &r->lists[class][n->deficit];
     slc_list_remove(m, list, node);
@@ -98,7 +98,7 @@ uint32_t slc_first_request(const slc_manager *m)
 uint32_t slc_next_request(const slc_manager *m, uint32_t node)
 {
     const struct slc_requests *r = &m->requests;
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     if (n->next)
         return n->next;
     uint32_t class = request_class(m, n);
@@ -116,7 +116,7 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
 /** Takes the node out of the list that its state keeps it in, if any. */
 static void leave_list(slc_manager *m, uint32_t node)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     switch ((SluiceTileState)n->state) {
     case SLUICE_TILE_STATE_FREE:
     case SLUICE_TILE_STATE_ALLOCATED:
@@ -137,7 +137,7 @@ static void leave_list(slc_manager *m, uint32_t node)
 
 static void enter_list(slc_manager *m, uint32_t node)
 {
-    switch ((SluiceTileState)m->nodes[node].state) {
+    switch ((SluiceTileState)slc_node_at(m, node)->state) {
     case SLUICE_TILE_STATE_FREE:
     case SLUICE_TILE_STATE_ALLOCATED:
     case SLUICE_TILE_STATE_MAPPED: break;
@@ -151,24 +151,32 @@ static void enter_list(slc_manager *m, uint32_t node)
 
 /* Nodes ------------------------------------------------------------------------------------- */
 
+static bool add_node_chunk(slc_manager *m)
+{
+    if (m->node_chunk_count == UINT32_MAX / SLC_NODES_PER_CHUNK)
+        return false;
+    if (m->node_chunk_count == m->node_chunk_room) {
+        uint32_t room = m->node_chunk_room ? m->node_chunk_room * 2 : 16;
+        struct slc_node **chunks =
+            slc_regrow(&m->cb, m->node_chunks, m->node_chunk_room, room, sizeof *chunks);
+        if (!chunks)
+            return false;
+        m->node_chunks = chunks;
+        m->node_chunk_room = room;
+    }
+    struct slc_node *chunk = slc_alloc(&m->cb, SLC_NODES_PER_CHUNK, sizeof *chunk);
+    if (!chunk)
+        return false;
+    m->node_chunks[m->node_chunk_count++] = chunk;
+    return true;
+}
+
 bool slc_reserve_nodes(slc_manager *m, uint64_t count)
 {
-    uint64_t have = (uint64_t)m->free_node_count + (m->node_room - m->node_end);
-    if (count <= have)
-        return true;
-    uint64_t room = (uint64_t)m->node_room * 2;
-    if (room < m->node_room + (count - have))
-        room = m->node_room + (count - have);
-    if (room < 256)
-        room = 256;
-    if (room >= UINT32_MAX)
-        return false;
-    struct slc_node *nodes =
-        slc_regrow(&m->cb, m->nodes, m->node_room, (size_t)room, sizeof *nodes);
-    if (!nodes)
-        return false;
-    m->nodes = nodes;
-    m->node_room = (uint32_t)room;
+    while (count >
+           (uint64_t)m->free_node_count + (m->node_chunk_count * SLC_NODES_PER_CHUNK - m->node_end))
+        if (!add_node_chunk(m))
+            return false;
     return true;
 }
 
@@ -176,7 +184,7 @@ uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)
 {
     if (tile >= t->regular_tile_count)
         return &t->packed_nodes[tile - t->regular_tile_count];
-    return t->state ? &t->state->cells[tile].node : NULL;
+    return t->state ? &t->state->nodes[tile] : NULL;
 }
 
 uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
@@ -189,11 +197,11 @@ static uint32_t pop_node(slc_manager *m)
 {
     uint32_t node = m->free_node;
     if (node) {
-        m->free_node = m->nodes[node].next;
+        m->free_node = slc_node_at(m, node)->next;
         m->free_node_count--;
         return node;
     }
-    assert(m->node_end < m->node_room); /* reserved before */
+    assert(m->node_end / SLC_NODES_PER_CHUNK < m->node_chunk_count); /* reserved before */
     return m->node_end++;
 }
 
@@ -201,17 +209,13 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell,
                           uint32_t level)
 {
     uint32_t node = pop_node(m);
-    m->nodes[node] = (struct slc_node){
+    *slc_node_at(m, node) = (struct slc_node){
         .texture = t->index,
         .tile = tile,
-        .texture_next = t->first_node,
         .heap = SLC_NONE,
         .level = (uint8_t)level,
         .state = SLUICE_TILE_STATE_FREE,
     };
-    if (t->first_node)
-        m->nodes[t->first_node].texture_prev = node;
-    t->first_node = node;
     *cell = node;
     t->regular_nodes += tile < t->regular_tile_count;
     m->state_counts[SLUICE_TILE_STATE_FREE]++;
@@ -220,9 +224,9 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell,
 
 static void recycle_node(slc_manager *m, uint32_t node)
 {
-    m->nodes[node].next = m->free_node;
-    m->nodes[node].texture = SLC_NONE;
-    m->nodes[node].state = SLUICE_TILE_STATE_FREE;
+    slc_node_at(m, node)->next = m->free_node;
+    slc_node_at(m, node)->texture = SLC_NONE;
+    slc_node_at(m, node)->state = SLUICE_TILE_STATE_FREE;
     m->free_node = node;
     m->free_node_count++;
 }
@@ -230,16 +234,10 @@ static void recycle_node(slc_manager *m, uint32_t node)
 /** Ends what ties a node to its tile; list and slot stay as they are. */
 static void detach_node(slc_manager *m, uint32_t node)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     struct slc_texture *t = slc_texture_at(m, n->texture);
     *slc_node_cell(t, n->tile) = 0;
     t->regular_nodes -= n->tile < t->regular_tile_count;
-    if (n->texture_prev)
-        m->nodes[n->texture_prev].texture_next = n->texture_next;
-    else
-        t->first_node = n->texture_next;
-    if (n->texture_next)
-        m->nodes[n->texture_next].texture_prev = n->texture_prev;
 }
 
 static bool is_resident(uint8_t state)
@@ -249,7 +247,7 @@ static bool is_resident(uint8_t state)
 
 void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     uint8_t old = n->state;
     leave_list(m, node);
     m->state_counts[old]--;
@@ -265,16 +263,16 @@ void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state)
 void slc_node_request_again(slc_manager *m, uint32_t node)
 {
     leave_list(m, node); /* before the deficit changes: a REQUESTED one is listed by it */
-    m->state_counts[m->nodes[node].state]--;
-    m->nodes[node].state = SLUICE_TILE_STATE_REQUESTED;
-    m->nodes[node].deficit = 0;
+    m->state_counts[slc_node_at(m, node)->state]--;
+    slc_node_at(m, node)->state = SLUICE_TILE_STATE_REQUESTED;
+    slc_node_at(m, node)->deficit = 0;
     m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
     enter_list(m, node);
 }
 
 void slc_node_release(slc_manager *m, uint32_t node)
 {
-    assert(m->nodes[node].heap == SLC_NONE);
+    assert(slc_node_at(m, node)->heap == SLC_NONE);
     slc_node_set_state(m, node, SLUICE_TILE_STATE_FREE);
     m->state_counts[SLUICE_TILE_STATE_FREE]--;
     detach_node(m, node);
@@ -283,7 +281,7 @@ void slc_node_release(slc_manager *m, uint32_t node)
 
 void slc_node_free_slot(slc_manager *m, uint32_t node)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     if (n->heap != SLC_NONE)
         slc_tile_heaps_give(&m->heaps, n->heap, n->slot);
     n->heap = SLC_NONE;
@@ -291,7 +289,7 @@ void slc_node_free_slot(slc_manager *m, uint32_t node)
 
 void slc_node_retire(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
-    if (m->nodes[node].heap == SLC_NONE || retire_value <= m->completed_retire) {
+    if (slc_node_at(m, node)->heap == SLC_NONE || retire_value <= m->completed_retire) {
         slc_node_free_slot(m, node);
         slc_node_release(m, node);
         return;
@@ -299,7 +297,7 @@ void slc_node_retire(slc_manager *m, uint32_t node, uint64_t retire_value)
     slc_node_set_state(m, node, SLUICE_TILE_STATE_FREE);
     m->state_counts[SLUICE_TILE_STATE_FREE]--;
     detach_node(m, node);
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     n->texture = SLC_NONE;
     n->state = SLC_NODE_RETIRING;
     n->order = retire_value;
@@ -310,11 +308,11 @@ void slc_node_retire(slc_manager *m, uint32_t node, uint64_t retire_value)
 void slc_node_retire_slot(slc_manager *m, uint32_t heap, uint32_t slot, uint64_t retire_value)
 {
     uint32_t node = pop_node(m);
-    m->nodes[node] = (struct slc_node){.texture = SLC_NONE,
-                                       .heap = heap,
-                                       .slot = slot,
-                                       .state = SLC_NODE_RETIRING,
-                                       .order = retire_value};
+    *slc_node_at(m, node) = (struct slc_node){.texture = SLC_NONE,
+                                              .heap = heap,
+                                              .slot = slot,
+                                              .state = SLC_NODE_RETIRING,
+                                              .order = retire_value};
     m->heaps.heaps[heap].nodes[slot] = node;
     m->heaps.heaps[heap].retiring_count++;
     slc_list_append(m, &m->retiring, node);
@@ -323,10 +321,10 @@ void slc_node_retire_slot(slc_manager *m, uint32_t heap, uint32_t slot, uint64_t
 void slc_collect_retired(slc_manager *m)
 {
     /* Values never decrease, so the list is in their order. */
-    while (m->retiring.head && m->nodes[m->retiring.head].order <= m->completed_retire) {
+    while (m->retiring.head && slc_node_at(m, m->retiring.head)->order <= m->completed_retire) {
         uint32_t node = m->retiring.head;
         slc_list_remove(m, &m->retiring, node);
-        m->heaps.heaps[m->nodes[node].heap].retiring_count--;
+        m->heaps.heaps[slc_node_at(m, node)->heap].retiring_count--;
         slc_node_free_slot(m, node);
         recycle_node(m, node);
     }
@@ -337,14 +335,14 @@ void slc_list_standby(slc_manager *m, uint32_t keep)
     while (m->standby.count > keep) {
         uint32_t node = m->standby.head;
         slc_list_remove(m, &m->standby, node);
-        m->nodes[node].flags |= SLC_NODE_LISTED;
+        slc_node_at(m, node)->flags |= SLC_NODE_LISTED;
         slc_list_append(m, &m->unmapping, node);
     }
 }
 
 SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 {
-    const struct slc_node *n = &m->nodes[node];
+    const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
     struct slc_place place = slc_tile_place(t, n->tile);
     bool placed = n->heap != SLC_NONE;
@@ -367,11 +365,11 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
     uint32_t node = *cell;
     if (!node) {
         node = take_node(m, t, cell, tile, level);
-        m->nodes[node].deficit = (uint8_t)deficit;
+        slc_node_at(m, node)->deficit = (uint8_t)deficit;
         slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);
         return;
     }
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     if (n->state == SLUICE_TILE_STATE_STANDBY) {
         slc_node_set_state(m, node, SLUICE_TILE_STATE_MAPPED);
         m->restored_total++;
@@ -387,20 +385,22 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 void slc_tile_unwanted(slc_manager *m, uint32_t node)
 {
     assert(node);
-    switch (m->nodes[node].state) {
+    switch (slc_node_at(m, node)->state) {
     case SLUICE_TILE_STATE_ALLOCATED:
-        m->nodes[node].failures = 0;
+        slc_node_at(m, node)->failures = 0;
         slc_node_set_state(m, node, SLUICE_TILE_STATE_CANCELLED);
         break;
     case SLUICE_TILE_STATE_MAPPED: slc_node_set_state(m, node, SLUICE_TILE_STATE_STANDBY); break;
-    case SLUICE_TILE_STATE_CANCELLED: m->nodes[node].flags &= (uint8_t)~SLC_NODE_WANTED; break;
+    case SLUICE_TILE_STATE_CANCELLED:
+        slc_node_at(m, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
+        break;
     default: slc_node_release(m, node); break; /* REQUESTED, FAILED, GIVEN_UP */
     }
 }
 
 void slc_node_fail(slc_manager *m, uint32_t node, uint64_t time)
 {
-    struct slc_node *n = &m->nodes[node];
+    struct slc_node *n = slc_node_at(m, node);
     uint32_t limit = m->config.maxLoadAttempts ? m->config.maxLoadAttempts : 5;
     const uint64_t longest = UINT64_C(1) << 62;
     uint64_t delay = m->config.retryDelay < longest ? m->config.retryDelay : longest;

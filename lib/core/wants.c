@@ -4,14 +4,26 @@
 #include "base/bytes.h"
 #include "base/checked.h"
 #include "core/history.h"
+#include "core/overlap.h"
 
 #include <string.h>
 
 /* Room -------------------------------------------------------------------------------------- */
 
-SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t largest)
+size_t slc_wants_work_size(const struct slc_texture *t)
 {
-    bytes += largest; /* for the bias */
+    size_t bias = slc_padded(slc_region_count(t));
+    if (t->desc.regularMipCount == 0)
+        return bias;
+    size_t row = slc_padded(t->levels[0].width) + SLC_BLOCK;
+    size_t grid = (size_t)t->levels[0].width * t->levels[0].height + SLC_BLOCK;
+    size_t rows = 2 * row + (slc_regions_are_tiles(t) ? 0 : grid);
+    return bias > rows ? bias : rows;
+}
+
+SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work)
+{
+    bytes += work;
     if (bytes <= m->scratch_room)
         return SLUICE_SUCCESS;
     if (bytes > SIZE_MAX / 2)
@@ -24,27 +36,6 @@ SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t la
     m->scratch = scratch;
     m->scratch_room = room;
     return SLUICE_SUCCESS;
-}
-
-static bool reserve_changes(slc_manager *m, size_t count)
-{
-    if (count <= m->change_room)
-        return true;
-    size_t room = count < 1024 ? 1024 : count;
-    struct slc_change *changes = slc_alloc(&m->cb, room, sizeof *changes);
-    if (!changes)
-        return false;
-    slc_free(&m->cb, m->changes, m->change_room, sizeof *changes);
-    m->changes = changes;
-    m->change_room = (uint32_t)room; /* a map has at most 2^30 regions */
-    return true;
-}
-
-SluiceResult slc_wants_reserve(slc_manager *m, const struct slc_wants_need *need)
-{
-    return slc_reserve_nodes(m, need->nodes) && reserve_changes(m, need->regions)
-               ? SLUICE_SUCCESS
-               : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 /* Preparing --------------------------------------------------------------------------------- */
@@ -97,8 +88,6 @@ void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *ne
     need->nodes += nodes < t->regular_tile_count ? nodes : t->regular_tile_count;
     if (t->held_regions == 0)
         need->nodes += d->packedTileCount;
-    if (padded > need->regions)
-        need->regions = padded;
 }
 
 /** What the texels of a map ask for: clamp(min(v, last) + bias, lowest, last). */
@@ -148,34 +137,6 @@ void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 
 /* Committing -------------------------------------------------------------------------------- */
 
-static void add_want(slc_manager *m, struct slc_texture *t, struct slc_place p, uint32_t held)
-{
-    for (;;) {
-        uint32_t tile = slc_tile_index(t, p);
-        struct slc_cell *cell = &t->state->cells[tile];
-        if (cell->wants++ != 0)
-            return;
-        slc_tile_wanted(m, t, &cell->node, tile, p.level, p.level - held);
-        if (p.level + 1 >= t->desc.regularMipCount)
-            return;
-        p = slc_parent_place(t, p);
-    }
-}
-
-static void drop_want(slc_manager *m, struct slc_texture *t, struct slc_place p)
-{
-    for (;;) {
-        struct slc_cell *cell = &t->state->cells[slc_tile_index(t, p)];
-        assert(cell->wants > 0);
-        if (--cell->wants != 0)
-            return;
-        slc_tile_unwanted(m, cell->node);
-        if (p.level + 1 >= t->desc.regularMipCount)
-            return;
-        p = slc_parent_place(t, p);
-    }
-}
-
 static void packed_wanted(slc_manager *m, struct slc_texture *t)
 {
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
@@ -189,86 +150,150 @@ static void packed_unwanted(slc_manager *m, struct slc_texture *t)
         slc_tile_unwanted(m, t->packed_nodes[i]);
 }
 
-/** Region numbers in ascending order to columns and rows without division. */
-struct row_walk {
-    uint32_t y, begin;
+/* A tile of level l is wanted if a region under it holds l or a finer level. So the least level
+ * held under each tile says it all, level by level from the one below: where nothing changes in a
+ * level, nothing does above it, and how many regions changed matters to no one.
+ */
+
+static slc_block at_most(slc_block values, slc_block limit)
+{
+    return slc_equal_block(slc_min_block(values, limit), values);
+}
+
+static void settle_tile(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level,
+                        uint8_t least)
+{
+    uint32_t *cell = &t->state->nodes[tile];
+    if (least <= level)
+        slc_tile_wanted(m, t, cell, tile, level, level - least);
+    else
+        slc_tile_unwanted(m, *cell);
+}
+
+/**
+ * Takes over the least levels of `count` tiles of one row, beginning with `tile`. `least` is
+ * readable to the end of its last block. Returns whether any is new.
+ */
+static bool settle_row(slc_manager *m, struct slc_texture *t, uint32_t level, uint32_t tile,
+                       const uint8_t *least, uint32_t count)
+{
+    static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
+                                                255, 255, 255, 255, 255, 255, 255, 255};
+    slc_block limit = slc_block_of((uint8_t)level);
+    bool changed = false;
+    for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
+        uint8_t *under = t->state->under + tile + i;
+        slc_block before = slc_load_block(under), now = slc_load_block(least + i);
+        if (count - i < SLC_BLOCK) {
+            slc_block inside = slc_load_block(ramp + SLC_BLOCK - (count - i));
+            now = (now & inside) | (before & ~inside);
+        }
+        if (!slc_block_difference(before, now))
+            continue;
+        changed = true;
+        slc_store_block(under, now);
+        uint32_t moves = slc_block_difference(at_most(before, limit), at_most(now, limit));
+        for (; moves; moves &= moves - 1) {
+            uint32_t k = i + (uint32_t)__builtin_ctz(moves);
+            settle_tile(m, t, tile + k, level, least[k]);
+        }
+    }
+    return changed;
+}
+
+struct rows {
+    uint32_t first, end;
 };
 
-static struct slc_tile_range tiles_of(const struct slc_texture *t, struct row_walk *row,
-                                      uint32_t region, uint32_t level)
+static void add_row(struct rows *rows, uint32_t row)
 {
-    if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
-        return slc_region_tiles(t, region, level);
-    while (region - row->begin >= t->feedback_width) {
-        row->begin += t->feedback_width;
-        row->y++;
+    if (rows->first == rows->end)
+        rows->first = row;
+    rows->end = row + 1;
+}
+
+/** Level 0: tiles are regions, or the regions over each tile are searched. */
+static struct rows settle_level_0(slc_manager *m, struct slc_texture *t)
+{
+    const struct slc_level *grid = &t->levels[0];
+    const uint8_t *least = t->state->held;
+    if (!slc_regions_are_tiles(t)) {
+        uint8_t *found = slc_wants_work(m, t) + 2 * (slc_padded(grid->width) + SLC_BLOCK);
+        const SluiceStreamedTextureDesc *d = &t->desc;
+        struct slc_grid regions = {
+            d->width,          d->height,         d->feedbackRegionWidth, d->feedbackRegionHeight,
+            t->feedback_width, t->feedback_height};
+        struct slc_grid tiles = {d->width,      d->height,   d->tileWidth,
+                                 d->tileHeight, grid->width, grid->height};
+        slc_least_overlapped(&regions, t->state->held, &tiles, found);
+        least = found;
     }
+    struct rows rows = {0};
+    for (uint32_t y = 0; y < grid->height; y++)
+        if (settle_row(m, t, 0, y * grid->width, least + (size_t)y * grid->width, grid->width))
+            add_row(&rows, y);
+    return rows;
+}
+
+/** The least of the rows of the finer level under row `y`, and then of the columns. */
+static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, uint8_t *columns,
+                       uint8_t *least)
+{
+    const struct slc_level *fine = &t->levels[level - 1], *here = &t->levels[level];
+    uint32_t y0 = 2 * y, y1 = y + 1 == here->height ? fine->height : 2 * y + 2;
+    const uint8_t *row = t->state->under + fine->first_tile + (size_t)y0 * fine->width;
+    for (uint32_t x = 0; x < fine->width; x += SLC_BLOCK) {
+        slc_block v = slc_load_block(row + x);
+        for (uint32_t k = 1; k < y1 - y0; k++)
+            v = slc_min_block(v, slc_load_block(row + (size_t)k * fine->width + x));
+        slc_store_block(columns + x, v);
+    }
+    slc_halve_bytes(columns, here->width - 1, least);
+    uint8_t last = SLUICE_MIP_UNTOUCHED; /* the last tile takes what is over */
+    for (uint32_t x = 2 * here->width - 2; x < fine->width; x++)
+        last = columns[x] < last ? columns[x] : last;
+    least[here->width - 1] = last;
+}
+
+static struct rows settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                struct rows below)
+{
     const struct slc_level *grid = &t->levels[level];
-    uint32_t x = (region - row->begin) >> (level + t->region_shift_x);
-    uint32_t y = row->y >> (level + t->region_shift_y);
-    x = slc_min_u32(x, grid->width - 1);
-    y = slc_min_u32(y, grid->height - 1);
-    return (struct slc_tile_range){x, y, x, y};
-}
-
-static void apply_wants(slc_manager *m, struct slc_texture *t, uint32_t count)
-{
-    struct row_walk row = {0};
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t region = m->changes[i].region, level = t->state->held[region];
-        if (level >= t->desc.regularMipCount)
-            continue;
-        struct slc_tile_range r = tiles_of(t, &row, region, level);
-        for (uint32_t y = r.y0; y <= r.y1; y++)
-            for (uint32_t x = r.x0; x <= r.x1; x++)
-                add_want(m, t, (struct slc_place){level, x, y}, level);
+    uint8_t *columns = slc_wants_work(m, t);
+    uint8_t *least = columns + slc_padded(t->levels[0].width) + SLC_BLOCK;
+    uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
+    uint32_t end = slc_min_u32((below.end - 1) / 2, grid->height - 1) + 1;
+    struct rows rows = {0};
+    for (uint32_t y = first; y < end; y++) {
+        reduce_row(t, level, y, columns, least);
+        if (settle_row(m, t, level, grid->first_tile + y * grid->width, least, grid->width))
+            add_row(&rows, y);
     }
+    return rows;
 }
 
-static void apply_drops(slc_manager *m, struct slc_texture *t, uint32_t count)
+/** Some region holds another level. */
+static void settle(slc_manager *m, struct slc_texture *t, bool held_before)
 {
-    struct row_walk row = {0};
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t region = m->changes[i].region, level = m->changes[i].old_held;
-        if (level >= t->desc.regularMipCount)
-            continue;
-        struct slc_tile_range r = tiles_of(t, &row, region, level);
-        for (uint32_t y = r.y0; y <= r.y1; y++)
-            for (uint32_t x = r.x0; x <= r.x1; x++)
-                drop_want(m, t, (struct slc_place){level, x, y});
-    }
-}
-
-static void count_held_regions(slc_manager *m, struct slc_texture *t, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        bool before = m->changes[i].old_held != SLUICE_MIP_UNTOUCHED;
-        bool after = t->state->held[m->changes[i].region] != SLUICE_MIP_UNTOUCHED;
-        t->held_regions += (uint32_t)after - (uint32_t)before;
-    }
-}
-
-/** The regions in m->changes hold something else now. */
-static void apply_changes(slc_manager *m, struct slc_texture *t, uint32_t count)
-{
-    uint32_t held_before = t->held_regions;
-    count_held_regions(m, t, count);
     bool packed_move = !m->info.alwaysMapPackedTiles;
-    if (packed_move && held_before == 0 && t->held_regions > 0)
+    if (packed_move && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
-    apply_wants(m, t, count);
-    apply_drops(m, t, count);
-    if (packed_move && held_before > 0 && t->held_regions == 0)
+    if (t->desc.regularMipCount > 0) {
+        struct rows rows = settle_level_0(m, t);
+        for (uint32_t l = 1; l < t->desc.regularMipCount && rows.first < rows.end; l++)
+            rows = settle_level(m, t, l, rows);
+    }
+    if (packed_move && held_before && t->held_regions == 0)
         packed_unwanted(m, t);
 }
 
 void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
     if (t->state) {
+        bool held_before = t->held_regions > 0;
         m->bias_maps++;
-        uint32_t count = slc_history_merge(m, t, time, timeout);
-        if (count)
-            apply_changes(m, t, count);
+        if (slc_history_merge(m, t, time, timeout))
+            settle(m, t, held_before);
         /* Nothing held and nothing left: the last map was empty, which is what no state means. */
         if (t->held_regions == 0 && t->regular_nodes == 0)
             slc_state_destroy(m, t);

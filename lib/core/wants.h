@@ -4,15 +4,27 @@
 
 #include "core/internal.h"
 
-/** What the commits of one call will need at most, and how much scratch its maps have taken. */
+/** What the commits of one call will need at most, and how much scratch their maps have taken. */
 struct slc_wants_need {
     uint64_t nodes;
-    size_t regions; ///< of the largest map, padded
     size_t scratch; ///< bytes in use
 };
 
-/** Room for the maps of one call: `bytes` padded bytes in all, and one map of `largest`. */
-SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t largest);
+/** Whether the regions are the tiles of level 0. */
+static inline bool slc_regions_are_tiles(const struct slc_texture *t)
+{
+    return t->desc.feedbackRegionWidth == t->desc.tileWidth &&
+           t->desc.feedbackRegionHeight == t->desc.tileHeight;
+}
+
+/** Scratch that a commit needs beside the map, and where it is. */
+size_t slc_wants_work_size(const struct slc_texture *t);
+static inline uint8_t *slc_wants_work(slc_manager *m, const struct slc_texture *t)
+{
+    return m->scratch + m->scratch_room - slc_wants_work_size(t);
+}
+/** Room for the maps of one call, `bytes` padded bytes in all, and for one texture's work. */
+SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work);
 
 /** Puts what the map asks for into the scratch. Changes nothing that can be seen. */
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
@@ -28,9 +40,6 @@ uint8_t *slc_wants_take_map(slc_manager *m, struct slc_texture *t, struct slc_wa
 /** state->next is complete: adds what merging it can need. */
 void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *next,
                         struct slc_wants_need *need);
-
-/** Makes room for the commits. */
-SluiceResult slc_wants_reserve(slc_manager *m, const struct slc_wants_need *need);
 
 /** Merges state->next. Cannot fail. */
 void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
