@@ -323,7 +323,7 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
     if (n->tile >= t->regular_tile_count)
         return true;
     const SluiceStreamedTextureDesc *d = &t->desc;
-    struct slc_place p = slc_tile_place(t, n->tile);
+    struct slc_place p = slc_node_place(t, n);
     const struct slc_level *grid = &t->levels[p.level];
     uint32_t x0, x1, y0, y1;
     regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,

@@ -11,6 +11,8 @@
 
 #define SLC_NONE UINT32_MAX
 #define SLC_UNALIGNED 255
+/** In state->nodes: the tile is MAPPED or STANDBY. */
+#define SLC_RESIDENT 0x80000000u
 
 /** One regular level, in tiles. */
 struct slc_level {
@@ -224,6 +226,15 @@ static inline struct slc_place slc_parent_place(const struct slc_texture *t, str
     return (struct slc_place){p.level + 1, x < up->width ? x : up->width - 1,
                               y < up->height ? y : up->height - 1};
 }
+/** The place of a node's tile. */
+static inline struct slc_place slc_node_place(const struct slc_texture *t, const struct slc_node *n)
+{
+    if (n->tile >= t->regular_tile_count)
+        return (struct slc_place){t->desc.regularMipCount, n->tile - t->regular_tile_count, 0};
+    const struct slc_level *grid = &t->levels[n->level];
+    uint32_t i = n->tile - grid->first_tile;
+    return (struct slc_place){n->level, i % grid->width, i / grid->width};
+}
 struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive
 };
@@ -231,12 +242,22 @@ struct slc_tile_range {
 struct slc_tile_range slc_region_tiles(const struct slc_texture *t, uint32_t region,
                                        uint32_t level);
 
+/** Where a tile keeps its node; NULL for a regular one without a state. */
+static inline uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)
+{
+    if (tile >= t->regular_tile_count)
+        return &t->packed_nodes[tile - t->regular_tile_count];
+    return t->state ? &t->state->nodes[tile] : NULL;
+}
+static inline uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
+{
+    const uint32_t *cell = slc_node_cell(t, tile);
+    return cell ? *cell & ~SLC_RESIDENT : 0;
+}
+
 /* node.c: nodes, lists, the moves between states */
 /** Makes sure that `count` nodes can be taken. */
 bool slc_reserve_nodes(slc_manager *m, uint64_t count);
-/** Where a tile keeps its node; NULL for a regular one without a state. */
-uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile);
-uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile);
 /** `cell` is where the tile keeps its node. */
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                      uint32_t level, uint32_t deficit);
@@ -270,8 +291,9 @@ void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node);
 void slc_state_destroy(slc_manager *m, struct slc_texture *t);
 
 /* minmip.c */
-/** A regular or packed tile became resident (MAPPED or STANDBY) or stopped to be. */
-void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, bool resident);
+/** The tile of a node became resident (MAPPED or STANDBY) or stopped to be. */
+void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
+                         bool resident);
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t);
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t);
 /** What the map is where no regular tile is resident. */

@@ -16,11 +16,9 @@ uint8_t slc_min_mip_floor(const struct slc_texture *t)
     return packed ? (uint8_t)t->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
 }
 
-static bool is_resident(const slc_manager *m, const struct slc_texture *t, struct slc_place p)
+static bool is_resident(const struct slc_texture *t, struct slc_place p)
 {
-    uint32_t node = t->state->nodes[slc_tile_index(t, p)];
-    return node && (slc_node_at(m, node)->state == SLUICE_TILE_STATE_MAPPED ||
-                    slc_node_at(m, node)->state == SLUICE_TILE_STATE_STANDBY);
+    return t->state->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
 /** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
@@ -99,7 +97,7 @@ static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 }
 
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
-static void show(const slc_manager *m, struct slc_texture *t, struct slc_place p)
+static void show(struct slc_texture *t, struct slc_place p)
 {
     fill(t, area(t, p), (uint8_t)p.level);
     if (p.level == 0)
@@ -108,14 +106,13 @@ static void show(const slc_manager *m, struct slc_texture *t, struct slc_place p
     for (uint32_t y = c.y0; y <= c.y1; y++)
         for (uint32_t x = c.x0; x <= c.x1; x++) {
             struct slc_place child = {p.level - 1, x, y};
-            if (is_resident(m, t, child))
-                show(m, t, child);
+            if (is_resident(t, child))
+                show(t, child);
         }
 }
 
 /** The value over a tile that is not resident itself; false if a coarser one is missing. */
-static bool value_above(const slc_manager *m, const struct slc_texture *t, struct slc_place p,
-                        uint8_t *value)
+static bool value_above(const struct slc_texture *t, struct slc_place p, uint8_t *value)
 {
     uint32_t coarsest = t->desc.regularMipCount - 1;
     *value = p.level == coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
@@ -123,13 +120,13 @@ static bool value_above(const slc_manager *m, const struct slc_texture *t, struc
         return false;
     while (p.level < coarsest) {
         p = slc_parent_place(t, p);
-        if (!is_resident(m, t, p))
+        if (!is_resident(t, p))
             return false;
     }
     return true;
 }
 
-static void show_everything(const slc_manager *m, struct slc_texture *t)
+static void show_everything(struct slc_texture *t)
 {
     struct slc_tile_range all = {0, 0, t->min_mip_width - 1, t->min_mip_height - 1};
     fill(t, all, slc_min_mip_floor(t));
@@ -139,8 +136,8 @@ static void show_everything(const slc_manager *m, struct slc_texture *t)
     for (uint32_t y = 0; y < top->height; y++)
         for (uint32_t x = 0; x < top->width; x++) {
             struct slc_place p = {t->desc.regularMipCount - 1, x, y};
-            if (is_resident(m, t, p))
-                show(m, t, p);
+            if (is_resident(t, p))
+                show(t, p);
         }
 }
 
@@ -151,25 +148,28 @@ static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
     if (before == (t->packed_resident == t->desc.packedTileCount))
         return;
     if (t->state)
-        show_everything(m, t);
+        show_everything(t);
     slc_min_mip_dirty_all(m, t);
 }
 
-void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, bool resident)
+void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
+                         bool resident)
 {
-    if (tile >= t->regular_tile_count) {
+    if (n->tile >= t->regular_tile_count) {
         packed_changed(m, t, resident);
         return;
     }
-    struct slc_place p = slc_tile_place(t, tile);
+    t->state->nodes[n->tile] ^= SLC_RESIDENT;
+    struct slc_place p = slc_node_place(t, n);
     uint8_t above;
-    if (!value_above(m, t, p, &above))
+    if (!value_above(t, p, &above))
         return;
+    struct slc_tile_range r = area(t, p);
     if (resident)
-        show(m, t, p);
+        show(t, p);
     else
-        fill(t, area(t, p), above);
-    mark_dirty(m, t, area(t, p));
+        fill(t, r, above);
+    mark_dirty(m, t, r);
 }
 
 static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,

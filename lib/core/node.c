@@ -153,7 +153,7 @@ static void enter_list(slc_manager *m, uint32_t node)
 
 static bool add_node_chunk(slc_manager *m)
 {
-    if (m->node_chunk_count == UINT32_MAX / SLC_NODES_PER_CHUNK)
+    if (m->node_chunk_count == SLC_RESIDENT / SLC_NODES_PER_CHUNK)
         return false;
     if (m->node_chunk_count == m->node_chunk_room) {
         uint32_t room = m->node_chunk_room ? m->node_chunk_room * 2 : 16;
@@ -180,19 +180,6 @@ bool slc_reserve_nodes(slc_manager *m, uint64_t count)
     return true;
 }
 
-uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)
-{
-    if (tile >= t->regular_tile_count)
-        return &t->packed_nodes[tile - t->regular_tile_count];
-    return t->state ? &t->state->nodes[tile] : NULL;
-}
-
-uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
-{
-    const uint32_t *cell = slc_node_cell(t, tile);
-    return cell ? *cell : 0;
-}
-
 static uint32_t pop_node(slc_manager *m)
 {
     uint32_t node = m->free_node;
@@ -205,21 +192,38 @@ static uint32_t pop_node(slc_manager *m)
     return m->node_end++;
 }
 
-static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                          uint32_t level)
+/** A tile that was FREE is REQUESTED: what take, set state and enter list would do, in one go. */
+static void request_new(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                        uint32_t level, uint32_t deficit)
 {
+    struct slc_requests *r = &m->requests;
+    bool packed = tile >= t->regular_tile_count;
+    uint32_t class = packed ? SLC_PACKED_CLASS : level;
+    struct slc_list *list = &r->lists[class][deficit];
     uint32_t node = pop_node(m);
     *slc_node_at(m, node) = (struct slc_node){
         .texture = t->index,
         .tile = tile,
+        .prev = list->tail,
         .heap = SLC_NONE,
         .level = (uint8_t)level,
-        .state = SLUICE_TILE_STATE_FREE,
+        .deficit = (uint8_t)deficit,
+        .state = SLUICE_TILE_STATE_REQUESTED,
+        .order = r->next_sequence++,
     };
+    if (list->tail)
+        slc_node_at(m, list->tail)->next = node;
+    else
+        list->head = node;
+    list->tail = node;
+    list->count++;
+    r->deficits[class] |= 1u << deficit;
+    r->classes |= 1u << class;
+    r->count++;
+    t->requested_count++;
+    t->regular_nodes += !packed;
+    m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
     *cell = node;
-    t->regular_nodes += tile < t->regular_tile_count;
-    m->state_counts[SLUICE_TILE_STATE_FREE]++;
-    return node;
 }
 
 static void recycle_node(slc_manager *m, uint32_t node)
@@ -255,7 +259,7 @@ void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state)
     m->state_counts[state]++;
     enter_list(m, node);
     if (is_resident(old) != is_resident(n->state))
-        slc_min_mip_changed(m, slc_texture_at(m, n->texture), n->tile, is_resident(n->state));
+        slc_min_mip_changed(m, slc_texture_at(m, n->texture), n, is_resident(n->state));
     if (state == SLUICE_TILE_STATE_STANDBY)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
@@ -344,7 +348,7 @@ SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
-    struct slc_place place = slc_tile_place(t, n->tile);
+    struct slc_place place = slc_node_place(t, n);
     bool placed = n->heap != SLC_NONE;
     return (SluiceTile){
         .textureId = slc_texture_id(t),
@@ -362,11 +366,9 @@ SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                      uint32_t level, uint32_t deficit)
 {
-    uint32_t node = *cell;
+    uint32_t node = *cell & ~SLC_RESIDENT;
     if (!node) {
-        node = take_node(m, t, cell, tile, level);
-        slc_node_at(m, node)->deficit = (uint8_t)deficit;
-        slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);
+        request_new(m, t, cell, tile, level, deficit);
         return;
     }
     struct slc_node *n = slc_node_at(m, node);

@@ -167,7 +167,7 @@ static void settle_tile(slc_manager *m, struct slc_texture *t, uint32_t tile, ui
     if (least <= level)
         slc_tile_wanted(m, t, cell, tile, level, level - least);
     else
-        slc_tile_unwanted(m, *cell);
+        slc_tile_unwanted(m, *cell & ~SLC_RESIDENT);
 }
 
 /**
