@@ -82,6 +82,12 @@ static inline uint32_t slc_block_difference(slc_block a, slc_block b)
 #endif
 }
 
+/** Where to stop adding up: a byte of a sum holds the ones of 255 blocks. */
+static inline size_t slc_batch_end(size_t i, size_t padded)
+{
+    return i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
+}
+
 /** Sum of the bytes. */
 static inline uint32_t slc_block_sum(slc_block b)
 {

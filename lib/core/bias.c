@@ -1,5 +1,6 @@
-#include "core/wants.h"
+#include "core/history.h"
 
+#include "base/bytes.h"
 #include "base/checked.h"
 
 #include <string.h>
@@ -21,22 +22,18 @@ static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
     return (uint8_t)((thresholds[y % 4][x % 4] + 7 * texture) % STEPS);
 }
 
-const uint8_t *slc_bias_map(slc_manager *m, const struct slc_texture *t, size_t padded)
+void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map)
 {
-    if (m->bias == 0)
-        return NULL;
-    uint8_t *map = slc_wants_work(m, t);
     uint8_t whole = (uint8_t)(m->bias / STEPS), part = (uint8_t)(m->bias % STEPS);
-    memset(map, whole, padded);
+    memset(map, whole, slc_padded(slc_region_count(t)));
     if (part == 0)
-        return map;
+        return;
     for (uint32_t y = 0; y < t->feedback_height; y++) {
         uint8_t *row = map + (size_t)y * t->feedback_width;
         for (uint32_t x = 0; x < t->feedback_width; x += BLOCK)
             if (dither(t->index, x / BLOCK, y / BLOCK) < part)
                 memset(row + x, whole + 1, slc_min_u32(BLOCK, t->feedback_width - x));
     }
-    return map;
 }
 
 /** Slots that there can be, as far as is known. */

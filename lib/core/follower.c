@@ -25,22 +25,6 @@ static int level_offset(const SluiceStreamedTextureDesc *primary,
     return d;
 }
 
-/** Adds the offset to what is asked for; `values` and `map` may be the same. */
-static void shift_levels(const uint8_t *values, size_t padded, int offset, uint32_t last,
-                         uint8_t *map)
-{
-    slc_block up = slc_block_of((uint8_t)(offset > 0 ? offset : 0));
-    slc_block down = slc_block_of((uint8_t)(offset < 0 ? -offset : 0));
-    slc_block coarsest = slc_block_of((uint8_t)last);
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block v = slc_load_block(values + i);
-        /* values are at most 20 and offsets at most 21 away from 0, or the value is untouched */
-        slc_block level = slc_max_block(v + up, down) - down;
-        slc_store_block(map + i, slc_min_block(level, coarsest) | slc_equal_block(v, untouched));
-    }
-}
-
 static struct slc_grid region_grid(const struct slc_texture *t)
 {
     return (struct slc_grid){t->desc.width,
@@ -60,20 +44,6 @@ static bool has_same_regions(const struct slc_texture *p, const struct slc_textu
            a->feedbackRegionHeight == b->feedbackRegionHeight;
 }
 
-static void make_map(const struct slc_texture *p, const uint8_t *asked, const struct slc_texture *f,
-                     uint8_t *map)
-{
-    size_t padded = slc_padded(slc_region_count(f));
-    uint32_t last = f->desc.mipLevelCount - 1;
-    if (has_same_regions(p, f)) {
-        shift_levels(asked, padded, 0, last, map);
-        return;
-    }
-    struct slc_grid from = region_grid(p), to = region_grid(f);
-    slc_least_overlapped(&from, asked, &to, map);
-    shift_levels(map, padded, level_offset(&p->desc, &f->desc), last, map);
-}
-
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need)
@@ -84,10 +54,19 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
     if (result != SLUICE_SUCCESS)
         return result;
     uint8_t *map = slc_wants_take_map(m, follower, need);
-    if (asked)
-        make_map(primary, asked, follower, map);
-    else
+    struct slc_levels levels = {.last = (uint8_t)(follower->desc.mipLevelCount - 1)};
+    const uint8_t *values = map;
+    if (!asked) {
         memset(map, SLUICE_MIP_UNTOUCHED, slc_region_count(follower));
-    slc_wants_add_need(m, follower, map, need);
+    } else if (has_same_regions(primary, follower)) {
+        values = asked;
+    } else {
+        struct slc_grid from = region_grid(primary), to = region_grid(follower);
+        slc_least_overlapped(&from, asked, &to, map);
+        int offset = level_offset(&primary->desc, &follower->desc);
+        levels.up = (uint8_t)(offset > 0 ? offset : 0);
+        levels.down = (uint8_t)(offset < 0 ? -offset : 0);
+    }
+    slc_wants_set_map(m, follower, values, &levels, map, need);
     return SLUICE_SUCCESS;
 }

@@ -21,7 +21,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
     if (!s) {
         size_t nodes = t->regular_tile_count * sizeof *s->nodes;
         size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
-        size_t size = sizeof *s + nodes + under + 3 * padded + texels;
+        size_t size = sizeof *s + nodes + under + 2 * padded + texels;
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -29,11 +29,10 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         s->nodes = (uint32_t *)(s + 1);
         s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
         s->least = s->asked + padded;
-        s->held = s->least + padded;
-        s->under = s->held + padded;
+        s->under = s->least + padded;
         s->min_mip = s->under + under;
         memset(s->nodes, 0, nodes);
-        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
+        memset(s->asked, SLUICE_MIP_UNTOUCHED, 2 * padded + under);
         memset(s->min_mip, slc_min_mip_floor(t), texels);
         slc_visit_append(m, t);
         t->state = s;
@@ -105,15 +104,18 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
     return level;
 }
 
-/** Removes levels from `below` on. */
-static void thin_span(struct slc_span *span, size_t padded, uint8_t below)
+/** Removes levels from `below` on. Returns whether anything is left. */
+static bool thin_span(struct slc_span *span, size_t padded, uint8_t below)
 {
-    slc_block limit = slc_block_of(below);
+    slc_block limit = slc_block_of(below), all = slc_block_of(SLUICE_MIP_UNTOUCHED);
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block v = slc_load_block(span->map + i);
-        slc_store_block(span->map + i, v | slc_equal_block(slc_max_block(v, limit), v));
+        v |= slc_equal_block(slc_max_block(v, limit), v);
+        slc_store_block(span->map + i, v);
+        all &= v;
     }
     span->below = below;
+    return slc_block_difference(all, slc_block_of(SLUICE_MIP_UNTOUCHED)) != 0;
 }
 
 static void drop_spans(struct slc_texture_state *s, uint32_t count)
@@ -132,22 +134,23 @@ static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint32
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
-    uint32_t newer = weight, dropped = 0;
+    uint32_t newer = weight, empty = 0;
     bool changed = false;
     shift = shift == SLC_UNALIGNED ? 0 : slc_min_u32(shift, 8);
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
-        uint32_t own = span->weight;
+        bool left = true;
         if (time - span->end >= timeout) {
             uint8_t below = first_unbelieved(newer, needed, shift);
-            dropped += below == 0;
-            changed |= below < span->below;
-            if (below > 0 && below < span->below)
-                thin_span(span, padded, below);
+            if (below < span->below) {
+                left = below > 0 && thin_span(span, padded, below);
+                changed = true;
+            }
         }
-        newer = add_weights(newer, own);
+        empty = left ? 0 : empty + 1;
+        newer = add_weights(newer, span->weight);
     }
-    drop_spans(s, dropped);
+    drop_spans(s, empty); /* the oldest ones */
     return changed;
 }
 
@@ -172,67 +175,32 @@ static bool join_span(struct slc_texture_state *s, uint64_t time, uint64_t timeo
 
 /* Merging ----------------------------------------------------------------------------------- */
 
-/** Sums of bytes hold for 255 blocks. */
-static inline size_t batch_end(size_t i, size_t padded)
-{
-    return i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
-}
-
-/** Counts, of the regions that `next` shows again, those that `asked` showed and missed. */
-static void count_hits(const struct slc_texture_state *s, size_t padded, uint32_t *hits,
-                       uint32_t *returns)
-{
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    for (size_t i = 0; i < padded;) {
-        slc_block hit_sum = slc_block_of(0), return_sum = hit_sum;
-        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
-            slc_block next = slc_load_block(s->next + i), least = slc_load_block(s->least + i);
-            slc_block again = slc_equal_block(slc_min_block(next, least), next) &
-                              ~slc_equal_block(least, untouched);
-            slc_block seen = slc_equal_block(slc_load_block(s->asked + i), least);
-            hit_sum -= again & seen; /* 255 is -1 */
-            return_sum -= again & ~seen;
-        }
-        *hits += slc_block_sum(hit_sum);
-        *returns += slc_block_sum(return_sum);
-    }
-}
-
 /** What a pass over all regions did. */
 struct merged {
-    bool changed;     ///< some region holds another level
-    uint32_t touched; ///< regions that hold anything
+    bool changed;     ///< some region's least level
+    uint32_t touched; ///< regions that have one
 };
 
-/** Takes over the held levels of 255 blocks at most. */
-static inline void hold(struct slc_texture_state *s, size_t i, slc_block held, slc_block *touched,
-                        struct merged *result)
-{
-    *touched -= ~slc_equal_block(held, slc_block_of(SLUICE_MIP_UNTOUCHED)); /* 255 is -1 */
-    if (!slc_block_difference(held, slc_load_block(s->held + i)))
-        return;
-    slc_store_block(s->held + i, held);
-    result->changed = true;
-}
-
-/** The common case: nothing lapsed and no bias is there, so levels only get finer. */
+/** The common case: nothing lapsed, so levels only get finer. */
 static struct merged merge_finer(struct slc_texture_state *s, size_t padded, bool fresh)
 {
     uint8_t *span = s->spans[s->span_count - 1].map;
-    struct merged result = {0};
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), moved = slc_block_of(0);
+    uint32_t touched = 0;
     for (size_t i = 0; i < padded;) {
-        slc_block touched = slc_block_of(0);
-        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
+        slc_block sum = slc_block_of(0);
+        for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
             slc_block next = slc_load_block(s->next + i);
             slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
             slc_store_block(s->asked + i, next);
-            slc_block least = slc_min_block(slc_load_block(s->least + i), next);
+            slc_block before = slc_load_block(s->least + i), least = slc_min_block(before, next);
             slc_store_block(s->least + i, least);
-            hold(s, i, least, &touched, &result);
+            moved |= least ^ before;
+            sum -= ~slc_equal_block(least, untouched); /* 255 is -1 */
         }
-        result.touched += slc_block_sum(touched);
+        touched += slc_block_sum(sum);
     }
-    return result;
+    return (struct merged){slc_block_difference(moved, slc_block_of(0)) != 0, touched};
 }
 
 static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fresh)
@@ -248,58 +216,45 @@ static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fre
         memcpy(s->asked, s->next, padded);
 }
 
-/** Computes everything anew from the spans. */
-static struct merged merge_all(slc_manager *m, struct slc_texture *t, size_t padded, bool fresh)
+/** Computes `least` anew from the spans. */
+static struct merged merge_all(struct slc_texture_state *s, size_t padded, bool fresh)
 {
-    struct slc_texture_state *s = t->state;
     merge_into_span(s, padded, fresh);
-    const uint8_t *bias = slc_bias_map(m, t, padded);
-    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
-    struct merged result = {0};
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), moved = slc_block_of(0);
+    uint32_t touched = 0;
     for (size_t i = 0; i < padded;) {
-        slc_block touched = slc_block_of(0);
-        for (size_t end = batch_end(i, padded); i < end; i += SLC_BLOCK) {
+        slc_block sum = slc_block_of(0);
+        for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
             slc_block least = slc_load_block(s->spans[0].map + i);
             for (uint32_t k = 1; k < s->span_count; k++)
                 least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+            moved |= least ^ slc_load_block(s->least + i);
             slc_store_block(s->least + i, least);
-            slc_block held = least;
-            if (bias)
-                held = slc_min_block(least + slc_load_block(bias + i), last) |
-                       slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
-            hold(s, i, held, &touched, &result);
+            sum -= ~slc_equal_block(least, untouched);
         }
-        result.touched += slc_block_sum(touched);
+        touched += slc_block_sum(sum);
     }
-    s->bias = m->bias;
-    return result;
+    return (struct merged){slc_block_difference(moved, slc_block_of(0)) != 0, touched};
 }
 
-bool slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+bool slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
-    if (s->next) {
-        uint32_t hits = 0, returns = 0;
-        count_hits(s, padded, &hits, &returns);
-        count_returns(t, hits, returns);
-    }
+    if (s->next)
+        count_returns(t, s->hits, s->returns);
     uint32_t weight = map_weight(t, s->next ? s->next : s->asked);
     uint32_t needed = slc_maps_to_believe(t);
     bool lapsed = lapse(t, time, timeout, weight, needed);
     bool fresh = join_span(s, time, timeout, weight, needed);
-    struct merged result;
-    if (lapsed || s->bias != m->bias || (s->next && m->bias != 0)) {
-        result = merge_all(m, t, padded, fresh);
-    } else if (s->next) {
-        result = merge_finer(s, padded, fresh);
-    } else {
+    if (!lapsed && !s->next) {
         if (fresh)
             memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
         return false;
     }
-    t->held_regions = result.touched;
-    return result.changed;
+    struct merged merged = lapsed ? merge_all(s, padded, fresh) : merge_finer(s, padded, fresh);
+    t->held_regions = merged.touched;
+    return merged.changed;
 }
 
 /* Asking ------------------------------------------------------------------------------------ */

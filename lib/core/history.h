@@ -17,8 +17,8 @@ uint32_t slc_maps_to_believe(const struct slc_texture *t);
 
 /**
  * Merges state->next into the history and counts the regions that hold something. Returns whether
- * any of them holds another level than before.
+ * state->least has changed.
  */
-bool slc_history_merge(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
+bool slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout);
 
 #endif /* SLC_CORE_HISTORY_H */

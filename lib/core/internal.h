@@ -71,33 +71,34 @@ struct slc_texture_state {
     size_t size;                          ///< bytes of the allocation
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
-    uint32_t bias;   ///< of the manager when `held` was computed
+    uint32_t bias;   ///< of the manager when `under` was computed
     uint32_t *nodes; ///< [regular tiles]: node index, 0: FREE
     uint8_t *under;  ///< [regular tiles + a block]: the least level held in a region under the tile
     uint8_t *asked;  ///< [padded regions]: what the last map asked for (a, not w)
     uint8_t *least;  ///< [padded regions]: the least over all spans
-    uint8_t *held;   ///< [padded regions]: `least` with the global bias; what wants stand for
-    uint8_t *min_mip;    ///< [minMipHeight][minMipWidth]
-    const uint8_t *next; ///< in the manager's scratch: the map being merged, NULL: as `asked`
+    uint8_t *min_mip; ///< [minMipHeight][minMipWidth]
+    /* The map being merged: */
+    const uint8_t *next;    ///< in the manager's scratch, NULL: as `asked`
+    uint32_t hits, returns; ///< what slc_texture's will grow by
 };
 
 struct slc_texture {
-    uint32_t generation;
-    bool live;
-    bool has_map; ///< a map was merged; without a state it was empty
-    bool dirty;   ///< in the manager's list of MinMip updates
-    uint32_t index;
-    SluiceStreamedTextureDesc desc;
-    uint32_t regular_tile_count, tile_count;
-    uint32_t feedback_width, feedback_height;
-    uint32_t min_mip_width, min_mip_height;
-    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
-    struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
+    /* What every answer and every map touches comes first. */
     struct slc_texture_state *state; ///< owned, NULL until sampled
-    uint32_t *packed_nodes;          ///< owned, [packedTileCount], NULL if there are none
-    uint32_t packed_resident;        ///< packed tiles MAPPED or STANDBY
-    uint32_t regular_nodes;          ///< nodes of regular tiles
+    uint32_t generation;
+    uint32_t index;
+    uint32_t regular_tile_count, tile_count;
+    bool live;
+    bool has_map;                           ///< a map was merged; without a state it was empty
+    bool dirty;                             ///< in the manager's list of MinMip updates
+    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
+    uint32_t packed_resident;               ///< packed tiles MAPPED or STANDBY
+    uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1; ///< exclusive ends
+    uint32_t dirty_prev, dirty_next;                 ///< indices, SLC_NONE
+    uint32_t regular_nodes;                          ///< nodes of regular tiles
     uint32_t requested_count;
+    uint32_t min_mip_width, min_mip_height;
+    uint32_t feedback_width, feedback_height;
     uint32_t held_regions;           ///< that hold anything
     uint64_t map_time;               ///< of the last map
     uint64_t interval, timeout;      ///< between the last two maps; of the last one
@@ -105,8 +106,9 @@ struct slc_texture {
     uint32_t visit_prev, visit_next; ///< among textures with a state, indices, SLC_NONE
     uint32_t primary;                ///< index, SLC_NONE
     uint32_t first_follower, last_follower, next_follower; ///< indices, SLC_NONE
-    uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1;       ///< exclusive ends
-    uint32_t dirty_prev, dirty_next;                       ///< indices, SLC_NONE
+    uint32_t *packed_nodes; ///< owned, [packedTileCount], NULL if there are none
+    SluiceStreamedTextureDesc desc;
+    struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
 };
 
 #define SLC_TEXTURES_PER_CHUNK 64
@@ -202,9 +204,10 @@ void slc_visit_renew(slc_manager *m, struct slc_texture *t);
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
 
 /* bias.c */
-/** What the global bias adds in each region of a texture, in the scratch; NULL for nothing. */
+/** Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. */
 void slc_update_bias(slc_manager *m);
-const uint8_t *slc_bias_map(slc_manager *m, const struct slc_texture *t, size_t padded);
+/** Writes what the global bias adds in each region. */
+void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map);
 
 /* layout.c */
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_texture *t);

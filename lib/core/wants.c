@@ -10,15 +10,20 @@
 
 /* Room -------------------------------------------------------------------------------------- */
 
+/** Two rows of tiles. */
+static size_t rows_work_size(const struct slc_texture *t)
+{
+    return 2 * (slc_padded(t->levels[0].width) + SLC_BLOCK);
+}
+
 size_t slc_wants_work_size(const struct slc_texture *t)
 {
-    size_t bias = slc_padded(slc_region_count(t));
     if (t->desc.regularMipCount == 0)
-        return bias;
-    size_t row = slc_padded(t->levels[0].width) + SLC_BLOCK;
-    size_t grid = (size_t)t->levels[0].width * t->levels[0].height + SLC_BLOCK;
-    size_t rows = 2 * row + (slc_regions_are_tiles(t) ? 0 : grid);
-    return bias > rows ? bias : rows;
+        return 0;
+    /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
+    size_t tiles = (size_t)t->levels[0].width * t->levels[0].height + SLC_BLOCK;
+    size_t regions = slc_padded(slc_region_count(t)) + SLC_BLOCK;
+    return rows_work_size(t) + regions + (slc_regions_are_tiles(t) ? 0 : tiles);
 }
 
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work)
@@ -40,48 +45,19 @@ SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t wo
 
 /* Preparing --------------------------------------------------------------------------------- */
 
-uint8_t *slc_wants_take_map(slc_manager *m, struct slc_texture *t, struct slc_wants_need *need)
-{
-    size_t regions = slc_region_count(t), padded = slc_padded(regions);
-    uint8_t *map = m->scratch + need->scratch;
-    assert(need->scratch + padded <= m->scratch_room);
-    need->scratch += padded;
-    memset(map + padded - SLC_BLOCK, SLUICE_MIP_UNTOUCHED, SLC_BLOCK); /* the padding */
-    return map;
-}
-
-/** Regions that ask for a finer level than they hold. */
-static size_t count_finer(const struct slc_texture_state *s, const uint8_t *next, size_t padded)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < padded;) {
-        size_t end = i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
-        slc_block sum = slc_block_of(0);
-        for (; i < end; i += SLC_BLOCK) {
-            slc_block held = slc_load_block(s->held + i), n = slc_load_block(next + i);
-            sum -= ~slc_equal_block(slc_min_block(held, n), held); /* 255 is -1 */
-        }
-        count += slc_block_sum(sum);
-    }
-    return count;
-}
-
 /** The most tiles of one level that a region can touch along one axis. */
 static uint64_t tiles_across(uint32_t region, uint32_t tile)
 {
     return tile % region == 0 ? 1 : (uint64_t)region / tile + 2;
 }
 
-void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *next,
-                        struct slc_wants_need *need)
+/** Adds what merging a map can need, in which `finer` regions ask for more than they hold. */
+static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t finer,
+                     struct slc_wants_need *need)
 {
-    struct slc_texture_state *s = t->state;
-    size_t padded = slc_padded(slc_region_count(t));
-    s->next = memcmp(next, s->asked, padded) == 0 ? NULL : next;
-    uint64_t finer = padded;
-    if (s->bias <= m->bias)
-        finer = s->next ? count_finer(s, next, padded) : 0;
     const SluiceStreamedTextureDesc *d = &t->desc;
+    if (t->state->bias > m->bias)
+        finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
                      tiles_across(d->feedbackRegionHeight, d->tileHeight);
@@ -90,29 +66,92 @@ void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *ne
         need->nodes += d->packedTileCount;
 }
 
-/** What the texels of a map ask for: clamp(min(v, last) + bias, lowest, last). */
-static void ask(const struct slc_texture *t, const SluiceFeedbackDesc *f, uint8_t *next)
+/** What a pass over a map and the state found, in numbers of regions. */
+struct compared {
+    bool differs;           ///< from the last map
+    uint32_t finer;         ///< ask for more than all maps did
+    uint32_t hits, returns; ///< see slc_maps_to_believe
+};
+
+static inline slc_block ask(slc_block v, const struct slc_levels *levels)
 {
-    size_t regions = slc_region_count(t);
+    slc_block last = slc_block_of(levels->last);
+    slc_block a = slc_min_block(v, last) + slc_block_of(levels->up);
+    a = slc_max_block(a, slc_block_of(levels->down)) - slc_block_of(levels->down);
+    a = slc_min_block(slc_max_block(a, slc_block_of(levels->lowest)), last);
+    return a | slc_equal_block(v, slc_block_of(SLUICE_MIP_UNTOUCHED));
+}
+
+static inline void compare(slc_block next, slc_block asked, slc_block least, slc_block sums[3],
+                           struct compared *c)
+{
+    slc_block both = slc_min_block(next, least);
+    slc_block again =
+        slc_equal_block(both, next) & ~slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
+    slc_block seen = slc_equal_block(asked, least);
+    sums[0] -= ~slc_equal_block(both, least); /* 255 is -1 */
+    sums[1] -= again & seen;
+    sums[2] -= again & ~seen;
+    c->differs |= slc_block_difference(next, asked) != 0;
+}
+
+/** Writes what `values` ask for and compares it with the state. */
+static struct compared ask_all(const struct slc_texture *t, const uint8_t *values,
+                               const struct slc_levels *levels, uint8_t *next)
+{
+    const struct slc_texture_state *s = t->state;
+    size_t regions = slc_region_count(t), padded = slc_padded(regions);
+    struct compared c = {0};
+    for (size_t i = 0; i < padded;) {
+        slc_block sums[3] = {slc_block_of(0), slc_block_of(0), slc_block_of(0)};
+        for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
+            slc_block v = slc_block_of(SLUICE_MIP_UNTOUCHED);
+            if (i + SLC_BLOCK <= regions)
+                v = slc_load_block(values + i);
+            else
+                memcpy(&v, values + i, regions - i);
+            v = ask(v, levels);
+            slc_store_block(next + i, v);
+            compare(v, slc_load_block(s->asked + i), slc_load_block(s->least + i), sums, &c);
+        }
+        c.finer += slc_block_sum(sums[0]);
+        c.hits += slc_block_sum(sums[1]);
+        c.returns += slc_block_sum(sums[2]);
+    }
+    return c;
+}
+
+uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
+                            struct slc_wants_need *need)
+{
+    uint8_t *map = m->scratch + need->scratch;
+    need->scratch += slc_padded(slc_region_count(t));
+    assert(need->scratch <= m->scratch_room);
+    return map;
+}
+
+void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
+                       const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
+{
+    struct slc_texture_state *s = t->state;
+    struct compared c = ask_all(t, values, levels, next);
+    s->next = c.differs ? next : NULL;
+    s->hits = c.hits;
+    s->returns = c.returns;
+    add_need(m, t, c.finer, need);
+}
+
+/** Levels of a map of the texture's own. */
+static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFeedbackDesc *f)
+{
     uint32_t lowest = 0;
     if (f->streamedMipLevels && f->streamedMipLevels < t->desc.regularMipCount)
         lowest = t->desc.regularMipCount - f->streamedMipLevels;
     int32_t bias = f->mipBias < -32 ? -32 : f->mipBias > 32 ? 32 : f->mipBias;
-    slc_block low = slc_block_of((uint8_t)lowest);
-    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
-    slc_block up = slc_block_of((uint8_t)(bias > 0 ? bias : 0));
-    slc_block down = slc_block_of((uint8_t)(bias < 0 ? -bias : 0));
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    for (size_t i = 0; i < regions; i += SLC_BLOCK) {
-        slc_block v = untouched;
-        if (i + SLC_BLOCK <= regions)
-            v = slc_load_block(f->pMinMip + i);
-        else
-            memcpy(&v, f->pMinMip + i, regions - i);
-        slc_block a = slc_max_block(slc_min_block(v, last) + up, down) - down;
-        a = slc_min_block(slc_max_block(a, low), last);
-        slc_store_block(next + i, a | slc_equal_block(v, untouched));
-    }
+    return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
+                               .down = (uint8_t)(bias < 0 ? -bias : 0),
+                               .lowest = (uint8_t)lowest,
+                               .last = (uint8_t)(t->desc.mipLevelCount - 1)};
 }
 
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
@@ -123,9 +162,8 @@ SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
     SluiceResult result = slc_state_make(m, t);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint8_t *next = slc_wants_take_map(m, t, need);
-    ask(t, feedback, next);
-    slc_wants_add_need(m, t, next, need);
+    struct slc_levels levels = own_levels(t, feedback);
+    slc_wants_set_map(m, t, feedback->pMinMip, &levels, slc_wants_take_map(m, t, need), need);
     return SLUICE_SUCCESS;
 }
 
@@ -170,17 +208,22 @@ static void settle_tile(slc_manager *m, struct slc_texture *t, uint32_t tile, ui
         slc_tile_unwanted(m, *cell & ~SLC_RESIDENT);
 }
 
+/** Of something counted from 0. */
+struct range {
+    uint32_t first, end; ///< equal: none
+};
+
 /**
- * Takes over the least levels of `count` tiles of one row, beginning with `tile`. `least` is
- * readable to the end of its last block. Returns whether any is new.
+ * Takes over the least levels of `count` tiles of a level, beginning with `tile`. `least` is
+ * readable to the end of its last block. Returns which may have changed.
  */
-static bool settle_row(slc_manager *m, struct slc_texture *t, uint32_t level, uint32_t tile,
-                       const uint8_t *least, uint32_t count)
+static struct range settle_tiles(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                 uint32_t tile, const uint8_t *least, uint32_t count)
 {
     static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
                                                 255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
-    bool changed = false;
+    struct range changed = {0, 0};
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         uint8_t *under = t->state->under + tile + i;
         slc_block before = slc_load_block(under), now = slc_load_block(least + i);
@@ -190,7 +233,9 @@ static bool settle_row(slc_manager *m, struct slc_texture *t, uint32_t level, ui
         }
         if (!slc_block_difference(before, now))
             continue;
-        changed = true;
+        if (changed.end == 0)
+            changed.first = i;
+        changed.end = slc_min_u32(i + SLC_BLOCK, count);
         slc_store_block(under, now);
         uint32_t moves = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; moves; moves &= moves - 1) {
@@ -201,38 +246,55 @@ static bool settle_row(slc_manager *m, struct slc_texture *t, uint32_t level, ui
     return changed;
 }
 
-struct rows {
-    uint32_t first, end;
-};
-
-static void add_row(struct rows *rows, uint32_t row)
+/** What the regions hold: the least level of their maps, and the bias. */
+static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
-    if (rows->first == rows->end)
-        rows->first = row;
-    rows->end = row + 1;
+    const struct slc_texture_state *s = t->state;
+    if (m->bias == 0)
+        return s->least;
+    slc_bias_map(m, t, work);
+    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
+    for (size_t i = 0; i < slc_padded(slc_region_count(t)); i += SLC_BLOCK) {
+        slc_block least = slc_load_block(s->least + i);
+        slc_block held = slc_min_block(least + slc_load_block(work + i), last);
+        held |= slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
+        slc_store_block(work + i, held);
+    }
+    return work;
 }
 
-/** Level 0: tiles are regions, or the regions over each tile are searched. */
-static struct rows settle_level_0(slc_manager *m, struct slc_texture *t)
+static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *held, uint8_t *work)
+{
+    const SluiceStreamedTextureDesc *d = &t->desc;
+    const struct slc_level *grid = &t->levels[0];
+    struct slc_grid regions = {.width = d->width,
+                               .height = d->height,
+                               .cell_width = d->feedbackRegionWidth,
+                               .cell_height = d->feedbackRegionHeight,
+                               .columns = t->feedback_width,
+                               .rows = t->feedback_height};
+    struct slc_grid tiles = {.width = d->width,
+                             .height = d->height,
+                             .cell_width = d->tileWidth,
+                             .cell_height = d->tileHeight,
+                             .columns = grid->width,
+                             .rows = grid->height};
+    slc_least_overlapped(&regions, held, &tiles, work);
+    return work;
+}
+
+/** Level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
+static struct range settle_level_0(slc_manager *m, struct slc_texture *t)
 {
     const struct slc_level *grid = &t->levels[0];
-    const uint8_t *least = t->state->held;
-    if (!slc_regions_are_tiles(t)) {
-        uint8_t *found = slc_wants_work(m, t) + 2 * (slc_padded(grid->width) + SLC_BLOCK);
-        const SluiceStreamedTextureDesc *d = &t->desc;
-        struct slc_grid regions = {
-            d->width,          d->height,         d->feedbackRegionWidth, d->feedbackRegionHeight,
-            t->feedback_width, t->feedback_height};
-        struct slc_grid tiles = {d->width,      d->height,   d->tileWidth,
-                                 d->tileHeight, grid->width, grid->height};
-        slc_least_overlapped(&regions, t->state->held, &tiles, found);
-        least = found;
-    }
-    struct rows rows = {0};
-    for (uint32_t y = 0; y < grid->height; y++)
-        if (settle_row(m, t, 0, y * grid->width, least + (size_t)y * grid->width, grid->width))
-            add_row(&rows, y);
-    return rows;
+    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t);
+    const uint8_t *least = held_levels(m, t, work);
+    if (!slc_regions_are_tiles(t))
+        least = search_tiles(t, least, work + slc_padded(slc_region_count(t)));
+    struct range tiles = settle_tiles(m, t, 0, 0, least, grid->width * grid->height);
+    if (tiles.end == 0)
+        return tiles;
+    return (struct range){tiles.first / grid->width, (tiles.end - 1) / grid->width + 1};
 }
 
 /** The least of the rows of the finer level under row `y`, and then of the columns. */
@@ -255,19 +317,22 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
     least[here->width - 1] = last;
 }
 
-static struct rows settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
-                                struct rows below)
+static struct range settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                 struct range below)
 {
     const struct slc_level *grid = &t->levels[level];
-    uint8_t *columns = slc_wants_work(m, t);
-    uint8_t *least = columns + slc_padded(t->levels[0].width) + SLC_BLOCK;
+    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
-    uint32_t end = slc_min_u32((below.end - 1) / 2, grid->height - 1) + 1;
-    struct rows rows = {0};
-    for (uint32_t y = first; y < end; y++) {
+    uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
+    struct range rows = {0, 0};
+    for (uint32_t y = first; y <= last; y++) {
         reduce_row(t, level, y, columns, least);
-        if (settle_row(m, t, level, grid->first_tile + y * grid->width, least, grid->width))
-            add_row(&rows, y);
+        uint32_t tile = grid->first_tile + y * grid->width;
+        if (settle_tiles(m, t, level, tile, least, grid->width).end == 0)
+            continue;
+        if (rows.end == 0)
+            rows.first = y;
+        rows.end = y + 1;
     }
     return rows;
 }
@@ -279,7 +344,7 @@ static void settle(slc_manager *m, struct slc_texture *t, bool held_before)
     if (packed_move && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
     if (t->desc.regularMipCount > 0) {
-        struct rows rows = settle_level_0(m, t);
+        struct range rows = settle_level_0(m, t);
         for (uint32_t l = 1; l < t->desc.regularMipCount && rows.first < rows.end; l++)
             rows = settle_level(m, t, l, rows);
     }
@@ -292,7 +357,9 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     if (t->state) {
         bool held_before = t->held_regions > 0;
         m->bias_maps++;
-        if (slc_history_merge(m, t, time, timeout))
+        bool biased = t->state->bias != m->bias;
+        t->state->bias = m->bias;
+        if (slc_history_merge(t, time, timeout) || biased)
             settle(m, t, held_before);
         /* Nothing held and nothing left: the last map was empty, which is what no state means. */
         if (t->held_regions == 0 && t->regular_nodes == 0)

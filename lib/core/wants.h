@@ -35,11 +35,21 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need);
 
+/** From the values of a map to what they ask for: clamp(min(v, last) + up - down, lowest, last). */
+struct slc_levels {
+    uint8_t up, down; ///< at most 32, one of them 0
+    uint8_t lowest, last;
+};
+
 /** Takes room for the texture's map from the scratch. */
-uint8_t *slc_wants_take_map(slc_manager *m, struct slc_texture *t, struct slc_wants_need *need);
-/** state->next is complete: adds what merging it can need. */
-void slc_wants_add_need(const slc_manager *m, struct slc_texture *t, uint8_t *next,
-                        struct slc_wants_need *need);
+uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
+                            struct slc_wants_need *need);
+/**
+ * Puts what `values`, one per region, ask for into `next`, which may be where they are, and adds
+ * what merging it can need.
+ */
+void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
+                       const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need);
 
 /** Merges state->next. Cannot fail. */
 void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
