@@ -141,6 +141,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         if (result != SLUICE_SUCCESS)
             break;
         next_request(m, &walk);
+        __builtin_prefetch(slc_node_at(m, walk.node));
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }

@@ -111,21 +111,6 @@ static void show(struct slc_texture *t, struct slc_place p)
         }
 }
 
-/** The value over a tile that is not resident itself; false if a coarser one is missing. */
-static bool value_above(const struct slc_texture *t, struct slc_place p, uint8_t *value)
-{
-    uint32_t coarsest = t->desc.regularMipCount - 1;
-    *value = p.level == coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
-    if (t->packed_resident < t->desc.packedTileCount)
-        return false;
-    while (p.level < coarsest) {
-        p = slc_parent_place(t, p);
-        if (!is_resident(t, p))
-            return false;
-    }
-    return true;
-}
-
 static void show_everything(struct slc_texture *t)
 {
     struct slc_tile_range all = {0, 0, t->min_mip_width - 1, t->min_mip_height - 1};
@@ -160,15 +145,21 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
         return;
     }
     t->state->nodes[n->tile] ^= SLC_RESIDENT;
+    /* Under a tile that does not count the map has one value: that of the last one above that does.
+     */
     struct slc_place p = slc_node_place(t, n);
-    uint8_t above;
-    if (!value_above(t, p, &above))
-        return;
     struct slc_tile_range r = area(t, p);
-    if (resident)
-        show(t, p);
-    else
+    uint8_t shown = t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0];
+    bool coarsest = p.level + 1 == t->desc.regularMipCount;
+    uint8_t above = coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
+    if (resident ? shown != above || t->packed_resident < t->desc.packedTileCount : shown > p.level)
+        return;
+    if (!resident)
         fill(t, r, above);
+    else if (p.level == 0)
+        t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0] = 0;
+    else
+        show(t, p);
     mark_dirty(m, t, r);
 }
 

@@ -102,6 +102,11 @@ static struct compared ask_all(const struct slc_texture *t, const uint8_t *value
     const struct slc_texture_state *s = t->state;
     size_t regions = slc_region_count(t), padded = slc_padded(regions);
     struct compared c = {0};
+    for (size_t i = 0; i < padded && i < 1024; i += 64) {
+        __builtin_prefetch(s->asked + i);
+        __builtin_prefetch(s->least + i);
+        if (s->span_count) __builtin_prefetch(s->spans[s->span_count - 1].map + i);
+    }
     for (size_t i = 0; i < padded;) {
         slc_block sums[3] = {slc_block_of(0), slc_block_of(0), slc_block_of(0)};
         for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
