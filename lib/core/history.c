@@ -175,69 +175,59 @@ static bool join_span(struct slc_texture_state *s, uint64_t time, uint64_t timeo
 
 /* Merging ----------------------------------------------------------------------------------- */
 
-/** What a pass over all regions did. */
-struct merged {
-    bool changed;     ///< some region's least level
-    uint32_t touched; ///< regions that have one
-};
-
-/** The common case: nothing lapsed, so levels only get finer. */
-static struct merged merge_finer(struct slc_texture_state *s, size_t padded, bool fresh)
+/** The common case: nothing lapsed, so levels only get finer. Returns where they did. */
+static struct slc_range merge_finer(struct slc_texture *t, size_t padded, bool fresh)
 {
+    struct slc_texture_state *s = t->state;
     uint8_t *span = s->spans[s->span_count - 1].map;
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), moved = slc_block_of(0);
-    uint32_t touched = 0;
-    for (size_t i = 0; i < padded;) {
-        slc_block sum = slc_block_of(0);
-        for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
-            slc_block next = slc_load_block(s->next + i);
-            slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    struct slc_range changed = {0, 0};
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block next = slc_load_block(s->next + i);
+        if (slc_block_difference(next, slc_load_block(s->asked + i)))
             slc_store_block(s->asked + i, next);
-            slc_block before = slc_load_block(s->least + i), least = slc_min_block(before, next);
-            slc_store_block(s->least + i, least);
-            moved |= least ^ before;
-            sum -= ~slc_equal_block(least, untouched); /* 255 is -1 */
+        if (!slc_block_difference(next, untouched)) {
+            if (fresh)
+                slc_store_block(span + i, next);
+            continue;
         }
-        touched += slc_block_sum(sum);
+        slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
+        slc_block before = slc_load_block(s->least + i), least = slc_min_block(before, next);
+        if (!slc_block_difference(before, least))
+            continue;
+        slc_store_block(s->least + i, least);
+        slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
+        t->held_regions += (uint32_t)__builtin_popcount(slc_block_difference(before, least) &
+                                                        ~slc_block_difference(before, untouched));
     }
-    return (struct merged){slc_block_difference(moved, slc_block_of(0)) != 0, touched};
+    return changed;
 }
 
-static void merge_into_span(struct slc_texture_state *s, size_t padded, bool fresh)
+/** Computes `least`, which is not coarser than it should be, from the spans. Returns where. */
+static struct slc_range recompute(struct slc_texture *t, size_t padded)
 {
-    uint8_t *span = s->spans[s->span_count - 1].map;
-    const uint8_t *next = s->next ? s->next : s->asked;
-    if (fresh)
-        memcpy(span, next, padded);
-    for (size_t i = 0; i < padded && !fresh; i += SLC_BLOCK)
-        slc_store_block(span + i,
-                        slc_min_block(slc_load_block(span + i), slc_load_block(next + i)));
-    if (s->next)
-        memcpy(s->asked, s->next, padded);
-}
-
-/** Computes `least` anew from the spans. */
-static struct merged merge_all(struct slc_texture_state *s, size_t padded, bool fresh)
-{
-    merge_into_span(s, padded, fresh);
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), moved = slc_block_of(0);
-    uint32_t touched = 0;
-    for (size_t i = 0; i < padded;) {
-        slc_block sum = slc_block_of(0);
-        for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
-            slc_block least = slc_load_block(s->spans[0].map + i);
-            for (uint32_t k = 1; k < s->span_count; k++)
-                least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
-            moved |= least ^ slc_load_block(s->least + i);
-            slc_store_block(s->least + i, least);
-            sum -= ~slc_equal_block(least, untouched);
-        }
-        touched += slc_block_sum(sum);
+    struct slc_texture_state *s = t->state;
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    struct slc_range changed = {0, 0};
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block before = slc_load_block(s->least + i);
+        if (!slc_block_difference(before, untouched))
+            continue;
+        slc_block least = slc_load_block(s->spans[0].map + i);
+        for (uint32_t k = 1; k < s->span_count; k++)
+            least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+        if (!slc_block_difference(before, least))
+            continue;
+        slc_store_block(s->least + i, least);
+        slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
+        uint32_t held = slc_block_difference(least, untouched);
+        t->held_regions += (uint32_t)__builtin_popcount(held);
+        t->held_regions -= (uint32_t)__builtin_popcount(slc_block_difference(before, untouched));
     }
-    return (struct merged){slc_block_difference(moved, slc_block_of(0)) != 0, touched};
+    return changed;
 }
 
-bool slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout)
+struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
@@ -247,14 +237,16 @@ bool slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout)
     uint32_t needed = slc_maps_to_believe(t);
     bool lapsed = lapse(t, time, timeout, weight, needed);
     bool fresh = join_span(s, time, timeout, weight, needed);
-    if (!lapsed && !s->next) {
-        if (fresh)
-            memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
-        return false;
+    struct slc_range changed = {0, 0};
+    if (s->next)
+        changed = merge_finer(t, padded, fresh);
+    else if (fresh)
+        memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
+    if (lapsed) {
+        struct slc_range more = recompute(t, padded);
+        slc_range_add(&changed, more.first, more.end);
     }
-    struct merged merged = lapsed ? merge_all(s, padded, fresh) : merge_finer(s, padded, fresh);
-    t->held_regions = merged.touched;
-    return merged.changed;
+    return changed;
 }
 
 /* Asking ------------------------------------------------------------------------------------ */

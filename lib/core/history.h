@@ -15,10 +15,25 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t);
 /** Newer maps that must miss a level before it is believed to be gone. */
 uint32_t slc_maps_to_believe(const struct slc_texture *t);
 
+/** Of something counted from 0. */
+struct slc_range {
+    uint32_t first, end; ///< end 0: none
+};
+
+static inline void slc_range_add(struct slc_range *r, uint32_t first, uint32_t end)
+{
+    if (end == 0)
+        return;
+    if (r->end == 0 || first < r->first)
+        r->first = first;
+    if (end > r->end)
+        r->end = end;
+}
+
 /**
- * Merges state->next into the history and counts the regions that hold something. Returns whether
- * state->least has changed.
+ * Merges state->next into the history and counts the regions that hold something. Returns the
+ * range of regions, whole blocks, in which state->least has changed.
  */
-bool slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout);
+struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout);
 
 #endif /* SLC_CORE_HISTORY_H */

@@ -105,7 +105,8 @@ static struct compared ask_all(const struct slc_texture *t, const uint8_t *value
     for (size_t i = 0; i < padded && i < 1024; i += 64) {
         __builtin_prefetch(s->asked + i);
         __builtin_prefetch(s->least + i);
-        if (s->span_count) __builtin_prefetch(s->spans[s->span_count - 1].map + i);
+        if (s->span_count)
+            __builtin_prefetch(s->spans[s->span_count - 1].map + i);
     }
     for (size_t i = 0; i < padded;) {
         slc_block sums[3] = {slc_block_of(0), slc_block_of(0), slc_block_of(0)};
@@ -115,6 +116,12 @@ static struct compared ask_all(const struct slc_texture *t, const uint8_t *value
                 v = slc_load_block(values + i);
             else
                 memcpy(&v, values + i, regions - i);
+            if (!slc_block_difference(v, slc_block_of(SLUICE_MIP_UNTOUCHED))) {
+                /* the usual case, and nothing but `asked` is to be compared with it */
+                slc_store_block(next + i, v);
+                c.differs |= slc_block_difference(v, slc_load_block(s->asked + i)) != 0;
+                continue;
+            }
             v = ask(v, levels);
             slc_store_block(next + i, v);
             compare(v, slc_load_block(s->asked + i), slc_load_block(s->least + i), sums, &c);
@@ -213,22 +220,17 @@ static void settle_tile(slc_manager *m, struct slc_texture *t, uint32_t tile, ui
         slc_tile_unwanted(m, *cell & ~SLC_RESIDENT);
 }
 
-/** Of something counted from 0. */
-struct range {
-    uint32_t first, end; ///< equal: none
-};
-
 /**
  * Takes over the least levels of `count` tiles of a level, beginning with `tile`. `least` is
  * readable to the end of its last block. Returns which may have changed.
  */
-static struct range settle_tiles(slc_manager *m, struct slc_texture *t, uint32_t level,
-                                 uint32_t tile, const uint8_t *least, uint32_t count)
+static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                     uint32_t tile, const uint8_t *least, uint32_t count)
 {
     static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
                                                 255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
-    struct range changed = {0, 0};
+    struct slc_range changed = {0, 0};
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         uint8_t *under = t->state->under + tile + i;
         slc_block before = slc_load_block(under), now = slc_load_block(least + i);
@@ -238,9 +240,7 @@ static struct range settle_tiles(slc_manager *m, struct slc_texture *t, uint32_t
         }
         if (!slc_block_difference(before, now))
             continue;
-        if (changed.end == 0)
-            changed.first = i;
-        changed.end = slc_min_u32(i + SLC_BLOCK, count);
+        slc_range_add(&changed, i, slc_min_u32(i + SLC_BLOCK, count));
         slc_store_block(under, now);
         uint32_t moves = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; moves; moves &= moves - 1) {
@@ -289,17 +289,26 @@ static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *h
 }
 
 /** Level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
-static struct range settle_level_0(slc_manager *m, struct slc_texture *t)
+static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t,
+                                       struct slc_range regions)
 {
     const struct slc_level *grid = &t->levels[0];
     uint8_t *work = slc_wants_work(m, t) + rows_work_size(t);
     const uint8_t *least = held_levels(m, t, work);
     if (!slc_regions_are_tiles(t))
         least = search_tiles(t, least, work + slc_padded(slc_region_count(t)));
-    struct range tiles = settle_tiles(m, t, 0, 0, least, grid->width * grid->height);
+    struct slc_range all = {0, grid->width * grid->height};
+    if (slc_regions_are_tiles(t)) {
+        all.first = regions.first;
+        all.end = slc_min_u32(all.end, regions.end);
+    }
+    struct slc_range tiles =
+        settle_tiles(m, t, 0, all.first, least + all.first, all.end - all.first);
+    tiles.first += all.first;
+    tiles.end += tiles.end ? all.first : 0;
     if (tiles.end == 0)
         return tiles;
-    return (struct range){tiles.first / grid->width, (tiles.end - 1) / grid->width + 1};
+    return (struct slc_range){tiles.first / grid->width, (tiles.end - 1) / grid->width + 1};
 }
 
 /** The least of the rows of the finer level under row `y`, and then of the columns. */
@@ -322,34 +331,33 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
     least[here->width - 1] = last;
 }
 
-static struct range settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
-                                 struct range below)
+static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                     struct slc_range below)
 {
     const struct slc_level *grid = &t->levels[level];
     uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
     uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
-    struct range rows = {0, 0};
+    struct slc_range rows = {0, 0};
     for (uint32_t y = first; y <= last; y++) {
         reduce_row(t, level, y, columns, least);
         uint32_t tile = grid->first_tile + y * grid->width;
         if (settle_tiles(m, t, level, tile, least, grid->width).end == 0)
             continue;
-        if (rows.end == 0)
-            rows.first = y;
-        rows.end = y + 1;
+        slc_range_add(&rows, y, y + 1);
     }
     return rows;
 }
 
 /** Some region holds another level. */
-static void settle(slc_manager *m, struct slc_texture *t, bool held_before)
+static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regions,
+                   bool held_before)
 {
     bool packed_move = !m->info.alwaysMapPackedTiles;
     if (packed_move && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
     if (t->desc.regularMipCount > 0) {
-        struct range rows = settle_level_0(m, t);
+        struct slc_range rows = settle_level_0(m, t, regions);
         for (uint32_t l = 1; l < t->desc.regularMipCount && rows.first < rows.end; l++)
             rows = settle_level(m, t, l, rows);
     }
@@ -362,10 +370,12 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     if (t->state) {
         bool held_before = t->held_regions > 0;
         m->bias_maps++;
-        bool biased = t->state->bias != m->bias;
+        struct slc_range changed = slc_history_merge(t, time, timeout);
+        if (t->state->bias != m->bias)
+            changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
         t->state->bias = m->bias;
-        if (slc_history_merge(t, time, timeout) || biased)
-            settle(m, t, held_before);
+        if (changed.end > 0)
+            settle(m, t, changed, held_before);
         /* Nothing held and nothing left: the last map was empty, which is what no state means. */
         if (t->held_regions == 0 && t->regular_nodes == 0)
             slc_state_destroy(m, t);
