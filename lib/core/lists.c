@@ -141,7 +141,12 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         if (result != SLUICE_SUCCESS)
             break;
         next_request(m, &walk);
-        __builtin_prefetch(slc_node_at(m, walk.node));
+        if (walk.node) {
+            const struct slc_node *ahead = slc_node_at(m, walk.node);
+            __builtin_prefetch(slc_texture_at(m, ahead->texture));
+            __builtin_prefetch(&slc_texture_at(m, ahead->texture)->levels[ahead->level]);
+            __builtin_prefetch(slc_node_at(m, ahead->next));
+        }
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }

@@ -210,22 +210,52 @@ static slc_block at_most(slc_block values, slc_block limit)
     return slc_equal_block(slc_min_block(values, limit), values);
 }
 
-static void settle_tile(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level,
-                        uint8_t least)
+/**
+ * Tiles that become wanted or no longer are. They are settled some at a time, because then the
+ * memory that each of them needs is on its way while the others are looked for.
+ */
+struct moves {
+    uint32_t count;
+    struct {
+        uint32_t tile;
+        uint8_t level, least;
+    } tiles[64];
+};
+
+static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
-    uint32_t *cell = &t->state->nodes[tile];
-    if (least <= level)
-        slc_tile_wanted(m, t, cell, tile, level, level - least);
-    else
-        slc_tile_unwanted(m, *cell & ~SLC_RESIDENT);
+    uint32_t *nodes = t->state->nodes;
+    for (uint32_t i = 0; i < moves->count; i++)
+        __builtin_prefetch(slc_node_at(m, nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
+    for (uint32_t i = 0; i < moves->count; i++) {
+        uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
+        uint32_t least = moves->tiles[i].least;
+        if (least <= level)
+            slc_tile_wanted(m, t, &nodes[tile], tile, level, level - least);
+        else
+            slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
+    }
+    moves->count = 0;
+}
+
+static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves, uint32_t tile,
+                     uint32_t level, uint8_t least)
+{
+    if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
+        settle_moves(m, t, moves);
+    __builtin_prefetch(&t->state->nodes[tile]);
+    moves->tiles[moves->count].tile = tile;
+    moves->tiles[moves->count].level = (uint8_t)level;
+    moves->tiles[moves->count++].least = least;
 }
 
 /**
  * Takes over the least levels of `count` tiles of a level, beginning with `tile`. `least` is
  * readable to the end of its last block. Returns which may have changed.
  */
-static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, uint32_t level,
-                                     uint32_t tile, const uint8_t *least, uint32_t count)
+static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, struct moves *moves,
+                                     uint32_t level, uint32_t tile, const uint8_t *least,
+                                     uint32_t count)
 {
     static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
                                                 255, 255, 255, 255, 255, 255, 255, 255};
@@ -242,10 +272,10 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, uint
             continue;
         slc_range_add(&changed, i, slc_min_u32(i + SLC_BLOCK, count));
         slc_store_block(under, now);
-        uint32_t moves = slc_block_difference(at_most(before, limit), at_most(now, limit));
-        for (; moves; moves &= moves - 1) {
-            uint32_t k = i + (uint32_t)__builtin_ctz(moves);
-            settle_tile(m, t, tile + k, level, least[k]);
+        uint32_t bits = slc_block_difference(at_most(before, limit), at_most(now, limit));
+        for (; bits; bits &= bits - 1) {
+            uint32_t k = i + (uint32_t)__builtin_ctz(bits);
+            add_move(m, t, moves, tile + k, level, least[k]);
         }
     }
     return changed;
@@ -289,7 +319,7 @@ static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *h
 }
 
 /** Level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
-static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t,
+static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, struct moves *moves,
                                        struct slc_range regions)
 {
     const struct slc_level *grid = &t->levels[0];
@@ -303,7 +333,7 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t,
         all.end = slc_min_u32(all.end, regions.end);
     }
     struct slc_range tiles =
-        settle_tiles(m, t, 0, all.first, least + all.first, all.end - all.first);
+        settle_tiles(m, t, moves, 0, all.first, least + all.first, all.end - all.first);
     tiles.first += all.first;
     tiles.end += tiles.end ? all.first : 0;
     if (tiles.end == 0)
@@ -331,8 +361,8 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
     least[here->width - 1] = last;
 }
 
-static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, uint32_t level,
-                                     struct slc_range below)
+static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, struct moves *moves,
+                                     uint32_t level, struct slc_range below)
 {
     const struct slc_level *grid = &t->levels[level];
     uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
@@ -342,7 +372,7 @@ static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, uint
     for (uint32_t y = first; y <= last; y++) {
         reduce_row(t, level, y, columns, least);
         uint32_t tile = grid->first_tile + y * grid->width;
-        if (settle_tiles(m, t, level, tile, least, grid->width).end == 0)
+        if (settle_tiles(m, t, moves, level, tile, least, grid->width).end == 0)
             continue;
         slc_range_add(&rows, y, y + 1);
     }
@@ -357,9 +387,11 @@ static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regio
     if (packed_move && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
     if (t->desc.regularMipCount > 0) {
-        struct slc_range rows = settle_level_0(m, t, regions);
-        for (uint32_t l = 1; l < t->desc.regularMipCount && rows.first < rows.end; l++)
-            rows = settle_level(m, t, l, rows);
+        struct moves moves = {.count = 0};
+        struct slc_range rows = settle_level_0(m, t, &moves, regions);
+        for (uint32_t l = 1; l < t->desc.regularMipCount && rows.end > 0; l++)
+            rows = settle_level(m, t, &moves, l, rows);
+        settle_moves(m, t, &moves);
     }
     if (packed_move && held_before && t->held_regions == 0)
         packed_unwanted(m, t);
