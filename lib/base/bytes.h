@@ -88,6 +88,15 @@ static inline size_t slc_batch_end(size_t i, size_t padded)
     return i + 255 * SLC_BLOCK < padded ? i + 255 * SLC_BLOCK : padded;
 }
 
+/** Set bits of a block's difference; no instruction for it is taken for granted. */
+static inline uint32_t slc_count_bits(uint32_t bits)
+{
+    bits -= bits >> 1 & 0x5555;
+    bits = (bits & 0x3333) + (bits >> 2 & 0x3333);
+    bits = (bits + (bits >> 4)) & 0x0F0F;
+    return (bits + (bits >> 8)) & 31;
+}
+
 /** Sum of the bytes. */
 static inline uint32_t slc_block_sum(slc_block b)
 {
@@ -111,6 +120,25 @@ static inline void slc_halve_bytes(const uint8_t *in, uint32_t count, uint8_t *o
     for (; i < count; i++)
         out[i] = in[2 * i] < in[2 * i + 1] ? in[2 * i] : in[2 * i + 1];
 #endif
+}
+
+/** memset for short rows, where the call would be most of the work. */
+static inline void slc_fill_bytes(uint8_t *bytes, uint8_t value, size_t count)
+{
+    uint64_t word = UINT64_C(0x0101010101010101) * value;
+    if (count > 4 * sizeof word) {
+        memset(bytes, value, count);
+    } else if (count >= sizeof word) {
+        for (size_t i = 0; i + sizeof word < count; i += sizeof word)
+            memcpy(bytes + i, &word, sizeof word);
+        memcpy(bytes + count - sizeof word, &word, sizeof word);
+    } else if (count >= 4) {
+        memcpy(bytes, &word, 4);
+        memcpy(bytes + count - 4, &word, 4);
+    } else {
+        for (size_t i = 0; i < count; i++)
+            ((volatile uint8_t *)bytes)[i] = value; /* or it is a call after all */
+    }
 }
 
 /** Whether all `count` bytes, > 0, have this value. */

@@ -32,9 +32,9 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uin
     SluiceResult result = SLUICE_SUCCESS;
     uint32_t checked = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (tiles[i] < t->tile_count && slc_find_node(t, tiles[i])) {
-            struct slc_node *n = slc_node_at(m, slc_find_node(t, tiles[i]));
-            __builtin_prefetch(n);
+        if (tiles[i] < t->tile_count) {
+            __builtin_prefetch(slc_node_at(m, slc_find_node(t, tiles[i])));
+            slc_min_mip_prefetch(t, tiles[i]);
         }
     while (checked < count && result == SLUICE_SUCCESS)
         result = check_tile(m, t, tiles[checked++]);

@@ -197,8 +197,8 @@ static struct slc_range merge_finer(struct slc_texture *t, size_t padded, bool f
             continue;
         slc_store_block(s->least + i, least);
         slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
-        t->held_regions += (uint32_t)__builtin_popcount(slc_block_difference(before, least) &
-                                                        ~slc_block_difference(before, untouched));
+        t->held_regions += slc_count_bits(slc_block_difference(before, least) &
+                                          ~slc_block_difference(before, untouched));
     }
     return changed;
 }
@@ -221,8 +221,8 @@ static struct slc_range recompute(struct slc_texture *t, size_t padded)
         slc_store_block(s->least + i, least);
         slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
         uint32_t held = slc_block_difference(least, untouched);
-        t->held_regions += (uint32_t)__builtin_popcount(held);
-        t->held_regions -= (uint32_t)__builtin_popcount(slc_block_difference(before, untouched));
+        t->held_regions += slc_count_bits(held);
+        t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
     }
     return changed;
 }

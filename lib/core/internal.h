@@ -297,6 +297,8 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t);
 /** The tile of a node became resident (MAPPED or STANDBY) or stopped to be. */
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
                          bool resident);
+/** That is going to be called for a tile. */
+void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile);
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t);
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t);
 /** What the map is where no regular tile is resident. */

@@ -1,5 +1,6 @@
 #include "core/internal.h"
 
+#include "base/bytes.h"
 #include "base/checked.h"
 
 #include <string.h>
@@ -93,7 +94,8 @@ void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
 static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 {
     for (uint32_t y = r.y0; y <= r.y1; y++)
-        memset(t->state->min_mip + (size_t)y * t->min_mip_width + r.x0, value, r.x1 - r.x0 + 1);
+        slc_fill_bytes(t->state->min_mip + (size_t)y * t->min_mip_width + r.x0, value,
+                       r.x1 - r.x0 + 1);
 }
 
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
@@ -135,6 +137,15 @@ static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
     if (t->state)
         show_everything(t);
     slc_min_mip_dirty_all(m, t);
+}
+
+void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile)
+{
+    if (tile >= t->regular_tile_count || !t->state)
+        return;
+    struct slc_place p = slc_tile_place(t, tile);
+    size_t row = slc_min_u32(p.y << p.level, t->min_mip_height - 1);
+    __builtin_prefetch(t->state->min_mip + row * t->min_mip_width + (p.x << p.level));
 }
 
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
