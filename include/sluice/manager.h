@@ -168,6 +168,8 @@ typedef struct SluiceStreamedTextureStatistics {
     uint32_t cancelledTileCount, failedTileCount, givenUpTileCount;
     uint32_t retiringSlotCount; ///< unmapped, the GPU may still read them
     uint32_t heapCount, freeSlotCount;
+    uint32_t reservedSlotCount; ///< of all slots so many are kept for packed tiles
+    uint32_t globalMipBias;     ///< added to what every region asks for; sixteenths of a level
     uint64_t handedOutTotal, mappedTotal, unmappedTotal, cancelledTotal, failedTotal;
     uint64_t restoredTotal; ///< STANDBY -> MAPPED, no load needed
     uint64_t movedTotal;

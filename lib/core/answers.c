@@ -144,6 +144,7 @@ static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t c
     slc_advance_time(m, time);
     for (uint32_t i = 0; i < count; i++)
         answer_failed(m, slc_find_node(t, tiles[i]), time);
+    slc_state_release(m, t);
     return SLUICE_SUCCESS;
 }
 
@@ -162,6 +163,7 @@ static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_
         m->last_retire = retire_value;
     for (uint32_t i = 0; i < count; i++)
         answer_cancelled(m, slc_find_node(t, tiles[i]), retire_value);
+    slc_state_release(m, t);
     return SLUICE_SUCCESS;
 }
 

@@ -34,7 +34,6 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         memset(s->nodes, 0, nodes);
         memset(s->asked, SLUICE_MIP_UNTOUCHED, 2 * padded + under);
         memset(s->min_mip, slc_min_mip_floor(t), texels);
-        slc_visit_append(m, t);
         t->state = s;
     }
     if (s->span_count < SLC_MAX_SPANS && !s->spans[s->span_count].map) {
@@ -53,8 +52,14 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t)
     for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
         slc_free(&m->cb, s->spans[i].map, slc_padded(slc_region_count(t)), 1);
     slc_free(&m->cb, s, s->size, 1);
-    slc_visit_remove(m, t);
     t->state = NULL;
+}
+
+void slc_state_release(slc_manager *m, struct slc_texture *t)
+{
+    /* Nothing held and nothing left: the last map was empty, which is what no state means. */
+    if (t->state && t->held_regions == 0 && t->regular_nodes == 0)
+        slc_state_destroy(m, t);
 }
 
 /* Spans ------------------------------------------------------------------------------------- */

@@ -103,7 +103,8 @@ struct slc_texture {
     uint64_t map_time;               ///< of the last map
     uint64_t interval, timeout;      ///< between the last two maps; of the last one
     uint32_t hits, returns;          ///< how reliable maps are; see slc_maps_to_believe
-    uint32_t visit_prev, visit_next; ///< among textures with a state, indices, SLC_NONE
+    bool visited;                    ///< in the list of those that hold something:
+    uint32_t visit_prev, visit_next; ///< indices, SLC_NONE
     uint32_t primary;                ///< index, SLC_NONE
     uint32_t first_follower, last_follower, next_follower; ///< indices, SLC_NONE
     uint32_t *packed_nodes; ///< owned, [packedTileCount], NULL if there are none
@@ -145,8 +146,9 @@ struct SluiceStreamedTextureManager {
 
     uint8_t *scratch; ///< owned, for the maps of one call
     size_t scratch_room;
-    uint32_t visit_first, visit_last; ///< textures with a state, the longest without a map first
+    uint32_t visit_first, visit_last; ///< textures that hold something, the oldest map first
     uint32_t visited_count;
+    uint64_t map_interval;      ///< of the texture that got a map last
     uint32_t bias;              ///< global mip bias in sixteenths of a level
     uint32_t bias_maps;         ///< merged since it was looked at last
     uint32_t bias_failed;       ///< the last one with which too much was wanted,
@@ -193,11 +195,12 @@ bool slc_retire_is_backwards(const slc_manager *m, uint64_t retire_value);
 /** Moves the clock on and makes due retries REQUESTED. */
 void slc_advance_time(slc_manager *m, uint64_t time);
 
-/** The list of textures with a state. */
-void slc_visit_append(slc_manager *m, struct slc_texture *t);
-void slc_visit_remove(slc_manager *m, struct slc_texture *t);
-/** Its turn to be forgotten comes last. */
-void slc_visit_renew(slc_manager *m, struct slc_texture *t);
+/** Puts the texture at the end of the list of those that hold something, or takes it out. */
+void slc_visit(slc_manager *m, struct slc_texture *t, bool holds);
+
+/* lists.c */
+/** Slots that only packed tiles may take. */
+uint32_t slc_reserved_slots(const slc_manager *m);
 
 /* history.c */
 /** Whether the texture's last map asks for the tile; packed tiles always are. */
@@ -291,6 +294,8 @@ void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node);
 void slc_list_remove(slc_manager *m, struct slc_list *list, uint32_t node);
 
 /* history.c */
+/** Destroys the state if it says no more than none does. */
+void slc_state_release(slc_manager *m, struct slc_texture *t);
 void slc_state_destroy(slc_manager *m, struct slc_texture *t);
 
 /* minmip.c */

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "core/wants.h"
 
 #include <stdlib.h>
 
@@ -24,11 +25,19 @@ static uint32_t count_in_scope(const slc_manager *m, const struct slc_list *list
 
 /* To map ------------------------------------------------------------------------------------ */
 
-/** A free slot for the node, from a new heap if need be. */
+uint32_t slc_reserved_slots(const slc_manager *m)
+{
+    uint64_t slots = (uint64_t)m->heaps.live_count * m->heaps.capacity;
+    return slots / 16 < 64 ? (uint32_t)(slots / 16) : 64;
+}
+
+/** A free slot for the node, from a new heap if need be. The last ones are for packed tiles. */
 static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
 {
     struct slc_node *n = slc_node_at(m, node);
-    if (slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    if ((packed || m->heaps.free_total > slc_reserved_slots(m)) &&
+        slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
         return SLUICE_SUCCESS;
     uint32_t limit = m->config.maxHeapCount;
     if (*refused || (limit && m->heaps.live_count >= limit))
@@ -45,14 +54,26 @@ static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
     return SLUICE_SUCCESS;
 }
 
-/** Makes room for `unserved` requests out of what is on standby. */
+static bool is_idle(const slc_manager *m, const struct slc_texture *t)
+{
+    uint64_t age = m->time - t->map_time, usual = m->map_interval;
+    usual = t->interval > usual ? t->interval : usual;
+    usual = t->timeout > usual ? t->timeout : usual;
+    return age > 0 && age / 4 >= usual;
+}
+
+/** Makes room for `unserved` requests out of what is on standby or not looked at any more. */
 static void list_standby_for(slc_manager *m, uint32_t unserved)
 {
+    uint64_t needed = unserved, reserved = slc_reserved_slots(m);
+    if (reserved > m->heaps.free_total)
+        needed += reserved - m->heaps.free_total;
+    while ((uint64_t)m->unmapping.count + m->retiring.count + m->standby.count < needed &&
+           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first)))
+        slc_wants_forget(m, slc_texture_at(m, m->visit_first));
     uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
-    if (unserved <= coming)
-        return;
-    uint32_t needed = (uint32_t)(unserved - coming);
-    slc_list_standby(m, m->standby.count > needed ? m->standby.count - needed : 0);
+    uint64_t take = needed > coming ? needed - coming : 0;
+    slc_list_standby(m, m->standby.count > take ? m->standby.count - (uint32_t)take : 0);
 }
 
 struct request_key {
@@ -217,7 +238,9 @@ static SluiceResult take_list(slc_manager *m, struct slc_list *list,
 
 static void take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
+    struct slc_texture *t = slc_texture_at(m, slc_node_at(m, node)->texture);
     slc_node_retire(m, node, retire_value);
+    slc_state_release(m, t);
     m->unmapped_total++;
 }
 
@@ -387,9 +410,13 @@ SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, ui
         return SLUICE_ERROR_NULL_POINTER;
     const struct slc_tile_heaps *h = &manager->heaps;
     uint32_t room = *pHeapCount, found = 0;
+    uint64_t rest = h->free_total, keep = h->capacity / 2;
+    if (rest == (uint64_t)h->live_count * h->capacity)
+        keep = 0; /* no tile is left */
     for (uint32_t i = 0; i < h->end; i++) {
-        if (h->heaps[i].free_count != h->capacity)
+        if (h->heaps[i].free_count != h->capacity || rest - h->capacity < keep)
             continue;
+        rest -= h->capacity;
         if (pHeapIds && found < room)
             pHeapIds[found] = h->heaps[i].id;
         found++;

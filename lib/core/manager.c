@@ -385,6 +385,7 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
         if (slc_find_node(t, tile))
             slc_node_retire(m, slc_find_node(t, tile), retire_value);
     forget_reports(m, id);
+    slc_visit(m, t, false);
     slc_min_mip_forget(m, t);
     destroy_texture_memory(m, t);
     m->tile_count -= t->tile_count;
@@ -411,8 +412,9 @@ SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager *manager,
 
 /* Textures by their last map ---------------------------------------------------------------- */
 
-void slc_visit_append(slc_manager *m, struct slc_texture *t)
+static void visit_append(slc_manager *m, struct slc_texture *t)
 {
+    t->visited = true;
     t->visit_prev = m->visit_last;
     t->visit_next = SLC_NONE;
     if (m->visit_last != SLC_NONE)
@@ -423,8 +425,9 @@ void slc_visit_append(slc_manager *m, struct slc_texture *t)
     m->visited_count++;
 }
 
-void slc_visit_remove(slc_manager *m, struct slc_texture *t)
+static void visit_remove(slc_manager *m, struct slc_texture *t)
 {
+    t->visited = false;
     if (t->visit_prev != SLC_NONE)
         slc_texture_at(m, t->visit_prev)->visit_next = t->visit_next;
     else
@@ -436,12 +439,12 @@ void slc_visit_remove(slc_manager *m, struct slc_texture *t)
     m->visited_count--;
 }
 
-void slc_visit_renew(slc_manager *m, struct slc_texture *t)
+void slc_visit(slc_manager *m, struct slc_texture *t, bool holds)
 {
-    if (m->visit_last == t->index)
-        return;
-    slc_visit_remove(m, t);
-    slc_visit_append(m, t);
+    if (t->visited)
+        visit_remove(m, t);
+    if (holds)
+        visit_append(m, t);
 }
 
 /* Sets -------------------------------------------------------------------------------------- */
@@ -520,7 +523,10 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
         .givenUpTileCount = m->state_counts[SLUICE_TILE_STATE_GIVEN_UP],
         .retiringSlotCount = m->retiring.count,
         .heapCount = m->heaps.live_count,
-        .freeSlotCount = (uint32_t)m->heaps.free_total,
+        .freeSlotCount =
+            m->heaps.free_total < UINT32_MAX ? (uint32_t)m->heaps.free_total : UINT32_MAX,
+        .reservedSlotCount = slc_reserved_slots(m),
+        .globalMipBias = m->bias,
         .handedOutTotal = m->handed_out_total,
         .mappedTotal = m->mapped_total,
         .unmappedTotal = m->unmapped_total,

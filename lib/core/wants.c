@@ -408,14 +408,28 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
         t->state->bias = m->bias;
         if (changed.end > 0)
             settle(m, t, changed, held_before);
-        /* Nothing held and nothing left: the last map was empty, which is what no state means. */
-        if (t->held_regions == 0 && t->regular_nodes == 0)
-            slc_state_destroy(m, t);
-        else
-            slc_visit_renew(m, t);
+        slc_visit(m, t, t->held_regions > 0);
+        slc_state_release(m, t);
     }
-    t->interval = t->has_map ? time - t->map_time : 0;
+    if (t->has_map && time != t->map_time) {
+        t->interval = time - t->map_time;
+        m->map_interval = t->interval;
+    }
     t->timeout = timeout;
     t->has_map = true;
     t->map_time = time;
+}
+
+void slc_wants_forget(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    memset(s->asked, SLUICE_MIP_UNTOUCHED, padded);
+    memset(s->least, SLUICE_MIP_UNTOUCHED, padded);
+    s->span_count = 0;
+    t->held_regions = 0;
+    slc_visit(m, t, false);
+    /* The scratch has room: the map of which this is the end needed as much. */
+    settle(m, t, (struct slc_range){0, (uint32_t)padded}, true);
+    slc_state_release(m, t);
 }
