@@ -35,13 +35,13 @@ static const char *check_requests(const slc_manager *m)
 {
     uint32_t count = 0;
     for (uint32_t c = 0; c < SLC_REQUEST_CLASSES; c++) {
-        REQUIRE((m->requests.deficits[c] != 0) == (m->requests.classes >> c & 1));
-        for (uint32_t d = 0; d <= SLUICE_MAX_MIP_LEVELS; d++) {
+        REQUIRE((m->requests.needs[c] != 0) == (m->requests.classes >> c & 1));
+        for (uint32_t d = 0; d < SLC_REQUEST_NEEDS; d++) {
             const struct slc_list *list = &m->requests.lists[c][d];
             const char *wrong = check_list(m, list, SLUICE_TILE_STATE_REQUESTED);
             if (wrong)
                 return wrong;
-            REQUIRE((list->count > 0) == (m->requests.deficits[c] >> d & 1));
+            REQUIRE((list->count > 0) == (m->requests.needs[c] >> d & 1));
             count += list->count;
         }
     }

@@ -133,8 +133,8 @@ static void drop_spans(struct slc_texture_state *s, uint32_t count)
 }
 
 /** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
-static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint32_t weight,
-                  uint32_t needed)
+static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint64_t patience,
+                  uint32_t weight, uint32_t needed)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
@@ -145,7 +145,9 @@ static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint32
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
         bool left = true;
-        if (time - span->end >= timeout) {
+        extern int T_M;
+        if (time - span->end >= timeout ||
+            (time - span->end >= patience && newer >= (uint32_t)T_M)) {
             uint8_t below = first_unbelieved(newer, needed, shift);
             if (below < span->below) {
                 left = below > 0 && thin_span(span, padded, below);
@@ -232,7 +234,8 @@ static struct slc_range recompute(struct slc_texture *t, size_t padded)
     return changed;
 }
 
-struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout)
+struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout,
+                                   uint64_t patience)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
@@ -240,7 +243,7 @@ struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_
         count_returns(t, s->hits, s->returns);
     uint32_t weight = map_weight(t, s->next ? s->next : s->asked);
     uint32_t needed = slc_maps_to_believe(t);
-    bool lapsed = lapse(t, time, timeout, weight, needed);
+    bool lapsed = lapse(t, time, timeout, patience, weight, needed);
     bool fresh = join_span(s, time, timeout, weight, needed);
     struct slc_range changed = {0, 0};
     if (s->next)

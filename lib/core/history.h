@@ -34,6 +34,7 @@ static inline void slc_range_add(struct slc_range *r, uint32_t first, uint32_t e
  * Merges state->next into the history and counts the regions that hold something. Returns the
  * range of regions, whole blocks, in which state->least has changed.
  */
-struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout);
+struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout,
+                                   uint64_t patience);
 
 #endif /* SLC_CORE_HISTORY_H */

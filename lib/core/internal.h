@@ -35,8 +35,8 @@ struct slc_node {
     uint32_t prev, next; ///< in the list of its state
     uint32_t heap, slot; ///< heap is an index, SLC_NONE without memory
     uint32_t failures;
-    uint8_t state, level, deficit, flags;
-    uint64_t order; ///< REQUESTED: sequence; FAILED: due; retiring: retire value
+    uint8_t state, level, need, flags; ///< need: log2 of the tiles of level 0 that want it
+    uint64_t order;                    ///< REQUESTED: sequence; FAILED: due; retiring: retire value
 };
 
 struct slc_list {
@@ -46,12 +46,14 @@ struct slc_list {
 
 #define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 1) ///< a class per level and one for packed
 #define SLC_PACKED_CLASS SLUICE_MAX_MIP_LEVELS
+/** What a tile of level 0 to 20 can be needed by is 2^0 to 2^40 tiles of level 0, 2^30 at most. */
+#define SLC_REQUEST_NEEDS 31
 
-/** REQUESTED tiles by class and deficit. */
+/** REQUESTED tiles by class and need. */
 struct slc_requests {
-    struct slc_list lists[SLC_REQUEST_CLASSES][SLUICE_MAX_MIP_LEVELS + 1];
-    uint32_t deficits[SLC_REQUEST_CLASSES]; ///< bit d: lists[class][d] is not empty
-    uint32_t classes;                       ///< bit c: deficits[c] is not 0
+    struct slc_list lists[SLC_REQUEST_CLASSES][SLC_REQUEST_NEEDS];
+    uint32_t needs[SLC_REQUEST_CLASSES]; ///< bit n: lists[class][n] is not empty
+    uint32_t classes;                    ///< bit c: needs[c] is not 0
     uint32_t count;
     uint64_t next_sequence;
 };
@@ -266,7 +268,7 @@ static inline uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
 bool slc_reserve_nodes(slc_manager *m, uint64_t count);
 /** `cell` is where the tile keeps its node. */
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                     uint32_t level, uint32_t deficit);
+                     uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
 /** Changes the state and moves the node to the end of that state's list. */
 void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state);
@@ -287,7 +289,7 @@ void slc_list_standby(slc_manager *m, uint32_t keep);
 void slc_node_fail(slc_manager *m, uint32_t node, uint64_t time);
 /** The most useful REQUESTED tile, 0 if there is none. */
 uint32_t slc_first_request(const slc_manager *m);
-/** The one after it in the queue, 0 at the end. */
+/** The one after it, 0 at the end. */
 uint32_t slc_next_request(const slc_manager *m, uint32_t node);
 SluiceTile slc_node_tile(const slc_manager *m, uint32_t node);
 void slc_list_append(slc_manager *m, struct slc_list *list, uint32_t node);
@@ -302,6 +304,8 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t);
 /** The tile of a node became resident (MAPPED or STANDBY) or stopped to be. */
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
                          bool resident);
+/** The tiles of level 0 under a tile, which are the texels of the map. */
+struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p);
 /** That is going to be called for a tile. */
 void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile);
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t);

@@ -47,7 +47,7 @@ static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         return result;
     slc_notify(m, &call);
-    *refused = result != SLUICE_SUCCESS;
+    *refused = m->refused = result != SLUICE_SUCCESS;
     if (*refused)
         return SLUICE_BUDGET_REACHED;
     slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot);
@@ -77,7 +77,7 @@ static void list_standby_for(slc_manager *m, uint32_t unserved)
 }
 
 struct request_key {
-    uint32_t rank; ///< class and deficit, greater first
+    uint32_t rank; ///< class and need, greater first
     uint32_t node;
     uint64_t order;
 };
@@ -103,7 +103,7 @@ static struct request_key *sort_requests(const slc_manager *m, const struct slc_
         if (!node || n->state != SLUICE_TILE_STATE_REQUESTED)
             continue;
         uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
-        keys[count++] = (struct request_key){class << 8 | n->deficit, node, n->order};
+        keys[count++] = (struct request_key){class << 8 | n->need, node, n->order};
     }
     assert(count == t->requested_count);
     qsort(keys, count, sizeof *keys, by_request_order);
@@ -120,26 +120,39 @@ enum { MAX_PASSED_OVER = 4096 };
 
 /** Where the next request comes from: a texture's sorted keys, or the queues of all. */
 struct request_walk {
-    const struct request_key *keys; ///< NULL: all textures
-    uint32_t at, count;             ///< in keys
-    uint32_t node;                  ///< 0: the end
+    const struct request_key *keys;
+    uint32_t at, count; ///< in keys; no keys: all textures
+    uint32_t node;      ///< 0: the end
 };
 
-static struct request_walk first_request(const slc_manager *m, const struct request_key *keys,
-                                         uint32_t count)
+static struct request_walk first_request(const slc_manager *m, const struct slc_texture *scope,
+                                         const struct request_key *keys)
 {
-    if (keys)
-        return (struct request_walk){keys, 0, count, count ? keys[0].node : 0};
-    return (struct request_walk){.node = slc_first_request(m)};
+    if (!scope)
+        return (struct request_walk){.node = slc_first_request(m)};
+    uint32_t count = scope->requested_count;
+    return (struct request_walk){keys, 0, count, count ? keys[0].node : 0};
 }
 
 /** To be called before the state of the walk's node changes. */
 static void next_request(const slc_manager *m, struct request_walk *w)
 {
-    if (w->keys)
+    if (w->count)
         w->node = ++w->at < w->count ? w->keys[w->at].node : 0;
     else
         w->node = slc_next_request(m, w->node);
+}
+
+/** What will be needed for the requests that come next. */
+static void prefetch_request(const slc_manager *m, uint32_t node)
+{
+    if (!node)
+        return;
+    const struct slc_node *n = slc_node_at(m, node);
+    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    __builtin_prefetch(t);
+    __builtin_prefetch(&t->levels[n->level]);
+    __builtin_prefetch(slc_node_at(m, n->next));
 }
 
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
@@ -148,9 +161,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     uint32_t room = *count, written = 0, passed_over = 0;
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
-    struct request_walk walk = first_request(m, keys, requests_in_scope(m, scope));
-    if (scope && !keys)
-        walk.node = 0;
+    struct request_walk walk = first_request(m, scope, keys);
     while (written < room && walk.node && passed_over < MAX_PASSED_OVER) {
         uint32_t node = walk.node;
         if (m->starved && !slc_is_asked_for(m, node)) {
@@ -162,12 +173,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         if (result != SLUICE_SUCCESS)
             break;
         next_request(m, &walk);
-        if (walk.node) {
-            const struct slc_node *ahead = slc_node_at(m, walk.node);
-            __builtin_prefetch(slc_texture_at(m, ahead->texture));
-            __builtin_prefetch(&slc_texture_at(m, ahead->texture)->levels[ahead->level]);
-            __builtin_prefetch(slc_node_at(m, ahead->next));
-        }
+        prefetch_request(m, walk.node);
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }
@@ -197,6 +203,7 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
         *count = requests;
         return SLUICE_SUCCESS;
     }
+    slc_update_bias(m);
     if (!scope || requests == 0)
         return hand_out(m, scope, NULL, count, tiles);
     struct request_key *keys = sort_requests(m, scope);

@@ -35,7 +35,7 @@ static struct slc_tile_range children(const struct slc_texture *t, uint32_t leve
     };
 }
 
-static struct slc_tile_range area(const struct slc_texture *t, struct slc_place p)
+struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
 {
     struct slc_tile_range r = {p.x, p.y, p.x, p.y};
     for (uint32_t level = p.level; level > 0; level--)
@@ -101,7 +101,7 @@ static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
 static void show(struct slc_texture *t, struct slc_place p)
 {
-    fill(t, area(t, p), (uint8_t)p.level);
+    fill(t, slc_area(t, p), (uint8_t)p.level);
     if (p.level == 0)
         return;
     struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
@@ -159,7 +159,7 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
     /* Under a tile that does not count the map has one value: that of the last one above that does.
      */
     struct slc_place p = slc_node_place(t, n);
-    struct slc_tile_range r = area(t, p);
+    struct slc_tile_range r = slc_area(t, p);
     uint8_t shown = t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0];
     bool coarsest = p.level + 1 == t->desc.regularMipCount;
     uint8_t above = coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);

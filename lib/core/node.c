@@ -63,8 +63,8 @@ static void request_append(slc_manager *m, uint32_t node)
     struct slc_node *n = slc_node_at(m, node);
     uint32_t class = request_class(m, n);
     n->order = r->next_sequence++;
-    slc_list_append(m, &r->lists[class][n->deficit], node);
-    r->deficits[class] |= 1u << n->deficit;
+    slc_list_append(m, &r->lists[class][n->need], node);
+    r->needs[class] |= 1u << n->need;
     r->classes |= 1u << class;
     r->count++;
     slc_texture_at(m, n->texture)->requested_count++;
@@ -75,24 +75,32 @@ static void request_remove(slc_manager *m, uint32_t node)
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
     uint32_t class = request_class(m, n);
-    struct slc_list *list = &r->lists[class][n->deficit];
+    struct slc_list *list = &r->lists[class][n->need];
     slc_list_remove(m, list, node);
     if (list->count == 0)
-        r->deficits[class] &= ~(1u << n->deficit);
-    if (r->deficits[class] == 0)
+        r->needs[class] &= ~(1u << n->need);
+    if (r->needs[class] == 0)
         r->classes &= ~(1u << class);
     r->count--;
     slc_texture_at(m, n->texture)->requested_count--;
 }
 
+static uint32_t last_bit(uint32_t bits)
+{
+    return 31u - (uint32_t)__builtin_clz(bits);
+}
+
+static uint32_t first_of(const struct slc_requests *r, uint32_t classes)
+{
+    if (!classes)
+        return 0;
+    uint32_t class = last_bit(classes);
+    return r->lists[class][last_bit(r->needs[class])].head;
+}
+
 uint32_t slc_first_request(const slc_manager *m)
 {
-    const struct slc_requests *r = &m->requests;
-    if (!r->classes)
-        return 0;
-    uint32_t class = 31u - (uint32_t)__builtin_clz(r->classes);
-    uint32_t deficit = 31u - (uint32_t)__builtin_clz(r->deficits[class]);
-    return r->lists[class][deficit].head;
+    return first_of(&m->requests, m->requests.classes);
 }
 
 uint32_t slc_next_request(const slc_manager *m, uint32_t node)
@@ -101,16 +109,10 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
     const struct slc_node *n = slc_node_at(m, node);
     if (n->next)
         return n->next;
-    uint32_t class = request_class(m, n);
-    uint32_t deficits = r->deficits[class] & ((1u << n->deficit) - 1);
-    if (!deficits) {
-        uint32_t classes = r->classes & ((1u << class) - 1);
-        if (!classes)
-            return 0;
-        class = 31u - (uint32_t)__builtin_clz(classes);
-        deficits = r->deficits[class];
-    }
-    return r->lists[class][31u - (uint32_t)__builtin_clz(deficits)].head;
+    uint32_t class = request_class(m, n), needs = r->needs[class] & ((1u << n->need) - 1);
+    if (needs)
+        return r->lists[class][last_bit(needs)].head;
+    return first_of(r, r->classes & ((1u << class) - 1));
 }
 
 /** Takes the node out of the list that its state keeps it in, if any. */
@@ -192,38 +194,23 @@ static uint32_t pop_node(slc_manager *m)
     return m->node_end++;
 }
 
-/** A tile that was FREE is REQUESTED: what take, set state and enter list would do, in one go. */
+/** A tile that was FREE is REQUESTED. */
 static void request_new(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                        uint32_t level, uint32_t deficit)
+                        uint32_t level, uint32_t need)
 {
-    struct slc_requests *r = &m->requests;
-    bool packed = tile >= t->regular_tile_count;
-    uint32_t class = packed ? SLC_PACKED_CLASS : level;
-    struct slc_list *list = &r->lists[class][deficit];
     uint32_t node = pop_node(m);
     *slc_node_at(m, node) = (struct slc_node){
         .texture = t->index,
         .tile = tile,
-        .prev = list->tail,
         .heap = SLC_NONE,
         .level = (uint8_t)level,
-        .deficit = (uint8_t)deficit,
+        .need = (uint8_t)need,
         .state = SLUICE_TILE_STATE_REQUESTED,
-        .order = r->next_sequence++,
     };
-    if (list->tail)
-        slc_node_at(m, list->tail)->next = node;
-    else
-        list->head = node;
-    list->tail = node;
-    list->count++;
-    r->deficits[class] |= 1u << deficit;
-    r->classes |= 1u << class;
-    r->count++;
-    t->requested_count++;
-    t->regular_nodes += !packed;
-    m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
     *cell = node;
+    t->regular_nodes += tile < t->regular_tile_count;
+    m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
+    request_append(m, node);
 }
 
 static void recycle_node(slc_manager *m, uint32_t node)
@@ -266,10 +253,10 @@ void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state)
 
 void slc_node_request_again(slc_manager *m, uint32_t node)
 {
-    leave_list(m, node); /* before the deficit changes: a REQUESTED one is listed by it */
+    leave_list(m, node); /* before the need changes: a REQUESTED one is listed by it */
     m->state_counts[slc_node_at(m, node)->state]--;
     slc_node_at(m, node)->state = SLUICE_TILE_STATE_REQUESTED;
-    slc_node_at(m, node)->deficit = 0;
+    slc_node_at(m, node)->need = 0;
     m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
     enter_list(m, node);
 }
@@ -364,11 +351,11 @@ SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 /* What wants do to a tile ------------------------------------------------------------------- */
 
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                     uint32_t level, uint32_t deficit)
+                     uint32_t level, uint32_t need)
 {
     uint32_t node = *cell & ~SLC_RESIDENT;
     if (!node) {
-        request_new(m, t, cell, tile, level, deficit);
+        request_new(m, t, cell, tile, level, need);
         return;
     }
     struct slc_node *n = slc_node_at(m, node);

@@ -7,6 +7,15 @@
 #include "core/overlap.h"
 
 #include <string.h>
+#include <stdlib.h>
+int T_Z = 70, T_M = 1;
+__attribute__((constructor)) static void ini(void)
+{
+    if (getenv("TZ"))
+        T_Z = atoi(getenv("TZ"));
+    if (getenv("TM"))
+        T_M = atoi(getenv("TM"));
+}
 
 /* Room -------------------------------------------------------------------------------------- */
 
@@ -222,6 +231,26 @@ struct moves {
     } tiles[64];
 };
 
+/** log2 of the tiles of level 0 that want a tile, which some do. */
+static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t level)
+{
+    if (level == 0)
+        return 0;
+    struct slc_tile_range r = slc_area(t, slc_tile_place(t, tile));
+    slc_block limit = slc_block_of((uint8_t)level);
+    uint32_t count = 0;
+    for (uint32_t y = r.y0; y <= r.y1; y++) {
+        const uint8_t *row = t->state->under + (size_t)y * t->levels[0].width;
+        for (uint32_t x = r.x0; x <= r.x1; x += SLC_BLOCK) {
+            uint32_t above =
+                slc_block_difference(at_most(slc_load_block(row + x), limit), slc_block_of(255));
+            uint32_t inside = r.x1 - x < SLC_BLOCK - 1 ? (2u << (r.x1 - x)) - 1 : 0xFFFF;
+            count += slc_count_bits(~above & inside);
+        }
+    }
+    return 31u - (uint32_t)__builtin_clz(count);
+}
+
 static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
     uint32_t *nodes = t->state->nodes;
@@ -231,7 +260,7 @@ static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *mo
         uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
         uint32_t least = moves->tiles[i].least;
         if (least <= level)
-            slc_tile_wanted(m, t, &nodes[tile], tile, level, level - least);
+            slc_tile_wanted(m, t, &nodes[tile], tile, level, need_of(t, tile, level));
         else
             slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
     }
@@ -402,7 +431,10 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     if (t->state) {
         bool held_before = t->held_regions > 0;
         m->bias_maps++;
-        struct slc_range changed = slc_history_merge(t, time, timeout);
+        /* While slots are short, what was not seen lately has to make room sooner. */
+        extern int T_Z, T_M;
+        uint64_t patience = m->starved ? timeout * T_Z / 100 : timeout;
+        struct slc_range changed = slc_history_merge(t, time, timeout, patience);
         if (t->state->bias != m->bias)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
         t->state->bias = m->bias;
