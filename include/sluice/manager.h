@@ -79,6 +79,19 @@ typedef struct SluiceStreamedTextureManagerConfig {
     uint32_t maxHeapCount;    ///< heaps that may exist at a time; 0: as many as the allocator gives
     uint32_t maxLoadAttempts; ///< failed loads until a tile is GIVEN_UP; 0: 5
     uint64_t retryDelay;      ///< time from the first failure to the second try, doubled each time
+    /**
+     * Maps in a row that have to miss what a region wanted, beside the timeout, before it is no
+     * longer wanted; coarser levels, which more regions see, need a quarter as many per level. 0:
+     * learned per texture from how often maps miss what earlier and later ones show, so that
+     * stochastic feedback drops nothing that is still there. 1: the timeout alone counts.
+     */
+    uint32_t missesToForget;
+    /**
+     * So many of the coarsest regular levels of all textures are loaded whenever nothing is
+     * requested, a slot is free and fewer than numExtraStandbyTiles are STANDBY: what comes into
+     * view is there sooner, for more uploads. 0: none.
+     */
+    uint32_t prefetchLevels;
 } SluiceStreamedTextureManagerConfig;
 
 /**

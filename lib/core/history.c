@@ -70,8 +70,10 @@ void slc_state_release(slc_manager *m, struct slc_texture *t)
  * returns / hits estimates x = (1 - q) / q; a camera that moves on makes no returns. n misses in a
  * row have the chance (1 - q)^n, and 14 (x + 1/2) >= ln(10^-6) / ln(1 - q).
  */
-uint32_t slc_maps_to_believe(const struct slc_texture *t)
+static uint32_t maps_to_believe(const slc_manager *m, const struct slc_texture *t)
 {
+    if (m->config.missesToForget)
+        return m->config.missesToForget;
     if (t->returns == 0)
         return 1;
     return slc_min_u32(14 * t->returns / (t->hits + 1) + 7, 4096);
@@ -132,23 +134,35 @@ static void drop_spans(struct slc_texture_state *s, uint32_t count)
     s->span_count -= count;
 }
 
+/** What a call knows when it decides about older maps. */
+struct now {
+    uint64_t time, timeout;
+    uint32_t weight; ///< of the new map
+    uint32_t needed; ///< maps to believe
+    bool starved;    ///< slots are short: what two maps missed has to make room sooner
+};
+
+static bool is_over(const struct slc_span *span, const struct now *now, uint32_t newer)
+{
+    uint64_t age = now->time - span->end;
+    uint64_t patience = now->timeout - now->timeout / 16 * 5;
+    return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
+}
+
 /** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
-static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint64_t patience,
-                  uint32_t weight, uint32_t needed)
+static bool lapse(struct slc_texture *t, const struct now *now)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
-    uint32_t newer = weight, empty = 0;
+    uint32_t newer = now->weight, empty = 0;
     bool changed = false;
     shift = shift == SLC_UNALIGNED ? 0 : slc_min_u32(shift, 8);
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
         bool left = true;
-        extern int T_M;
-        if (time - span->end >= timeout ||
-            (time - span->end >= patience && newer >= (uint32_t)T_M)) {
-            uint8_t below = first_unbelieved(newer, needed, shift);
+        if (is_over(span, now, newer)) {
+            uint8_t below = first_unbelieved(newer, now->needed, shift);
             if (below < span->below) {
                 left = below > 0 && thin_span(span, padded, below);
                 changed = true;
@@ -162,20 +176,19 @@ static bool lapse(struct slc_texture *t, uint64_t time, uint64_t timeout, uint64
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
-static bool join_span(struct slc_texture_state *s, uint64_t time, uint64_t timeout, uint32_t weight,
-                      uint32_t needed)
+static bool join_span(struct slc_texture_state *s, const struct now *now)
 {
     struct slc_span *newest = s->span_count ? &s->spans[s->span_count - 1] : NULL;
-    if (newest && (s->span_count == SLC_MAX_SPANS || time - newest->begin < timeout / 4 ||
-                   newest->weight < needed / 4)) {
-        newest->end = time;
-        newest->weight = add_weights(newest->weight, weight);
+    if (newest && (s->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
+                   newest->weight < now->needed / 4)) {
+        newest->end = now->time;
+        newest->weight = add_weights(newest->weight, now->weight);
         newest->below = SLUICE_MIP_UNTOUCHED;
         return false;
     }
     newest = &s->spans[s->span_count++];
-    newest->begin = newest->end = time;
-    newest->weight = weight;
+    newest->begin = newest->end = now->time;
+    newest->weight = now->weight;
     newest->below = SLUICE_MIP_UNTOUCHED;
     return true;
 }
@@ -234,17 +247,20 @@ static struct slc_range recompute(struct slc_texture *t, size_t padded)
     return changed;
 }
 
-struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout,
-                                   uint64_t patience)
+struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
+                                   uint64_t timeout)
 {
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     if (s->next)
         count_returns(t, s->hits, s->returns);
-    uint32_t weight = map_weight(t, s->next ? s->next : s->asked);
-    uint32_t needed = slc_maps_to_believe(t);
-    bool lapsed = lapse(t, time, timeout, patience, weight, needed);
-    bool fresh = join_span(s, time, timeout, weight, needed);
+    struct now now = {.time = time,
+                      .timeout = timeout,
+                      .weight = map_weight(t, s->next ? s->next : s->asked),
+                      .needed = maps_to_believe(m, t),
+                      .starved = m->starved};
+    bool lapsed = lapse(t, &now);
+    bool fresh = join_span(s, &now);
     struct slc_range changed = {0, 0};
     if (s->next)
         changed = merge_finer(t, padded, fresh);

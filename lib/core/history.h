@@ -12,9 +12,6 @@ static inline size_t slc_region_count(const struct slc_texture *t)
 /** Makes the per-tile and per-region memory if it is not there yet, and room for one more span. */
 SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t);
 
-/** Newer maps that must miss a level before it is believed to be gone. */
-uint32_t slc_maps_to_believe(const struct slc_texture *t);
-
 /** Of something counted from 0. */
 struct slc_range {
     uint32_t first, end; ///< end 0: none
@@ -34,7 +31,7 @@ static inline void slc_range_add(struct slc_range *r, uint32_t first, uint32_t e
  * Merges state->next into the history and counts the regions that hold something. Returns the
  * range of regions, whole blocks, in which state->least has changed.
  */
-struct slc_range slc_history_merge(struct slc_texture *t, uint64_t time, uint64_t timeout,
-                                   uint64_t patience);
+struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
+                                   uint64_t timeout);
 
 #endif /* SLC_CORE_HISTORY_H */

@@ -104,7 +104,7 @@ struct slc_texture {
     uint32_t held_regions;           ///< that hold anything
     uint64_t map_time;               ///< of the last map
     uint64_t interval, timeout;      ///< between the last two maps; of the last one
-    uint32_t hits, returns;          ///< how reliable maps are; see slc_maps_to_believe
+    uint32_t hits, returns;          ///< how reliable maps are; see history.c
     bool visited;                    ///< in the list of those that hold something:
     uint32_t visit_prev, visit_next; ///< indices, SLC_NONE
     uint32_t primary;                ///< index, SLC_NONE
@@ -161,6 +161,8 @@ struct SluiceStreamedTextureManager {
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
     uint32_t report_first, report_end, report_room;
+
+    uint32_t prefetch_level, prefetch_texture; ///< what to look at next; levels from the coarsest
 
     struct slc_tile_heaps heaps;
     uint32_t dirty_first, dirty_last; ///< indices, SLC_NONE
@@ -270,6 +272,8 @@ bool slc_reserve_nodes(slc_manager *m, uint64_t count);
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                      uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
+/** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
+uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
 /** Changes the state and moves the node to the end of that state's list. */
 void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state);
 /** REQUESTED again with deficit 0. */

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "core/history.h"
 #include "core/wants.h"
 
 #include <stdlib.h>
@@ -155,6 +156,54 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
     __builtin_prefetch(slc_node_at(m, n->next));
 }
 
+/** Textures that one call looks at for something to prefetch. */
+enum { MAX_LOOKED_AT = 256 };
+
+static bool may_prefetch(slc_manager *m)
+{
+    uint32_t kept = m->standby.count + m->state_counts[SLUICE_TILE_STATE_CANCELLED];
+    return kept < m->config.numExtraStandbyTiles && m->heaps.free_total > slc_reserved_slots(m) &&
+           slc_reserve_nodes(m, 1);
+}
+
+/** Hands out FREE tiles of a level. Returns whether all that there are. */
+static bool prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level, uint32_t room,
+                           uint32_t *written, SluiceTile *tiles)
+{
+    const struct slc_level *grid = &t->levels[level];
+    uint32_t end = grid->first_tile + grid->width * grid->height;
+    for (uint32_t tile = grid->first_tile; tile < end; tile++) {
+        if (slc_find_node(t, tile))
+            continue;
+        if (*written == room || !may_prefetch(m) || slc_state_make(m, t) != SLUICE_SUCCESS)
+            return false;
+        uint32_t node = slc_node_prefetch(m, t, tile, level);
+        struct slc_node *n = slc_node_at(m, node);
+        slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot);
+        tiles[(*written)++] = slc_node_tile(m, node);
+    }
+    return true;
+}
+
+/** Nothing is requested: loads the coarse levels of what may come into view. */
+static void prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles)
+{
+    for (uint32_t i = 0; i < MAX_LOOKED_AT && i < m->texture_end; i++) {
+        if (m->prefetch_texture >= m->texture_end) {
+            m->prefetch_texture = 0;
+            m->prefetch_level++;
+        }
+        if (m->prefetch_level >= m->config.prefetchLevels)
+            m->prefetch_level = 0;
+        struct slc_texture *t = slc_texture_at(m, m->prefetch_texture);
+        uint32_t levels = t->live ? t->desc.regularMipCount : 0;
+        if (m->prefetch_level < levels &&
+            !prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles))
+            return;
+        m->prefetch_texture++;
+    }
+}
+
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
@@ -179,6 +228,8 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
+    if (!scope && m->requests.count == 0 && m->config.prefetchLevels)
+        prefetch(m, room, &written, tiles);
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);

@@ -194,23 +194,19 @@ static uint32_t pop_node(slc_manager *m)
     return m->node_end++;
 }
 
-/** A tile that was FREE is REQUESTED. */
-static void request_new(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                        uint32_t level, uint32_t need)
+static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                          uint32_t level, SluiceTileState state)
 {
     uint32_t node = pop_node(m);
-    *slc_node_at(m, node) = (struct slc_node){
-        .texture = t->index,
-        .tile = tile,
-        .heap = SLC_NONE,
-        .level = (uint8_t)level,
-        .need = (uint8_t)need,
-        .state = SLUICE_TILE_STATE_REQUESTED,
-    };
+    *slc_node_at(m, node) = (struct slc_node){.texture = t->index,
+                                              .tile = tile,
+                                              .heap = SLC_NONE,
+                                              .level = (uint8_t)level,
+                                              .state = (uint8_t)state};
     *cell = node;
     t->regular_nodes += tile < t->regular_tile_count;
-    m->state_counts[SLUICE_TILE_STATE_REQUESTED]++;
-    request_append(m, node);
+    m->state_counts[state]++;
+    return node;
 }
 
 static void recycle_node(slc_manager *m, uint32_t node)
@@ -355,7 +351,9 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 {
     uint32_t node = *cell & ~SLC_RESIDENT;
     if (!node) {
-        request_new(m, t, cell, tile, level, need);
+        node = take_node(m, t, cell, tile, level, SLUICE_TILE_STATE_REQUESTED);
+        slc_node_at(m, node)->need = (uint8_t)need;
+        request_append(m, node);
         return;
     }
     struct slc_node *n = slc_node_at(m, node);
@@ -369,6 +367,14 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
         else
             slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
     }
+}
+
+uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level)
+{
+    uint32_t node =
+        take_node(m, t, &t->state->nodes[tile], tile, level, SLUICE_TILE_STATE_CANCELLED);
+    slc_node_at(m, node)->flags = SLC_NODE_LISTED;
+    return node;
 }
 
 void slc_tile_unwanted(slc_manager *m, uint32_t node)

@@ -7,15 +7,6 @@
 #include "core/overlap.h"
 
 #include <string.h>
-#include <stdlib.h>
-int T_Z = 70, T_M = 1;
-__attribute__((constructor)) static void ini(void)
-{
-    if (getenv("TZ"))
-        T_Z = atoi(getenv("TZ"));
-    if (getenv("TM"))
-        T_M = atoi(getenv("TM"));
-}
 
 /* Room -------------------------------------------------------------------------------------- */
 
@@ -79,7 +70,7 @@ static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t
 struct compared {
     bool differs;           ///< from the last map
     uint32_t finer;         ///< ask for more than all maps did
-    uint32_t hits, returns; ///< see slc_maps_to_believe
+    uint32_t hits, returns; ///< see history.c
 };
 
 static inline slc_block ask(slc_block v, const struct slc_levels *levels)
@@ -431,10 +422,7 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     if (t->state) {
         bool held_before = t->held_regions > 0;
         m->bias_maps++;
-        /* While slots are short, what was not seen lately has to make room sooner. */
-        extern int T_Z, T_M;
-        uint64_t patience = m->starved ? timeout * T_Z / 100 : timeout;
-        struct slc_range changed = slc_history_merge(t, time, timeout, patience);
+        struct slc_range changed = slc_history_merge(m, t, time, timeout);
         if (t->state->bias != m->bias)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
         t->state->bias = m->bias;
