@@ -48,7 +48,8 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need)
 {
-    if (!asked && !follower->state)
+    if (!follower->state &&
+        (!asked || slc_bytes_are(asked, slc_region_count(primary), SLUICE_MIP_UNTOUCHED)))
         return SLUICE_SUCCESS; /* an empty map onto nothing */
     SluiceResult result = slc_state_make(m, follower);
     if (result != SLUICE_SUCCESS)

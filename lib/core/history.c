@@ -76,7 +76,8 @@ static uint32_t maps_to_believe(const slc_manager *m, const struct slc_texture *
         return m->config.missesToForget;
     if (t->returns == 0)
         return 1;
-    return slc_min_u32(14 * t->returns / (t->hits + 1) + 7, 4096);
+    uint64_t maps = (uint64_t)14 * t->returns / (t->hits + 1) + 7;
+    return maps < 4096 ? (uint32_t)maps : 4096;
 }
 
 static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns)
@@ -111,8 +112,8 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
     return level;
 }
 
-/** Removes levels from `below` on. Returns whether anything is left. */
-static bool thin_span(struct slc_span *span, size_t padded, uint8_t below)
+/** Removes levels from `below` on. */
+static void thin_span(struct slc_span *span, size_t padded, uint8_t below)
 {
     slc_block limit = slc_block_of(below), all = slc_block_of(SLUICE_MIP_UNTOUCHED);
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
@@ -122,7 +123,7 @@ static bool thin_span(struct slc_span *span, size_t padded, uint8_t below)
         all &= v;
     }
     span->below = below;
-    return slc_block_difference(all, slc_block_of(SLUICE_MIP_UNTOUCHED)) != 0;
+    span->empty = slc_block_difference(all, slc_block_of(SLUICE_MIP_UNTOUCHED)) == 0;
 }
 
 static void drop_spans(struct slc_texture_state *s, uint32_t count)
@@ -155,23 +156,22 @@ static bool lapse(struct slc_texture *t, const struct now *now)
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
-    uint32_t newer = now->weight, empty = 0;
+    if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
+        shift = 0;
+    uint32_t newer = now->weight, dropped = 0;
     bool changed = false;
-    shift = shift == SLC_UNALIGNED ? 0 : slc_min_u32(shift, 8);
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
-        bool left = true;
-        if (is_over(span, now, newer)) {
-            uint8_t below = first_unbelieved(newer, now->needed, shift);
-            if (below < span->below) {
-                left = below > 0 && thin_span(span, padded, below);
-                changed = true;
-            }
+        bool over = is_over(span, now, newer);
+        uint8_t below = first_unbelieved(newer, now->needed, slc_min_u32(shift, 8));
+        if (over && below < span->below) {
+            thin_span(span, padded, below);
+            changed = true;
         }
-        empty = left ? 0 : empty + 1;
+        dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
-    drop_spans(s, empty); /* the oldest ones */
+    drop_spans(s, dropped); /* the oldest ones */
     return changed;
 }
 
@@ -184,12 +184,14 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
         newest->end = now->time;
         newest->weight = add_weights(newest->weight, now->weight);
         newest->below = SLUICE_MIP_UNTOUCHED;
+        newest->empty = false;
         return false;
     }
     newest = &s->spans[s->span_count++];
     newest->begin = newest->end = now->time;
     newest->weight = now->weight;
     newest->below = SLUICE_MIP_UNTOUCHED;
+    newest->empty = false;
     return true;
 }
 

@@ -65,6 +65,7 @@ struct slc_span {
     uint64_t begin, end; ///< times of the first and of the last map
     uint32_t weight;     ///< in maps
     uint8_t below;       ///< only levels below this are still in the map
+    bool empty;          ///< nothing is left of it, as far as was looked
     uint8_t *map;        ///< [padded regions], owned; stays for reuse when the span is dropped
 };
 
