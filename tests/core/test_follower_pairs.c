@@ -11,6 +11,16 @@ static uint32_t random_in(uint64_t *random, uint32_t low, uint32_t high)
     return low + next_random(random) % (high - low + 1);
 }
 
+/* Half of all textures have sizes and tiles whose borders fall together in UV. */
+static void make_even(SluiceStreamedTextureDesc *desc, uint64_t *random)
+{
+    static const uint32_t sizes[] = {64, 96, 128, 192, 256};
+    desc->width = sizes[next_random(random) % 5];
+    desc->height = sizes[next_random(random) % 5];
+    desc->tileWidth = 8u << next_random(random) % 4;
+    desc->tileHeight = 8u << next_random(random) % 4;
+}
+
 /* Any size, tile shape, region size and number of regular and packed levels. */
 static SluiceStreamedTextureDesc random_desc(uint64_t *random)
 {
@@ -20,6 +30,8 @@ static SluiceStreamedTextureDesc random_desc(uint64_t *random)
         .tileWidth = random_in(random, 8, 70),
         .tileHeight = random_in(random, 8, 70),
     };
+    if (next_random(random) % 2)
+        make_even(&desc, random);
     uint32_t most = slc_mip_count(slc_max_u32(desc.width, desc.height));
     desc.mipLevelCount = random_in(random, 1, most);
     desc.regularMipCount = random_in(random, 0, desc.mipLevelCount);
