@@ -291,6 +291,7 @@ static void removal_of_a_primary_in_flight_frees_its_followers(void **state)
         assert_int_equal((uint32_t)next, (uint32_t)id);
         feed(&b, next, SLUICE_MIP_UNTOUCHED);
         CHECK_STATE(&b.f, follower, 0, REQUESTED);
+        SOUND(&b.f, sluiceSetPrimaryTexture(b.f.manager, next, follower)); /* it stands alone */
         feed(&b, follower, SLUICE_MIP_UNTOUCHED);
         CHECK_STATE(&b.f, follower, 0, FREE);
         fixture_close(&b.f);
