@@ -199,18 +199,19 @@ static void a_map_of_another_size_changes_nothing_of_a_busy_manager(void **state
     (void)state;
     struct fixture f;
     fixture_open(&f, 64, false);
-    fixture_configure(&f, 4, 0, 2, 5);
+    fixture_configure(&f, 4, 0, 2, 500);
     SluiceStreamedTextureDesc desc = full_chain(1025, 771, 128, 128);
     SluiceTextureId ids[2] = {fixture_add(&f, &desc), fixture_add(&f, &desc)};
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[1], ids[0]));
     uint8_t map[256] = {0};
-    fixture_feed(&f, ids[0], 0, 0, 8);
+    fixture_feed(&f, ids[0], 0, 0, 100);
     assert_true(fixture_to_map_at_most(&f, ids[0], 100) >= 0);
     for (uint32_t i = 0; i < f.count; i += 3) /* mapped, failed and still loading */
         CHECK_OK(sluiceUpdateTilesMapping(f.manager, ids[0], 1, &f.tiles[i].tileIndex));
     for (uint32_t i = 1; i < f.count; i += 3)
         CHECK_OK(sluiceReportFailedTiles(f.manager, ids[0], 1, &f.tiles[i].tileIndex, 1));
-    fixture_feed_region(&f, ids[0], 0, 0, 9, 8);
+    fixture_feed_region(&f, ids[0], 0, 0, 9, 100);
+    assert_true(fixture_statistics(&f).failedTileCount > 0);
     SluiceStreamedTextureLayout layout = fixture_layout(&f, ids[0]);
     uint32_t w = layout.feedbackWidth, h = layout.feedbackHeight;
     const uint32_t sizes[][2] = {{w - 1, h}, {w, h - 1}, {w + 1, h}, {h, w}, {w * h, 1}, {0, 0}};
@@ -220,7 +221,7 @@ static void a_map_of_another_size_changes_nothing_of_a_busy_manager(void **state
         REFUSED(&f, 2, ids, sluiceUpdateWithSamplerFeedback(f.manager, ids[0], &feedback, 1000, 0),
                 SLUICE_ERROR_SIZE_MISMATCH);
     }
-    fixture_feed_region(&f, ids[0], 0, 0, 10, 8); /* nor was the time taken over */
+    fixture_feed_region(&f, ids[0], 0, 0, 10, 100); /* nor was the time taken over */
     fixture_close(&f);
 }
 
