@@ -24,7 +24,8 @@ void app_open(struct app_model *a, uint64_t seed)
 {
     memset(a, 0, sizeof *a);
     a->random = seed;
-    fixture_open(&a->f, APP_CAPACITY, false);
+    a->time = seed % 2 ? 0 : UINT64_MAX - 50; /* wraps soon */
+    fixture_open(&a->f, APP_CAPACITY, seed % 3 == 0);
     a->f.heaps.limit = seed % 2 ? 5 : APP_HEAPS;
     fixture_configure(&a->f, 6, 0, 3, 4);
     for (uint32_t i = 0; i < APP_TEXTURES; i++)

@@ -19,6 +19,20 @@ void check_sound(const struct fixture *f, int line)
         fail_msg("line %d: the statistics disagree about heaps or memory", line);
 }
 
+void sound_feed(struct fixture *f, SluiceTextureId id, uint8_t level, uint64_t time,
+                uint64_t timeout)
+{
+    fixture_feed(f, id, level, time, timeout);
+    CHECK_SOUND(f);
+}
+
+void sound_feed_region(struct fixture *f, SluiceTextureId id, uint32_t region, uint8_t level,
+                       uint64_t time, uint64_t timeout)
+{
+    fixture_feed_region(f, id, region, level, time, timeout);
+    CHECK_SOUND(f);
+}
+
 void sound_answer_mapped(struct fixture *f)
 {
     for (uint32_t i = 0; i < f->count; i++)

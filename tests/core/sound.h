@@ -28,6 +28,12 @@ void check_sound(const struct fixture *f, int line);
         assert_true(fixture_digest(f, id_count, ids) == digest_before_);                           \
     } while (0)
 
+/** As those of the fixture, with a check after the call. */
+void sound_feed(struct fixture *f, SluiceTextureId id, uint8_t level, uint64_t time,
+                uint64_t timeout);
+void sound_feed_region(struct fixture *f, SluiceTextureId id, uint32_t region, uint8_t level,
+                       uint64_t time, uint64_t timeout);
+
 /** All tiles that the last list held, one answer per tile, with a check after each. */
 void sound_answer_mapped(struct fixture *f);
 

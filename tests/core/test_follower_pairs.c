@@ -163,8 +163,7 @@ static void a_primary_that_asks_for_packed_levels_gives_no_regular_tile(void **s
         SOUND(&f, sluiceSetPrimaryTexture(f.manager, same, primary));
         SOUND(&f, sluiceSetPrimaryTexture(f.manager, other, primary));
         for (uint32_t level = desc.regularMipCount; level < desc.mipLevelCount; level++) {
-            fixture_feed(&f, primary, (uint8_t)level, level, 0);
-            CHECK_SOUND(&f);
+            sound_feed(&f, primary, (uint8_t)level, level, 0);
             sound_load(&f); /* the primary's packed tile is resident from here on */
             CHECK_STATE(&f, primary, 85, MAPPED);
             assert_int_equal(regular_in_use(&f, same), 0);
@@ -182,12 +181,11 @@ static void packed_tiles_of_a_primary_pin_nothing_of_its_followers(void **state)
     fixture_open(&f, 64, true);
     SluiceTextureId primary = fixture_add_small(&f), follower = fixture_add_small(&f);
     SOUND(&f, sluiceSetPrimaryTexture(f.manager, follower, primary));
-    fixture_feed(&f, primary, 0, 0, 10);
+    sound_feed(&f, primary, 0, 0, 10);
     sound_load(&f);
     assert_int_equal(regular_in_use(&f, follower), 5);
     for (uint64_t t = 1; t < 12; t++) { /* wanted for ever, but by no map */
-        fixture_feed(&f, primary, t < 5 ? 7 : SLUICE_MIP_UNTOUCHED, t, 10);
-        CHECK_SOUND(&f);
+        sound_feed(&f, primary, t < 5 ? 7 : SLUICE_MIP_UNTOUCHED, t, 10);
         CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
         CHECK_SOUND(&f);
     }
@@ -205,7 +203,7 @@ static void a_follower_with_nothing_to_request_is_left_alone(void **state)
     SluiceStreamedTextureDesc flat = full_chain(64, 64, 128, 128);
     assert_int_equal(flat.regularMipCount, 0);
     SluiceTextureId ids[2] = {fixture_add_small(&f), fixture_add(&f, &flat)};
-    fixture_feed(&f, ids[0], 0, 5, 10);
+    sound_feed(&f, ids[0], 0, 5, 10);
     sound_load(&f);
     uint64_t digest = fixture_digest(&f, 2, ids);
     for (uint64_t t = 5; t < 40; t += 5) {
@@ -224,11 +222,11 @@ static void a_follower_of_packed_levels_alone_holds_them_by_timeout(void **state
     SluiceStreamedTextureDesc flat = full_chain(64, 64, 128, 128);
     flat.packedTileCount = 2;
     SluiceTextureId primary = fixture_add_small(&f), follower = fixture_add(&f, &flat);
-    fixture_feed_region(&f, primary, 3, 1, 0, 10);
+    sound_feed_region(&f, primary, 3, 1, 0, 10);
     SOUND(&f, sluiceMatchPrimaryTexture(f.manager, primary, follower, 0, 10));
     CHECK_STATE(&f, follower, 0, REQUESTED);
     CHECK_STATE(&f, follower, 1, REQUESTED);
-    fixture_feed(&f, primary, SLUICE_MIP_UNTOUCHED, 9, 10);
+    sound_feed(&f, primary, SLUICE_MIP_UNTOUCHED, 9, 10);
     SOUND(&f, sluiceMatchPrimaryTexture(f.manager, primary, follower, 9, 10));
     CHECK_STATE(&f, follower, 1, REQUESTED);
     SOUND(&f, sluiceMatchPrimaryTexture(f.manager, primary, follower, 10, 10));

@@ -25,11 +25,11 @@ static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
     const uint32_t packed = 5;
     for (uint32_t answer = 0; answer < 2; answer++) { /* after a load, after a cancelled one */
         uint64_t time = answer, retire = answer + 1;
-        fixture_feed(&f, id, 7, time, 0);
+        sound_feed(&f, id, 7, time, 0);
         SOUND(&f, fixture_to_map(&f, id));
         assert_int_equal(f.count, 1);
         check_in_use(&f, id, 0); /* allocated */
-        fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
+        sound_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
         CHECK_STATE(&f, id, packed, CANCELLED);
         check_in_use(&f, id, 0);
         SOUND(&f, fixture_to_cancel(&f, id));
@@ -40,10 +40,10 @@ static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
             SOUND(&f, sluiceUpdateTilesMapping(f.manager, id, 1, &packed));
             CHECK_STATE(&f, id, packed, STANDBY);
             check_in_use(&f, id, 0);
-            fixture_feed(&f, id, 7, time, 0);
+            sound_feed(&f, id, 7, time, 0);
             CHECK_STATE(&f, id, packed, MAPPED);
             check_in_use(&f, id, 0);
-            fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
+            sound_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
             SOUND(&f, sluiceTrimStandbyTiles(f.manager, 0));
             check_in_use(&f, id, 0); /* listed for unmapping */
             SOUND(&f, fixture_to_unmap(&f, id, retire));
@@ -76,7 +76,7 @@ static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
     uint64_t random = 51, time = 0;
     for (uint32_t i = 0; i < CROWD; i++) {
         ids[i] = fixture_add_small(&f);
-        fixture_feed(&f, ids[i], 0, 0, 0);
+        sound_feed(&f, ids[i], 0, 0, 0);
     }
     sound_load(&f);
     assert_int_equal(used_heaps(&f), CROWD * 6 / CROWD_CAPACITY);
@@ -84,7 +84,7 @@ static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
     for (uint32_t i = 0; i < CROWD; i++) { /* one picture in ten stays: all heaps have holes */
         seen[i] = i % 10 == 0;
         if (!seen[i])
-            fixture_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, ++time, 0);
+            sound_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, ++time, 0);
     }
     SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
     for (uint32_t step = 0; step < 200; step++) { /* one comes, then one goes */
@@ -93,9 +93,9 @@ static void a_smaller_working_set_empties_heaps_by_placement_alone(void **state)
             come = (come + 1) % CROWD;
         while (!seen[go])
             go = (go + 1) % CROWD;
-        fixture_feed(&f, ids[come], 0, ++time, 0);
+        sound_feed(&f, ids[come], 0, ++time, 0);
         sound_load(&f);
-        fixture_feed(&f, ids[go], SLUICE_MIP_UNTOUCHED, time, 0);
+        sound_feed(&f, ids[go], SLUICE_MIP_UNTOUCHED, time, 0);
         SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
         seen[come] = true, seen[go] = false;
     }
@@ -135,11 +135,11 @@ static void packed_tiles_move_too_and_pin_no_heap(void **state)
         uint64_t retire = 0;
         for (uint32_t i = 0; i < 12; i++) {
             ids[i] = fixture_add_small(&f);
-            fixture_feed(&f, ids[i], 0, i, 0);
+            sound_feed(&f, ids[i], 0, i, 0);
             sound_load(&f);
         }
         for (uint32_t i = 0; i < 12; i++)
-            fixture_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, 20, 0);
+            sound_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, 20, 0);
         SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
         assert_int_equal(fixture_statistics(&f).mappedTileCount, 12);
         assert_int_equal(used_heaps(&f), 12);
@@ -170,12 +170,12 @@ static void defragmentation_ends_and_then_gains_nothing(void **state)
         SluiceTextureId ids[20];
         for (uint32_t i = 0; i < 20; i++) {
             ids[i] = fixture_add_small(&f);
-            fixture_feed(&f, ids[i], 0, i, 0);
+            sound_feed(&f, ids[i], 0, i, 0);
         }
         sound_load(&f);
         for (uint32_t i = 0; i < 20; i++) /* of each picture something else is still wanted */
-            fixture_feed_region(&f, ids[i], next_random(&random) % 4,
-                                (uint8_t)(next_random(&random) % 3), 20, 0);
+            sound_feed_region(&f, ids[i], next_random(&random) % 4,
+                              (uint8_t)(next_random(&random) % 3), 20, 0);
         SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
         tiles = fixture_statistics(&f).mappedTileCount;
         uint32_t before = used_heaps(&f), fewest = (tiles + capacity - 1) / capacity;
@@ -201,7 +201,7 @@ static void heaps_that_were_released_come_back_up_to_the_cap(void **state)
         ids[i] = fixture_add_small(&f);
     for (uint64_t round = 0; round < 12; round++) {
         for (uint32_t i = 0; i < 3; i++) /* 18 tiles for 12 slots */
-            fixture_feed(&f, ids[(round + i) % 4], 0, round, 0);
+            sound_feed(&f, ids[(round + i) % 4], 0, round, 0);
         CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
         assert_int_equal(f.count, 12);
         CHECK_SOUND(&f);
@@ -209,7 +209,7 @@ static void heaps_that_were_released_come_back_up_to_the_cap(void **state)
         assert_int_equal(f.heaps.living_count, 3);
         assert_int_equal(fixture_statistics(&f).requestedTileCount, 6);
         for (uint32_t i = 0; i < 4; i++)
-            fixture_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, round, 0);
+            sound_feed(&f, ids[i], SLUICE_MIP_UNTOUCHED, round, 0);
         SOUND(&f, fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
         assert_int_equal(empty_heaps(&f), 3);
         for (uint32_t h = 0; h < 1 + round % 3; h++) /* one, two or all */

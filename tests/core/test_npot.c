@@ -204,13 +204,13 @@ static void a_map_of_another_size_changes_nothing_of_a_busy_manager(void **state
     SluiceTextureId ids[2] = {fixture_add(&f, &desc), fixture_add(&f, &desc)};
     CHECK_OK(sluiceSetPrimaryTexture(f.manager, ids[1], ids[0]));
     uint8_t map[256] = {0};
-    fixture_feed(&f, ids[0], 0, 0, 100);
+    sound_feed(&f, ids[0], 0, 0, 100);
     assert_true(fixture_to_map_at_most(&f, ids[0], 100) >= 0);
     for (uint32_t i = 0; i < f.count; i += 3) /* mapped, failed and still loading */
         CHECK_OK(sluiceUpdateTilesMapping(f.manager, ids[0], 1, &f.tiles[i].tileIndex));
     for (uint32_t i = 1; i < f.count; i += 3)
         CHECK_OK(sluiceReportFailedTiles(f.manager, ids[0], 1, &f.tiles[i].tileIndex, 1));
-    fixture_feed_region(&f, ids[0], 0, 0, 9, 100);
+    sound_feed_region(&f, ids[0], 0, 0, 9, 100);
     assert_true(fixture_statistics(&f).failedTileCount > 0);
     SluiceStreamedTextureLayout layout = fixture_layout(&f, ids[0]);
     uint32_t w = layout.feedbackWidth, h = layout.feedbackHeight;
@@ -221,7 +221,7 @@ static void a_map_of_another_size_changes_nothing_of_a_busy_manager(void **state
         REFUSED(&f, 2, ids, sluiceUpdateWithSamplerFeedback(f.manager, ids[0], &feedback, 1000, 0),
                 SLUICE_ERROR_SIZE_MISMATCH);
     }
-    fixture_feed_region(&f, ids[0], 0, 0, 10, 100); /* nor was the time taken over */
+    sound_feed_region(&f, ids[0], 0, 0, 10, 100); /* nor was the time taken over */
     fixture_close(&f);
 }
 

@@ -52,14 +52,13 @@ static void bench_open(struct bench *b)
     fixture_open(&b->f, 8, false);
     fixture_configure(&b->f, 100, 0, 2, 50);
     b->bystander = fixture_add_small(&b->f);
-    fixture_feed(&b->f, b->bystander, 0, 0, 0);
+    sound_feed(&b->f, b->bystander, 0, 0, 0);
     sound_load(&b->f);
 }
 
 static void feed(struct bench *b, SluiceTextureId id, uint8_t level)
 {
-    fixture_feed(&b->f, id, level, b->time, 0);
-    CHECK_SOUND(&b->f);
+    sound_feed(&b->f, id, level, b->time, 0);
 }
 
 static void answer_failed(struct bench *b, SluiceTextureId id)

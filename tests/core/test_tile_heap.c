@@ -199,8 +199,8 @@ static void released_heaps_are_never_chosen(void **state)
             assert_int_equal(s.released, HEAPS - left);
             assert_true(slc_tile_heaps_find(&s.heaps, left) == UINT32_MAX);
             s.count = left;
-            if (left && s.capacity > 1)
-                set_free(&s, left - 1, s.capacity / 2);
+            if (left) /* the fullest, but not full where it can be helped */
+                set_free(&s, left - 1, s.capacity - s.capacity / (s.capacity < 100 ? 2 : 50));
             check_choice(&s);
         }
         assert_true(s.heaps.free_total == 0 && s.heaps.live_count == 0);

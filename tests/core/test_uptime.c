@@ -35,7 +35,7 @@ static void open_app(struct app *a, uint64_t start)
         a->ids[i] = fixture_add(&a->f, i == 2 ? &half : &desc);
     CHECK_OK(sluiceSetPrimaryTexture(a->f.manager, a->ids[2], a->ids[0]));
     /* A map that asks for nothing: the clock stands at `start`, and it was read. */
-    fixture_feed(&a->f, a->ids[3], SLUICE_MIP_UNTOUCHED, start, 0);
+    sound_feed(&a->f, a->ids[3], SLUICE_MIP_UNTOUCHED, start, 0);
 }
 
 /* A spot that wanders over the texture; everything else is not sampled. */
