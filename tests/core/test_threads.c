@@ -1,8 +1,10 @@
+#define _POSIX_C_SOURCE 200112L /* pthread_barrier_t */
 #include "core/fixture.h"
 
 #include <pthread.h>
+#include <sched.h>
 
-enum { THREAD_COUNT = 4, TEXTURE_COUNT = 4, ROUND_COUNT = 200 };
+enum { THREAD_COUNT = 4, TEXTURE_COUNT = 5, ROUND_COUNT = 200 };
 
 static uint64_t mix(uint64_t h, uint64_t value)
 {
@@ -13,8 +15,9 @@ static uint64_t mix(uint64_t h, uint64_t value)
 struct reader {
     const SluiceStreamedTextureManager *manager;
     const SluiceTextureId *ids;
-    uint64_t hash;   ///< out: of all that was read
-    uint32_t errors; ///< out
+    pthread_barrier_t *start; ///< NULL: nobody to wait for
+    uint64_t hash;            ///< out: of all that was read
+    uint32_t errors;          ///< out
 };
 
 /* Every call that takes a const manager. No checks of cmocka: they belong to the main thread. */
@@ -45,8 +48,12 @@ static void read_once(struct reader *r, SluiceTextureId id)
 static void *read_all(void *user)
 {
     struct reader *r = user;
-    for (uint32_t round = 0; round < ROUND_COUNT; round++)
+    if (r->start) /* else the first may be done before the last begins, and nothing overlaps */
+        pthread_barrier_wait(r->start);
+    for (uint32_t round = 0; round < ROUND_COUNT; round++) {
         read_once(r, r->ids[round % TEXTURE_COUNT]);
+        sched_yield(); /* so that they do on a single core too */
+    }
     return NULL;
 }
 
@@ -60,6 +67,8 @@ static void calls_on_a_const_manager_may_run_beside_each_other(void **state)
     for (uint32_t i = 0; i < TEXTURE_COUNT; i++) {
         SluiceStreamedTextureDesc desc = full_chain(1000 + 100 * i, 700, 128, 128);
         ids[i] = fixture_add(&f, &desc);
+        if (i == 4)
+            continue; /* never sampled */
         uint8_t map[256];
         for (uint32_t r = 0; r < sizeof map; r++)
             map[r] = next_random(&random) % 4;
@@ -70,12 +79,15 @@ static void calls_on_a_const_manager_may_run_beside_each_other(void **state)
     }
     struct reader readers[THREAD_COUNT + 1];
     pthread_t threads[THREAD_COUNT];
+    pthread_barrier_t start;
+    assert_int_equal(pthread_barrier_init(&start, NULL, THREAD_COUNT), 0);
     for (uint32_t i = 0; i <= THREAD_COUNT; i++)
-        readers[i] = (struct reader){f.manager, ids, 1, 0};
+        readers[i] = (struct reader){f.manager, ids, i < THREAD_COUNT ? &start : NULL, 1, 0};
     for (uint32_t i = 0; i < THREAD_COUNT; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, read_all, &readers[i]), 0);
     for (uint32_t i = 0; i < THREAD_COUNT; i++)
         assert_int_equal(pthread_join(threads[i], NULL), 0);
+    pthread_barrier_destroy(&start);
     read_all(&readers[THREAD_COUNT]); /* alone */
     for (uint32_t i = 0; i <= THREAD_COUNT; i++) {
         assert_int_equal(readers[i].errors, 0);
