@@ -1,0 +1,279 @@
+/**
+ * The self-test: tiny random traces of one set, where everything can be tried out.
+ */
+#include "clairvoyant.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NODES = 6, FRAMES = 9, CASES = 400 };
+
+struct tiny {
+    struct workload w;
+    uint32_t regions[FRAMES][NODES]; ///< that need a node in a frame
+};
+
+static uint64_t random_state = 1;
+
+static uint32_t random_below(uint32_t limit)
+{
+    random_state = random_state * 6364136223846793005ull + 1442695040888963407ull;
+    return (uint32_t)(random_state >> 33) % limit;
+}
+
+/** Node 0 is packed; every need of a node is one of its parent too. */
+static void tiny_fill(struct tiny *t, uint32_t nodes)
+{
+    struct workload *w = &t->w;
+    w->nodes = clv_alloc(nodes + 1, sizeof *w->nodes);
+    for (uint32_t n = 0; n < nodes; n++) {
+        uint32_t parent = n ? random_below(n) : NO_NODE;
+        uint32_t level = n ? w->nodes[parent].level - 1u : NODES;
+        w->nodes[n] = (struct node){
+            .parent = parent, .size = 1, .level = (uint8_t)level, .packed = n == 0, .tile = n};
+    }
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        bool seen = random_below(3) > 0;
+        for (uint32_t n = nodes; seen && n-- > 0;) {
+            t->regions[f][n] += random_below(2) * random_below(4);
+            if (n)
+                t->regions[f][w->nodes[n].parent] += t->regions[f][n];
+        }
+    }
+}
+
+static void tiny_init(struct tiny *t, uint32_t nodes)
+{
+    struct frame_use order[FRAMES * NODES];
+    struct use uses[FRAMES * NODES];
+    struct workload *w = &t->w;
+    *t = (struct tiny){.w = {.frame_count = FRAMES, .set_count = 1, .node_count = nodes}};
+    tiny_fill(t, nodes);
+    w->visit_first = clv_alloc(3, sizeof *w->visit_first);
+    w->visits = clv_alloc(FRAMES, sizeof *w->visits);
+    w->set_texture = clv_alloc(1, sizeof *w->set_texture);
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        if (t->regions[f][0])
+            w->visits[w->visit_first[1]++] = f;
+        w->regions += t->regions[f][0];
+        for (uint32_t n = 0; n < nodes; n++)
+            if (t->regions[f][n]) {
+                order[w->use_count] = (struct frame_use){n, w->use_count};
+                uses[w->use_count++] =
+                    (struct use){.frame = f & 0xff, .regions = (uint16_t)t->regions[f][n]};
+            }
+    }
+    w->packed_tiles = 1;
+    clv_workload_index(w, order, uses);
+}
+
+static uint32_t bit_count(uint32_t x)
+{
+    uint32_t count = 0;
+    for (; x; x &= x - 1)
+        count++;
+    return count;
+}
+
+static uint32_t needed_in(const struct tiny *t, uint32_t frame)
+{
+    uint32_t set = 0;
+    for (uint32_t n = 1; n < NODES; n++)
+        set |= (uint32_t)(t->regions[frame][n] > 0) << (n - 1);
+    return set;
+}
+
+static uint32_t largest_need(const struct tiny *t)
+{
+    uint32_t most = 1;
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        uint32_t count = bit_count(needed_in(t, f));
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+/** Fewest uploads over all sequences of cache contents that serve every frame. */
+static uint32_t fewest_uploads(const struct tiny *t, uint32_t cap)
+{
+    enum { SETS = 1 << (NODES - 1), FAR = 1000000 };
+    uint32_t cost[SETS], next[SETS], least = FAR;
+    for (uint32_t s = 0; s < SETS; s++)
+        cost[s] = s ? FAR : 0;
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        uint32_t need = needed_in(t, f);
+        for (uint32_t to = 0; to < SETS; to++) {
+            next[to] = FAR;
+            for (uint32_t s = 0; (to & need) == need && bit_count(to) <= cap && s < SETS; s++) {
+                uint32_t sum = cost[s] + bit_count(to & ~s);
+                next[to] = sum < next[to] ? sum : next[to];
+            }
+        }
+        memcpy(cost, next, sizeof cost);
+    }
+    for (uint32_t s = 0; s < SETS; s++)
+        least = cost[s] < least ? cost[s] : least;
+    return least;
+}
+
+/** Contents of the nodes, as bits: there; and handed out in the frame before, with latency 1. */
+struct contents {
+    uint32_t there, coming;
+};
+
+static uint32_t deficit_of(const struct tiny *t, uint32_t frame, uint32_t there)
+{
+    uint32_t sum = 0, seen = 0;
+    for (uint32_t n = 0; n < t->w.node_count; n++) {
+        uint32_t parent = t->w.nodes[n].parent;
+        bool good = there >> n & 1 && (n == 0 || seen >> parent & 1);
+        seen |= (uint32_t)good << n;
+        sum += good ? 0 : t->regions[frame][n];
+    }
+    return sum;
+}
+
+static bool allowed(const struct limits *limits, struct contents from, uint32_t kept,
+                    uint32_t loaded)
+{
+    bool packed_kept = (kept & 1) == (from.there & 1);
+    uint32_t slots = bit_count((kept | from.coming | loaded) & ~1u);
+    return packed_kept && (kept & ~from.there) == 0 && (loaded & (from.there | from.coming)) == 0 &&
+           bit_count(loaded) <= limits->budget && slots <= limits->cap;
+}
+
+/** Fewest levels too coarse over all schedules, for latency 0 and 1. */
+static uint32_t least_deficit(const struct tiny *t, const struct limits *limits)
+{
+    enum { SETS = 1 << NODES, FAR = 1000000 };
+    static uint32_t cost[SETS][SETS], next[SETS][SETS]; /* [there][coming] */
+    uint32_t sets = 1u << t->w.node_count, least = FAR;
+    for (uint32_t i = 0; i < sets * SETS; i++)
+        cost[i / SETS][i % SETS] = i ? FAR : 0;
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        for (uint32_t i = 0; i < sets * SETS; i++)
+            next[i / SETS][i % SETS] = FAR;
+        for (uint32_t i = 0; i < sets * sets; i++) {
+            struct contents from = {i / sets, i % sets};
+            if (cost[from.there][from.coming] == FAR)
+                continue;
+            uint32_t sum = cost[from.there][from.coming] + deficit_of(t, f, from.there);
+            for (uint32_t j = 0; j < sets * sets; j++) {
+                uint32_t kept = j / sets, loaded = j % sets;
+                if (!allowed(limits, from, kept, loaded))
+                    continue;
+                uint32_t there = kept | from.coming | (limits->latency ? 0 : loaded);
+                uint32_t *to = &next[there][limits->latency ? loaded : 0];
+                *to = sum < *to ? sum : *to;
+            }
+        }
+        memcpy(cost, next, sizeof cost);
+    }
+    for (uint32_t i = 0; i < sets * SETS; i++)
+        least = cost[i / SETS][i % SETS] < least ? cost[i / SETS][i % SETS] : least;
+    return least;
+}
+
+static bool report(const char *fact, uint32_t wrong, uint32_t cases)
+{
+    printf("%s - %s (%u of %u cases)\n", wrong ? "not ok" : "ok", fact, cases - wrong, cases);
+    return wrong == 0;
+}
+
+static bool belady_is_minimal(void)
+{
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < CASES; i++) {
+        struct tiny t;
+        tiny_init(&t, NODES);
+        uint32_t cap = largest_need(&t) + random_below(2);
+        struct belady result = clv_belady(&t.w, cap);
+        wrong += result.uploads != fewest_uploads(&t, cap) + t.w.packed_tiles || result.unserved;
+        result = clv_belady(&t.w, UINT64_MAX);
+        wrong += result.uploads != result.distinct;
+        clv_workload_finish(&t.w);
+    }
+    return report("belady_needs_no_more_uploads_than_the_best_of_all", wrong, CASES);
+}
+
+static bool belady_tells_what_does_not_fit(void)
+{
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < CASES; i++) {
+        struct tiny t;
+        tiny_init(&t, NODES);
+        uint32_t over = 0, unserved = 0;
+        for (uint32_t f = 0; f < FRAMES; f++) {
+            uint32_t need = bit_count(needed_in(&t, f));
+            over += need > 2;
+            unserved += need > 2 ? need - 2 : 0;
+        }
+        struct belady result = clv_belady(&t.w, 2);
+        wrong += result.frames_over_cap != over || result.unserved != unserved;
+        clv_workload_finish(&t.w);
+    }
+    return report("belady_tells_how_much_an_instant_exceeds_the_cap", wrong, CASES);
+}
+
+/** Schedules lie between the optimum and, summed over all cases, 1.1 times that. */
+static bool schedules_and_bound_enclose_the_optimum(void)
+{
+    uint32_t wrong = 0, cases = CASES / 4;
+    uint64_t optimum = 0, reached = 0;
+    double bounds = 0;
+    for (uint32_t i = 0; i < cases; i++) {
+        struct tiny t;
+        tiny_init(&t, 5);
+        struct limits limits = {1 + random_below(3), 1 + random_below(2), random_below(2), false};
+        uint32_t least = least_deficit(&t, &limits);
+        struct outcome deadline = clv_schedule(&t.w, &limits, NULL, NULL);
+        struct prices prices;
+        clv_prices_find(&prices, &t.w, &limits, deadline.deficit, 200, 1e6);
+        struct outcome priced = clv_schedule(&t.w, &limits, &prices, NULL);
+        wrong += prices.bound > least + 1e-6 || deadline.deficit < least ||
+                 priced.deficit < least || priced.peak > limits.cap + 1 ||
+                 deadline.peak > limits.cap + 1;
+        optimum += least;
+        bounds += prices.bound;
+        reached += priced.deficit < deadline.deficit ? priced.deficit : deadline.deficit;
+        clv_prices_finish(&prices);
+        clv_workload_finish(&t.w);
+    }
+    printf("# levels too coarse: bound %.1f, optimum %llu, schedules %llu\n", bounds,
+           (unsigned long long)optimum, (unsigned long long)reached);
+    bool tight = 10 * reached <= 11 * optimum && bounds >= 0.9 * (double)optimum;
+    bool good = report("no_schedule_beats_the_optimum_and_no_bound_exceeds_it", wrong, cases);
+    return report("schedules_and_bounds_are_within_a_tenth_of_the_optimum", !tight, 1) && good;
+}
+
+/** Nothing is there before frame 0, so only its maps can be wrong. */
+static bool without_limits_only_frame_0_is_wrong(void)
+{
+    uint32_t wrong = 0;
+    struct limits limits = {UINT64_MAX, 1000, 0, false};
+    for (uint32_t i = 0; i < CASES; i++) {
+        struct tiny t;
+        tiny_init(&t, NODES);
+        struct outcome deadline = clv_schedule(&t.w, &limits, NULL, NULL);
+        struct prices prices;
+        clv_prices_find(&prices, &t.w, &limits, deadline.deficit, 20, 1e6);
+        struct outcome priced = clv_schedule(&t.w, &limits, &prices, NULL);
+        uint64_t first = deficit_of(&t, 0, 0), distinct = clv_belady(&t.w, UINT64_MAX).distinct;
+        wrong += deadline.deficit != first || priced.deficit != first ||
+                 fabs(prices.bound - (double)first) > 1e-6 || deadline.uploads > distinct ||
+                 priced.uploads > distinct;
+        clv_prices_finish(&prices);
+        clv_workload_finish(&t.w);
+    }
+    return report("without_limits_only_the_first_frame_is_too_coarse", wrong, CASES);
+}
+
+int clv_self_test(void)
+{
+    bool good = belady_is_minimal();
+    good &= belady_tells_what_does_not_fit();
+    good &= schedules_and_bound_enclose_the_optimum();
+    good &= without_limits_only_frame_0_is_wrong();
+    return good ? 0 : 1;
+}
