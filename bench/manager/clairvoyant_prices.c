@@ -255,7 +255,7 @@ void clv_prices_find(struct prices *p, const struct workload *w, const struct li
             memcpy(best, p->upload, frames * sizeof *best);
             memcpy(best + frames, p->slot, frames * sizeof *best);
         }
-        if (since == 20) { /* overshooting */
+        if (since == 10) { /* overshooting */
             theta *= 0.8;
             since = 0;
         }

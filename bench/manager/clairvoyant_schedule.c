@@ -130,13 +130,21 @@ static double priced_bid(const struct play *p, const struct node *node, uint32_t
     return (now - gain_later(p, node, later, use)) / node->size;
 }
 
+/** Held to a drop: it would be back in time for the map that the drop has cost. */
+static bool is_barred(const struct play *p, uint32_t n)
+{
+    const struct live *live = &p->live[n];
+    return live->usable > live->next &&
+           p->frame + p->limits->latency < p->w->uses[live->next].frame;
+}
+
 static void bid_to_load(struct play *p, uint32_t n, uint32_t end)
 {
     const struct live *live = &p->live[n];
     uint32_t use = live->next > live->usable ? live->next : live->usable;
     while (use < end && p->w->uses[use].frame <= p->frame + p->limits->latency)
         use++;
-    if (use == end)
+    if (use == end || is_barred(p, n))
         return;
     const struct node *node = &p->w->nodes[n];
     double amount = p->prices ? priced_bid(p, node, use, 0) : 0;
@@ -248,7 +256,7 @@ static bool admit(struct play *p, uint32_t n, double amount)
         return true;
     if (node->parent != NO_NODE && !admit(p, node->parent, amount))
         return false;
-    if (p->room <= 0)
+    if (p->room <= 0 || is_barred(p, n))
         return false;
     if (node->parent != NO_NODE)
         p->live[node->parent].children++; /* so that it is not dropped to make room */
