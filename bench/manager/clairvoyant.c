@@ -24,6 +24,10 @@
  * "Brought back" counts these uploads. With hold=1 a tile that was dropped between two maps in
  * succession that both need it counts for the first of them alone.
  *
+ * "Stale" is the harness's rule: the latest map of the set does not need the tile that has come.
+ * That is true of whatever is fetched ahead, so here it is no fault; "never seen" is waste. A set
+ * whose tiles are split between two frames by the budget counts as come with the last of them.
+ *
  * "Reactive floor": levels too coarse of a manager with no limits that loads whatever was asked
  * for, keeps it for good and never guesses. It knows of a tile when it is too late for the first
  * map; "appears", "enters" and "finer" say what was new: the set, the region or the level.
@@ -104,7 +108,7 @@ static void print(const struct options *o, const char *group, const char *name, 
         printf("{\"name\": \"%s/%s\", \"value\": %.6g, \"unit\": \"%s\"}\n", group, name, value,
                unit);
     else
-        printf("%-10s %-28s %12.10g %s\n", group, name, value, unit);
+        printf("%-15s %-18s %12.10g %s\n", group, name, value, unit);
 }
 
 static void print_outcome(const struct options *o, const struct workload *w, const char *group,
@@ -129,10 +133,10 @@ static void print_workload(const struct options *o, const struct workload *w,
     print(o, "trace", "touched_regions", (double)w->regions, "regions");
     print(o, "trace", "needed_tiles", (double)belady->distinct, "tiles");
     print(o, "trace", "largest_instant", (double)belady->largest_instant, "tiles");
-    print(o, "reactive", "appears", (double)floor->appears / regions, "levels");
-    print(o, "reactive", "enters", (double)floor->enters / regions, "levels");
-    print(o, "reactive", "finer", (double)floor->finer / regions, "levels");
-    print(o, "reactive", "too_coarse", 100 * (double)floor->regions / regions,
+    print(o, "reactive_floor", "appears", (double)floor->appears / regions, "levels");
+    print(o, "reactive_floor", "enters", (double)floor->enters / regions, "levels");
+    print(o, "reactive_floor", "finer", (double)floor->finer / regions, "levels");
+    print(o, "reactive_floor", "too_coarse", 100 * (double)floor->regions / regions,
           "percent of regions");
     print(o, "Belady", "uploads", (double)belady->uploads, "tiles");
     print(o, "Belady", "frames_over_cap", belady->frames_over_cap, "frames");

@@ -1,5 +1,5 @@
 /**
- * The self-test: tiny random traces of one set, where everything can be tried out.
+ * The self-test: tiny random traces of two sets, where everything can be tried out.
  */
 #include "clairvoyant.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NODES = 6, FRAMES = 9, CASES = 400 };
+enum { SETS = 2, NODES = 7, FRAMES = 12, CASES = 400 };
 
 struct tiny {
     struct workload w;
@@ -22,25 +22,41 @@ static uint32_t random_below(uint32_t limit)
     return (uint32_t)(random_state >> 33) % limit;
 }
 
-/** Node 0 is packed; every need of a node is one of its parent too. */
+/** Every other node is of the same set; every need of a node is one of its parent too. */
 static void tiny_fill(struct tiny *t, uint32_t nodes)
 {
     struct workload *w = &t->w;
+    uint32_t visits = 1 + random_below(3); /* in 4 frames */
     w->nodes = clv_alloc(nodes + 1, sizeof *w->nodes);
     for (uint32_t n = 0; n < nodes; n++) {
-        uint32_t parent = n ? random_below(n) : NO_NODE;
-        uint32_t level = n ? w->nodes[parent].level - 1u : NODES;
-        w->nodes[n] = (struct node){
-            .parent = parent, .size = 1, .level = (uint8_t)level, .packed = n == 0, .tile = n};
+        uint32_t set = n % SETS, grandchild = n >= 2 * SETS && random_below(2);
+        uint32_t parent = n < SETS ? NO_NODE : grandchild ? n - SETS : set;
+        uint32_t level = n < SETS ? NODES : w->nodes[parent].level - 1u;
+        w->nodes[n] = (struct node){.set = set,
+                                    .parent = parent,
+                                    .size = 1,
+                                    .level = (uint8_t)level,
+                                    .packed = n < SETS,
+                                    .tile = n};
     }
     for (uint32_t f = 0; f < FRAMES; f++) {
-        bool seen = random_below(3) > 0;
-        for (uint32_t n = nodes; seen && n-- > 0;) {
-            t->regions[f][n] += random_below(2) * random_below(4);
-            if (n)
+        bool seen[SETS] = {random_below(4) < visits, random_below(4) < visits};
+        for (uint32_t n = nodes; n-- > 0;) {
+            if (seen[n % SETS])
+                t->regions[f][n] += random_below(2) * random_below(4);
+            if (n >= SETS)
                 t->regions[f][w->nodes[n].parent] += t->regions[f][n];
         }
     }
+}
+
+/** The frame of the last map of a set before `frame`, in which something was needed; -1: none. */
+static int last_visit(const struct tiny *t, uint32_t set, uint32_t frame)
+{
+    int f = (int)frame - 1;
+    while (f >= 0 && t->regions[f][set] == 0)
+        f--;
+    return f;
 }
 
 static void tiny_init(struct tiny *t, uint32_t nodes)
@@ -48,26 +64,29 @@ static void tiny_init(struct tiny *t, uint32_t nodes)
     struct frame_use order[FRAMES * NODES];
     struct use uses[FRAMES * NODES];
     struct workload *w = &t->w;
-    *t = (struct tiny){.w = {.frame_count = FRAMES, .set_count = 1, .node_count = nodes}};
+    *t = (struct tiny){.w = {.frame_count = FRAMES, .set_count = SETS, .node_count = nodes}};
     tiny_fill(t, nodes);
-    w->visit_first = clv_alloc(3, sizeof *w->visit_first);
-    w->visits = clv_alloc(FRAMES, sizeof *w->visits);
-    w->set_texture = clv_alloc(1, sizeof *w->set_texture);
-    int last = -1;
-    for (uint32_t f = 0; f < FRAMES; f++) {
-        if (t->regions[f][0])
-            w->visits[w->visit_first[1]++] = f;
-        w->regions += t->regions[f][0];
-        for (uint32_t n = 0; n < nodes; n++)
-            if (t->regions[f][n]) {
-                order[w->use_count] = (struct frame_use){n, w->use_count};
-                uses[w->use_count++] = (struct use){.frame = f & 0xff,
-                                                    .follows = last >= 0 && t->regions[last][n],
-                                                    .regions = (uint16_t)t->regions[f][n]};
-            }
-        last = t->regions[f][0] ? (int)f : last;
+    w->visit_first = clv_alloc(SETS + 1, sizeof *w->visit_first);
+    w->visits = clv_alloc((size_t)SETS * FRAMES, sizeof *w->visits);
+    w->set_texture = clv_alloc(SETS, sizeof *w->set_texture);
+    for (uint32_t s = 0, count = 0; s < SETS; s++) {
+        for (uint32_t f = 0; f < FRAMES; f++)
+            if (t->regions[f][s])
+                w->visits[count++] = f;
+        w->visit_first[s + 1] = count;
     }
-    w->packed_tiles = 1;
+    for (uint32_t f = 0; f < FRAMES; f++)
+        for (uint32_t n = 0; n < nodes; n++) {
+            int last = last_visit(t, n % SETS, f);
+            w->regions += n < SETS ? t->regions[f][n] : 0;
+            if (t->regions[f][n] == 0)
+                continue;
+            order[w->use_count] = (struct frame_use){n, w->use_count};
+            uses[w->use_count++] = (struct use){.frame = f & 0xff,
+                                                .follows = last >= 0 && t->regions[last][n],
+                                                .regions = (uint16_t)t->regions[f][n]};
+        }
+    w->packed_tiles = SETS;
     clv_workload_index(w, order, uses);
 }
 
@@ -82,8 +101,8 @@ static uint32_t bit_count(uint32_t x)
 static uint32_t needed_in(const struct tiny *t, uint32_t frame)
 {
     uint32_t set = 0;
-    for (uint32_t n = 1; n < NODES; n++)
-        set |= (uint32_t)(t->regions[frame][n] > 0) << (n - 1);
+    for (uint32_t n = SETS; n < NODES; n++)
+        set |= (uint32_t)(t->regions[frame][n] > 0) << (n - SETS);
     return set;
 }
 
@@ -100,22 +119,22 @@ static uint32_t largest_need(const struct tiny *t)
 /** Fewest uploads over all sequences of cache contents that serve every frame. */
 static uint32_t fewest_uploads(const struct tiny *t, uint32_t cap)
 {
-    enum { SETS = 1 << (NODES - 1), FAR = 1000000 };
-    uint32_t cost[SETS], next[SETS], least = FAR;
-    for (uint32_t s = 0; s < SETS; s++)
+    enum { CONTENTS = 1 << (NODES - SETS), FAR = 1000000 };
+    uint32_t cost[CONTENTS], next[CONTENTS], least = FAR;
+    for (uint32_t s = 0; s < CONTENTS; s++)
         cost[s] = s ? FAR : 0;
     for (uint32_t f = 0; f < FRAMES; f++) {
         uint32_t need = needed_in(t, f);
-        for (uint32_t to = 0; to < SETS; to++) {
+        for (uint32_t to = 0; to < CONTENTS; to++) {
             next[to] = FAR;
-            for (uint32_t s = 0; (to & need) == need && bit_count(to) <= cap && s < SETS; s++) {
+            for (uint32_t s = 0; (to & need) == need && bit_count(to) <= cap && s < CONTENTS; s++) {
                 uint32_t sum = cost[s] + bit_count(to & ~s);
                 next[to] = sum < next[to] ? sum : next[to];
             }
         }
         memcpy(cost, next, sizeof cost);
     }
-    for (uint32_t s = 0; s < SETS; s++)
+    for (uint32_t s = 0; s < CONTENTS; s++)
         least = cost[s] < least ? cost[s] : least;
     return least;
 }
@@ -127,7 +146,7 @@ struct contents {
     uint32_t lost; ///< dropped, and not to be back for the next map that needs it
 };
 
-enum { BITS = 4, STATES = 1 << 4 * BITS, FAR_OFF = 1000000 };
+enum { PACKED = (1 << SETS) - 1, BITS = 5, STATES = 1 << 4 * BITS, FAR_OFF = 1000000 };
 
 static struct contents unpack(uint32_t state)
 {
@@ -147,7 +166,7 @@ static uint32_t sample_tiny(const struct tiny *t, uint32_t frame, struct content
     uint32_t sum = 0, seen = 0;
     for (uint32_t n = 0; n < t->w.node_count; n++) {
         uint32_t bit = 1u << n, parent = t->w.nodes[n].parent;
-        if (c->there & bit && (n == 0 || seen >> parent & 1))
+        if (c->there & bit && (n < SETS || seen >> parent & 1))
             seen |= bit;
         if (t->regions[frame][n] == 0)
             continue;
@@ -170,8 +189,8 @@ static const struct use *next_use(const struct tiny *t, uint32_t node, uint32_t 
 static bool act(const struct tiny *t, const struct limits *limits, uint32_t frame, uint32_t kept,
                 uint32_t loaded, struct contents *c)
 {
-    uint32_t dropped = c->there & ~kept, slots = bit_count((kept | c->coming | loaded) & ~1u);
-    if (kept & ~c->there || loaded & (c->there | c->coming) || dropped & 1 ||
+    uint32_t dropped = c->there & ~kept, slots = bit_count((kept | c->coming | loaded) & ~PACKED);
+    if (kept & ~c->there || loaded & (c->there | c->coming) || dropped & PACKED ||
         bit_count(loaded) > limits->budget || slots > limits->cap)
         return false;
     for (uint32_t n = 0; limits->hold && n < t->w.node_count; n++) {
@@ -262,24 +281,74 @@ static bool belady_tells_what_does_not_fit(void)
     return report("belady_tells_how_much_an_instant_exceeds_the_cap", wrong, CASES);
 }
 
+/** Plays a written schedule by the rules of the exhaustive search. */
+static bool plan_is_legal(const struct tiny *t, const struct limits *limits, FILE *plan,
+                          uint64_t *deficit)
+{
+    uint32_t frame = NO_NODE, node = 0;
+    bool legal = true;
+    char what = 0;
+    struct contents c = {0};
+    rewind(plan);
+    bool more = fscanf(plan, "%u %c %*u %u %*u", &frame, &what, &node) == 3;
+    for (uint32_t f = 0; f < FRAMES; f++) {
+        *deficit += sample_tiny(t, f, &c);
+        uint32_t kept = c.there, loaded = 0;
+        while (more && frame == f && node < t->w.node_count) {
+            if (what == '+')
+                loaded |= 1u << node;
+            else
+                kept &= ~(1u << node);
+            more = fscanf(plan, "%u %c %*u %u %*u", &frame, &what, &node) == 3;
+        }
+        legal &= act(t, limits, f, kept, loaded, &c);
+    }
+    return legal && !more;
+}
+
+static bool schedules_are_legal_and_add_up(bool hold)
+{
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < 2 * CASES; i++) {
+        struct tiny t;
+        tiny_init(&t, BITS);
+        struct limits limits = {1 + random_below(2), 1 + random_below(2), random_below(2), hold};
+        struct prices prices;
+        clv_prices_find(&prices, &t.w, &limits, 0, 30, 4);
+        FILE *plan = tmpfile();
+        uint64_t deficit = 0;
+        struct outcome outcome = {0};
+        if (plan)
+            outcome = clv_schedule(&t.w, &limits, i % 2 ? &prices : NULL, plan);
+        wrong += !plan || !plan_is_legal(&t, &limits, plan, &deficit) || deficit != outcome.deficit;
+        if (plan)
+            fclose(plan);
+        clv_prices_finish(&prices);
+        clv_workload_finish(&t.w);
+    }
+    return report(hold ? "schedules_with_hold_keep_to_the_limits_and_their_deficits_add_up"
+                       : "schedules_keep_to_the_limits_and_their_deficits_add_up",
+                  wrong, 2 * CASES);
+}
+
 /** Schedules lie between the optimum and, summed over all cases, 1.1 times that. */
 static bool schedules_and_bound_enclose_the_optimum(bool hold)
 {
-    uint32_t wrong = 0, cases = CASES / 4;
+    uint32_t wrong = 0, cases = CASES / 8;
     uint64_t optimum = 0, reached = 0;
     double bounds = 0;
     for (uint32_t i = 0; i < cases; i++) {
         struct tiny t;
         tiny_init(&t, BITS);
-        struct limits limits = {1 + random_below(3), 1 + random_below(2), random_below(2), hold};
+        struct limits limits = {1 + random_below(2), 1 + random_below(2), random_below(2), hold};
         uint32_t least = least_deficit(&t, &limits);
         struct outcome deadline = clv_schedule(&t.w, &limits, NULL, NULL);
         struct prices prices;
         clv_prices_find(&prices, &t.w, &limits, deadline.deficit, 200, 1e6);
         struct outcome priced = clv_schedule(&t.w, &limits, &prices, NULL);
         wrong += prices.bound > least + 1e-6 || deadline.deficit < least ||
-                 priced.deficit < least || priced.peak > limits.cap + 1 ||
-                 deadline.peak > limits.cap + 1;
+                 priced.deficit < least || priced.peak > limits.cap + SETS ||
+                 deadline.peak > limits.cap + SETS;
         optimum += least;
         bounds += prices.bound;
         reached += priced.deficit < deadline.deficit ? priced.deficit : deadline.deficit;
@@ -323,6 +392,8 @@ int clv_self_test(void)
     good &= belady_tells_what_does_not_fit();
     good &= schedules_and_bound_enclose_the_optimum(false);
     good &= schedules_and_bound_enclose_the_optimum(true);
+    good &= schedules_are_legal_and_add_up(false);
+    good &= schedules_are_legal_and_add_up(true);
     good &= without_limits_only_frame_0_is_wrong();
     return good ? 0 : 1;
 }
