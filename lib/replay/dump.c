@@ -133,6 +133,8 @@ static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManager
     add(dump, " standby=%" PRIu32 " heaps=%" PRIu32 " attempts=%" PRIu32, c->numExtraStandbyTiles,
         c->maxHeapCount, c->maxLoadAttempts);
     add(dump, " retry-delay=%" PRIu64, c->retryDelay);
+    if (c->missesToForget || c->prefetchLevels)
+        add(dump, " misses=%" PRIu32 " prefetch=%" PRIu32, c->missesToForget, c->prefetchLevels);
 }
 
 static void add_feedback(struct slc_dump *dump, const SluiceFeedbackDesc *f)

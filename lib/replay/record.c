@@ -39,15 +39,23 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
     slc_put_varint(out, id >> 32);
 }
 
+/** In place of SLC_INPUT_PRESENT: a configuration with the fields that came later. */
+#define CONFIG_WITH_MORE (SLC_INPUT_PRESENT + 1)
+
 static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManagerConfig *config)
 {
-    slc_put_u8(out, config ? SLC_INPUT_PRESENT : SLC_INPUT_NULL);
+    bool more = config && (config->missesToForget || config->prefetchLevels);
+    slc_put_u8(out, !config ? SLC_INPUT_NULL : more ? CONFIG_WITH_MORE : SLC_INPUT_PRESENT);
     if (!config)
         return;
     slc_put_varint(out, config->numExtraStandbyTiles);
     slc_put_varint(out, config->maxHeapCount);
     slc_put_varint(out, config->maxLoadAttempts);
     slc_put_varint(out, config->retryDelay);
+    if (!more)
+        return;
+    slc_put_varint(out, config->missesToForget);
+    slc_put_varint(out, config->prefetchLevels);
 }
 
 static void put_desc(struct slc_bytes *out, const struct slc_call *call)
@@ -178,12 +186,20 @@ static enum slc_input get_input(struct slc_cursor *in)
 
 static void get_config(struct slc_cursor *in, struct slc_record *record)
 {
-    if (get_input(in) == SLC_INPUT_NULL)
+    size_t start = in->pos;
+    uint8_t mark = slc_get_u8(in);
+    if (mark > CONFIG_WITH_MORE)
+        slc_cursor_fail(in, start, "a configuration's mark of presence is above 3");
+    if (in->why || mark == SLC_INPUT_NULL)
         return;
     record->config.numExtraStandbyTiles = slc_get_varint32(in);
     record->config.maxHeapCount = slc_get_varint32(in);
     record->config.maxLoadAttempts = slc_get_varint32(in);
     record->config.retryDelay = slc_get_varint(in);
+    if (mark == CONFIG_WITH_MORE) {
+        record->config.missesToForget = slc_get_varint32(in);
+        record->config.prefetchLevels = slc_get_varint32(in);
+    }
     record->call.config = &record->config;
 }
 

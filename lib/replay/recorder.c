@@ -101,7 +101,9 @@ static void write_configuration(SluiceRecorder *recorder)
     const SluiceStreamedTextureManagerConfig *config = slc_manager_config(recorder->manager);
     if (config->numExtraStandbyTiles != none.numExtraStandbyTiles ||
         config->maxHeapCount != none.maxHeapCount ||
-        config->maxLoadAttempts != none.maxLoadAttempts || config->retryDelay != none.retryDelay)
+        config->maxLoadAttempts != none.maxLoadAttempts || config->retryDelay != none.retryDelay ||
+        config->missesToForget != none.missesToForget ||
+        config->prefetchLevels != none.prefetchLevels)
         notify(recorder, recorder->manager,
                &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});
 }

@@ -265,6 +265,8 @@ static SluiceResult set_config(struct random_app *app)
         .maxHeapCount = random_app_below(app, RANDOM_APP_HEAPS),
         .maxLoadAttempts = random_app_below(app, 3),
         .retryDelay = random_app_below(app, 4),
+        .missesToForget = random_app_below(app, 3),
+        .prefetchLevels = random_app_below(app, 3),
     };
     return sluiceSetConfig(app->manager, one_in(app, 20) ? NULL : &config);
 }

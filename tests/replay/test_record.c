@@ -35,6 +35,8 @@ static void fill_inputs(struct example *e, uint64_t *seed)
     e->config.maxHeapCount = (uint32_t)next_random(seed);
     e->config.maxLoadAttempts = (uint32_t)next_random(seed);
     e->config.retryDelay = next_random(seed);
+    e->config.missesToForget = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
+    e->config.prefetchLevels = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
     e->feedback.width = 1 + next_random(seed) % 8;
     e->feedback.height = 1 + next_random(seed) % 8;
     e->feedback.mipBias = (int32_t)next_random(seed);
@@ -136,6 +138,8 @@ static void check_same(const struct example *e, struct slc_record *back)
             assert_int_equal(a->config->maxHeapCount, b->config->maxHeapCount);
             assert_int_equal(a->config->maxLoadAttempts, b->config->maxLoadAttempts);
             assert_true(a->config->retryDelay == b->config->retryDelay);
+            assert_int_equal(a->config->missesToForget, b->config->missesToForget);
+            assert_int_equal(a->config->prefetchLevels, b->config->prefetchLevels);
         }
     }
     if (fields & SLC_FIELD_DESC) {
