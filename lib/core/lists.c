@@ -159,34 +159,38 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
 /** Textures that one call looks at for something to prefetch. */
 enum { MAX_LOOKED_AT = 256 };
 
-static bool may_prefetch(slc_manager *m)
+static bool may_prefetch(const slc_manager *m)
 {
     uint32_t kept = m->standby.count + m->state_counts[SLUICE_TILE_STATE_CANCELLED];
-    return kept < m->config.numExtraStandbyTiles && m->heaps.free_total > slc_reserved_slots(m) &&
-           slc_reserve_nodes(m, 1);
+    return kept < m->config.numExtraStandbyTiles && m->heaps.free_total > slc_reserved_slots(m);
 }
 
-/** Hands out FREE tiles of a level. Returns whether all that there are. */
-static bool prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level, uint32_t room,
-                           uint32_t *written, SluiceTile *tiles)
+/** Hands out FREE tiles of a level, as far as may be. Anything but SUCCESS ends prefetching. */
+static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level,
+                                   uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
     const struct slc_level *grid = &t->levels[level];
     uint32_t end = grid->first_tile + grid->width * grid->height;
     for (uint32_t tile = grid->first_tile; tile < end; tile++) {
         if (slc_find_node(t, tile))
             continue;
-        if (*written == room || !may_prefetch(m) || slc_state_make(m, t) != SLUICE_SUCCESS)
-            return false;
+        if (*written == room || !may_prefetch(m))
+            return SLUICE_INCOMPLETE;
+        if (!slc_reserve_nodes(m, 1) || slc_state_make(m, t) != SLUICE_SUCCESS)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         uint32_t node = slc_node_prefetch(m, t, tile, level);
         struct slc_node *n = slc_node_at(m, node);
         slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot);
         tiles[(*written)++] = slc_node_tile(m, node);
     }
-    return true;
+    return SLUICE_SUCCESS;
 }
 
-/** Nothing is requested: loads the coarse levels of what may come into view. */
-static void prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles)
+/**
+ * Nothing is requested: loads the coarse levels of what may come into view. Returns INCOMPLETE if
+ * it ran out of host memory, which is no error here.
+ */
+static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
     for (uint32_t i = 0; i < MAX_LOOKED_AT && i < m->texture_end; i++) {
         if (m->prefetch_texture >= m->texture_end) {
@@ -197,11 +201,15 @@ static void prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTil
             m->prefetch_level = 0;
         struct slc_texture *t = slc_texture_at(m, m->prefetch_texture);
         uint32_t levels = t->live ? t->desc.regularMipCount : 0;
-        if (m->prefetch_level < levels &&
-            !prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles))
-            return;
+        if (m->prefetch_level < levels) {
+            SluiceResult result =
+                prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles);
+            if (result != SLUICE_SUCCESS)
+                return result == SLUICE_INCOMPLETE ? SLUICE_SUCCESS : SLUICE_INCOMPLETE;
+        }
         m->prefetch_texture++;
     }
+    return SLUICE_SUCCESS;
 }
 
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
@@ -228,8 +236,8 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
-    if (!scope && m->requests.count == 0 && m->config.prefetchLevels)
-        prefetch(m, room, &written, tiles);
+    if (!scope && m->requests.count == 0 && m->config.prefetchLevels && result == SLUICE_SUCCESS)
+        result = prefetch(m, room, &written, tiles);
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);

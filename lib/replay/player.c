@@ -98,7 +98,8 @@ static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind
     if (sluiceGetStatistics(player->manager, &s) != SLUICE_SUCCESS)
         return 0;
     switch (kind) {
-    case SLC_CALL_GET_TILES_TO_MAP: return s.requestedTileCount;
+    case SLC_CALL_GET_TILES_TO_MAP: /* what is prefetched needs a free slot */
+        return (uint64_t)s.requestedTileCount + s.freeSlotCount;
     case SLC_CALL_GET_TILES_TO_CANCEL: return s.cancelledTileCount;
     case SLC_CALL_GET_TILES_TO_UNMAP: return s.standbyTileCount;
     case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* some may have been tried again since */
