@@ -25,7 +25,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){.size = size, .bias = m->bias};
+        *s = (struct slc_texture_state){.size = size, .bias = m->bias.value};
         s->nodes = (uint32_t *)(s + 1);
         s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
         s->least = s->asked + padded;

@@ -123,6 +123,15 @@ struct slc_given_up {
     uint32_t tile;
 };
 
+/** See bias.c. */
+struct slc_global_bias {
+    uint32_t value;        ///< sixteenths of a level
+    uint32_t maps;         ///< merged since it was looked at last
+    uint32_t failed;       ///< the last value with which too much was wanted,
+    uint64_t failed_limit; ///< for so many slots
+    uint64_t demand;       ///< tiles wanted once it had been raised; 0: not known yet
+};
+
 struct SluiceStreamedTextureManager {
     SluiceStreamedTextureManagerCreateInfo info; ///< pAllocator points to `given` or is NULL
     SluiceAllocationCallbacks given;
@@ -151,14 +160,11 @@ struct SluiceStreamedTextureManager {
     size_t scratch_room;
     uint32_t visit_first, visit_last; ///< textures that hold something, the oldest map first
     uint32_t visited_count;
-    uint64_t map_interval;      ///< of the texture that got a map last
-    uint32_t bias;              ///< global mip bias in sixteenths of a level
-    uint32_t bias_maps;         ///< merged since it was looked at last
-    uint32_t bias_failed;       ///< the last one with which too much was wanted,
-    uint64_t bias_failed_limit; ///< for so many slots
-    uint64_t bias_demand;       ///< tiles wanted once it had been raised; 0: not known yet
-    bool starved;               ///< the last hand-out stopped for lack of slots
-    bool refused;               ///< the heap allocator's last answer
+    uint64_t map_interval; ///< of the texture that got a map last
+    struct slc_global_bias bias;
+    bool starved;   ///< the last hand-out stopped for lack of slots
+    bool refused;   ///< the heap allocator's last answer
+    bool cut_short; ///< host memory ran out while the call under way handed out tiles
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
     uint32_t report_first, report_end, report_room;

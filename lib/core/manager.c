@@ -526,7 +526,7 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
         .freeSlotCount =
             m->heaps.free_total < UINT32_MAX ? (uint32_t)m->heaps.free_total : UINT32_MAX,
         .reservedSlotCount = slc_reserved_slots(m),
-        .globalMipBias = m->bias,
+        .globalMipBias = m->bias.value,
         .handedOutTotal = m->handed_out_total,
         .mappedTotal = m->mapped_total,
         .unmappedTotal = m->unmapped_total,

@@ -56,7 +56,7 @@ static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t
                      struct slc_wants_need *need)
 {
     const SluiceStreamedTextureDesc *d = &t->desc;
-    if (t->state->bias > m->bias)
+    if (t->state->bias > m->bias.value)
         finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
@@ -305,7 +305,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
     const struct slc_texture_state *s = t->state;
-    if (m->bias == 0)
+    if (m->bias.value == 0)
         return s->least;
     slc_bias_map(m, t, work);
     slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
@@ -421,11 +421,11 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
 {
     if (t->state) {
         bool held_before = t->held_regions > 0;
-        m->bias_maps++;
+        m->bias.maps++;
         struct slc_range changed = slc_history_merge(m, t, time, timeout);
-        if (t->state->bias != m->bias)
+        if (t->state->bias != m->bias.value)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
-        t->state->bias = m->bias;
+        t->state->bias = m->bias.value;
         if (changed.end > 0)
             settle(m, t, changed, held_before);
         slc_visit(m, t, t->held_regions > 0);
