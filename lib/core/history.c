@@ -115,11 +115,12 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
 /** Removes levels from `below` on. */
 static void thin_span(struct slc_span *span, size_t padded, uint8_t below)
 {
+    uint8_t *map = span->map;
     slc_block limit = slc_block_of(below), all = slc_block_of(SLUICE_MIP_UNTOUCHED);
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block v = slc_load_block(span->map + i);
+        slc_block v = slc_load_block(map + i);
         v |= slc_equal_block(slc_max_block(v, limit), v);
-        slc_store_block(span->map + i, v);
+        slc_store_block(map + i, v);
         all &= v;
     }
     span->below = below;
@@ -200,24 +201,24 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 /** The common case: nothing lapsed, so levels only get finer. Returns where they did. */
 static struct slc_range merge_finer(struct slc_texture *t, size_t padded, bool fresh)
 {
-    struct slc_texture_state *s = t->state;
-    uint8_t *span = s->spans[s->span_count - 1].map;
+    const struct slc_texture_state *s = t->state;
+    const uint8_t *map = s->next;
+    uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     struct slc_range changed = {0, 0};
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block next = slc_load_block(s->next + i);
-        if (slc_block_difference(next, slc_load_block(s->asked + i)))
-            slc_store_block(s->asked + i, next);
+        slc_block next = slc_load_block(map + i);
+        slc_store_block(asked + i, next);
         if (!slc_block_difference(next, untouched)) {
             if (fresh)
                 slc_store_block(span + i, next);
             continue;
         }
         slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
-        slc_block before = slc_load_block(s->least + i), least = slc_min_block(before, next);
+        slc_block before = slc_load_block(kept + i), least = slc_min_block(before, next);
         if (!slc_block_difference(before, least))
             continue;
-        slc_store_block(s->least + i, least);
+        slc_store_block(kept + i, least);
         slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
         t->held_regions += slc_count_bits(slc_block_difference(before, least) &
                                           ~slc_block_difference(before, untouched));

@@ -277,7 +277,10 @@ static inline uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
 bool slc_reserve_nodes(slc_manager *m, uint64_t count);
 /** `cell` is where the tile keeps its node. */
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                     uint32_t level, uint32_t need);
+                     uint32_t level);
+/** The same for a FREE tile, with a need. */
+void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                        uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
