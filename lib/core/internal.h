@@ -243,14 +243,19 @@ static inline struct slc_place slc_parent_place(const struct slc_texture *t, str
     return (struct slc_place){p.level + 1, x < up->width ? x : up->width - 1,
                               y < up->height ? y : up->height - 1};
 }
-/** The place of a node's tile. */
+/** The place of a tile whose level is known; regularMipCount for packed ones. */
+static inline struct slc_place slc_place_at(const struct slc_texture *t, uint32_t tile,
+                                            uint32_t level)
+{
+    if (tile >= t->regular_tile_count)
+        return (struct slc_place){t->desc.regularMipCount, tile - t->regular_tile_count, 0};
+    const struct slc_level *grid = &t->levels[level];
+    uint32_t i = tile - grid->first_tile;
+    return (struct slc_place){level, i % grid->width, i / grid->width};
+}
 static inline struct slc_place slc_node_place(const struct slc_texture *t, const struct slc_node *n)
 {
-    if (n->tile >= t->regular_tile_count)
-        return (struct slc_place){t->desc.regularMipCount, n->tile - t->regular_tile_count, 0};
-    const struct slc_level *grid = &t->levels[n->level];
-    uint32_t i = n->tile - grid->first_tile;
-    return (struct slc_place){n->level, i % grid->width, i / grid->width};
+    return slc_place_at(t, n->tile, n->level);
 }
 struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive

@@ -236,7 +236,7 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
 {
     if (level == 0)
         return 0;
-    struct slc_tile_range r = slc_area(t, slc_tile_place(t, tile));
+    struct slc_tile_range r = slc_area(t, slc_place_at(t, tile, level));
     slc_block limit = slc_block_of((uint8_t)level);
     uint32_t count = 0;
     for (uint32_t y = r.y0; y <= r.y1; y++) {
