@@ -76,7 +76,7 @@ struct compared {
 static inline slc_block ask(slc_block v, const struct slc_levels *levels)
 {
     slc_block last = slc_block_of(levels->last);
-    slc_block a = slc_min_block(v, last) + slc_block_of(levels->up);
+    slc_block a = slc_min_block(v, slc_block_of(levels->coarsest)) + slc_block_of(levels->up);
     a = slc_max_block(a, slc_block_of(levels->down)) - slc_block_of(levels->down);
     a = slc_min_block(slc_max_block(a, slc_block_of(levels->lowest)), last);
     return a | slc_equal_block(v, slc_block_of(SLUICE_MIP_UNTOUCHED));
@@ -163,6 +163,7 @@ static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFee
     return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
                                .down = (uint8_t)(bias < 0 ? -bias : 0),
                                .lowest = (uint8_t)lowest,
+                               .coarsest = (uint8_t)(t->desc.mipLevelCount - 1),
                                .last = (uint8_t)(t->desc.mipLevelCount - 1)};
 }
 
