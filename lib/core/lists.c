@@ -208,6 +208,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
     uint32_t room = *count, written = 0, passed_over = 0;
+    uint64_t limit = slc_slot_limit(m);
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
     struct request_walk walk = first_request(m, scope, keys);
@@ -228,6 +229,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
+    slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
     if (!scope && m->requests.count == 0 && m->config.prefetchLevels)
         prefetch(m, room, &written, tiles);
     m->handed_out_total += written;
@@ -254,7 +256,6 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
         *count = requests;
         return SLUICE_SUCCESS;
     }
-    slc_update_bias(m);
     if (!scope || requests == 0)
         return hand_out(m, scope, NULL, count, tiles);
     struct request_key *keys = sort_requests(m, scope);
