@@ -225,6 +225,17 @@ static struct slc_range merge_finer(struct slc_texture *t, size_t padded, bool f
     return changed;
 }
 
+/** The map asks for what the last one did, but its span may have been thinned since. */
+static void merge_same(struct slc_texture_state *s, size_t padded, bool fresh)
+{
+    uint8_t *span = s->spans[s->span_count - 1].map;
+    if (fresh)
+        memcpy(span, s->asked, padded);
+    for (size_t i = 0; i < padded && !fresh; i += SLC_BLOCK)
+        slc_store_block(span + i,
+                        slc_min_block(slc_load_block(span + i), slc_load_block(s->asked + i)));
+}
+
 /** Computes `least`, which is not coarser than it should be, from the spans. Returns where. */
 static struct slc_range recompute(struct slc_texture *t, size_t padded)
 {
@@ -266,8 +277,8 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     struct slc_range changed = {0, 0};
     if (s->next)
         changed = merge_finer(t, padded, fresh);
-    else if (fresh)
-        memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
+    else if (fresh || lapsed)
+        merge_same(s, padded, fresh);
     if (lapsed) {
         struct slc_range more = recompute(t, padded);
         slc_range_add(&changed, more.first, more.end);
