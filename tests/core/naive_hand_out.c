@@ -114,10 +114,11 @@ static bool find_slot(struct naive_manager *n, bool packed, bool *refused,
     if (!*refused && (most == 0 || n->heap_count < most)) {
         ask_for_heap(n, seen, out);
         *refused = n->heap_refused;
+        if (!*refused)
+            return true;
     }
-    const bool found = slot_for(n, packed);
-    n->events[NAIVE_RESERVE_KEPT] += !found && slot_for(n, true);
-    return found;
+    n->events[NAIVE_RESERVE_KEPT] += slot_for(n, true);
+    return false;
 }
 
 static bool is_passed_over(const struct naive_manager *n, const struct naive_ref *ref)
@@ -148,10 +149,9 @@ static bool is_idle(const struct naive_manager *n, const struct naive_texture *t
 static void forget(struct naive_manager *n, struct naive_texture *t)
 {
     naive_forget_history(t);
-    free(t->last_asked);
-    t->last_asked = NULL;
-    memset(t->held, SLUICE_MIP_UNTOUCHED,
-           (size_t)t->layout.feedbackWidth * t->layout.feedbackHeight);
+    const size_t regions = (size_t)t->layout.feedbackWidth * t->layout.feedbackHeight;
+    memset(t->last_asked, SLUICE_MIP_UNTOUCHED, regions);
+    memset(t->held, SLUICE_MIP_UNTOUCHED, regions);
     naive_apply_held(n, t);
     n->events[NAIVE_FORGOTTEN]++;
 }
@@ -277,13 +277,6 @@ static void prefetch(struct naive_manager *n, const struct call *call, const str
     }
 }
 
-static uint32_t count_requests(const struct naive_manager *n)
-{
-    uint32_t count;
-    free(naive_collect(n, NULL, SLUICE_TILE_STATE_REQUESTED, &count));
-    return count;
-}
-
 SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call,
                                 const struct outcome *seen, struct outcome *out)
 {
@@ -305,12 +298,13 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     n->events[NAIVE_STARVED] += stopped && !n->starved;
     if (call->room)
         n->starved = stopped;
+    const uint32_t unserved = min_u32(count, call->room) - out->count;
     result = out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+    if (!only && n->config.prefetchLevels && out->count == count)
+        prefetch(n, call, seen, out);
     if (stopped) {
-        make_room(n, min_u32(count, call->room) - out->count);
+        make_room(n, unserved);
         result = SLUICE_BUDGET_REACHED;
     }
-    if (!only && n->config.prefetchLevels && count_requests(n) == 0)
-        prefetch(n, call, seen, out);
     return result;
 }

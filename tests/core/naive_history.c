@@ -158,9 +158,11 @@ static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t
         if (age >= timeout || (n->starved && newer >= 2 && age >= timeout - timeout / 16 * 5))
             over_and_empty[i] = delete_levels(n, t, span, level_to_delete(needed, s, newer));
     }
-    for (uint32_t i = t->span_count; i-- > 0;)
-        if (over_and_empty[i])
-            delete_span(t, i);
+    uint32_t deleted = 0;
+    while (deleted < NAIVE_MAX_SPANS && over_and_empty[deleted])
+        deleted++;
+    for (uint32_t i = deleted; i > 0; i--)
+        delete_span(t, 0);
 }
 
 /* Step 5. */
