@@ -118,7 +118,7 @@ static uint32_t list_empty_heaps(const struct naive_manager *n, const struct nai
             heaps[empty++] = &n->heaps[i];
     qsort(heaps, empty, sizeof *heaps, compare_heap_numbers);
     while (count < empty &&
-           (none_taken || 2 * (free_slots - (uint64_t)(count + 1) * n->capacity) >= n->capacity))
+           (none_taken || free_slots - (uint64_t)(count + 1) * n->capacity >= n->capacity / 2))
         count++;
     return count;
 }
