@@ -182,8 +182,7 @@ SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
 
 void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 {
-    if (t->state && t->state->span_count == 0)
-        slc_state_destroy(m, t);
+    slc_state_release(m, t);
 }
 
 /* Committing -------------------------------------------------------------------------------- */
