@@ -36,8 +36,7 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
     }
 }
 
-/** Slots that there can be, as far as is known. */
-static uint64_t slot_limit(const slc_manager *m)
+uint64_t slc_slot_limit(const slc_manager *m)
 {
     uint64_t heaps = m->config.maxHeapCount ? m->config.maxHeapCount : UINT32_MAX;
     if (m->refused && m->heaps.live_count < heaps)
@@ -67,9 +66,8 @@ static bool may_lower(slc_manager *m, uint64_t wanted, uint64_t limit)
     return wanted + wanted / 8 <= m->bias.demand;
 }
 
-void slc_update_bias(slc_manager *m)
+void slc_update_bias(slc_manager *m, uint64_t limit)
 {
-    uint64_t limit = slot_limit(m);
     uint64_t wanted = (uint64_t)m->state_counts[SLUICE_TILE_STATE_REQUESTED] +
                       m->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
                       m->state_counts[SLUICE_TILE_STATE_MAPPED];

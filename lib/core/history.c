@@ -183,24 +183,28 @@ static bool is_over(const struct slc_span *span, const struct now *now, uint32_t
     return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
 }
 
-/** Lets go of what is too old and believed to be gone. */
-static void lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
+/** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
+static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_texture_state *s = t->state;
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
     if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
         shift = 0;
     uint32_t newer = now->weight, dropped = 0;
+    bool thinned = false;
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
         bool over = is_over(span, now, newer);
         uint8_t below = first_unbelieved(newer, now->needed, slc_min_u32(shift, 8));
-        if (over && below < span->below)
+        if (over && below < span->below) {
             thin_span(t, span, below, changed);
+            thinned = true;
+        }
         dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
     drop_spans(s, dropped); /* the oldest ones */
+    return thinned;
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
@@ -258,9 +262,10 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
                       .needed = maps_to_believe(m, t),
                       .starved = m->starved};
     struct slc_range changed = {0, 0};
-    lapse(t, &now, &changed);
+    bool thinned = lapse(t, &now, &changed);
     bool fresh = join_span(s, &now);
-    if (s->next || fresh || changed.end > 0)
+    /* a span that was thinned may have lost what a map like the last one asks for again */
+    if (s->next || fresh || thinned)
         merge(t, map, fresh, &changed);
     return changed;
 }

@@ -218,8 +218,13 @@ uint32_t slc_reserved_slots(const slc_manager *m);
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
 
 /* bias.c */
-/** Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. */
-void slc_update_bias(slc_manager *m);
+/** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
+uint64_t slc_slot_limit(const slc_manager *m);
+/**
+ * Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. `limit` is
+ * the slot limit before heaps were asked for.
+ */
+void slc_update_bias(slc_manager *m, uint64_t limit);
 /** Writes what the global bias adds in each region. */
 void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map);
 

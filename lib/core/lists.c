@@ -228,6 +228,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
     uint32_t room = *count, written = 0, passed_over = 0;
+    uint64_t limit = slc_slot_limit(m);
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
     struct request_walk walk = first_request(m, scope, keys);
@@ -250,6 +251,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         result = prefetch(m, room, &written, tiles);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
+    slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);
@@ -276,19 +278,13 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
         *count = requests;
         return SLUICE_SUCCESS;
     }
-    struct slc_global_bias before = m->bias;
-    slc_update_bias(m);
-    struct request_key *keys = NULL;
-    if (scope && requests > 0)
-        keys = sort_requests(m, scope);
-    if (scope && requests > 0 && !keys)
-        result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    else
-        result = hand_out(m, scope, keys, count, tiles);
-    if (keys)
-        slc_free(&m->cb, keys, requests, sizeof *keys);
-    if (result < 0)
-        m->bias = before; /* after an error nothing has changed */
+    if (!scope || requests == 0)
+        return hand_out(m, scope, NULL, count, tiles);
+    struct request_key *keys = sort_requests(m, scope);
+    if (!keys)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = hand_out(m, scope, keys, count, tiles);
+    slc_free(&m->cb, keys, requests, sizeof *keys);
     return result;
 }
 

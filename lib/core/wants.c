@@ -74,12 +74,12 @@ struct compared {
 
 /** slc_levels in blocks: bytes are stored between uses, and those might be its own. */
 struct level_blocks {
-    slc_block up, down, lowest, last;
+    slc_block coarsest, up, down, lowest, last;
 };
 
 static inline slc_block ask(slc_block v, struct level_blocks l)
 {
-    slc_block a = slc_max_block(slc_min_block(v, l.last) + l.up, l.down) - l.down;
+    slc_block a = slc_max_block(slc_min_block(v, l.coarsest) + l.up, l.down) - l.down;
     a = slc_min_block(slc_max_block(a, l.lowest), l.last);
     return a | slc_equal_block(v, slc_block_of(SLUICE_MIP_UNTOUCHED));
 }
@@ -100,8 +100,9 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
     const uint8_t *asked = t->state->asked;
-    const struct level_blocks l = {slc_block_of(levels->up), slc_block_of(levels->down),
-                                   slc_block_of(levels->lowest), slc_block_of(levels->last)};
+    const struct level_blocks l = {slc_block_of(levels->coarsest), slc_block_of(levels->up),
+                                   slc_block_of(levels->down), slc_block_of(levels->lowest),
+                                   slc_block_of(levels->last)};
     size_t regions = slc_region_count(t), i = 0;
     slc_block differ = slc_block_of(0);
     for (; i + SLC_BLOCK <= regions; i += SLC_BLOCK) {
@@ -172,6 +173,7 @@ static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFee
     return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
                                .down = (uint8_t)(bias < 0 ? -bias : 0),
                                .lowest = (uint8_t)lowest,
+                               .coarsest = (uint8_t)(t->desc.mipLevelCount - 1),
                                .last = (uint8_t)(t->desc.mipLevelCount - 1)};
 }
 
@@ -190,8 +192,7 @@ SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
 
 void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 {
-    if (t->state && t->state->span_count == 0)
-        slc_state_destroy(m, t);
+    slc_state_release(m, t);
 }
 
 /* Committing -------------------------------------------------------------------------------- */
