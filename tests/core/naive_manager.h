@@ -91,9 +91,8 @@ struct naive_bias {
     uint32_t value; ///< sixteenths of a level
     uint32_t failed_value;
     uint64_t failed_limit;
-    bool demand_known;
-    uint64_t demand;
-    uint64_t maps; ///< merged since the bias was looked at
+    uint64_t demand; ///< 0: unknown
+    uint64_t maps;   ///< merged since the bias was looked at
 };
 
 struct naive_manager {
