@@ -156,25 +156,27 @@ static void the_global_bias_rises_with_the_demand_and_falls_with_the_budget(void
 {
     (void)state;
     struct fixture f;
-    fixture_open(&f, 4, false);
+    fixture_open(&f, 32, false);
     fixture_configure(&f, 0, 1, 0, 0);
-    SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128); /* 85 tiles and one */
+    SluiceStreamedTextureDesc desc = full_chain(2048, 2048, 128, 128); /* 341 tiles and one */
     SluiceTextureId id = fixture_add(&f, &desc);
     uint64_t time = 0;
-    for (uint32_t i = 0; i < 20; i++) {
+    fixture_feed(&f, id, 0, time++, 0);
+    assert_int_equal(fixture_statistics(&f).requestedTileCount, 342);
+    for (uint32_t i = 0; i < 40; i++) {
         fixture_feed(&f, id, 0, time++, 0);
         assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
     }
     SluiceStreamedTextureStatistics s = fixture_statistics(&f);
-    assert_true(s.globalMipBias > 16 && s.requestedTileCount + s.allocatedTileCount <= 3 * 4);
-    fixture_configure(&f, 0, 8, 0, 0); /* 96 may be wanted */
+    assert_true(s.globalMipBias > 0 && s.requestedTileCount + s.allocatedTileCount <= 3 * 32);
+    fixture_configure(&f, 0, 16, 0, 0);
     for (uint32_t i = 0; i < 100; i++) {
         fixture_feed(&f, id, 0, time++, 0);
         assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
     }
     s = fixture_statistics(&f);
     assert_int_equal(s.globalMipBias, 0);
-    assert_int_equal(s.requestedTileCount + s.allocatedTileCount, 86);
+    assert_int_equal(s.requestedTileCount + s.allocatedTileCount, 342);
     fixture_close(&f);
 }
 
