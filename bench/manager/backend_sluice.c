@@ -9,6 +9,8 @@
  * `allocate`, and then handed to the harness texture by texture. At most IN_FLIGHT tiles are out at
  * a time: what waits in the manager is still ordered by need and can still be dropped, what waits
  * in a queue is not.
+ *
+ * Environment: SLUICE_PREFETCH_LEVELS   prefetchLevels of the manager's configuration, instead of 0
  */
 #include "backend.h"
 
@@ -97,6 +99,20 @@ static void finish_list(struct tile_list *list)
     free(list->grouped);
 }
 
+static uint32_t levels_to_prefetch(void)
+{
+    const char *text = getenv("SLUICE_PREFETCH_LEVELS");
+    if (!text)
+        return 0;
+    char *end;
+    unsigned long levels = strtoul(text, &end, 10);
+    if (*text < '0' || *text > '9' || *end || levels > UINT32_MAX) {
+        fprintf(stderr, "SLUICE_PREFETCH_LEVELS: %s is no number of levels\n", text);
+        exit(2);
+    }
+    return (uint32_t)levels;
+}
+
 static void *create(uint32_t heap_tiles, uint32_t standby_tiles)
 {
     struct bench_manager *m = grow(NULL, sizeof *m);
@@ -110,7 +126,8 @@ static void *create(uint32_t heap_tiles, uint32_t standby_tiles)
         .alwaysMapPackedTiles = true,
     };
     check(sluiceCreateStreamedTextureManager(&info, &m->manager), "create");
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = standby_tiles};
+    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = standby_tiles,
+                                                 .prefetchLevels = levels_to_prefetch()};
     check(sluiceSetConfig(m->manager, &config), "config");
     return m;
 }

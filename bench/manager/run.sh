@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
-# Measures the manager and prints one table: each figure beside RTXTS's, the ceiling that was set
-# for it, and the bare copy of the same feedback maps.
+# Measures the manager and prints two tables: each figure beside RTXTS's, the ceiling that was set
+# for it, and the bare copy of the same feedback maps; then what it shows beside a policy that knows
+# the whole trace, and what prefetching adds. About two minutes, half of them for the second table.
 #
 #   bench/manager/run.sh [options]
 #
-#   --json          one object per line (name, value, unit) instead of the table, and more of them
-#   --quick         each trace once and a tenth of the repetitions: to see that everything works
+#   --json          one object per line (name, value, unit) instead of the tables, and more of them
+#   --quick         each trace once, a tenth of the repetitions, and the policy that knows the whole
+#                   trace for t1000 alone: to see that everything works
 #   --harness DIR   the feedback-replay harness (default: $SLUICE_HARNESS, then ../shared/replay
 #                   beside the checkout); without it only single calls are timed
 #   --work DIR      keep what is built and generated there (default: a scratch folder, removed)
 #   --only NAME     one of t100 t1000 t10000 t1000_fast_cap4 t10000_cap16, or a part of the micro
-#                   program: copy feedback follow idle add memory heaps cut floor (default: all)
+#                   program: copy feedback follow idle add memory heaps cut floor, or clairvoyant, the
+#                   second table (default: all)
 #   --help
 #
 # The library is built with gcc -O2, static and without asserts, installed into the work folder and
@@ -25,6 +28,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 export CC=${CC:-gcc} LC_ALL=C
+unset SLUICE_PREFETCH_LEVELS # of the adapter: set here where it is meant
 
 json=no quick=no work='' only='' harness=${SLUICE_HARNESS:-$root/../shared/replay}
 trace_runs='t100 t1000 t10000 t1000_fast_cap4 t10000_cap16'
@@ -50,7 +54,7 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-case " $trace_runs $micro_parts " in
+case " $trace_runs $micro_parts clairvoyant " in
 *" ${only:-t100} "*) ;;
 *) die "there is nothing named $only (see --help)" ;;
 esac
@@ -104,6 +108,7 @@ build_programs() {
     compile micro -DWITH_HARNESS -I"$harness" "${sources[@]}" "$here/micro_trace.c"
     compile replay -I"$harness" "$harness/replay.c" "$here/backend_sluice.c"
     compile generate -I"$harness" "$harness/sltrace_gen.c"
+    logged "$CC" -std=c11 -O2 -I"$harness" "$here"/clairvoyant*.c -lm -o "$work/clairvoyant"
 }
 
 find_harness() {
@@ -114,8 +119,8 @@ find_harness() {
     done
     [ "$have_harness" = no ] || return 0
     say "no feedback-replay harness in $harness (--harness DIR, SLUICE_HARNESS):"
-    say "traces and the camera cut are left out, single calls are timed all the same"
-    case " $trace_runs cut floor " in
+    say "what plays traces and the camera cut are left out, single calls are timed all the same"
+    case " $trace_runs cut floor clairvoyant " in
     *" ${only:-none} "*) die "$only needs the harness" ;;
     esac
 }
@@ -158,15 +163,23 @@ parse_replay() {
         }'
 }
 
+# measure_quality NAME TRACE KEY=VALUE...
+measure_quality() {
+    local name=$1 trace=$work/$2.slt
+    shift 2
+    "$work/replay" "$trace" "$@" quality=1 >"$work/run" || die "the replay of $name failed"
+    parse_replay "$name" quality <"$work/run" >>"$figures"
+}
+
 # run_trace NAME TRACE KEY=VALUE...
 run_trace() {
-    local name=$1 trace=$work/$2.slt times=3 best='' median i
+    local name=$1 trace=$2 times=3 best='' median i
     shift 2
     wants "$name" || return 0
     [ "$quick" = no ] || times=1
     say "$name: $times x timed, 1 x for quality"
     for ((i = 0; i < times; i++)); do
-        "$work/replay" "$trace" "$@" quality=0 >"$work/run" || die "the replay of $name failed"
+        "$work/replay" "$work/$trace.slt" "$@" quality=0 >"$work/run" || die "the replay of $name failed"
         median=$(awk '$1 == "TOTAL" { print $3 }' "$work/run")
         if awk -v a="$median" -v b="$best" 'BEGIN { exit !(b == "" || a + 0 < b + 0) }'; then
             best=$median
@@ -174,8 +187,58 @@ run_trace() {
         fi
     done
     parse_replay "$name" times <"$work/best" >>"$figures"
-    "$work/replay" "$trace" "$@" quality=1 >"$work/run" || die "the replay of $name failed"
-    parse_replay "$name" quality <"$work/run" >>"$figures"
+    measure_quality "$name" "$trace" "$@"
+}
+
+parse_clairvoyant() {
+    awk -v run="$1" '
+        function figure(name, unit) { print run "." name, $3, unit }
+        $1 == "reactive_floor" && $4 == "levels" {
+            figure($1 "." $2, "levels")
+            floor += $3
+        }
+        $1 == "reactive_floor" && $2 == "too_coarse" { figure($1 ".regions_too_coarse", "%") }
+        $1 == "Belady" && $2 == "uploads" { figure("belady.uploads", "tiles") }
+        $2 == "mean_too_coarse" && $1 != "deadline" { figure($1 ".levels_too_coarse", "levels") }
+        $1 == "priced" && $2 == "too_coarse" { figure("priced.regions_too_coarse", "%") }
+        $1 == "priced" && $4 == "tiles" { figure("priced." $2, "tiles") }
+        END { print run ".reactive_floor.levels_too_coarse", floor, "levels" }'
+}
+
+# run_clairvoyant NAME TRACE KEY=VALUE...: what the manager shows there is known from run_trace,
+# unless this part runs alone. Without a cap hold=1 changes nothing.
+run_clairvoyant() {
+    local name=$1 trace=$2 options=(hold=1)
+    shift 2
+    [ -z "$only" ] || measure_quality "$name" "$trace" "$@"
+    if [ "$quick" = yes ] && [ "$name" != t1000 ]; then
+        say "$name: --quick leaves out the clairvoyant schedule and the bound"
+        options+=(rounds=0)
+    else
+        say "$name: looking for the clairvoyant schedule and the bound"
+    fi
+    "$work/clairvoyant" "$work/$trace.slt" "$@" "${options[@]}" >"$work/run" ||
+        die "the clairvoyant run of $name failed"
+    parse_clairvoyant "$name" <"$work/run" >>"$figures"
+}
+
+# run_prefetching TRACE STANDBY: the same room twice, so that what is shown is prefetching alone
+run_prefetching() {
+    local name=$1_standby$2
+    say "$name: with and without prefetching"
+    measure_quality "$name" "$1" standby="$2"
+    SLUICE_PREFETCH_LEVELS=1 measure_quality "${name}_prefetch1" "$1" standby="$2"
+}
+
+run_against_clairvoyant() {
+    wants clairvoyant || return 0
+    run_clairvoyant t1000 t1000
+    run_clairvoyant t10000 t10000
+    run_clairvoyant t1000_fast_cap4 t1000_fast maxHeaps=4
+    run_clairvoyant t10000_cap16 t10000 maxHeaps=16
+    run_prefetching t1000 4000
+    run_prefetching t10000 4000
+    run_prefetching t10000 40000
 }
 
 # The micro program, or the one part of it that is asked for and what its ratios refer to.
@@ -187,6 +250,7 @@ run_micro() {
     fi
     case $only in
     '') ;;
+    clairvoyant) return ;;
     t1*) parts=(floor) ;;
     feedback | follow) parts=(copy "$only") ;;
     *) parts=("$only") ;;
@@ -269,7 +333,7 @@ ROWS
 }
 
 print_table() {
-    machine
+    [ "$only" != clairvoyant ] || return 0
     echo "traces: of 3 runs the one with the least median; times without, quality with quality=1"
     [ "$quick" = no ] || echo "--quick: each trace once, few repetitions, memory with 1 M tiles"
     rows | awk -F ' *[|] *' -v figures="$figures" '
@@ -293,6 +357,53 @@ print_table() {
         }'
 }
 
+# What is printed of a policy that knows the whole trace: row | name of the run
+clairvoyant_rows() {
+    cat <<'ROWS'
+t1000, no cap | t1000
+t10000, no cap | t10000
+t1000_fast, 4 heaps | t1000_fast_cap4
+t10000, 16 heaps | t10000_cap16
+t1000, standby 4000 | t1000_standby4000
+t10000, standby 4000 | t10000_standby4000
+t10000, standby 40000 | t10000_standby40000
+ROWS
+}
+
+print_clairvoyant() {
+    [ "$have_harness" = yes ] && wants clairvoyant || return 0
+    clairvoyant_rows | awk -F ' *[|] *' -v figures="$figures" '
+        function levels(run) {
+            run = run ".levels_too_coarse"
+            return run in value ? sprintf("%.3g", value[run]) : "-"
+        }
+        function both(run) {
+            return levels(run) ((run ".uploads") in value ? " / " value[run ".uploads"] : "")
+        }
+        function line(a, b, c, d, e) {
+            text = sprintf("%-22s %16s %16s %8s %8s", a, b, c, d, e)
+            sub(/ +$/, "", text)
+            print text
+        }
+        BEGIN {
+            while ((getline text < figures) > 0) {
+                split(text, part, " ")
+                value[part[1]] = part[2]
+            }
+            print "\nagainst a policy that knows the whole trace: levels too coarse / uploads"
+            line("", "Sluice", "clairvoyant", "bound", "reactive")
+        }
+        $2 ~ /standby/ {
+            if (!pairs++) {
+                print "\nprefetching the coarsest level, no cap: levels too coarse / uploads"
+                line("", "without", "prefetching")
+            }
+            line($1, both($2), both($2 "_prefetch1"))
+            next
+        }
+        { line($1, both($2), both($2 ".priced"), levels($2 ".bound"), levels($2 ".reactive_floor")) }'
+}
+
 find_harness
 build_library
 build_programs
@@ -305,4 +416,11 @@ if [ "$have_harness" = yes ]; then
     run_trace t10000_cap16 t10000 maxHeaps=16
 fi
 run_micro
-if [ "$json" = yes ]; then print_json; else print_table; fi
+[ "$have_harness" = no ] || run_against_clairvoyant
+if [ "$json" = yes ]; then
+    print_json
+else
+    machine
+    print_table
+    print_clairvoyant
+fi
