@@ -86,9 +86,12 @@ static void house_init(struct house *house, uint32_t heap_count)
     want_level(house, 1);
     uint32_t fixed = (uint32_t)rig_drain(&house->rig);
     want_level(house, 0);
-    fill(house, heap_count * CAPACITY - fixed - COMINGS);
+    /* regular tiles may not take the slots that are kept for packed ones */
+    uint32_t kept = heap_count * CAPACITY / 16 < 64 ? heap_count * CAPACITY / 16 : 64;
+    fill(house, heap_count * CAPACITY - fixed - COMINGS - kept);
     SluiceStreamedTextureStatistics statistics = rig_statistics(&house->rig);
-    if (statistics.heapCount != heap_count || statistics.freeSlotCount != 0) {
+    if (statistics.heapCount != heap_count || statistics.reservedSlotCount != kept ||
+        statistics.freeSlotCount != kept) {
         fprintf(stderr, "%u heaps with %u free slots\n", statistics.heapCount,
                 statistics.freeSlotCount);
         exit(1);

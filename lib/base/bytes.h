@@ -55,7 +55,13 @@ static inline slc_block slc_min_block(slc_block a, slc_block b)
 
 static inline slc_block slc_max_block(slc_block a, slc_block b)
 {
+#if defined(__SSE2__)
+    return (slc_block)_mm_max_epu8((__m128i)a, (__m128i)b);
+#elif defined(__ARM_NEON)
+    return (slc_block)vmaxq_u8((uint8x16_t)a, (uint8x16_t)b);
+#else
     return ~slc_min_block(~a, ~b);
+#endif
 }
 
 /** 255 where the bytes are equal. */

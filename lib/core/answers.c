@@ -94,7 +94,7 @@ static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_valu
     m->cancelled_total++;
     if (!wanted)
         return;
-    slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level, 0);
+    slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level);
     slc_node_at(m, slc_find_node(t, tile))->failures = failures;
 }
 

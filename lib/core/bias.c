@@ -24,7 +24,7 @@ static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
 
 void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map)
 {
-    uint8_t whole = (uint8_t)(m->bias / STEPS), part = (uint8_t)(m->bias % STEPS);
+    uint8_t whole = (uint8_t)(m->bias.value / STEPS), part = (uint8_t)(m->bias.value % STEPS);
     memset(map, whole, slc_padded(slc_region_count(t)));
     if (part == 0)
         return;
@@ -36,8 +36,7 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
     }
 }
 
-/** Slots that there can be, as far as is known. */
-static uint64_t slot_limit(const slc_manager *m)
+uint64_t slc_slot_limit(const slc_manager *m)
 {
     uint64_t heaps = m->config.maxHeapCount ? m->config.maxHeapCount : UINT32_MAX;
     if (m->refused && m->heaps.live_count < heaps)
@@ -47,13 +46,13 @@ static uint64_t slot_limit(const slc_manager *m)
 
 static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit)
 {
-    m->bias_failed = m->bias;
-    m->bias_failed_limit = limit;
-    m->bias_demand = 0;
+    m->bias.failed = m->bias.value;
+    m->bias.failed_limit = limit;
+    m->bias.demand = 0;
     /* A level is a factor of 4 in tiles: a step is one of 4^(1/16). */
-    for (uint32_t step = 0; step < STEPS && wanted > limit && m->bias < MAX_BIAS; step++) {
+    for (uint32_t step = 0; step < STEPS && wanted > limit && m->bias.value < MAX_BIAS; step++) {
         wanted = wanted * 60097 / 65536;
-        m->bias++;
+        m->bias.value++;
     }
 }
 
@@ -62,26 +61,25 @@ static bool may_lower(slc_manager *m, uint64_t wanted, uint64_t limit)
 {
     if (wanted + wanted / 8 > limit)
         return false;
-    if (m->bias - 1 > m->bias_failed || limit > m->bias_failed_limit)
+    if (m->bias.value - 1 > m->bias.failed || limit > m->bias.failed_limit)
         return true;
-    return wanted + wanted / 8 <= m->bias_demand;
+    return wanted + wanted / 8 <= m->bias.demand;
 }
 
-void slc_update_bias(slc_manager *m)
+void slc_update_bias(slc_manager *m, uint64_t limit)
 {
-    uint64_t limit = slot_limit(m);
     uint64_t wanted = (uint64_t)m->state_counts[SLUICE_TILE_STATE_REQUESTED] +
                       m->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
                       m->state_counts[SLUICE_TILE_STATE_MAPPED];
-    if ((m->bias == 0 && wanted <= limit) || m->bias_maps < m->visited_count)
+    if ((m->bias.value == 0 && wanted <= limit) || m->bias.maps < m->visited_count)
         return;
-    m->bias_maps = 0;
+    m->bias.maps = 0;
     if (wanted > limit) {
         raise_bias(m, wanted, limit);
         return;
     }
-    if (m->bias_demand == 0)
-        m->bias_demand = wanted;
+    if (m->bias.demand == 0)
+        m->bias.demand = wanted;
     if (may_lower(m, wanted, limit))
-        m->bias--;
+        m->bias.value--;
 }

@@ -55,7 +55,8 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
     if (result != SLUICE_SUCCESS)
         return result;
     uint8_t *map = slc_wants_take_map(m, follower, need);
-    struct slc_levels levels = {.last = (uint8_t)(follower->desc.mipLevelCount - 1)};
+    struct slc_levels levels = {.coarsest = (uint8_t)(primary->desc.mipLevelCount - 1),
+                                .last = (uint8_t)(follower->desc.mipLevelCount - 1)};
     const uint8_t *values = map;
     if (!asked) {
         memset(map, SLUICE_MIP_UNTOUCHED, slc_region_count(follower));

@@ -25,7 +25,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){.size = size, .bias = m->bias};
+        *s = (struct slc_texture_state){.size = size, .bias = m->bias.value};
         s->nodes = (uint32_t *)(s + 1);
         s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
         s->least = s->asked + padded;
@@ -112,18 +112,51 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
     return level;
 }
 
-/** Removes levels from `below` on. */
-static void thin_span(struct slc_span *span, size_t padded, uint8_t below)
+/** The least of a block over all spans. */
+static slc_block least_of_spans(const struct slc_texture_state *s, size_t i)
 {
-    slc_block limit = slc_block_of(below), all = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    slc_block least = slc_load_block(s->spans[0].map + i);
+    for (uint32_t k = 1; k < s->span_count; k++)
+        least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+    return least;
+}
+
+/** A block of `least` gets new values. */
+static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_block least,
+                      struct slc_range *changed)
+{
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    if (!slc_block_difference(before, least))
+        return;
+    slc_store_block(t->state->least + i, least);
+    slc_range_add(changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
+    t->held_regions += slc_count_bits(slc_block_difference(least, untouched));
+    t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
+}
+
+/** Removes levels from `below` on, and what of `least` came from them. */
+static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t below,
+                      struct slc_range *changed)
+{
+    const struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    slc_block limit = slc_block_of(below), untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    slc_block rest = untouched;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block v = slc_load_block(span->map + i);
-        v |= slc_equal_block(slc_max_block(v, limit), v);
-        slc_store_block(span->map + i, v);
-        all &= v;
+        if (!slc_block_difference(v, untouched))
+            continue;
+        slc_block gone = slc_equal_block(slc_max_block(v, limit), v), left = v | gone;
+        slc_store_block(span->map + i, left);
+        rest &= left;
+        /* most of it stands in other spans too, and then nothing is to be searched */
+        slc_block before = slc_load_block(s->least + i);
+        slc_block lost = gone & slc_equal_block(v, before) & ~slc_equal_block(v, untouched);
+        if (slc_block_difference(lost, slc_block_of(0)))
+            set_least(t, i, before, least_of_spans(s, i), changed);
     }
     span->below = below;
-    span->empty = slc_block_difference(all, slc_block_of(SLUICE_MIP_UNTOUCHED)) == 0;
+    span->empty = slc_block_difference(rest, untouched) == 0;
 }
 
 static void drop_spans(struct slc_texture_state *s, uint32_t count)
@@ -151,28 +184,27 @@ static bool is_over(const struct slc_span *span, const struct now *now, uint32_t
 }
 
 /** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
-static bool lapse(struct slc_texture *t, const struct now *now)
+static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_texture_state *s = t->state;
-    size_t padded = slc_padded(slc_region_count(t));
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
     if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
         shift = 0;
     uint32_t newer = now->weight, dropped = 0;
-    bool changed = false;
+    bool thinned = false;
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
         bool over = is_over(span, now, newer);
         uint8_t below = first_unbelieved(newer, now->needed, slc_min_u32(shift, 8));
         if (over && below < span->below) {
-            thin_span(span, padded, below);
-            changed = true;
+            thin_span(t, span, below, changed);
+            thinned = true;
         }
         dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
     drop_spans(s, dropped); /* the oldest ones */
-    return changed;
+    return thinned;
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
@@ -197,81 +229,44 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 
 /* Merging ----------------------------------------------------------------------------------- */
 
-/** The common case: nothing lapsed, so levels only get finer. Returns where they did. */
-static struct slc_range merge_finer(struct slc_texture *t, size_t padded, bool fresh)
+static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
 {
-    struct slc_texture_state *s = t->state;
-    uint8_t *span = s->spans[s->span_count - 1].map;
+    const struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    struct slc_range changed = {0, 0};
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block next = slc_load_block(s->next + i);
-        if (slc_block_difference(next, slc_load_block(s->asked + i)))
-            slc_store_block(s->asked + i, next);
+        slc_block next = slc_load_block(map + i);
+        slc_store_block(asked + i, next);
         if (!slc_block_difference(next, untouched)) {
             if (fresh)
                 slc_store_block(span + i, next);
             continue;
         }
         slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
-        slc_block before = slc_load_block(s->least + i), least = slc_min_block(before, next);
-        if (!slc_block_difference(before, least))
-            continue;
-        slc_store_block(s->least + i, least);
-        slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
-        t->held_regions += slc_count_bits(slc_block_difference(before, least) &
-                                          ~slc_block_difference(before, untouched));
+        slc_block before = slc_load_block(kept + i);
+        set_least(t, i, before, slc_min_block(before, next), changed);
     }
-    return changed;
-}
-
-/** Computes `least`, which is not coarser than it should be, from the spans. Returns where. */
-static struct slc_range recompute(struct slc_texture *t, size_t padded)
-{
-    struct slc_texture_state *s = t->state;
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    struct slc_range changed = {0, 0};
-    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block before = slc_load_block(s->least + i);
-        if (!slc_block_difference(before, untouched))
-            continue;
-        slc_block least = slc_load_block(s->spans[0].map + i);
-        for (uint32_t k = 1; k < s->span_count; k++)
-            least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
-        if (!slc_block_difference(before, least))
-            continue;
-        slc_store_block(s->least + i, least);
-        slc_range_add(&changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
-        uint32_t held = slc_block_difference(least, untouched);
-        t->held_regions += slc_count_bits(held);
-        t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
-    }
-    return changed;
 }
 
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
                                    uint64_t timeout)
 {
     struct slc_texture_state *s = t->state;
-    size_t padded = slc_padded(slc_region_count(t));
+    const uint8_t *map = s->next ? s->next : s->asked;
     if (s->next)
         count_returns(t, s->hits, s->returns);
     struct now now = {.time = time,
                       .timeout = timeout,
-                      .weight = map_weight(t, s->next ? s->next : s->asked),
+                      .weight = map_weight(t, map),
                       .needed = maps_to_believe(m, t),
                       .starved = m->starved};
-    bool lapsed = lapse(t, &now);
-    bool fresh = join_span(s, &now);
     struct slc_range changed = {0, 0};
-    if (s->next)
-        changed = merge_finer(t, padded, fresh);
-    else if (fresh)
-        memcpy(s->spans[s->span_count - 1].map, s->asked, padded);
-    if (lapsed) {
-        struct slc_range more = recompute(t, padded);
-        slc_range_add(&changed, more.first, more.end);
-    }
+    bool thinned = lapse(t, &now, &changed);
+    bool fresh = join_span(s, &now);
+    /* a span that was thinned may have lost what a map like the last one asks for again */
+    if (s->next || fresh || thinned)
+        merge(t, map, fresh, &changed);
     return changed;
 }
 

@@ -123,6 +123,15 @@ struct slc_given_up {
     uint32_t tile;
 };
 
+/** See bias.c. */
+struct slc_global_bias {
+    uint32_t value;        ///< sixteenths of a level
+    uint32_t maps;         ///< merged since it was looked at last
+    uint32_t failed;       ///< the last value with which too much was wanted,
+    uint64_t failed_limit; ///< for so many slots
+    uint64_t demand;       ///< tiles wanted once it had been raised; 0: not known yet
+};
+
 struct SluiceStreamedTextureManager {
     SluiceStreamedTextureManagerCreateInfo info; ///< pAllocator points to `given` or is NULL
     SluiceAllocationCallbacks given;
@@ -151,14 +160,11 @@ struct SluiceStreamedTextureManager {
     size_t scratch_room;
     uint32_t visit_first, visit_last; ///< textures that hold something, the oldest map first
     uint32_t visited_count;
-    uint64_t map_interval;      ///< of the texture that got a map last
-    uint32_t bias;              ///< global mip bias in sixteenths of a level
-    uint32_t bias_maps;         ///< merged since it was looked at last
-    uint32_t bias_failed;       ///< the last one with which too much was wanted,
-    uint64_t bias_failed_limit; ///< for so many slots
-    uint64_t bias_demand;       ///< tiles wanted once it had been raised; 0: not known yet
-    bool starved;               ///< the last hand-out stopped for lack of slots
-    bool refused;               ///< the heap allocator's last answer
+    uint64_t map_interval; ///< of the texture that got a map last
+    struct slc_global_bias bias;
+    bool starved;   ///< the last hand-out stopped for lack of slots
+    bool refused;   ///< the heap allocator's last answer
+    bool cut_short; ///< host memory ran out while the call under way handed out tiles
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
     uint32_t report_first, report_end, report_room;
@@ -212,8 +218,13 @@ uint32_t slc_reserved_slots(const slc_manager *m);
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
 
 /* bias.c */
-/** Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. */
-void slc_update_bias(slc_manager *m);
+/** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
+uint64_t slc_slot_limit(const slc_manager *m);
+/**
+ * Once per hand-out: raises the bias if too much is wanted, lowers it if there is room. `limit` is
+ * the slot limit before heaps were asked for.
+ */
+void slc_update_bias(slc_manager *m, uint64_t limit);
 /** Writes what the global bias adds in each region. */
 void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map);
 
@@ -237,14 +248,19 @@ static inline struct slc_place slc_parent_place(const struct slc_texture *t, str
     return (struct slc_place){p.level + 1, x < up->width ? x : up->width - 1,
                               y < up->height ? y : up->height - 1};
 }
-/** The place of a node's tile. */
+/** The place of a tile whose level is known; regularMipCount for packed ones. */
+static inline struct slc_place slc_place_at(const struct slc_texture *t, uint32_t tile,
+                                            uint32_t level)
+{
+    if (tile >= t->regular_tile_count)
+        return (struct slc_place){t->desc.regularMipCount, tile - t->regular_tile_count, 0};
+    const struct slc_level *grid = &t->levels[level];
+    uint32_t i = tile - grid->first_tile;
+    return (struct slc_place){level, i % grid->width, i / grid->width};
+}
 static inline struct slc_place slc_node_place(const struct slc_texture *t, const struct slc_node *n)
 {
-    if (n->tile >= t->regular_tile_count)
-        return (struct slc_place){t->desc.regularMipCount, n->tile - t->regular_tile_count, 0};
-    const struct slc_level *grid = &t->levels[n->level];
-    uint32_t i = n->tile - grid->first_tile;
-    return (struct slc_place){n->level, i % grid->width, i / grid->width};
+    return slc_place_at(t, n->tile, n->level);
 }
 struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive
@@ -271,7 +287,10 @@ static inline uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
 bool slc_reserve_nodes(slc_manager *m, uint64_t count);
 /** `cell` is where the tile keeps its node. */
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                     uint32_t level, uint32_t need);
+                     uint32_t level);
+/** The same for a FREE tile, with a need. */
+void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                        uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);

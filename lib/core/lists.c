@@ -165,7 +165,10 @@ static bool may_prefetch(const slc_manager *m)
     return kept < m->config.numExtraStandbyTiles && m->heaps.free_total > slc_reserved_slots(m);
 }
 
-/** Hands out FREE tiles of a level, as far as may be. Anything but SUCCESS ends prefetching. */
+/**
+ * Hands out FREE tiles of a level. Anything but SUCCESS ends prefetching: BUDGET_REACHED where no
+ * more may be, INCOMPLETE where the list is full.
+ */
 static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level,
                                    uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
@@ -174,8 +177,10 @@ static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32
     for (uint32_t tile = grid->first_tile; tile < end; tile++) {
         if (slc_find_node(t, tile))
             continue;
-        if (*written == room || !may_prefetch(m))
+        if (*written == room)
             return SLUICE_INCOMPLETE;
+        if (!may_prefetch(m))
+            return SLUICE_BUDGET_REACHED;
         if (!slc_reserve_nodes(m, 1) || slc_state_make(m, t) != SLUICE_SUCCESS)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         uint32_t node = slc_node_prefetch(m, t, tile, level);
@@ -187,11 +192,12 @@ static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32
 }
 
 /**
- * Nothing is requested: loads the coarse levels of what may come into view. Returns INCOMPLETE if
- * it ran out of host memory, which is no error here.
+ * Nothing is requested: loads the coarse levels of what may come into view. INCOMPLETE if the list
+ * is full or host memory runs out, but that is the error if nothing was handed out.
  */
 static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
+    uint32_t level_before = m->prefetch_level, texture_before = m->prefetch_texture;
     for (uint32_t i = 0; i < MAX_LOOKED_AT && i < m->texture_end; i++) {
         if (m->prefetch_texture >= m->texture_end) {
             m->prefetch_texture = 0;
@@ -204,8 +210,14 @@ static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, S
         if (m->prefetch_level < levels) {
             SluiceResult result =
                 prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles);
+            if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && *written == 0) {
+                m->prefetch_level = level_before;
+                m->prefetch_texture = texture_before;
+                return result;
+            }
+            m->cut_short = result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
             if (result != SLUICE_SUCCESS)
-                return result == SLUICE_INCOMPLETE ? SLUICE_SUCCESS : SLUICE_INCOMPLETE;
+                return result == SLUICE_BUDGET_REACHED ? SLUICE_SUCCESS : SLUICE_INCOMPLETE;
         }
         m->prefetch_texture++;
     }
@@ -216,6 +228,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
     uint32_t room = *count, written = 0, passed_over = 0;
+    uint64_t limit = slc_slot_limit(m);
     bool refused = false;
     SluiceResult result = SLUICE_SUCCESS;
     struct request_walk walk = first_request(m, scope, keys);
@@ -234,10 +247,11 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
         tiles[written++] = slc_node_tile(m, node);
     }
-    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
-        return result;
     if (!scope && m->requests.count == 0 && m->config.prefetchLevels && result == SLUICE_SUCCESS)
         result = prefetch(m, room, &written, tiles);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
+        return result;
+    slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
     m->handed_out_total += written;
     *count = written;
     uint32_t left = requests_in_scope(m, scope);
@@ -245,8 +259,10 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         m->starved = result == SLUICE_BUDGET_REACHED;
     if (result == SLUICE_BUDGET_REACHED)
         list_standby_for(m, slc_min_u32(left, room - written));
-    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
+        m->cut_short = true;
+    }
     return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;
 }
 
@@ -262,7 +278,6 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
         *count = requests;
         return SLUICE_SUCCESS;
     }
-    slc_update_bias(m);
     if (!scope || requests == 0)
         return hand_out(m, scope, NULL, count, tiles);
     struct request_key *keys = sort_requests(m, scope);
@@ -376,8 +391,11 @@ SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager, SluiceTe
         call.result = SLUICE_ERROR_NULL_POINTER;
     } else {
         call.room = *pTileCount;
+        manager->cut_short = false;
         call.result = get_tiles_to_map(manager, textureId, pTileCount, pTiles);
         call.count = *pTileCount;
+        if (manager->cut_short)
+            call.room = call.count; /* which gives the same where memory suffices */
     }
     slc_notify(manager, &call);
     return call.result;

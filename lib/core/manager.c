@@ -318,7 +318,7 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
     if (m->info.alwaysMapPackedTiles)
         for (uint32_t i = 0; i < desc->packedTileCount; i++)
             slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
-                            desc->regularMipCount, 0);
+                            desc->regularMipCount);
     *id = slc_texture_id(t);
     return SLUICE_SUCCESS;
 }
@@ -526,7 +526,7 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
         .freeSlotCount =
             m->heaps.free_total < UINT32_MAX ? (uint32_t)m->heaps.free_total : UINT32_MAX,
         .reservedSlotCount = slc_reserved_slots(m),
-        .globalMipBias = m->bias,
+        .globalMipBias = m->bias.value,
         .handedOutTotal = m->handed_out_total,
         .mappedTotal = m->mapped_total,
         .unmappedTotal = m->unmapped_total,

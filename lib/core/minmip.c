@@ -35,11 +35,21 @@ static struct slc_tile_range children(const struct slc_texture *t, uint32_t leve
     };
 }
 
+/** From the tile `i` of `count` on a level to those of level 0: the last one takes what is over. */
+static void axis_area(uint32_t i, uint32_t count, uint32_t level, uint32_t fine_count,
+                      uint32_t *first, uint32_t *last)
+{
+    *first = i << level;
+    uint64_t end = (uint64_t)(i + 1) << level;
+    *last = i + 1 == count || end > fine_count ? fine_count - 1 : (uint32_t)end - 1;
+}
+
 struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
 {
-    struct slc_tile_range r = {p.x, p.y, p.x, p.y};
-    for (uint32_t level = p.level; level > 0; level--)
-        r = children(t, level, r);
+    const struct slc_level *grid = &t->levels[p.level], *fine = &t->levels[0];
+    struct slc_tile_range r;
+    axis_area(p.x, grid->width, p.level, fine->width, &r.x0, &r.x1);
+    axis_area(p.y, grid->height, p.level, fine->height, &r.y0, &r.y1);
     return r;
 }
 
@@ -177,6 +187,11 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
 static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,
                       uint8_t *out)
 {
+    if (t->state && r->width == t->min_mip_width && row_pitch == r->width) {
+        const uint8_t *rows = t->state->min_mip + (size_t)r->y * r->width;
+        memcpy(out, rows, (size_t)r->width * r->height);
+        return;
+    }
     for (uint32_t y = 0; y < r->height; y++) {
         uint8_t *row = out + y * row_pitch;
         if (t->state)

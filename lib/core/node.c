@@ -61,13 +61,14 @@ static void request_append(slc_manager *m, uint32_t node)
 {
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
-    uint32_t class = request_class(m, n);
+    struct slc_texture *t = slc_texture_at(m, n->texture);
+    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     n->order = r->next_sequence++;
     slc_list_append(m, &r->lists[class][n->need], node);
     r->needs[class] |= 1u << n->need;
     r->classes |= 1u << class;
     r->count++;
-    slc_texture_at(m, n->texture)->requested_count++;
+    t->requested_count++;
 }
 
 static void request_remove(slc_manager *m, uint32_t node)
@@ -346,20 +347,54 @@ SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 
 /* What wants do to a tile ------------------------------------------------------------------- */
 
+/*
+ * The moves below are those that a map makes by the thousand, so they do by themselves what
+ * slc_node_set_state would do, and not more.
+ */
+
+static void count_move(slc_manager *m, struct slc_node *n, SluiceTileState to)
+{
+    m->state_counts[n->state]--;
+    m->state_counts[to]++;
+    n->state = (uint8_t)to;
+}
+
+static void restore(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    slc_list_remove(m, n->flags & SLC_NODE_LISTED ? &m->unmapping : &m->standby, node);
+    n->flags = 0;
+    count_move(m, n, SLUICE_TILE_STATE_MAPPED);
+    m->restored_total++;
+}
+
+static void park(slc_manager *m, uint32_t node)
+{
+    slc_list_append(m, &m->standby, node);
+    count_move(m, slc_node_at(m, node), SLUICE_TILE_STATE_STANDBY);
+    if (m->standby.count > m->config.numExtraStandbyTiles)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
+}
+
+void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                        uint32_t level, uint32_t need)
+{
+    uint32_t node = take_node(m, t, cell, tile, level, SLUICE_TILE_STATE_REQUESTED);
+    slc_node_at(m, node)->need = (uint8_t)need;
+    request_append(m, node);
+}
+
 void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                     uint32_t level, uint32_t need)
+                     uint32_t level)
 {
     uint32_t node = *cell & ~SLC_RESIDENT;
     if (!node) {
-        node = take_node(m, t, cell, tile, level, SLUICE_TILE_STATE_REQUESTED);
-        slc_node_at(m, node)->need = (uint8_t)need;
-        request_append(m, node);
+        slc_tile_requested(m, t, cell, tile, level, 0);
         return;
     }
     struct slc_node *n = slc_node_at(m, node);
     if (n->state == SLUICE_TILE_STATE_STANDBY) {
-        slc_node_set_state(m, node, SLUICE_TILE_STATE_MAPPED);
-        m->restored_total++;
+        restore(m, node);
     } else {
         assert(n->state == SLUICE_TILE_STATE_CANCELLED);
         if (n->flags & SLC_NODE_LISTED)
@@ -385,7 +420,7 @@ void slc_tile_unwanted(slc_manager *m, uint32_t node)
         slc_node_at(m, node)->failures = 0;
         slc_node_set_state(m, node, SLUICE_TILE_STATE_CANCELLED);
         break;
-    case SLUICE_TILE_STATE_MAPPED: slc_node_set_state(m, node, SLUICE_TILE_STATE_STANDBY); break;
+    case SLUICE_TILE_STATE_MAPPED: park(m, node); break;
     case SLUICE_TILE_STATE_CANCELLED:
         slc_node_at(m, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
         break;

@@ -56,7 +56,7 @@ static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t
                      struct slc_wants_need *need)
 {
     const SluiceStreamedTextureDesc *d = &t->desc;
-    if (t->state->bias > m->bias)
+    if (t->state->bias > m->bias.value)
         finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
@@ -68,22 +68,23 @@ static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t
 
 /** What a pass over a map and the state found, in numbers of regions. */
 struct compared {
-    bool differs;           ///< from the last map
     uint32_t finer;         ///< ask for more than all maps did
     uint32_t hits, returns; ///< see history.c
 };
 
-static inline slc_block ask(slc_block v, const struct slc_levels *levels)
+/** slc_levels in blocks: bytes are stored between uses, and those might be its own. */
+struct level_blocks {
+    slc_block coarsest, up, down, lowest, last;
+};
+
+static inline slc_block ask(slc_block v, struct level_blocks l)
 {
-    slc_block last = slc_block_of(levels->last);
-    slc_block a = slc_min_block(v, last) + slc_block_of(levels->up);
-    a = slc_max_block(a, slc_block_of(levels->down)) - slc_block_of(levels->down);
-    a = slc_min_block(slc_max_block(a, slc_block_of(levels->lowest)), last);
+    slc_block a = slc_max_block(slc_min_block(v, l.coarsest) + l.up, l.down) - l.down;
+    a = slc_min_block(slc_max_block(a, l.lowest), l.last);
     return a | slc_equal_block(v, slc_block_of(SLUICE_MIP_UNTOUCHED));
 }
 
-static inline void compare(slc_block next, slc_block asked, slc_block least, slc_block sums[3],
-                           struct compared *c)
+static inline void compare(slc_block next, slc_block asked, slc_block least, slc_block sums[3])
 {
     slc_block both = slc_min_block(next, least);
     slc_block again =
@@ -92,39 +93,45 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
     sums[0] -= ~slc_equal_block(both, least); /* 255 is -1 */
     sums[1] -= again & seen;
     sums[2] -= again & ~seen;
-    c->differs |= slc_block_difference(next, asked) != 0;
 }
 
-/** Writes what `values` ask for and compares it with the state. */
-static struct compared ask_all(const struct slc_texture *t, const uint8_t *values,
-                               const struct slc_levels *levels, uint8_t *next)
+/** Writes what `values` ask for. Returns whether that differs from the last map. */
+static bool ask_all(const struct slc_texture *t, const uint8_t *values,
+                    const struct slc_levels *levels, uint8_t *next)
 {
-    const struct slc_texture_state *s = t->state;
-    size_t regions = slc_region_count(t), padded = slc_padded(regions);
-    struct compared c = {0};
-    for (size_t i = 0; i < padded && i < 1024; i += 64) {
-        __builtin_prefetch(s->asked + i);
-        __builtin_prefetch(s->least + i);
-        if (s->span_count)
-            __builtin_prefetch(s->spans[s->span_count - 1].map + i);
+    const uint8_t *asked = t->state->asked;
+    const struct level_blocks l = {slc_block_of(levels->coarsest), slc_block_of(levels->up),
+                                   slc_block_of(levels->down), slc_block_of(levels->lowest),
+                                   slc_block_of(levels->last)};
+    size_t regions = slc_region_count(t), i = 0;
+    slc_block differ = slc_block_of(0);
+    for (; i + SLC_BLOCK <= regions; i += SLC_BLOCK) {
+        slc_block v = ask(slc_load_block(values + i), l);
+        slc_store_block(next + i, v);
+        differ |= v ^ slc_load_block(asked + i);
     }
+    if (i < regions) {
+        slc_block v = slc_block_of(SLUICE_MIP_UNTOUCHED);
+        memcpy(&v, values + i, regions - i);
+        v = ask(v, l);
+        slc_store_block(next + i, v);
+        differ |= v ^ slc_load_block(asked + i);
+    }
+    return slc_block_difference(differ, slc_block_of(0)) != 0;
+}
+
+static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
+{
+    const uint8_t *asked = t->state->asked, *least = t->state->least;
+    size_t padded = slc_padded(slc_region_count(t));
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    struct compared c = {0};
     for (size_t i = 0; i < padded;) {
         slc_block sums[3] = {slc_block_of(0), slc_block_of(0), slc_block_of(0)};
         for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
-            slc_block v = slc_block_of(SLUICE_MIP_UNTOUCHED);
-            if (i + SLC_BLOCK <= regions)
-                v = slc_load_block(values + i);
-            else
-                memcpy(&v, values + i, regions - i);
-            if (!slc_block_difference(v, slc_block_of(SLUICE_MIP_UNTOUCHED))) {
-                /* the usual case, and nothing but `asked` is to be compared with it */
-                slc_store_block(next + i, v);
-                c.differs |= slc_block_difference(v, slc_load_block(s->asked + i)) != 0;
-                continue;
-            }
-            v = ask(v, levels);
-            slc_store_block(next + i, v);
-            compare(v, slc_load_block(s->asked + i), slc_load_block(s->least + i), sums, &c);
+            slc_block v = slc_load_block(next + i);
+            if (slc_block_difference(v, untouched))
+                compare(v, slc_load_block(asked + i), slc_load_block(least + i), sums);
         }
         c.finer += slc_block_sum(sums[0]);
         c.hits += slc_block_sum(sums[1]);
@@ -146,8 +153,11 @@ void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *val
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
 {
     struct slc_texture_state *s = t->state;
-    struct compared c = ask_all(t, values, levels, next);
-    s->next = c.differs ? next : NULL;
+    struct compared c = {0};
+    bool differs = ask_all(t, values, levels, next);
+    if (differs)
+        c = compare_all(t, next);
+    s->next = differs ? next : NULL;
     s->hits = c.hits;
     s->returns = c.returns;
     add_need(m, t, c.finer, need);
@@ -163,6 +173,7 @@ static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFee
     return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
                                .down = (uint8_t)(bias < 0 ? -bias : 0),
                                .lowest = (uint8_t)lowest,
+                               .coarsest = (uint8_t)(t->desc.mipLevelCount - 1),
                                .last = (uint8_t)(t->desc.mipLevelCount - 1)};
 }
 
@@ -181,8 +192,7 @@ SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
 
 void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 {
-    if (t->state && t->state->span_count == 0)
-        slc_state_destroy(m, t);
+    slc_state_release(m, t);
 }
 
 /* Committing -------------------------------------------------------------------------------- */
@@ -191,7 +201,7 @@ static void packed_wanted(slc_manager *m, struct slc_texture *t)
 {
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
         slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
-                        t->desc.regularMipCount, 0);
+                        t->desc.regularMipCount);
 }
 
 static void packed_unwanted(slc_manager *m, struct slc_texture *t)
@@ -227,7 +237,7 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
 {
     if (level == 0)
         return 0;
-    struct slc_tile_range r = slc_area(t, slc_tile_place(t, tile));
+    struct slc_tile_range r = slc_area(t, slc_place_at(t, tile, level));
     slc_block limit = slc_block_of((uint8_t)level);
     uint32_t count = 0;
     for (uint32_t y = r.y0; y <= r.y1; y++) {
@@ -242,6 +252,15 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     return 31u - (uint32_t)__builtin_clz(count);
 }
 
+static void want_tile(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
+                      uint32_t level)
+{
+    if (*cell)
+        slc_tile_wanted(m, t, cell, tile, level);
+    else
+        slc_tile_requested(m, t, cell, tile, level, need_of(t, tile, level));
+}
+
 static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
     uint32_t *nodes = t->state->nodes;
@@ -251,7 +270,7 @@ static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *mo
         uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
         uint32_t least = moves->tiles[i].least;
         if (least <= level)
-            slc_tile_wanted(m, t, &nodes[tile], tile, level, need_of(t, tile, level));
+            want_tile(m, t, &nodes[tile], tile, level);
         else
             slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
     }
@@ -281,9 +300,9 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
                                                 255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
+    uint8_t *under = t->state->under + tile;
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
-        uint8_t *under = t->state->under + tile + i;
-        slc_block before = slc_load_block(under), now = slc_load_block(least + i);
+        slc_block before = slc_load_block(under + i), now = slc_load_block(least + i);
         if (count - i < SLC_BLOCK) {
             slc_block inside = slc_load_block(ramp + SLC_BLOCK - (count - i));
             now = (now & inside) | (before & ~inside);
@@ -291,7 +310,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
         if (!slc_block_difference(before, now))
             continue;
         slc_range_add(&changed, i, slc_min_u32(i + SLC_BLOCK, count));
-        slc_store_block(under, now);
+        slc_store_block(under + i, now);
         uint32_t bits = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; bits; bits &= bits - 1) {
             uint32_t k = i + (uint32_t)__builtin_ctz(bits);
@@ -305,7 +324,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
     const struct slc_texture_state *s = t->state;
-    if (m->bias == 0)
+    if (m->bias.value == 0)
         return s->least;
     slc_bias_map(m, t, work);
     slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
@@ -421,11 +440,11 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
 {
     if (t->state) {
         bool held_before = t->held_regions > 0;
-        m->bias_maps++;
+        m->bias.maps++;
         struct slc_range changed = slc_history_merge(m, t, time, timeout);
-        if (t->state->bias != m->bias)
+        if (t->state->bias != m->bias.value)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
-        t->state->bias = m->bias;
+        t->state->bias = m->bias.value;
         if (changed.end > 0)
             settle(m, t, changed, held_before);
         slc_visit(m, t, t->held_regions > 0);

@@ -35,9 +35,11 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need);
 
-/** From the values of a map to what they ask for: clamp(min(v, last) + up - down, lowest, last). */
+/** From the values of a map to what they ask for: clamp(min(v, coarsest) + up - down, lowest,
+ * last). */
 struct slc_levels {
     uint8_t up, down; ///< at most 32, one of them 0
+    uint8_t coarsest; ///< of the texture that the values are for
     uint8_t lowest, last;
 };
 

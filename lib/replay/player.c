@@ -91,6 +91,14 @@ void *slc_player_scratch(struct slc_player *player, size_t count, size_t size)
     return player->scratch;
 }
 
+static uint64_t most_prefetched(const struct slc_player *player,
+                                const SluiceStreamedTextureStatistics *s)
+{
+    const SluiceStreamedTextureManagerConfig *config = slc_manager_config(player->manager);
+    uint64_t standby = config->prefetchLevels ? config->numExtraStandbyTiles : 0;
+    return standby < s->tileCount ? standby : s->tileCount;
+}
+
 /* How many entries a list can have at most: more is not allocated, whatever room there was. */
 static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind kind)
 {
@@ -98,8 +106,7 @@ static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind
     if (sluiceGetStatistics(player->manager, &s) != SLUICE_SUCCESS)
         return 0;
     switch (kind) {
-    case SLC_CALL_GET_TILES_TO_MAP: /* what is prefetched needs a free slot */
-        return (uint64_t)s.requestedTileCount + s.freeSlotCount;
+    case SLC_CALL_GET_TILES_TO_MAP: return s.requestedTileCount + most_prefetched(player, &s);
     case SLC_CALL_GET_TILES_TO_CANCEL: return s.cancelledTileCount;
     case SLC_CALL_GET_TILES_TO_UNMAP: return s.standbyTileCount;
     case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* some may have been tried again since */
@@ -122,9 +129,6 @@ static SluiceResult make_list_call(struct slc_player *player, struct slc_call *c
     SluiceStreamedTextureManager *m = player->manager;
     uint64_t most = most_entries(player, call->kind);
     uint32_t count = call->room;
-    /* Handed out until host memory ran out, which looks like too little room. */
-    if (call->kind == SLC_CALL_GET_TILES_TO_MAP && call->result == SLUICE_INCOMPLETE)
-        count = slc_min_u32(count, call->count);
     /* The array is never NULL on purpose: then the pointer to the count was. */
     uint32_t *room = call->result == SLUICE_ERROR_NULL_POINTER ? NULL : &count;
     void *entries = NULL;

@@ -77,6 +77,7 @@ struct heap_answer {
 
 struct outcome {
     SluiceResult result;
+    bool memory_refused;     ///< an allocation failed, even if the call did not
     SluiceTextureId texture; ///< ADD_TEXTURE
     uint32_t count;          ///< list calls
     SluiceTile tiles[CALL_MAX_ROOM];

@@ -139,7 +139,12 @@ static void compare_lists(struct differential *d)
                 fail(d, "rectangle %" PRIu32 " is of %" PRIx64 ", expected %" PRIx64, i,
                      a->rects[i].textureId, b->rects[i].textureId);
             break;
-        default: /* heaps were checked when they were taken over */ break;
+        case CALL_EMPTY_HEAPS:
+            if (a->heaps[i] != b->heaps[i])
+                fail(d, "heap %" PRIu32 " is %" PRIu32 ", expected %" PRIu32, i, a->heaps[i],
+                     b->heaps[i]);
+            break;
+        default: break;
         }
     }
 }
@@ -178,6 +183,8 @@ static void compare_statistics(struct differential *d, const SluiceStreamedTextu
     COMPARE(retiringSlotCount);
     COMPARE(heapCount);
     COMPARE(freeSlotCount);
+    COMPARE(reservedSlotCount);
+    COMPARE(globalMipBias);
     COMPARE(handedOutTotal);
     COMPARE(mappedTotal);
     COMPARE(unmappedTotal);
@@ -376,6 +383,7 @@ static bool make_call(struct differential *d)
         d->allocator.refuse_from = d->allocator.calls + call->refuse_after;
     call_make(d->manager, call, &d->seen);
     const bool refused = d->allocator.calls > d->allocator.refuse_from;
+    d->seen.memory_refused = refused;
     d->allocator.refuse_from = UINT64_MAX;
     d->coverage[call->kind][(d->seen.result + 32) & 63]++;
     if (d->seen.result < 0)

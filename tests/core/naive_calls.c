@@ -101,28 +101,42 @@ static bool is_empty(const struct naive_manager *n, const struct naive_heap *hea
     return naive_count_slots(n, heap, NAIVE_SLOT_FREE) == n->capacity;
 }
 
-/* Which of the empty heaps are listed, and in which order, is free. */
+static int compare_heap_numbers(const void *a, const void *b)
+{
+    const struct naive_heap *const *x = a, *const *y = b;
+    return (*x)->number < (*y)->number ? -1 : 1;
+}
+
+/* Writes pointers to the heaps that are to be listed, in order, and returns how many. */
+static uint32_t list_empty_heaps(const struct naive_manager *n, const struct naive_heap **heaps)
+{
+    const uint64_t free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
+    const bool none_taken = free_slots == (uint64_t)n->heap_count * n->capacity;
+    uint32_t empty = 0, count = 0;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (is_empty(n, &n->heaps[i]))
+            heaps[empty++] = &n->heaps[i];
+    qsort(heaps, empty, sizeof *heaps, compare_heap_numbers);
+    while (count < empty &&
+           (none_taken || free_slots - (uint64_t)(count + 1) * n->capacity >= n->capacity / 2))
+        count++;
+    return count;
+}
+
 static SluiceResult empty_heaps(struct naive_manager *n, const struct call *call,
-                                const struct outcome *seen, struct outcome *out)
+                                struct outcome *out)
 {
     if (call->null == NULL_MANAGER || call->null == NULL_FIRST)
         return SLUICE_ERROR_NULL_POINTER;
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < n->heap_count; i++)
-        count += is_empty(n, &n->heaps[i]);
+    const struct naive_heap **heaps = naive_alloc(n->heap_count, sizeof(void *));
+    const uint32_t count = list_empty_heaps(n, heaps);
     out->count = count;
-    if (call->null == NULL_SECOND)
-        return SLUICE_SUCCESS;
-    out->count = call->room < count ? call->room : count;
-    for (uint32_t i = 0; i < out->count && i < seen->count; i++) {
-        const struct naive_heap *heap = naive_find_heap(n, seen->heaps[i]);
-        if (!heap || !is_empty(n, heap))
-            naive_complain(n, "heap %u is not empty", seen->heaps[i]);
-        for (uint32_t k = 0; k < i; k++)
-            if (seen->heaps[k] == seen->heaps[i])
-                naive_complain(n, "heap %u stands in the list twice", seen->heaps[i]);
-        out->heaps[i] = seen->heaps[i];
+    if (call->null != NULL_SECOND) {
+        out->count = call->room < count ? call->room : count;
+        for (uint32_t i = 0; i < out->count; i++)
+            out->heaps[i] = heaps[i]->id;
     }
+    free(heaps);
     return out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
 
@@ -282,7 +296,7 @@ static SluiceResult dispatch(struct naive_manager *n, const struct call *call,
         naive_list_standby(n, call->keep);
         return SLUICE_SUCCESS;
     case CALL_DEFRAGMENT: return naive_defragment(n, call, seen, out);
-    case CALL_EMPTY_HEAPS: return empty_heaps(n, call, seen, out);
+    case CALL_EMPTY_HEAPS: return empty_heaps(n, call, out);
     case CALL_RELEASE_HEAP: return release_heap(n, call);
     case CALL_MINMIP_UPDATES: return minmip_updates(n, call, seen, out);
     case CALL_WRITE_MINMIP:
@@ -310,7 +324,11 @@ void naive_call(struct naive_manager *n, const struct call *call, const struct o
     expected->texture = 0;
     n->complaint[0] = 0;
     expected->result = dispatch(n, call, seen, expected);
-    for (uint32_t i = 0; i < n->texture_room; i++)
-        if (n->textures[i])
-            naive_update_minmip(n, n->textures[i]);
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        if (!n->textures[i])
+            continue;
+        naive_update_minmip(n, n->textures[i]);
+        if (!naive_has_state(n->textures[i]))
+            naive_forget_history(n->textures[i]);
+    }
 }

@@ -30,9 +30,8 @@ void naive_init(struct naive_manager *n, uint32_t capacity, bool always_packed)
 
 void naive_free_texture(struct naive_texture *t)
 {
-    for (uint32_t i = 0; i < t->map_count; i++)
-        free(t->maps[i].wanted);
-    free(t->maps);
+    naive_forget_history(t);
+    free(t->last_wishes);
     free(t->tiles);
     free(t->held);
     free(t->last_asked);
@@ -89,6 +88,20 @@ uint32_t naive_count_slots(const struct naive_manager *n, const struct naive_hea
     return count;
 }
 
+uint32_t naive_count_all(const struct naive_manager *n, enum naive_slot_use use)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        count += naive_count_slots(n, &n->heaps[i], use);
+    return count;
+}
+
+uint32_t naive_reserved(const struct naive_manager *n)
+{
+    const uint32_t sixteenth = n->heap_count * n->capacity / 16;
+    return sixteenth < 64 ? sixteenth : 64;
+}
+
 void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatistics *out)
 {
     *out = n->totals;
@@ -112,10 +125,10 @@ void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatis
                 ++*counts[t->tiles[k].state];
     }
     out->heapCount = n->heap_count;
-    for (uint32_t i = 0; i < n->heap_count; i++) {
-        out->retiringSlotCount += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_RETIRING);
-        out->freeSlotCount += naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
-    }
+    out->retiringSlotCount = naive_count_all(n, NAIVE_SLOT_RETIRING);
+    out->freeSlotCount = naive_count_all(n, NAIVE_SLOT_FREE);
+    out->reservedSlotCount = naive_reserved(n);
+    out->globalMipBias = n->bias.value;
 }
 
 /* Whether the manager may give this id: lowest free index, a generation never seen there. */
@@ -139,6 +152,8 @@ static struct naive_texture *make_texture(struct naive_manager *n,
     *t = (struct naive_texture){.id = id, .layout = *l, .minmip_stale = true};
     t->tiles = naive_alloc(l->tileCount, sizeof *t->tiles);
     t->held = memset(naive_alloc(regions, 1), SLUICE_MIP_UNTOUCHED, regions);
+    t->last_wishes =
+        memset(naive_alloc(l->regularTileCount, 1), SLUICE_MIP_UNTOUCHED, l->regularTileCount);
     t->minmip = memset(naive_alloc(texels, 1), SLUICE_MIP_UNTOUCHED, texels);
     t->changed = memset(naive_alloc(texels, 1), 1, texels);
     t->dirty_since = ++n->stamp;

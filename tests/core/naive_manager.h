@@ -1,6 +1,6 @@
 /**
  * The manager once more, written from docs/manager.md with loops over everything and no structure
- * that could go wrong: whole map histories, plain arrays, lists made by sorting all tiles. It
+ * that could go wrong: plain arrays, lists made by sorting all tiles. It
  * shares no code with lib/core. Memory that runs out ends the program.
  *
  * Two choices are not in the rules: which slot of which of several equally full heaps a tile gets,
@@ -20,26 +20,33 @@ struct naive_tile {
     bool cancel_handed_out;
     bool listed; ///< STANDBY and in the list for unmapping
     uint32_t failures;
-    uint32_t deficit;
+    uint32_t need;
     uint32_t heap, slot;
     uint64_t due;
     /* Stamps of one counter say who came first. */
     uint64_t requested_at, cancelled_at, standby_at, listed_at, failed_at, given_up_at;
 };
 
-struct naive_map {
-    uint64_t time;
-    uint8_t *wanted; ///< per region: level, regularMipCount, or 255
+#define NAIVE_MAX_SPANS 6
+
+struct naive_span {
+    uint64_t begin, end; ///< times of its first and of its last map
+    uint64_t weight;
+    uint8_t *asked; ///< per region: least `a`, or 255
 };
 
 struct naive_texture {
     SluiceTextureId id;
     SluiceStreamedTextureLayout layout;
     struct naive_tile *tiles;
-    uint32_t map_count;
-    struct naive_map *maps;
-    uint8_t *held;       ///< per region, 255: nothing
-    uint8_t *last_asked; ///< `a` of the last map, 255: nothing; NULL: never had one
+    uint32_t span_count;
+    struct naive_span spans[NAIVE_MAX_SPANS]; ///< oldest first
+    uint32_t hits, returns;
+    uint8_t *held;        ///< per region, 255: nothing
+    uint8_t *last_asked;  ///< `a` of the last map, 255: nothing; NULL: never had one
+    uint8_t *last_wishes; ///< finest wishes of the regular tiles by last_asked
+    uint64_t map_stamp;   ///< of its last map; 0: never had one
+    uint64_t map_time, map_timeout, interval;
     SluiceTextureId primary;
     uint64_t follower_since;
     uint8_t *minmip;
@@ -56,13 +63,37 @@ struct naive_slot {
 };
 
 struct naive_heap {
-    uint32_t id;
+    uint32_t id, number;
     struct naive_slot *slots;
 };
 
 struct naive_given_up {
     SluiceTextureId texture;
     uint32_t tile;
+};
+
+/** What happened, so that a test can see what random calls reach. */
+enum naive_event {
+    NAIVE_BIAS_ABOVE_0, ///< after a call that hands out tiles
+    NAIVE_BIAS_LOWERED,
+    NAIVE_STARVED, ///< became so
+    NAIVE_PASSED_OVER,
+    NAIVE_FORGOTTEN,
+    NAIVE_PREFETCHED,
+    NAIVE_SPAN_THINNED, ///< levels were deleted, others stayed
+    NAIVE_SPANS_FULL,
+    NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
+    NAIVE_RETURNS,      ///< maps with returns while misses are learned
+    NAIVE_EVENT_COUNT
+};
+
+struct naive_bias {
+    uint32_t value; ///< sixteenths of a level
+    uint32_t failed_value;
+    uint64_t failed_limit;
+    bool demand_known;
+    uint64_t demand;
+    uint64_t maps; ///< merged since the bias was looked at
 };
 
 struct naive_manager {
@@ -78,9 +109,16 @@ struct naive_manager {
     uint32_t given_up_count;
     struct naive_given_up *given_up;
     uint64_t stamp;
+    struct naive_bias bias;
+    bool starved;
+    bool heap_refused;       ///< the heap allocator's last answer
+    uint64_t usual;          ///< interval between maps that was noted last
+    uint32_t prefetch_level; ///< 0: the coarsest
+    uint32_t prefetch_index;
     bool has_time;
     uint64_t time, last_retire, completed;
     SluiceStreamedTextureStatistics totals; ///< only the ...Total fields
+    uint64_t events[NAIVE_EVENT_COUNT];
     char complaint[256]; ///< "": all that was taken over from the other manager is allowed
 };
 
@@ -106,12 +144,32 @@ SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
                                const struct outcome *seen, struct outcome *out);
 void naive_free_texture(struct naive_texture *t);
 void naive_update_minmip(struct naive_manager *n, struct naive_texture *t);
-void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit);
-void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit);
+void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
+void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
 /** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
+/** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
+void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
+                    uint64_t time, uint64_t timeout);
+void naive_forget_history(struct naive_texture *t);
+bool naive_has_state(const struct naive_texture *t);
+bool naive_holds_anything(const struct naive_texture *t);
+/** The finest wish of each regular tile where the regions hold `levels`. */
+void naive_wishes(const struct naive_texture *t, const uint8_t *levels, uint8_t *wishes);
+/** Makes tiles wanted and unwanted by what the regions hold now. */
+void naive_apply_held(struct naive_manager *n, struct naive_texture *t);
+uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_texture *t,
+                           uint32_t rx, uint32_t ry);
+/** Before anything is handed out. */
+void naive_look_at_bias(struct naive_manager *n);
+/** Of all slots of living heaps. */
+uint32_t naive_reserved(const struct naive_manager *n);
+uint32_t naive_count_all(const struct naive_manager *n, enum naive_slot_use use);
 void naive_retry_due(struct naive_manager *n, uint64_t now);
+/** Checks what all list calls have in common; *only is NULL for all textures. */
+SluiceResult naive_check_list(struct naive_manager *n, const struct call *call,
+                              struct naive_texture **only);
 SluiceResult naive_feedback(struct naive_manager *n, const struct call *call);
 SluiceResult naive_match(struct naive_manager *n, const struct call *call);
 SluiceResult naive_answer(struct naive_manager *n, const struct call *call);

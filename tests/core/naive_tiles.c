@@ -78,18 +78,18 @@ void naive_retire_slot(struct naive_manager *n, struct naive_tile *tile, uint64_
         (struct naive_slot){over ? NAIVE_SLOT_FREE : NAIVE_SLOT_RETIRING, over ? 0 : retire};
 }
 
-void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit)
+void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t need)
 {
     tile->state = SLUICE_TILE_STATE_REQUESTED;
     tile->requested_at = ++n->stamp;
-    tile->deficit = deficit;
+    tile->need = need;
 }
 
-void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t deficit)
+void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need)
 {
     tile->wanted = true;
     switch (tile->state) {
-    case SLUICE_TILE_STATE_FREE: naive_request(n, tile, deficit); break;
+    case SLUICE_TILE_STATE_FREE: naive_request(n, tile, need); break;
     case SLUICE_TILE_STATE_STANDBY:
         tile->state = SLUICE_TILE_STATE_MAPPED;
         tile->listed = false;

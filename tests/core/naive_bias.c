@@ -1,0 +1,68 @@
+/* The section "The global bias". */
+#include "core/naive_manager.h"
+
+#define MAX_BIAS 320u
+
+uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_texture *t,
+                           uint32_t rx, uint32_t ry)
+{
+    static const uint32_t matrix[4][4] = {
+        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+    const uint64_t index = (uint32_t)t->id;
+    const uint64_t threshold = (matrix[ry / 8 % 4][rx / 8 % 4] + 7 * index) % 16;
+    return n->bias.value / 16 + (threshold < n->bias.value % 16);
+}
+
+/* UINT64_MAX: none. */
+static uint64_t wanted_limit(const struct naive_manager *n)
+{
+    uint64_t heaps = n->config.maxHeapCount ? n->config.maxHeapCount : UINT64_MAX;
+    if (n->heap_refused && n->heap_count < heaps)
+        heaps = n->heap_count;
+    return heaps == UINT64_MAX ? UINT64_MAX : 3 * heaps * n->capacity;
+}
+
+static void raise_bias(struct naive_bias *b, uint64_t wanted, uint64_t limit)
+{
+    b->failed_value = b->value;
+    b->failed_limit = limit;
+    b->demand_known = false;
+    for (int i = 0; i < 16 && wanted > limit && b->value < MAX_BIAS; i++) {
+        b->value++;
+        wanted = wanted * 60097 / 65536;
+    }
+}
+
+static bool may_lower_bias(const struct naive_bias *b, uint64_t wanted, uint64_t limit)
+{
+    const uint64_t more = wanted + wanted / 8;
+    return more <= limit &&
+           (b->value - 1 > b->failed_value || limit > b->failed_limit || more <= b->demand);
+}
+
+void naive_look_at_bias(struct naive_manager *n)
+{
+    SluiceStreamedTextureStatistics s;
+    struct naive_bias *b = &n->bias;
+    uint64_t holding = 0;
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        holding += n->textures[i] && naive_holds_anything(n->textures[i]);
+    naive_statistics(n, &s);
+    const uint64_t limit = wanted_limit(n);
+    const uint64_t wanted =
+        (uint64_t)s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount;
+    if ((b->value == 0 && wanted <= limit) || b->maps < holding)
+        return;
+    b->maps = 0;
+    if (wanted > limit) {
+        raise_bias(b, wanted, limit);
+        return;
+    }
+    if (!b->demand_known)
+        b->demand = wanted;
+    b->demand_known = true;
+    if (may_lower_bias(b, wanted, limit)) {
+        b->value--;
+        n->events[NAIVE_BIAS_LOWERED]++;
+    }
+}

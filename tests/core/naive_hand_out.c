@@ -1,0 +1,310 @@
+/* sluiceGetTilesToMap: the sections "The request queue", "Handing out" and "Prefetching". */
+#include "core/naive_manager.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_PASSED_OVER 4096u
+#define MAX_PREFETCH_TEXTURES 256u
+
+static uint32_t min_u32(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint64_t max_u64(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
+/* A heap that the rules allow a slot to be taken from; NULL: there is none. */
+static const struct naive_heap *fullest_heap(const struct naive_manager *n)
+{
+    const struct naive_heap *best = NULL;
+    uint32_t best_free = 0;
+    for (uint32_t i = 0; i < n->heap_count; i++) {
+        uint32_t free_slots = naive_count_slots(n, &n->heaps[i], NAIVE_SLOT_FREE);
+        if (free_slots > 0 && (!best || free_slots < best_free)) {
+            best = &n->heaps[i];
+            best_free = free_slots;
+        }
+    }
+    return best;
+}
+
+static uint32_t lowest_free_number(const struct naive_manager *n)
+{
+    uint32_t number = 0;
+    for (uint32_t i = 0; i < n->heap_count; i++)
+        if (n->heaps[i].number == number) {
+            number++;
+            i = UINT32_MAX; /* from the start again */
+        }
+    return number;
+}
+
+/* Takes the next answer that the other manager got. */
+static void ask_for_heap(struct naive_manager *n, const struct outcome *seen, struct outcome *out)
+{
+    n->heap_refused = true;
+    if (out->answer_count == seen->answer_count) {
+        naive_complain(n, "the heap allocator should have been asked once more");
+        return;
+    }
+    struct heap_answer answer = seen->answers[out->answer_count++];
+    if (answer.result != SLUICE_SUCCESS || naive_find_heap(n, answer.id))
+        return;
+    n->heap_refused = false;
+    n->heaps = realloc(n->heaps, (n->heap_count + 1) * sizeof *n->heaps);
+    if (!n->heaps)
+        abort();
+    const uint32_t number = lowest_free_number(n);
+    n->heaps[n->heap_count++] =
+        (struct naive_heap){answer.id, number, naive_alloc(n->capacity, sizeof(struct naive_slot))};
+}
+
+/* Takes the slot that the other manager took for its tile number `i`, if that is allowed. */
+static void take_slot(struct naive_manager *n, const struct outcome *seen, uint32_t i,
+                      const struct naive_heap *fullest, struct naive_tile *tile)
+{
+    if (i >= seen->count) {
+        naive_complain(n, "tile %u of the list is missing", i);
+        return;
+    }
+    const SluiceTile *other = &seen->tiles[i];
+    struct naive_heap *heap = naive_find_heap(n, other->heapId);
+    if (!heap || other->slot >= n->capacity) {
+        naive_complain(n, "tile %u: no slot %u in heap %u", i, other->slot, other->heapId);
+        return;
+    }
+    if (heap->slots[other->slot].use != NAIVE_SLOT_FREE)
+        naive_complain(n, "tile %u: slot %u of heap %u is not free", i, other->slot, heap->id);
+    if (naive_count_slots(n, heap, NAIVE_SLOT_FREE) !=
+        naive_count_slots(n, fullest, NAIVE_SLOT_FREE))
+        naive_complain(n, "tile %u: heap %u has more free slots than heap %u", i, heap->id,
+                       fullest->id);
+    tile->heap = other->heapId;
+    tile->slot = other->slot;
+    heap->slots[other->slot].use = NAIVE_SLOT_USED;
+}
+
+/* Hands out one tile; false with a complaint if the other manager could not have done so. */
+static bool hand_out(struct naive_manager *n, struct naive_texture *t, struct naive_tile *tile,
+                     const struct outcome *seen, struct outcome *out)
+{
+    take_slot(n, seen, out->count, fullest_heap(n), tile);
+    if (n->complaint[0])
+        return false;
+    n->totals.handedOutTotal++;
+    out->tiles[out->count++] = naive_tile_info(t, (uint32_t)(tile - t->tiles));
+    return true;
+}
+
+static bool slot_for(struct naive_manager *n, bool packed)
+{
+    return naive_count_all(n, NAIVE_SLOT_FREE) > (packed ? 0 : naive_reserved(n));
+}
+
+static bool find_slot(struct naive_manager *n, bool packed, bool *refused,
+                      const struct outcome *seen, struct outcome *out)
+{
+    if (slot_for(n, packed))
+        return true;
+    const uint32_t most = n->config.maxHeapCount;
+    if (!*refused && (most == 0 || n->heap_count < most)) {
+        ask_for_heap(n, seen, out);
+        *refused = n->heap_refused;
+        if (!*refused)
+            return true;
+    }
+    n->events[NAIVE_RESERVE_KEPT] += slot_for(n, true);
+    return false;
+}
+
+static bool is_passed_over(const struct naive_manager *n, const struct naive_ref *ref)
+{
+    const struct naive_tile *tile = ref->tile;
+    return n->starved && !tile->packed &&
+           ref->texture->last_wishes[tile - ref->texture->tiles] > tile->level;
+}
+
+/* Of the textures that hold anything, the one whose last map is the oldest. */
+static struct naive_texture *oldest_texture(struct naive_manager *n)
+{
+    struct naive_texture *oldest = NULL;
+    for (uint32_t i = 0; i < n->texture_room; i++) {
+        struct naive_texture *t = n->textures[i];
+        if (t && naive_holds_anything(t) && (!oldest || t->map_stamp < oldest->map_stamp))
+            oldest = t;
+    }
+    return oldest;
+}
+
+static bool is_idle(const struct naive_manager *n, const struct naive_texture *t)
+{
+    const uint64_t age = n->time - t->map_time;
+    return age > 0 && age / 4 >= max_u64(t->map_timeout, max_u64(t->interval, n->usual));
+}
+
+static void forget(struct naive_manager *n, struct naive_texture *t)
+{
+    naive_forget_history(t);
+    const size_t regions = (size_t)t->layout.feedbackWidth * t->layout.feedbackHeight;
+    memset(t->last_asked, SLUICE_MIP_UNTOUCHED, regions);
+    memset(t->held, SLUICE_MIP_UNTOUCHED, regions);
+    naive_apply_held(n, t);
+    n->events[NAIVE_FORGOTTEN]++;
+}
+
+static void count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted)
+{
+    uint32_t standby;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &standby);
+    *listed = 0;
+    for (uint32_t i = 0; i < standby; i++)
+        *listed += refs[i].tile->listed;
+    *unlisted = standby - *listed;
+    free(refs);
+}
+
+/* Room is left for `unserved` requests, but no slot. */
+static void make_room(struct naive_manager *n, uint64_t unserved)
+{
+    const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
+    const uint64_t needed = unserved + (reserved > free_slots ? reserved - free_slots : 0);
+    const uint64_t retiring = naive_count_all(n, NAIVE_SLOT_RETIRING);
+    uint32_t listed, unlisted;
+    count_standby(n, &listed, &unlisted);
+    while (listed + retiring + unlisted < needed) {
+        struct naive_texture *t = oldest_texture(n);
+        if (!t || !is_idle(n, t))
+            break;
+        forget(n, t);
+        count_standby(n, &listed, &unlisted);
+    }
+    if (needed > listed + retiring) {
+        const uint64_t more = needed - listed - retiring;
+        naive_list_standby(n, more < unlisted ? unlisted - more : 0);
+    }
+}
+
+static struct naive_ref *request_queue(const struct naive_manager *n,
+                                       const struct naive_texture *only, uint32_t *count)
+{
+    struct naive_ref *refs = naive_collect(n, only, SLUICE_TILE_STATE_REQUESTED, count);
+    for (uint32_t i = 0; i < *count; i++) {
+        const struct naive_tile *tile = refs[i].tile;
+        uint64_t *key = refs[i].key;
+        key[0] = tile->packed ? 0 : 1;
+        key[1] = tile->packed ? 0 : SLUICE_MAX_MIP_LEVELS - tile->level;
+        key[2] = tile->packed ? 0 : 64 - tile->need;
+        key[3] = tile->requested_at;
+    }
+    naive_sort(refs, *count);
+    return refs;
+}
+
+/* Returns whether handing out stopped for lack of slots. */
+static bool hand_out_requests(struct naive_manager *n, const struct call *call,
+                              const struct naive_ref *refs, uint32_t count,
+                              const struct outcome *seen, struct outcome *out)
+{
+    uint32_t passed_over = 0;
+    bool refused = false;
+    for (uint32_t i = 0; i < count && out->count < call->room; i++) {
+        struct naive_tile *tile = refs[i].tile;
+        if (is_passed_over(n, &refs[i])) {
+            n->events[NAIVE_PASSED_OVER]++;
+            if (++passed_over == MAX_PASSED_OVER)
+                return false;
+            continue;
+        }
+        if (!find_slot(n, tile->packed, &refused, seen, out))
+            return true;
+        tile->state = SLUICE_TILE_STATE_ALLOCATED;
+        if (!hand_out(n, refs[i].texture, tile, seen, out))
+            return false;
+    }
+    return false;
+}
+
+static bool may_prefetch(struct naive_manager *n, const struct call *call,
+                         const struct outcome *seen, const struct outcome *out)
+{
+    uint32_t listed, unlisted, cancelled;
+    count_standby(n, &listed, &unlisted);
+    free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELLED, &cancelled));
+    if (seen->memory_refused && out->count == seen->count)
+        return false; /* it ran out */
+    return out->count < call->room && unlisted + cancelled < n->config.numExtraStandbyTiles &&
+           slot_for(n, false);
+}
+
+/* Returns whether prefetching goes on. */
+static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
+                           const struct call *call, const struct outcome *seen, struct outcome *out)
+{
+    for (uint32_t i = 0; i < t->layout.regularTileCount; i++) {
+        struct naive_tile *tile = &t->tiles[i];
+        if (tile->level + 1 + n->prefetch_level != t->layout.desc.regularMipCount ||
+            tile->state != SLUICE_TILE_STATE_FREE)
+            continue;
+        if (!may_prefetch(n, call, seen, out))
+            return false;
+        tile->state = SLUICE_TILE_STATE_CANCELLED;
+        tile->cancel_handed_out = true;
+        if (!hand_out(n, t, tile, seen, out))
+            return false;
+        n->events[NAIVE_PREFETCHED]++;
+    }
+    return true;
+}
+
+static void prefetch(struct naive_manager *n, const struct call *call, const struct outcome *seen,
+                     struct outcome *out)
+{
+    for (uint32_t i = min_u32(MAX_PREFETCH_TEXTURES, n->texture_room); i > 0; i--) {
+        if (n->prefetch_index >= n->texture_room) {
+            n->prefetch_index = 0;
+            n->prefetch_level++;
+        }
+        if (n->prefetch_level >= n->config.prefetchLevels)
+            n->prefetch_level = 0;
+        struct naive_texture *t = n->textures[n->prefetch_index];
+        if (t && !prefetch_level(n, t, call, seen, out))
+            return;
+        n->prefetch_index++;
+    }
+}
+
+SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call,
+                                const struct outcome *seen, struct outcome *out)
+{
+    struct naive_texture *only;
+    SluiceResult result = naive_check_list(n, call, &only);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t count;
+    struct naive_ref *refs = request_queue(n, only, &count);
+    if (call->null == NULL_SECOND) {
+        out->count = count;
+        free(refs);
+        return SLUICE_SUCCESS;
+    }
+    naive_look_at_bias(n);
+    n->events[NAIVE_BIAS_ABOVE_0] += n->bias.value > 0;
+    const bool stopped = hand_out_requests(n, call, refs, count, seen, out);
+    free(refs);
+    n->events[NAIVE_STARVED] += stopped && !n->starved;
+    if (call->room)
+        n->starved = stopped;
+    const uint32_t unserved = min_u32(count, call->room) - out->count;
+    result = out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+    if (!only && n->config.prefetchLevels && out->count == count)
+        prefetch(n, call, seen, out);
+    if (stopped) {
+        make_room(n, unserved);
+        result = SLUICE_BUDGET_REACHED;
+    }
+    return result;
+}

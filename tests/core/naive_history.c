@@ -1,0 +1,210 @@
+/* What the regions of a texture hold: the section "What a region holds". */
+#include "core/naive_manager.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NOTHING SLUICE_MIP_UNTOUCHED
+#define MAX_WEIGHT UINT32_MAX
+
+static uint32_t count_regions(const struct naive_texture *t)
+{
+    return t->layout.feedbackWidth * t->layout.feedbackHeight;
+}
+
+bool naive_holds_anything(const struct naive_texture *t)
+{
+    for (uint32_t r = 0; r < count_regions(t); r++)
+        if (t->held[r] != NOTHING)
+            return true;
+    return false;
+}
+
+bool naive_has_state(const struct naive_texture *t)
+{
+    for (uint32_t i = 0; i < t->layout.regularTileCount; i++)
+        if (t->tiles[i].state != SLUICE_TILE_STATE_FREE)
+            return true;
+    return naive_holds_anything(t);
+}
+
+static void delete_span(struct naive_texture *t, uint32_t at)
+{
+    free(t->spans[at].asked);
+    t->span_count--;
+    for (uint32_t i = at; i < t->span_count; i++)
+        t->spans[i] = t->spans[i + 1];
+}
+
+void naive_forget_history(struct naive_texture *t)
+{
+    while (t->span_count)
+        delete_span(t, t->span_count - 1);
+}
+
+static uint8_t least_of(const struct naive_texture *t, uint32_t r)
+{
+    uint8_t least = NOTHING;
+    for (uint32_t i = 0; i < t->span_count; i++)
+        if (t->spans[i].asked[r] < least)
+            least = t->spans[i].asked[r];
+    return least;
+}
+
+/* Step 1. */
+static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked)
+{
+    uint32_t returns = 0;
+    if (!t->last_asked || memcmp(asked, t->last_asked, count_regions(t)) == 0)
+        return;
+    for (uint32_t r = 0; r < count_regions(t); r++) {
+        const uint8_t least = least_of(t, r);
+        if (least == NOTHING || asked[r] > least)
+            continue;
+        if (t->last_asked[r] == least)
+            t->hits++;
+        else
+            returns++;
+    }
+    t->returns += returns;
+    n->events[NAIVE_RETURNS] += returns > 0 && n->config.missesToForget == 0;
+    if (t->hits + t->returns >= 4096) {
+        t->hits /= 2;
+        t->returns /= 2;
+    }
+}
+
+/* Step 2. */
+static uint64_t weight_of(const struct naive_texture *t, const uint8_t *asked)
+{
+    uint64_t holding = 0;
+    for (uint32_t r = 0; r < count_regions(t); r++) {
+        if (asked[r] != NOTHING)
+            return 1;
+        holding += least_of(t, r) != NOTHING;
+    }
+    return holding ? holding : 1;
+}
+
+/* Step 3. */
+static uint64_t misses_needed(const struct naive_manager *n, const struct naive_texture *t)
+{
+    if (n->config.missesToForget)
+        return n->config.missesToForget;
+    if (!t->returns)
+        return 1;
+    const uint64_t needed = (uint64_t)14 * t->returns / (t->hits + 1) + 7;
+    return needed < 4096 ? needed : 4096;
+}
+
+/* -1: the tile's size is not the region's times a power of two. */
+static int log2_ratio(uint32_t tile, uint32_t region)
+{
+    for (int s = 0; s < 32; s++)
+        if ((uint64_t)region << s == tile)
+            return s;
+    return -1;
+}
+
+static uint32_t regions_per_tile_log2(const SluiceStreamedTextureDesc *d)
+{
+    const int x = log2_ratio(d->tileWidth, d->feedbackRegionWidth);
+    const int y = log2_ratio(d->tileHeight, d->feedbackRegionHeight);
+    if (x < 0 || y < 0)
+        return 0;
+    const int least = x < y ? x : y;
+    return least < 8 ? (uint32_t)least : 8;
+}
+
+static uint32_t level_to_delete(uint64_t needed, uint32_t s, uint64_t newer)
+{
+    uint32_t k = 0;
+    while ((2 * (k + s) < 64 ? needed >> (2 * (k + s)) : 0) > newer)
+        k++;
+    return k;
+}
+
+/* Returns whether nothing is left. */
+static bool delete_levels(struct naive_manager *n, const struct naive_texture *t,
+                          struct naive_span *span, uint32_t below)
+{
+    bool deleted = false, left = false;
+    for (uint32_t r = 0; r < count_regions(t); r++) {
+        if (span->asked[r] == NOTHING)
+            continue;
+        if (span->asked[r] >= below) {
+            span->asked[r] = NOTHING;
+            deleted = true;
+        } else
+            left = true;
+    }
+    n->events[NAIVE_SPAN_THINNED] += deleted && left;
+    return !left;
+}
+
+/* Step 4. */
+static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t weight,
+                      uint64_t needed, uint64_t now, uint64_t timeout)
+{
+    const uint32_t s = regions_per_tile_log2(&t->layout.desc);
+    bool over_and_empty[NAIVE_MAX_SPANS] = {false};
+    for (uint32_t i = 0; i < t->span_count; i++) {
+        struct naive_span *span = &t->spans[i];
+        const uint64_t age = now - span->end;
+        uint64_t newer = weight;
+        for (uint32_t k = i + 1; k < t->span_count; k++)
+            newer += t->spans[k].weight;
+        newer = newer < MAX_WEIGHT ? newer : MAX_WEIGHT;
+        if (age >= timeout || (n->starved && newer >= 2 && age >= timeout - timeout / 16 * 5))
+            over_and_empty[i] = delete_levels(n, t, span, level_to_delete(needed, s, newer));
+    }
+    uint32_t deleted = 0;
+    while (deleted < NAIVE_MAX_SPANS && over_and_empty[deleted])
+        deleted++;
+    for (uint32_t i = deleted; i > 0; i--)
+        delete_span(t, 0);
+}
+
+/* Step 5. */
+static void join(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
+                 uint64_t weight, uint64_t needed, uint64_t now, uint64_t timeout)
+{
+    struct naive_span *newest = t->span_count ? &t->spans[t->span_count - 1] : NULL;
+    n->events[NAIVE_SPANS_FULL] += t->span_count == NAIVE_MAX_SPANS;
+    if (newest && (t->span_count == NAIVE_MAX_SPANS || now - newest->begin < timeout / 4 ||
+                   newest->weight < needed / 4)) {
+        newest->end = now;
+        newest->weight += weight;
+        if (newest->weight > MAX_WEIGHT)
+            newest->weight = MAX_WEIGHT;
+        for (uint32_t r = 0; r < count_regions(t); r++)
+            if (asked[r] < newest->asked[r])
+                newest->asked[r] = asked[r];
+        return;
+    }
+    const uint32_t regions = count_regions(t);
+    t->spans[t->span_count++] = (struct naive_span){
+        .begin = now,
+        .end = now,
+        .weight = weight,
+        .asked = memcpy(naive_alloc(regions, 1), asked, regions),
+    };
+}
+
+void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
+                    uint64_t time, uint64_t timeout)
+{
+    const SluiceStreamedTextureLayout *l = &t->layout;
+    const uint32_t coarsest = l->desc.mipLevelCount - 1;
+    learn(n, t, asked);
+    const uint64_t weight = weight_of(t, asked);
+    const uint64_t needed = misses_needed(n, t);
+    let_lapse(n, t, weight, needed, time, timeout);
+    join(n, t, asked, weight, needed, time, timeout);
+    for (uint32_t r = 0; r < count_regions(t); r++) {
+        const uint8_t least = least_of(t, r);
+        const uint32_t level =
+            least + naive_region_bias(n, t, r % l->feedbackWidth, r / l->feedbackWidth);
+        t->held[r] = least == NOTHING ? NOTHING : (uint8_t)(level < coarsest ? level : coarsest);
+    }
+}
