@@ -71,13 +71,9 @@ void slc_update_bias(slc_manager *m, uint64_t limit)
     uint64_t wanted = (uint64_t)m->state_counts[SLUICE_TILE_STATE_REQUESTED] +
                       m->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
                       m->state_counts[SLUICE_TILE_STATE_MAPPED];
-    /* One hand-out in need says little: an allocator may refuse now and give later. */
-    bool in_need = wanted > limit || m->bias.value > 0;
-    if (in_need && m->bias.maps < slc_max_u32(m->visited_count, 1))
+    if ((m->bias.value == 0 && wanted <= limit) || m->bias.maps < m->visited_count)
         return;
     m->bias.maps = 0;
-    if (!in_need)
-        return;
     if (wanted > limit) {
         raise_bias(m, wanted, limit);
         return;

@@ -51,11 +51,7 @@ void naive_look_at_bias(struct naive_manager *n)
     const uint64_t limit = wanted_limit(n);
     const uint64_t wanted =
         (uint64_t)s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount;
-    if (b->value == 0 && wanted <= limit) {
-        b->maps = 0;
-        return;
-    }
-    if (b->maps < holding || b->maps == 0)
+    if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;
     if (wanted > limit) {
