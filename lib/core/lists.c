@@ -494,7 +494,7 @@ SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, ui
         return SLUICE_ERROR_NULL_POINTER;
     const struct slc_tile_heaps *h = &manager->heaps;
     uint32_t room = *pHeapCount, found = 0;
-    uint64_t rest = h->free_total, keep = h->capacity / 2;
+    uint64_t rest = h->free_total, keep = h->capacity / 2 + slc_reserved_slots(manager);
     if (rest == (uint64_t)h->live_count * h->capacity)
         keep = 0; /* no tile is left */
     for (uint32_t i = 0; i < h->end; i++) {
