@@ -60,7 +60,7 @@ static bool is_idle(const slc_manager *m, const struct slc_texture *t)
     uint64_t age = m->time - t->map_time, usual = m->map_interval;
     usual = t->interval > usual ? t->interval : usual;
     usual = t->timeout > usual ? t->timeout : usual;
-    return age > 0 && age / 4 >= usual;
+    return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
 }
 
 /** Makes room for `unserved` requests out of what is on standby or not looked at any more. */
