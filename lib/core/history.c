@@ -21,18 +21,19 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
     if (!s) {
         size_t nodes = t->regular_tile_count * sizeof *s->nodes;
         size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
-        size_t size = sizeof *s + nodes + under + 2 * padded + texels;
+        size_t size = sizeof *s + nodes + under + 3 * padded + texels;
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         *s = (struct slc_texture_state){.size = size, .bias = m->bias.value};
         s->nodes = (uint32_t *)(s + 1);
         s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
-        s->least = s->asked + padded;
+        s->known = s->asked + padded;
+        s->least = s->known + padded;
         s->under = s->least + padded;
         s->min_mip = s->under + under;
         memset(s->nodes, 0, nodes);
-        memset(s->asked, SLUICE_MIP_UNTOUCHED, 2 * padded + under);
+        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
         memset(s->min_mip, slc_min_mip_floor(t), texels);
         t->state = s;
     }
@@ -87,20 +88,24 @@ static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns
     if (t->hits + t->returns >= 4096) {
         t->hits /= 2;
         t->returns /= 2;
+        memcpy(t->state->known, t->state->least, slc_padded(slc_region_count(t)));
     }
-}
-
-/** How many maps this one stands for: where nothing at all is seen, every region agrees. */
-static uint32_t map_weight(const struct slc_texture *t, const uint8_t *map)
-{
-    if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
-        return 1;
-    return slc_max_u32(t->held_regions, 1);
 }
 
 static uint32_t add_weights(uint32_t a, uint32_t b)
 {
     return a < UINT32_MAX - b ? a + b : UINT32_MAX;
+}
+
+/**
+ * How many misses the last maps stand for if they saw nothing at all: every region agrees. Only as
+ * long as it lasts: one map that sees something says that it was chance.
+ */
+static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
+{
+    if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+        return 0;
+    return add_weights(t->state->absence, slc_max_u32(t->held_regions, 1));
 }
 
 /** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
@@ -171,9 +176,9 @@ static void drop_spans(struct slc_texture_state *s, uint32_t count)
 /** What a call knows when it decides about older maps. */
 struct now {
     uint64_t time, timeout;
-    uint32_t weight; ///< of the new map
-    uint32_t needed; ///< maps to believe
-    bool starved;    ///< slots are short: what two maps missed has to make room sooner
+    uint32_t absence; ///< misses that the last maps, all of them empty, stand for
+    uint32_t needed;  ///< maps to believe
+    bool starved;     ///< slots are short: what two maps missed has to make room sooner
 };
 
 static bool is_over(const struct slc_span *span, const struct now *now, uint32_t newer)
@@ -190,12 +195,13 @@ static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
     if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
         shift = 0;
-    uint32_t newer = now->weight, dropped = 0;
+    uint32_t newer = 1, dropped = 0;
     bool thinned = false;
     for (uint32_t i = s->span_count; i-- > 0;) {
         struct slc_span *span = &s->spans[i];
-        bool over = is_over(span, now, newer);
-        uint8_t below = first_unbelieved(newer, now->needed, slc_min_u32(shift, 8));
+        uint32_t misses = slc_max_u32(newer, now->absence);
+        bool over = is_over(span, now, misses);
+        uint8_t below = first_unbelieved(misses, now->needed, slc_min_u32(shift, 8));
         if (over && below < span->below) {
             thin_span(t, span, below, changed);
             thinned = true;
@@ -212,16 +218,16 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 {
     struct slc_span *newest = s->span_count ? &s->spans[s->span_count - 1] : NULL;
     if (newest && (s->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
-                   newest->weight < now->needed / 4)) {
+                   slc_max_u32(newest->weight, now->absence) < now->needed / 4)) {
         newest->end = now->time;
-        newest->weight = add_weights(newest->weight, now->weight);
+        newest->weight = add_weights(newest->weight, 1);
         newest->below = SLUICE_MIP_UNTOUCHED;
         newest->empty = false;
         return false;
     }
     newest = &s->spans[s->span_count++];
     newest->begin = newest->end = now->time;
-    newest->weight = now->weight;
+    newest->weight = 1;
     newest->below = SLUICE_MIP_UNTOUCHED;
     newest->empty = false;
     return true;
@@ -244,6 +250,7 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
             continue;
         }
         slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
+        slc_store_block(s->known + i, slc_min_block(slc_load_block(s->known + i), next));
         slc_block before = slc_load_block(kept + i);
         set_least(t, i, before, slc_min_block(before, next), changed);
     }
@@ -256,9 +263,10 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     const uint8_t *map = s->next ? s->next : s->asked;
     if (s->next)
         count_returns(t, s->hits, s->returns);
+    s->absence = absence(t, map);
     struct now now = {.time = time,
                       .timeout = timeout,
-                      .weight = map_weight(t, map),
+                      .absence = s->absence,
                       .needed = maps_to_believe(m, t),
                       .starved = m->starved};
     struct slc_range changed = {0, 0};

@@ -60,7 +60,7 @@ static bool is_idle(const slc_manager *m, const struct slc_texture *t)
     uint64_t age = m->time - t->map_time, usual = m->map_interval;
     usual = t->interval > usual ? t->interval : usual;
     usual = t->timeout > usual ? t->timeout : usual;
-    return age > 0 && age / 4 >= usual;
+    return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
 }
 
 /** Makes room for `unserved` requests out of what is on standby or not looked at any more. */
@@ -494,7 +494,7 @@ SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, ui
         return SLUICE_ERROR_NULL_POINTER;
     const struct slc_tile_heaps *h = &manager->heaps;
     uint32_t room = *pHeapCount, found = 0;
-    uint64_t rest = h->free_total, keep = h->capacity / 2;
+    uint64_t rest = h->free_total, keep = h->capacity / 2 + slc_reserved_slots(manager);
     if (rest == (uint64_t)h->live_count * h->capacity)
         keep = 0; /* no tile is left */
     for (uint32_t i = 0; i < h->end; i++) {

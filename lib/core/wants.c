@@ -84,13 +84,13 @@ static inline slc_block ask(slc_block v, struct level_blocks l)
     return a | slc_equal_block(v, slc_block_of(SLUICE_MIP_UNTOUCHED));
 }
 
-static inline void compare(slc_block next, slc_block asked, slc_block least, slc_block sums[3])
+static inline void compare(slc_block next, slc_block asked, slc_block least, slc_block known,
+                           slc_block sums[3])
 {
-    slc_block both = slc_min_block(next, least);
-    slc_block again =
-        slc_equal_block(both, next) & ~slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
-    slc_block seen = slc_equal_block(asked, least);
-    sums[0] -= ~slc_equal_block(both, least); /* 255 is -1 */
+    slc_block again = slc_equal_block(slc_min_block(next, known), next) &
+                      ~slc_equal_block(known, slc_block_of(SLUICE_MIP_UNTOUCHED));
+    slc_block seen = slc_equal_block(asked, known);
+    sums[0] -= ~slc_equal_block(slc_min_block(next, least), least); /* 255 is -1 */
     sums[1] -= again & seen;
     sums[2] -= again & ~seen;
 }
@@ -122,7 +122,7 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
 
 static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
 {
-    const uint8_t *asked = t->state->asked, *least = t->state->least;
+    const uint8_t *asked = t->state->asked, *least = t->state->least, *known = t->state->known;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     struct compared c = {0};
@@ -131,7 +131,8 @@ static struct compared compare_all(const struct slc_texture *t, const uint8_t *n
         for (size_t end = slc_batch_end(i, padded); i < end; i += SLC_BLOCK) {
             slc_block v = slc_load_block(next + i);
             if (slc_block_difference(v, untouched))
-                compare(v, slc_load_block(asked + i), slc_load_block(least + i), sums);
+                compare(v, slc_load_block(asked + i), slc_load_block(least + i),
+                        slc_load_block(known + i), sums);
         }
         c.finer += slc_block_sum(sums[0]);
         c.hits += slc_block_sum(sums[1]);
@@ -464,6 +465,8 @@ void slc_wants_forget(slc_manager *m, struct slc_texture *t)
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     memset(s->asked, SLUICE_MIP_UNTOUCHED, padded);
+    memset(s->known, SLUICE_MIP_UNTOUCHED, padded);
+    s->absence = 0;
     memset(s->least, SLUICE_MIP_UNTOUCHED, padded);
     s->span_count = 0;
     t->held_regions = 0;

@@ -11,6 +11,8 @@ static struct scene_texture *open_scene(uint32_t capacity)
     s.timeout_frames = 2;
     s.loads_per_frame = 512;
     s.releases_heaps = true;
+    s.config.missesToForget = 1; /* else what swings is learned and held */
+    scene_configure(&s);
     return scene_add(&s, 8192, (struct scene_window){0, 0, 0, 1, 0, 0});
 }
 
@@ -21,6 +23,26 @@ static void swing(struct scene_texture *t, uint32_t base, uint32_t more, uint32_
     for (uint32_t frame = 0; frame < frames; frame++) {
         t->window.width = base + (frame / period % 2 ? more : 0);
         scene_run(&s, 1);
+    }
+}
+
+static void a_swing_by_a_few_tiles_makes_no_heap_after_the_first_turns(void **state)
+{
+    (void)state;
+    for (uint32_t base = 8; base < 40; base++) {
+        for (uint32_t more = 1; more <= 4; more += 3) {
+            struct scene_texture *t = open_scene(16);
+            swing(t, base, more, 8, 64);
+            uint64_t unmapped = s.unmapped;
+            uint32_t asked = s.f.heaps.asked, released = s.f.heaps.released;
+            swing(t, base, more, 8, 400);
+            assert_true(s.unmapped > unmapped + 20); /* else nothing swings */
+            if (s.f.heaps.asked > asked || s.f.heaps.released > released)
+                fail_msg("%u and %u tiles: %u heaps made, %u released", (unsigned)base,
+                         (unsigned)more, (unsigned)(s.f.heaps.asked - asked),
+                         (unsigned)(s.f.heaps.released - released));
+            scene_close(&s);
+        }
     }
 }
 
@@ -77,6 +99,7 @@ static void a_still_camera_makes_and_releases_none(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_swing_by_a_few_tiles_makes_no_heap_after_the_first_turns),
         cmocka_unit_test(small_heaps_take_few_turns),
         cmocka_unit_test(a_working_set_that_shrinks_for_good_gives_its_heaps_back),
         cmocka_unit_test(a_still_camera_makes_and_releases_none),

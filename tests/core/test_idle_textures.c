@@ -145,6 +145,12 @@ static void textures_with_a_map_now_and_then_keep_theirs(void **state)
     check_slow_round(8, false);
 }
 
+static void textures_with_a_map_in_many_timeouts_keep_theirs_beside_faster_ones(void **state)
+{
+    (void)state;
+    check_slow_round(8, true);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +160,7 @@ int main(void)
         cmocka_unit_test(one_that_is_looked_at_again_comes_back),
         cmocka_unit_test(their_memory_comes_back_too),
         cmocka_unit_test(textures_with_a_map_now_and_then_keep_theirs),
+        cmocka_unit_test(textures_with_a_map_in_many_timeouts_keep_theirs_beside_faster_ones),
     };
     return RUN_TESTS(tests);
 }

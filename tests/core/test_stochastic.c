@@ -33,16 +33,18 @@ enum { INTERVALS = sizeof intervals / sizeof *intervals };
 
 /*
  * Uploads during `maps` maps of a settled texture. What is believed has a chance of 10^-6 per
- * region and map to be wrong, which is one of 1024 regions in 1000 maps.
+ * region and map to be wrong, which is one of 1024 regions in 1000 maps. Where 99 of 100 are
+ * missing the few hits leave doubt about how many: no more than all tiles again in 1000 maps.
  */
 static void check_settled(uint32_t maps, uint32_t interval)
 {
     uint64_t uploads = s.uploads;
+    uint32_t allowed = s.missing < 99 ? 1 : scene_working_set(&s);
     run_maps(maps, interval);
-    if (s.uploads - uploads > 1 + maps / 1000)
+    if (s.uploads - uploads > allowed)
         fail_msg("%u %% missing, every %u frames: %u uploads in %u maps", (unsigned)s.missing,
                  (unsigned)interval, (unsigned)(s.uploads - uploads), (unsigned)maps);
-    assert_int_equal(scene_mean_deficit(&s), 0);
+    assert_in_range(scene_mean_deficit(&s), 0, s.missing < 99 ? 0 : 100);
 }
 
 static void check_missing(uint32_t missing, uint32_t settling, uint32_t first, uint32_t end)
@@ -73,10 +75,66 @@ static void half_of_the_regions_missing_cost_no_uploads_within_the_timeout(void 
     check_missing(50, 20, 0, 5);
 }
 
+static void half_of_the_regions_missing_cost_no_uploads_beyond_the_timeout(void **state)
+{
+    (void)state;
+    check_missing(50, 200, 5, INTERVALS);
+}
+
 static void nine_tenths_missing_cost_no_uploads_within_the_timeout(void **state)
 {
     (void)state;
     check_missing(90, 60, 0, 5);
+}
+
+static void nine_tenths_missing_cost_no_uploads_beyond_the_timeout(void **state)
+{
+    (void)state;
+    check_missing(90, 500, 5, INTERVALS);
+}
+
+static void ninety_nine_hundredths_missing_cost_no_uploads_within_the_timeout(void **state)
+{
+    (void)state;
+    check_missing(99, 3000, 0, 5);
+}
+
+static void ninety_nine_hundredths_missing_cost_no_uploads_beyond_the_timeout(void **state)
+{
+    (void)state;
+    check_missing(99, 3000, 5, INTERVALS);
+}
+
+static void check_change(uint32_t from, uint32_t to, uint32_t settling, uint32_t interval)
+{
+    open_scene(from);
+    run_maps(300, interval);
+    s.missing = to;
+    run_maps(settling, interval);
+    check_settled(1000, interval);
+    scene_close(&s);
+}
+
+static void maps_that_begin_to_miss_more_are_learned_within_the_timeout(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 5; i++) {
+        check_change(0, 50, 100, intervals[i]);
+        check_change(50, 90, 600, intervals[i]);
+        check_change(99, 0, 10, intervals[i]);
+    }
+    check_change(50, 99, 8000, 1);
+}
+
+static void maps_that_begin_to_miss_more_are_learned_beyond_the_timeout(void **state)
+{
+    (void)state;
+    for (uint32_t i = 5; i < INTERVALS; i++) {
+        check_change(0, 50, 300, intervals[i]);
+        check_change(50, 90, 600, intervals[i]);
+        check_change(99, 0, 10, intervals[i]);
+    }
+    check_change(50, 99, 8000, 16);
 }
 
 /* Maps until nothing but what is in view is MAPPED, at most `limit`. */
@@ -143,14 +201,29 @@ static void uploads_end_where_slots_are_short_too(void **state)
     }
 }
 
+static void uploads_end_where_slots_are_short_and_nearly_all_is_missing(void **state)
+{
+    (void)state;
+    static const uint32_t heaps[] = {57, 21, 8};
+    for (uint32_t i = 0; i < 3; i++)
+        check_under_pressure(99, heaps[i], 3000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reliable_maps_load_each_tile_once),
         cmocka_unit_test(half_of_the_regions_missing_cost_no_uploads_within_the_timeout),
+        cmocka_unit_test(half_of_the_regions_missing_cost_no_uploads_beyond_the_timeout),
         cmocka_unit_test(nine_tenths_missing_cost_no_uploads_within_the_timeout),
+        cmocka_unit_test(nine_tenths_missing_cost_no_uploads_beyond_the_timeout),
+        cmocka_unit_test(ninety_nine_hundredths_missing_cost_no_uploads_within_the_timeout),
+        cmocka_unit_test(ninety_nine_hundredths_missing_cost_no_uploads_beyond_the_timeout),
+        cmocka_unit_test(maps_that_begin_to_miss_more_are_learned_within_the_timeout),
+        cmocka_unit_test(maps_that_begin_to_miss_more_are_learned_beyond_the_timeout),
         cmocka_unit_test(what_leaves_the_view_is_dropped_in_the_end),
         cmocka_unit_test(uploads_end_where_slots_are_short_too),
+        cmocka_unit_test(uploads_end_where_slots_are_short_and_nearly_all_is_missing),
     };
     return RUN_TESTS(tests);
 }
