@@ -63,20 +63,6 @@ static bool is_idle(const slc_manager *m, const struct slc_texture *t)
     return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
 }
 
-/** Makes room for `unserved` requests out of what is on standby or not looked at any more. */
-static void list_standby_for(slc_manager *m, uint32_t unserved)
-{
-    uint64_t needed = unserved, reserved = slc_reserved_slots(m);
-    if (reserved > m->heaps.free_total)
-        needed += reserved - m->heaps.free_total;
-    while ((uint64_t)m->unmapping.count + m->retiring.count + m->standby.count < needed &&
-           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first)))
-        slc_wants_forget(m, slc_texture_at(m, m->visit_first));
-    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
-    uint64_t take = needed > coming ? needed - coming : 0;
-    slc_list_standby(m, m->standby.count > take ? m->standby.count - (uint32_t)take : 0);
-}
-
 struct request_key {
     uint32_t rank; ///< class and need, greater first
     uint32_t node;
@@ -142,6 +128,67 @@ static void next_request(const slc_manager *m, struct request_walk *w)
         w->node = ++w->at < w->count ? w->keys[w->at].node : 0;
     else
         w->node = slc_next_request(m, w->node);
+}
+
+/** The finest wanted tile that is finer than `level`, of these the one that is mapped longest. */
+static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
+{
+    for (uint32_t l = 0; l < level && l < SLUICE_MAX_MIP_LEVELS; l++)
+        if (m->mapped[l].head)
+            return m->mapped[l].head;
+    return 0;
+}
+
+/**
+ * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
+ * what comes later would not be seen. It ends, because each exchange is for something coarser.
+ */
+static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unserved)
+{
+    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
+    uint64_t reserved = slc_reserved_slots(m), free_slots = m->heaps.free_total;
+    for (; free_slots + coming < reserved; coming++) {
+        uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
+        if (!victim)
+            return;
+        slc_node_displace(m, victim);
+    }
+    coming -= free_slots < reserved ? reserved - free_slots : 0;
+    for (uint32_t passed = 0; walk.node && unserved && passed < MAX_PASSED_OVER; passed++) {
+        const struct slc_node *n = slc_node_at(m, walk.node);
+        bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+        if (slc_is_asked_for(m, walk.node)) {
+            unserved--;
+            uint32_t victim = coming ? 0 : finest_mapped(m, packed ? UINT32_MAX : n->level);
+            if (!coming && !victim)
+                return;
+            if (victim)
+                slc_node_displace(m, victim);
+            coming -= coming > 0;
+        }
+        next_request(m, &walk);
+    }
+}
+
+/**
+ * Makes room for `unserved` requests out of what is on standby or not looked at any more. Returns
+ * whether a texture was forgotten and requests with it.
+ */
+static bool list_standby_for(slc_manager *m, uint32_t unserved)
+{
+    uint64_t needed = unserved, reserved = slc_reserved_slots(m);
+    bool forgot = false;
+    if (reserved > m->heaps.free_total)
+        needed += reserved - m->heaps.free_total;
+    while ((uint64_t)m->unmapping.count + m->retiring.count + m->standby.count < needed &&
+           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first))) {
+        slc_wants_forget(m, slc_texture_at(m, m->visit_first));
+        forgot = true;
+    }
+    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
+    uint64_t take = needed > coming ? needed - coming : 0;
+    slc_list_standby(m, m->standby.count > take ? m->standby.count - (uint32_t)take : 0);
+    return forgot;
 }
 
 /** What will be needed for the requests that come next. */
@@ -257,8 +304,10 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     uint32_t left = requests_in_scope(m, scope);
     if (room > 0)
         m->starved = result == SLUICE_BUDGET_REACHED;
-    if (result == SLUICE_BUDGET_REACHED)
-        list_standby_for(m, slc_min_u32(left, room - written));
+    if (result == SLUICE_BUDGET_REACHED) {
+        if (!list_standby_for(m, slc_min_u32(left, room - written)))
+            displace_for(m, walk, slc_min_u32(left, room - written));
+    }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
         m->cut_short = true;
@@ -320,7 +369,10 @@ static SluiceResult take_list(slc_manager *m, struct slc_list *list,
 static void take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     struct slc_texture *t = slc_texture_at(m, slc_node_at(m, node)->texture);
-    slc_node_retire(m, node, retire_value);
+    if (slc_node_at(m, node)->flags & SLC_NODE_WANTED)
+        slc_node_unmap_displaced(m, node, retire_value);
+    else
+        slc_node_retire(m, node, retire_value);
     slc_state_release(m, t);
     m->unmapped_total++;
 }
