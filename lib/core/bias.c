@@ -71,7 +71,7 @@ void slc_update_bias(slc_manager *m, uint64_t limit)
 {
     uint64_t wanted = (uint64_t)m->state_counts[SLUICE_TILE_STATE_REQUESTED] +
                       m->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
-                      m->state_counts[SLUICE_TILE_STATE_MAPPED];
+                      m->state_counts[SLUICE_TILE_STATE_MAPPED] + m->displaced;
     if ((m->bias.value == 0 && wanted <= limit) || m->bias.maps < m->visited_count)
         return;
     m->bias.maps = 0;

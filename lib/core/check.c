@@ -84,7 +84,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     if (n->heap != SLC_NONE)
         REQUIRE(m->heaps.heaps[n->heap].nodes[n->slot] == node);
     bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
-    if (n->state == SLUICE_TILE_STATE_CANCELLED && n->flags & SLC_NODE_WANTED)
+    if (n->flags & SLC_NODE_WANTED)
         wanted = true;
     if (n->tile < t->regular_tile_count)
         REQUIRE(wanted == (t->state->under[n->tile] <= n->level));

@@ -184,7 +184,7 @@ struct now {
 static bool is_over(const struct slc_span *span, const struct now *now, uint32_t newer)
 {
     uint64_t age = now->time - span->end;
-    uint64_t patience = now->timeout - now->timeout / 16 * 5;
+    uint64_t patience = now->timeout - now->timeout / 4;
     return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
 }
 

@@ -22,7 +22,7 @@ struct slc_level {
 
 enum slc_node_flags {
     SLC_NODE_LISTED = 1, ///< CANCELLED: handed out as such; STANDBY: listed for unmapping
-    SLC_NODE_WANTED = 2, ///< CANCELLED and handed out: wanted again
+    SLC_NODE_WANTED = 2, ///< CANCELLED and handed out: wanted again; STANDBY and listed: displaced
 };
 
 /** A slot whose tile was unmapped and that the GPU may still read; beside SluiceTileState. */
@@ -157,6 +157,8 @@ struct SluiceStreamedTextureManager {
     uint32_t state_counts[8]; ///< nodes by SluiceTileState
     struct slc_requests requests;
     struct slc_list standby, unmapping, cancelled, failed, given_up, retiring;
+    struct slc_list mapped[SLUICE_MAX_MIP_LEVELS]; ///< MAPPED regular tiles by level, oldest first
+    uint32_t displaced;                            ///< tiles listed for unmapping that are wanted
 
     uint8_t *scratch; ///< owned, for the maps of one call
     size_t scratch_room;
@@ -210,6 +212,12 @@ void slc_advance_time(slc_manager *m, uint64_t time);
 
 /** Puts the texture at the end of the list of those that hold something, or takes it out. */
 void slc_visit(slc_manager *m, struct slc_texture *t, bool holds);
+
+/* node.c */
+/** Lists a MAPPED tile for unmapping though it is wanted. */
+void slc_node_displace(slc_manager *m, uint32_t node);
+/** It is unmapped and REQUESTED; false without memory. */
+bool slc_node_unmap_displaced(slc_manager *m, uint32_t node, uint64_t retire_value);
 
 /* lists.c */
 /** Slots that only packed tiles may take. */

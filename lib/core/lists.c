@@ -63,20 +63,6 @@ static bool is_idle(const slc_manager *m, const struct slc_texture *t)
     return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
 }
 
-/** Makes room for `unserved` requests out of what is on standby or not looked at any more. */
-static void list_standby_for(slc_manager *m, uint32_t unserved)
-{
-    uint64_t needed = unserved, reserved = slc_reserved_slots(m);
-    if (reserved > m->heaps.free_total)
-        needed += reserved - m->heaps.free_total;
-    while ((uint64_t)m->unmapping.count + m->retiring.count + m->standby.count < needed &&
-           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first)))
-        slc_wants_forget(m, slc_texture_at(m, m->visit_first));
-    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
-    uint64_t take = needed > coming ? needed - coming : 0;
-    slc_list_standby(m, m->standby.count > take ? m->standby.count - (uint32_t)take : 0);
-}
-
 struct request_key {
     uint32_t rank; ///< class and need, greater first
     uint32_t node;
@@ -142,6 +128,70 @@ static void next_request(const slc_manager *m, struct request_walk *w)
         w->node = ++w->at < w->count ? w->keys[w->at].node : 0;
     else
         w->node = slc_next_request(m, w->node);
+}
+
+/** The finest wanted tile that is finer than `level`, of these the one that is mapped longest. */
+static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
+{
+    for (uint32_t l = 0; l < level && l < SLUICE_MAX_MIP_LEVELS; l++)
+        if (m->mapped[l].head)
+            return m->mapped[l].head;
+    return 0;
+}
+
+/**
+ * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
+ * what comes later would not be seen. It ends, because each exchange is for something coarser.
+ */
+static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unserved)
+{
+    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
+    uint64_t reserved = slc_reserved_slots(m), free_slots = m->heaps.free_total;
+    for (; free_slots + coming < reserved; coming++) {
+        uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
+        if (!victim)
+            return;
+        slc_node_displace(m, victim);
+    }
+    coming -= free_slots < reserved ? reserved - free_slots : 0;
+    for (uint32_t passed = 0; walk.node && unserved && passed < MAX_PASSED_OVER; passed++) {
+        const struct slc_node *n = slc_node_at(m, walk.node);
+        bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+        if (slc_is_asked_for(m, walk.node)) {
+            unserved--;
+            uint32_t victim = coming ? 0
+                                     : finest_mapped(m, packed         ? UINT32_MAX
+                                                        : n->level > 1 ? n->level - 1
+                                                                       : 0);
+            if (!coming && !victim)
+                return;
+            if (victim)
+                slc_node_displace(m, victim);
+            coming -= coming > 0;
+        }
+        next_request(m, &walk);
+    }
+}
+
+/**
+ * Makes room for `unserved` requests out of what is on standby or not looked at any more. Returns
+ * whether a texture was forgotten and requests with it.
+ */
+static bool list_standby_for(slc_manager *m, uint32_t unserved)
+{
+    uint64_t needed = unserved, reserved = slc_reserved_slots(m);
+    bool forgot = false;
+    if (reserved > m->heaps.free_total)
+        needed += reserved - m->heaps.free_total;
+    while ((uint64_t)m->unmapping.count + m->retiring.count + m->standby.count < needed &&
+           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first))) {
+        slc_wants_forget(m, slc_texture_at(m, m->visit_first));
+        forgot = true;
+    }
+    uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
+    uint64_t take = needed > coming ? needed - coming : 0;
+    slc_list_standby(m, m->standby.count > take ? m->standby.count - (uint32_t)take : 0);
+    return forgot;
 }
 
 /** What will be needed for the requests that come next. */
@@ -257,8 +307,10 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
     uint32_t left = requests_in_scope(m, scope);
     if (room > 0)
         m->starved = result == SLUICE_BUDGET_REACHED;
-    if (result == SLUICE_BUDGET_REACHED)
-        list_standby_for(m, slc_min_u32(left, room - written));
+    if (result == SLUICE_BUDGET_REACHED) {
+        if (!list_standby_for(m, slc_min_u32(left, room - written)))
+            displace_for(m, walk, slc_min_u32(left, room - written));
+    }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
         m->cut_short = true;
@@ -290,7 +342,8 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
 
 /* The other lists --------------------------------------------------------------------------- */
 
-typedef void (*take_function)(slc_manager *m, uint32_t node, uint64_t retire_value);
+/** False if there is no host memory for it; then nothing has happened. */
+typedef bool (*take_function)(slc_manager *m, uint32_t node, uint64_t retire_value);
 
 /** Hands out a list from its head, as far as it is in scope. */
 static SluiceResult take_list(slc_manager *m, struct slc_list *list,
@@ -308,28 +361,39 @@ static SluiceResult take_list(slc_manager *m, struct slc_list *list,
         if (in_scope(m, scope, node)) {
             if (written == room)
                 break;
-            tiles[written++] = slc_node_tile(m, node);
-            take(m, node, retire_value);
+            tiles[written] = slc_node_tile(m, node);
+            if (!take(m, node, retire_value)) {
+                m->cut_short = true;
+                break;
+            }
+            written++;
         }
         node = next;
     }
+    if (m->cut_short && written == 0)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     *count = written;
     return node ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
 
-static void take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
+static bool take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     struct slc_texture *t = slc_texture_at(m, slc_node_at(m, node)->texture);
-    slc_node_retire(m, node, retire_value);
+    if (!(slc_node_at(m, node)->flags & SLC_NODE_WANTED))
+        slc_node_retire(m, node, retire_value);
+    else if (!slc_node_unmap_displaced(m, node, retire_value))
+        return false;
     slc_state_release(m, t);
     m->unmapped_total++;
+    return true;
 }
 
-static void take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
+static bool take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     (void)retire_value;
     slc_list_remove(m, &m->cancelled, node);
     slc_node_at(m, node)->flags |= SLC_NODE_LISTED;
+    return true;
 }
 
 static SluiceResult get_tiles_to_unmap(slc_manager *m, SluiceTextureId id, uint64_t retire_value,
@@ -341,9 +405,10 @@ static SluiceResult get_tiles_to_unmap(slc_manager *m, SluiceTextureId id, uint6
         return result;
     if (slc_retire_is_backwards(m, retire_value))
         return SLUICE_ERROR_TIME_BACKWARDS;
-    if (tiles && retire_value)
+    result = take_list(m, &m->unmapping, scope, retire_value, take_unmapped, count, tiles);
+    if (tiles && retire_value && result >= SLUICE_SUCCESS)
         m->last_retire = retire_value;
-    return take_list(m, &m->unmapping, scope, retire_value, take_unmapped, count, tiles);
+    return result;
 }
 
 static SluiceResult get_tiles_to_cancel(slc_manager *m, SluiceTextureId id, uint32_t *count,
@@ -415,8 +480,11 @@ SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager, Sluice
         call.result = SLUICE_ERROR_NULL_POINTER;
     } else {
         call.room = *pTileCount;
+        manager->cut_short = false;
         call.result = get_tiles_to_unmap(manager, textureId, retireValue, pTileCount, pTiles);
         call.count = *pTileCount;
+        if (manager->cut_short)
+            call.room = call.count;
     }
     slc_notify(manager, &call);
     return call.result;
@@ -436,6 +504,7 @@ SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *manager,
         call.result = SLUICE_ERROR_NULL_POINTER;
     } else {
         call.room = *pTileCount;
+        manager->cut_short = false;
         call.result = get_tiles_to_cancel(manager, textureId, pTileCount, pTiles);
         call.count = *pTileCount;
     }

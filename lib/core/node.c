@@ -117,15 +117,24 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
 }
 
 /** Takes the node out of the list that its state keeps it in, if any. */
+static bool is_regular(const slc_manager *m, const struct slc_node *n)
+{
+    return n->tile < slc_texture_at(m, n->texture)->regular_tile_count;
+}
+
 static void leave_list(slc_manager *m, uint32_t node)
 {
     struct slc_node *n = slc_node_at(m, node);
     switch ((SluiceTileState)n->state) {
     case SLUICE_TILE_STATE_FREE:
-    case SLUICE_TILE_STATE_ALLOCATED:
-    case SLUICE_TILE_STATE_MAPPED: break;
+    case SLUICE_TILE_STATE_ALLOCATED: break;
+    case SLUICE_TILE_STATE_MAPPED:
+        if (is_regular(m, n))
+            slc_list_remove(m, &m->mapped[n->level], node);
+        break;
     case SLUICE_TILE_STATE_REQUESTED: request_remove(m, node); break;
     case SLUICE_TILE_STATE_STANDBY:
+        m->displaced -= (n->flags & SLC_NODE_WANTED) != 0;
         slc_list_remove(m, n->flags & SLC_NODE_LISTED ? &m->unmapping : &m->standby, node);
         break;
     case SLUICE_TILE_STATE_CANCELLED:
@@ -140,10 +149,14 @@ static void leave_list(slc_manager *m, uint32_t node)
 
 static void enter_list(slc_manager *m, uint32_t node)
 {
-    switch ((SluiceTileState)slc_node_at(m, node)->state) {
+    const struct slc_node *n = slc_node_at(m, node);
+    switch ((SluiceTileState)n->state) {
     case SLUICE_TILE_STATE_FREE:
-    case SLUICE_TILE_STATE_ALLOCATED:
-    case SLUICE_TILE_STATE_MAPPED: break;
+    case SLUICE_TILE_STATE_ALLOCATED: break;
+    case SLUICE_TILE_STATE_MAPPED:
+        if (is_regular(m, n))
+            slc_list_append(m, &m->mapped[n->level], node);
+        break;
     case SLUICE_TILE_STATE_REQUESTED: request_append(m, node); break;
     case SLUICE_TILE_STATE_STANDBY: slc_list_append(m, &m->standby, node); break;
     case SLUICE_TILE_STATE_CANCELLED: slc_list_append(m, &m->cancelled, node); break;
@@ -328,6 +341,34 @@ void slc_list_standby(slc_manager *m, uint32_t keep)
     }
 }
 
+void slc_node_displace(slc_manager *m, uint32_t node)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    leave_list(m, node);
+    m->state_counts[SLUICE_TILE_STATE_MAPPED]--;
+    m->state_counts[SLUICE_TILE_STATE_STANDBY]++;
+    n->state = SLUICE_TILE_STATE_STANDBY;
+    n->flags = SLC_NODE_LISTED | SLC_NODE_WANTED;
+    slc_list_append(m, &m->unmapping, node);
+    m->displaced++;
+}
+
+bool slc_node_unmap_displaced(slc_manager *m, uint32_t node, uint64_t retire_value)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    if (!slc_reserve_nodes(m, 1))
+        return false;
+    if (retire_value > m->completed_retire) {
+        slc_node_retire_slot(m, n->heap, n->slot, retire_value);
+        n->heap = SLC_NONE;
+    } else {
+        slc_node_free_slot(m, node);
+    }
+    n->need = 0;
+    slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);
+    return true;
+}
+
 SluiceTile slc_node_tile(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
@@ -365,13 +406,18 @@ static void restore(slc_manager *m, uint32_t node)
     slc_list_remove(m, n->flags & SLC_NODE_LISTED ? &m->unmapping : &m->standby, node);
     n->flags = 0;
     count_move(m, n, SLUICE_TILE_STATE_MAPPED);
+    if (is_regular(m, n))
+        slc_list_append(m, &m->mapped[n->level], node);
     m->restored_total++;
 }
 
 static void park(slc_manager *m, uint32_t node)
 {
+    struct slc_node *n = slc_node_at(m, node);
+    if (is_regular(m, n))
+        slc_list_remove(m, &m->mapped[n->level], node);
     slc_list_append(m, &m->standby, node);
-    count_move(m, slc_node_at(m, node), SLUICE_TILE_STATE_STANDBY);
+    count_move(m, n, SLUICE_TILE_STATE_STANDBY);
     if (m->standby.count > m->config.numExtraStandbyTiles)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
@@ -421,6 +467,10 @@ void slc_tile_unwanted(slc_manager *m, uint32_t node)
         slc_node_set_state(m, node, SLUICE_TILE_STATE_CANCELLED);
         break;
     case SLUICE_TILE_STATE_MAPPED: park(m, node); break;
+    case SLUICE_TILE_STATE_STANDBY:
+        slc_node_at(m, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
+        m->displaced--;
+        break;
     case SLUICE_TILE_STATE_CANCELLED:
         slc_node_at(m, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
         break;

@@ -59,6 +59,40 @@ static void equal_textures_that_are_seen_at_once_are_equally_blurry(void **state
     }
 }
 
+static void equal_textures_are_equally_blurry(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_all_in_view(budgets[b], 4);
+        scene_run(&s, 300);
+        check_even();
+        scene_close(&s);
+    }
+}
+
+static void equal_textures_are_equally_blurry_however_slow_the_round_robin(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_all_in_view(budgets[b], 1);
+        scene_run(&s, 600);
+        check_even();
+        scene_close(&s);
+    }
+}
+
+static void a_texture_that_comes_later_is_as_sharp_as_the_others(void **state)
+{
+    (void)state;
+    scene_open(&s, CAPACITY, 24); /* 384 slots: four and a half textures */
+    for (uint32_t i = 0; i < 8; i++) {
+        scene_add(&s, 1024, (struct scene_window){0, 0, 8, 8, 0, 0});
+        scene_run(&s, 100);
+    }
+    check_even();
+    scene_close(&s);
+}
+
 static void the_blur_grows_smoothly_with_the_working_set(void **state)
 {
     (void)state;
@@ -105,6 +139,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_region_in_view_soon_shows_something_and_from_then_on),
         cmocka_unit_test(equal_textures_that_are_seen_at_once_are_equally_blurry),
+        cmocka_unit_test(equal_textures_are_equally_blurry),
+        cmocka_unit_test(equal_textures_are_equally_blurry_however_slow_the_round_robin),
+        cmocka_unit_test(a_texture_that_comes_later_is_as_sharp_as_the_others),
         cmocka_unit_test(the_blur_grows_smoothly_with_the_working_set),
         cmocka_unit_test(more_heaps_sharpen_it_again_until_nothing_is_missing),
     };

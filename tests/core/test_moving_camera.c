@@ -68,6 +68,25 @@ static void the_coarse_levels_of_what_is_in_view_are_there(void **state)
     }
 }
 
+/* Seen once, a region that stays in view never loses its packed level again. */
+static void nothing_in_view_ever_shows_nothing(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < TIMES; i++) {
+        open_scene(times[i], 2);
+        /* With few slots the first texture may have taken the last packed tile's place. */
+        scene_run(&s, 2 * scene_round(&s) + s.timeout_frames + 2 * s.load_frames);
+        for (uint32_t frame = 0; frame < 600; frame++) {
+            if (frame % 6 == 0)
+                pan(frame / 6);
+            scene_run(&s, 1);
+            for (uint32_t k = 0; k < TEXTURES; k++)
+                assert_true(scene_shows_something(&s.textures[k]));
+        }
+        scene_close(&s);
+    }
+}
+
 static bool is_on_its_way(const struct scene_texture *t, uint32_t tile)
 {
     SluiceTileState state = fixture_state(&s.f, t->id, tile);
@@ -144,6 +163,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_coarse_levels_of_what_is_in_view_are_there),
+        cmocka_unit_test(nothing_in_view_ever_shows_nothing),
         cmocka_unit_test(no_tile_is_loaded_before_all_that_are_coarser_over_it),
         cmocka_unit_test(coarse_tiles_of_all_textures_come_before_fine_ones),
         cmocka_unit_test(after_a_cut_the_new_view_shows_its_coarse_levels_first),

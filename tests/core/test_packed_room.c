@@ -147,6 +147,26 @@ static void packed_tiles_stand_first_in_every_list(void **state)
     scene_close(&s);
 }
 
+/* Few slots for many textures: those that come first must not keep the others from view. */
+static void every_texture_shows_something_as_long_as_packed_tiles_fit(void **state)
+{
+    (void)state;
+    for (uint32_t count = 9; count <= 24; count++) {
+        scene_open(&s, CAPACITY, 2); /* 32 slots */
+        for (uint32_t i = 0; i < count; i++) {
+            if (i == 8)
+                scene_run(&s, 200);
+            scene_add(&s, 1024, all_of_it);
+        }
+        scene_run(&s, 300);
+        for (uint32_t i = 0; i < count; i++)
+            if (!scene_shows_something(&s.textures[i]))
+                fail_msg("%u textures: nothing of texture %u is shown after 300 frames",
+                         (unsigned)count, (unsigned)i);
+        scene_close(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +176,7 @@ int main(void)
         cmocka_unit_test(textures_come_one_after_another_up_to_the_reserve),
         cmocka_unit_test(the_reserve_fills_up_again_before_regular_tiles_are_loaded),
         cmocka_unit_test(packed_tiles_stand_first_in_every_list),
+        cmocka_unit_test(every_texture_shows_something_as_long_as_packed_tiles_fit),
     };
     return RUN_TESTS(tests);
 }
