@@ -22,8 +22,9 @@
  *
  * A tile that is REQUESTED and no longer wanted goes straight back to FREE. One that is ALLOCATED
  * and no longer wanted is CANCELLED: it is listed once by sluiceGetTilesToCancel and its slot comes
- * back when the application answers. One that is STANDBY and wanted again is MAPPED at once. One
- * whose load failed is FAILED until it is tried again, or GIVEN_UP.
+ * back when the application answers; one that was prefetched is so from the start, and not listed.
+ * One that is STANDBY and wanted again is MAPPED at once. One whose load failed is FAILED until it
+ * is tried again, or GIVEN_UP.
  *
  * Thread safety of everything here: external on the manager, except that calls which take a const
  * manager may run beside each other. One manager per thread needs no lock at all.
@@ -144,8 +145,8 @@ typedef enum SluiceTileState {
     SLUICE_TILE_STATE_REQUESTED = 1, ///< wanted; waits to be handed out by sluiceGetTilesToMap
     SLUICE_TILE_STATE_ALLOCATED = 2, ///< handed out: has a slot, its data is on its way
     SLUICE_TILE_STATE_MAPPED = 3,    ///< the data is there, and wanted
-    SLUICE_TILE_STATE_STANDBY = 4,   ///< the data is there, no longer wanted
-    SLUICE_TILE_STATE_CANCELLED = 5, ///< handed out, no longer wanted; waits for an answer
+    SLUICE_TILE_STATE_STANDBY = 4,   ///< the data is there, not wanted (any more)
+    SLUICE_TILE_STATE_CANCELLED = 5, ///< handed out, not wanted (any more); waits for an answer
     SLUICE_TILE_STATE_FAILED = 6,    ///< wanted; its load failed and will be tried again
     SLUICE_TILE_STATE_GIVEN_UP = 7   ///< its load failed too often; see sluiceRetryFailedTiles
 } SluiceTileState;
@@ -252,13 +253,16 @@ SLUICE_API SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManage
 /**
  * Merges one feedback map into the state of one texture, and of the textures that follow it.
  *
- * A region wants the finest level that the maps of the last `timeout` asked for in it, the newest
- * map included however old the others are: a map counts while `timeStamp - (its time) < timeout`.
- * What one call has let lapse stays lapsed, also if a later call brings a longer timeout. A level
- * wanted in a region makes wanted: every tile of that level that the region touches, each one's
- * parent (x >> 1, y >> 1, clamped to the coarser level's grid) up to the coarsest regular level,
- * and the packed tiles. Tiles that become wanted are REQUESTED or, from STANDBY, MAPPED; tiles that
- * no longer are go the other way.
+ * A region wants the finest level that this map or an earlier one asked for in it, coarsened by the
+ * global mip bias while more is wanted than there can be slots for. What earlier maps asked for
+ * counts for at least `timeout`, while slots are short eleven sixteenths of it; it lapses once, as
+ * well, as many maps as missesToForget says have missed it. Maps that lie close together lapse as
+ * one, a quarter of the timeout and a map late at most. What one call has let lapse stays lapsed,
+ * also if a later call brings a longer timeout. A level wanted in a region makes wanted: every tile
+ * of that level that the region touches, each one's parent (x >> 1, y >> 1, clamped to the coarser
+ * level's grid) up to the coarsest regular level, and the packed tiles. Tiles that become wanted
+ * are REQUESTED or, from STANDBY, MAPPED; tiles that no longer are go the other way. A texture that
+ * gets no maps keeps what it wants, unless sluiceGetTilesToMap needs the slots.
  *
  * The map is read before the call returns and not kept. `timeStamp` and `timeout` share any unit
  * the caller likes; time stamps never decrease, over all textures, and may wrap past 2^64.
@@ -290,7 +294,7 @@ SLUICE_API SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *
 
 /**
  * Makes a texture a follower for good: each feedback map of the primary is matched to it without a
- * call. SLUICE_NO_TEXTURE as primary ends that. What it wants now lapses by timeout only.
+ * call. SLUICE_NO_TEXTURE as primary ends that. What it wants now lapses with later maps only.
  *
  * Errors: UNKNOWN_TEXTURE, STALE_TEXTURE; INVALID_ARGUMENT if the primary is the texture itself or
  *         follows another, or if the texture has followers; OUT_OF_HOST_MEMORY.
@@ -302,14 +306,19 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
 /**
  * Hands out tiles to load: reserves a slot for each and makes it ALLOCATED.
  *
- * Packed tiles come first, then coarser levels before finer ones, within a level the tile whose
- * region misses the most levels, then the one that was requested earliest. `textureId` restricts
- * the list to one texture; with SLUICE_ALL_TEXTURES it covers all, and idle ones cost nothing.
+ * Packed tiles come first, then coarser levels before finer ones, within a level the tile that the
+ * most of level 0 under it wants (by powers of two), then the one that was requested earliest.
+ * While slots are short, regular tiles that their texture's last map does not ask for are passed
+ * over. `textureId` restricts the list to one texture; with SLUICE_ALL_TEXTURES it covers all, and
+ * idle ones cost nothing. With prefetchLevels it may go on with tiles that nothing wants, when no
+ * request is left; these are CANCELLED at once and not listed by sluiceGetTilesToCancel.
  *
  * With `pTiles` NULL, writes how many are REQUESTED and changes nothing. Otherwise `*pTileCount` is
- * the room in `pTiles` on entry and the number written on return. Where no slot is free the heap
- * allocator is asked, at most once in vain per call; where it refuses, as many STANDBY tiles as are
- * needed, oldest first, are listed for unmapping, and the requests wait.
+ * the room in `pTiles` on entry and the number written on return. Where no slot is free (for
+ * regular tiles: more than reservedSlotCount) the heap allocator is asked, at most once in vain per
+ * call; where it refuses, as many STANDBY tiles as are needed, oldest first, are listed for
+ * unmapping, and the requests wait. If there are not enough of them, textures that got no map for
+ * four times their usual interval and timeout no longer want anything.
  *
  * Every tile handed out must be answered with one of sluiceUpdateTilesMapping,
  * sluiceReportFailedTiles and sluiceReportCancelledTiles, or its texture removed.
@@ -323,7 +332,8 @@ SLUICE_API SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manage
 
 /**
  * The data of these ALLOCATED tiles is in place and may be sampled: they become MAPPED. A CANCELLED
- * tile may be answered too, it becomes STANDBY, or MAPPED if it is wanted again.
+ * tile may be answered too, it becomes STANDBY, or MAPPED if it is wanted (again). So are tiles
+ * that were prefetched.
  *
  * Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE, UNKNOWN_TILE; INVALID_TILE_STATE if a tile
  *         was not handed out, was answered already or stands in the list twice.
@@ -414,7 +424,10 @@ SLUICE_API SluiceResult sluiceDefragmentTiles(SluiceStreamedTextureManager *mana
                                               uint64_t retireValue, uint32_t *pMoveCount,
                                               SluiceTileMove *pMoves);
 
-/** Lists heaps with all slots free, calling convention as Vulkan's enumerations. */
+/**
+ * Lists heaps with all slots free, calling convention as Vulkan's enumerations, as long as half a
+ * heap of free slots stays in others: all of them only when no slot at all is taken.
+ */
 SLUICE_API SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager,
                                             uint32_t *pHeapCount, uint32_t *pHeapIds);
 

@@ -39,7 +39,8 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
 uint64_t slc_slot_limit(const slc_manager *m)
 {
     uint64_t heaps = m->config.maxHeapCount ? m->config.maxHeapCount : UINT32_MAX;
-    if (m->refused && m->heaps.live_count < heaps)
+    /* no heap at all says nothing yet */
+    if (m->refused && m->heaps.live_count > 0 && m->heaps.live_count < heaps)
         heaps = m->heaps.live_count;
     return heaps * m->heaps.capacity * OVERCOMMIT;
 }

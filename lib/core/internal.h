@@ -296,7 +296,7 @@ void slc_tile_unwanted(slc_manager *m, uint32_t node);
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
 /** Changes the state and moves the node to the end of that state's list. */
 void slc_node_set_state(slc_manager *m, uint32_t node, SluiceTileState state);
-/** REQUESTED again with deficit 0. */
+/** REQUESTED again with need 0. */
 void slc_node_request_again(slc_manager *m, uint32_t node);
 /** Takes the node away from its tile, which becomes FREE. The slot must be gone. */
 void slc_node_release(slc_manager *m, uint32_t node);

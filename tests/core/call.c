@@ -176,7 +176,7 @@ static void print_map(FILE *file, const struct call *c)
 {
     fprintf(file, " %" PRIu32 "x%" PRIu32 " bias %" PRId32 " streamed %" PRIu32 "%s", c->map_width,
             c->map_height, c->bias, c->streamed_levels, c->null_map ? " map NULL" : "");
-    if (c->null_map || (uint64_t)c->map_width * c->map_height > CALL_MAX_MAP)
+    if (c->null_map || c->map_width == 0 || (uint64_t)c->map_width * c->map_height > CALL_MAX_MAP)
         return;
     for (uint32_t y = 0; y < c->map_height; y++) {
         fprintf(file, "\n       ");
@@ -198,6 +198,9 @@ void call_print(FILE *file, const struct call *c)
         fprintf(file, " standby %" PRIu32 " heaps %" PRIu32 " attempts %" PRIu32 " delay %" PRIu64,
                 c->config.numExtraStandbyTiles, c->config.maxHeapCount, c->config.maxLoadAttempts,
                 c->config.retryDelay);
+    if (c->kind == CALL_SET_CONFIG)
+        fprintf(file, " misses %" PRIu32 " prefetch %" PRIu32, c->config.missesToForget,
+                c->config.prefetchLevels);
     fprintf(file, " time %" PRIu64 " timeout %" PRIu64 " retire %" PRIu64 " room %" PRIu32, c->time,
             c->timeout, c->retire, c->room);
     fprintf(file, " keep %" PRIu32 " heap %" PRIu32 " tile %" PRIu32, c->keep, c->heap, c->tile);

@@ -16,10 +16,16 @@ static uint32_t random_size(struct choice *c, uint32_t tile)
     }
 }
 
+static uint32_t random_tile(struct choice *c)
+{
+    return choice_once_in(c, 2) ? 1u << choice_below(c, 5) : choice_range(c, 1, 16);
+}
+
 static uint32_t random_region(struct choice *c, uint32_t tile)
 {
-    switch (choice_below(c, 8)) {
+    switch (choice_below(c, 9)) {
     case 0: return tile > 1 ? tile / 2 : 1;
+    case 8: return tile > 3 ? tile / 4 : 1;
     case 1: return tile * 2;
     case 2: return choice_range(c, 1, 40);
     case 3: return tile + 1;
@@ -38,8 +44,8 @@ static uint32_t full_chain(uint32_t width, uint32_t height)
 
 static SluiceStreamedTextureDesc random_desc(struct choice *c)
 {
-    SluiceStreamedTextureDesc d = {.tileWidth = choice_range(c, 1, 16)};
-    d.tileHeight = choice_once_in(c, 2) ? d.tileWidth : choice_range(c, 1, 16);
+    SluiceStreamedTextureDesc d = {.tileWidth = random_tile(c)};
+    d.tileHeight = choice_once_in(c, 2) ? d.tileWidth : random_tile(c);
     d.width = random_size(c, d.tileWidth);
     d.height = choice_once_in(c, 2) ? d.width : random_size(c, d.tileHeight);
     d.mipLevelCount = full_chain(d.width, d.height);
@@ -146,13 +152,34 @@ static void fill_map(struct call_sequence *s, uint32_t regions, uint32_t levels,
         map[i] = kind == 6 ? (uint8_t)choice_below(c, 256) : random_texel(c, levels, untouched);
 }
 
+/* What a camera sees of a texture as long as it stays, each region of it with some chance. */
+static void look(struct call_sequence *s, const SluiceStreamedTextureLayout *l, uint64_t texture,
+                 uint8_t *map)
+{
+    struct choice view = {.state = s->camera * 0x9E3779B97F4A7C15u + texture};
+    const uint32_t w = l->feedbackWidth, h = l->feedbackHeight;
+    const uint32_t x0 = choice_below(&view, w), y0 = choice_below(&view, h);
+    const uint32_t x1 = choice_range(&view, x0 + 1, w), y1 = choice_range(&view, y0 + 1, h);
+    const uint32_t level = choice_below(&view, l->desc.mipLevelCount);
+    for (uint32_t i = 0; i < w * h; i++) {
+        const uint32_t x = i % w, y = i / w;
+        const uint32_t coarser = choice_below(&view, 8) == 0;
+        map[i] = SLUICE_MIP_UNTOUCHED;
+        if (x >= x0 && x < x1 && y >= y0 && y < y1 && choice_below(&s->choice, 16) < s->visibility)
+            map[i] = (uint8_t)(level + coarser);
+    }
+}
+
 void call_sequence_map(struct call_sequence *s, const SluiceStreamedTextureLayout *l,
                        struct call *call)
 {
     struct choice *c = &s->choice;
     call->map_width = l->feedbackWidth;
     call->map_height = l->feedbackHeight;
-    fill_map(s, l->feedbackWidth * l->feedbackHeight, l->desc.mipLevelCount, call->map);
+    if (choice_once_in(c, 2))
+        look(s, l, call->texture, call->map);
+    else
+        fill_map(s, l->feedbackWidth * l->feedbackHeight, l->desc.mipLevelCount, call->map);
     s->last_map_size = l->feedbackWidth * l->feedbackHeight;
     memcpy(s->last_map, call->map, s->last_map_size);
     if (choice_once_in(c, 8))

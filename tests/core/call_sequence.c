@@ -56,11 +56,17 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     static const uint32_t capacities[] = {1, 2, 3, 4, 5, 8, 16, 64, 65, 200};
     static const uint32_t tiles[] = {6, 30, 80, 160, 160, 700};
     static const uint64_t times[] = {0, 1, (uint64_t)1 << 63, UINT64_MAX, UINT64_MAX - 100};
-    static const uint64_t timeouts[] = {0, 1, 5, 30, 200, (uint64_t)1 << 40, UINT64_MAX};
+    static const uint64_t timeouts[] = {
+        0, 1, 5, 12, 30, 60, 100, 200, 400, (uint64_t)1 << 40, UINT64_MAX};
     memset(s, 0, offsetof(struct call_sequence, last_map));
     s->choice = choice;
     struct choice *c = &s->choice;
-    s->capacity = capacities[choice_below(c, COUNT_OF(capacities))];
+    s->capacity = choice_once_in(c, 2) ? choice_range(c, 1, 40)
+                                       : capacities[choice_below(c, COUNT_OF(capacities))];
+    s->configured = choice_once_in(c, 2);
+    s->visibility = choice_range(c, 1, 16);
+    s->wandering = choice_range(c, 10, 150);
+    s->favouring = choice_below(c, 5);
     s->always_packed = choice_once_in(c, 2);
     for (int k = 0; k < CALL_KIND_COUNT; k++)
         s->weights[k] = base_weights[k] * (1 + choice_below(c, 4));
@@ -204,6 +210,8 @@ static void make_config(struct call_sequence *s, struct call *call)
                                                           : choice_range(c, 1, 40);
     config->maxHeapCount = choice_once_in(c, 2) ? 0 : choice_range(c, 1, 6);
     config->maxLoadAttempts = choice_below(c, 4);
+    config->missesToForget = choice_once_in(c, 3) ? 0 : choice_below(c, 6);
+    config->prefetchLevels = choice_below(c, 4);
     config->retryDelay = delays[choice_below(c, COUNT_OF(delays))];
 }
 
@@ -353,6 +361,8 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
     struct choice *c = &s->choice;
     SluiceResult ignored;
     call->texture = any_id(s, n);
+    if (choice_below(c, 4) < s->favouring && naive_find(n, s->favourite, &ignored))
+        call->texture = s->favourite;
     call->time = any_time(s, n);
     call->timeout = any_timeout(s);
     const struct naive_texture *t = naive_find(n, call->texture, &ignored);
@@ -440,6 +450,14 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
     if ((textures == 0 && choice_below(c, 4) > 0) ||
         (textures < s->max_textures && choice_once_in(c, 6)))
         call->kind = CALL_ADD_TEXTURE;
+    if (choice_once_in(c, s->wandering)) {
+        s->camera++;
+        s->favourite = any_id(s, n);
+    }
+    if (s->configured) {
+        s->configured = false;
+        call->kind = CALL_SET_CONFIG;
+    }
     call->refuse_after = UINT64_MAX;
     fill_in(s, n, call);
     if (s->starving && choice_once_in(c, s->starving))

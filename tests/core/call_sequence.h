@@ -16,6 +16,11 @@ struct call_sequence {
     uint32_t refusing;  ///< the heap allocator refuses one time in so many; 0: never
     uint32_t max_tiles; ///< of most textures
     uint32_t max_textures;
+    uint32_t visibility; ///< of 16 regions in view so many are sampled in a map
+    uint32_t wandering;  ///< the camera moves on once in so many calls
+    uint32_t favouring;  ///< so many in 4 maps are of one texture, until the camera moves on
+    uint64_t camera, favourite;
+    bool configured;  ///< config comes first
     bool small_rooms; ///< lists are mostly read in small pieces
     uint64_t time, timeout;
     uint64_t time_spent; ///< how far time went on, or might have

@@ -30,6 +30,7 @@ struct differential {
     uint64_t coverage[CALL_KIND_COUNT][64]; ///< by result + 32
     uint64_t entries[CALL_KIND_COUNT];      ///< of all lists that were handed out
     uint64_t restored, textures, tiles, calls;
+    uint64_t events[NAIVE_EVENT_COUNT];
     bool failed;
     char message[512];
 };
@@ -463,6 +464,8 @@ static void defragment_to_the_end(struct differential *d, FILE *log)
 static void finish(struct differential *d)
 {
     d->restored += d->naive.totals.restoredTotal;
+    for (int i = 0; i < NAIVE_EVENT_COUNT; i++)
+        d->events[i] += d->naive.events[i];
     sluiceDestroyStreamedTextureManager(d->manager);
     d->manager = NULL;
     if (d->heap_count)
@@ -501,6 +504,19 @@ int differential_run(struct differential *d, struct choice choice, uint32_t call
     return d->failed ? -1 : (int)d->call_number;
 }
 
+static const char *const event_names[NAIVE_EVENT_COUNT] = {
+    [NAIVE_BIAS_ABOVE_0] = "hand-outs with a global bias",
+    [NAIVE_BIAS_LOWERED] = "global bias lowered",
+    [NAIVE_STARVED] = "became starved",
+    [NAIVE_PASSED_OVER] = "requests passed over",
+    [NAIVE_FORGOTTEN] = "textures forgotten",
+    [NAIVE_PREFETCHED] = "tiles prefetched",
+    [NAIVE_SPAN_THINNED] = "spans thinned",
+    [NAIVE_SPANS_FULL] = "maps that met six spans",
+    [NAIVE_RESERVE_KEPT] = "free slots kept for packed tiles",
+    [NAIVE_RETURNS] = "maps with returns that were learned from",
+};
+
 void differential_print_coverage(const struct differential *d, FILE *file)
 {
     for (int kind = 0; kind < CALL_KIND_COUNT; kind++) {
@@ -516,4 +532,14 @@ void differential_print_coverage(const struct differential *d, FILE *file)
     const double calls = d->calls ? (double)d->calls : 1;
     fprintf(file, "# %" PRIu64 " tiles restored; on average %.1f textures, %.1f tiles\n",
             d->restored, (double)d->textures / calls, (double)d->tiles / calls);
+    for (int i = 0; i < NAIVE_EVENT_COUNT; i++)
+        fprintf(file, "# %s: %" PRIu64 "\n", event_names[i], d->events[i]);
+}
+
+const char *differential_missing_event(const struct differential *d)
+{
+    for (int i = 0; i < NAIVE_EVENT_COUNT; i++)
+        if (d->events[i] == 0)
+            return event_names[i];
+    return NULL;
 }

@@ -23,4 +23,7 @@ int differential_run(struct differential *d, struct choice choice, uint32_t call
 /** How often each kind of call was made and each result came back, over all runs. */
 void differential_print_coverage(const struct differential *d, FILE *file);
 
+/** What the rules name and no run has reached; NULL: nothing. */
+const char *differential_missing_event(const struct differential *d);
+
 #endif /* TESTS_CORE_DIFFERENTIAL_H */

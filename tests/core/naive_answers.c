@@ -31,9 +31,7 @@ static void answer_mapped(struct naive_manager *n, struct naive_texture *t, stru
         tile->state = SLUICE_TILE_STATE_MAPPED;
         return;
     }
-    tile->state = SLUICE_TILE_STATE_STANDBY;
-    tile->listed = false;
-    tile->standby_at = ++n->stamp;
+    naive_stand_by(n, tile);
 }
 
 static uint64_t retry_delay(uint64_t delay, uint32_t failures)
@@ -112,7 +110,6 @@ SluiceResult naive_answer(struct naive_manager *n, const struct call *call)
         default: abort();
         }
     }
-    naive_list_standby(n, n->config.numExtraStandbyTiles);
     naive_update_minmip(n, t);
     return SLUICE_SUCCESS;
 }

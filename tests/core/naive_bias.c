@@ -26,7 +26,7 @@ static void raise_bias(struct naive_bias *b, uint64_t wanted, uint64_t limit)
 {
     b->failed_value = b->value;
     b->failed_limit = limit;
-    b->demand_known = false;
+    b->demand = 0;
     for (int i = 0; i < 16 && wanted > limit && b->value < MAX_BIAS; i++) {
         b->value++;
         wanted = wanted * 60097 / 65536;
@@ -58,9 +58,8 @@ void naive_look_at_bias(struct naive_manager *n)
         raise_bias(b, wanted, limit);
         return;
     }
-    if (!b->demand_known)
+    if (b->demand == 0)
         b->demand = wanted;
-    b->demand_known = true;
     if (may_lower_bias(b, wanted, limit)) {
         b->value--;
         n->events[NAIVE_BIAS_LOWERED]++;

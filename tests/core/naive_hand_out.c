@@ -228,28 +228,31 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
     return false;
 }
 
+/* Whether one more may be handed out; if not, whether that is for lack of room or host memory. */
 static bool may_prefetch(struct naive_manager *n, const struct call *call,
-                         const struct outcome *seen, const struct outcome *out)
+                         const struct outcome *seen, const struct outcome *out, bool *cut_short)
 {
     uint32_t listed, unlisted, cancelled;
     count_standby(n, &listed, &unlisted);
     free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELLED, &cancelled));
-    if (seen->memory_refused && out->count == seen->count)
-        return false; /* it ran out */
-    return out->count < call->room && unlisted + cancelled < n->config.numExtraStandbyTiles &&
-           slot_for(n, false);
+    *cut_short = out->count == call->room;
+    if (*cut_short || unlisted + cancelled >= n->config.numExtraStandbyTiles || !slot_for(n, false))
+        return false;
+    *cut_short = seen->memory_refused && out->count == seen->count;
+    return !*cut_short;
 }
 
 /* Returns whether prefetching goes on. */
 static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
-                           const struct call *call, const struct outcome *seen, struct outcome *out)
+                           const struct call *call, const struct outcome *seen, struct outcome *out,
+                           bool *cut_short)
 {
     for (uint32_t i = 0; i < t->layout.regularTileCount; i++) {
         struct naive_tile *tile = &t->tiles[i];
         if (tile->level + 1 + n->prefetch_level != t->layout.desc.regularMipCount ||
             tile->state != SLUICE_TILE_STATE_FREE)
             continue;
-        if (!may_prefetch(n, call, seen, out))
+        if (!may_prefetch(n, call, seen, out, cut_short))
             return false;
         tile->state = SLUICE_TILE_STATE_CANCELLED;
         tile->cancel_handed_out = true;
@@ -260,9 +263,11 @@ static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
     return true;
 }
 
-static void prefetch(struct naive_manager *n, const struct call *call, const struct outcome *seen,
+/* Returns whether it was cut short. */
+static bool prefetch(struct naive_manager *n, const struct call *call, const struct outcome *seen,
                      struct outcome *out)
 {
+    bool cut_short = false;
     for (uint32_t i = min_u32(MAX_PREFETCH_TEXTURES, n->texture_room); i > 0; i--) {
         if (n->prefetch_index >= n->texture_room) {
             n->prefetch_index = 0;
@@ -271,10 +276,11 @@ static void prefetch(struct naive_manager *n, const struct call *call, const str
         if (n->prefetch_level >= n->config.prefetchLevels)
             n->prefetch_level = 0;
         struct naive_texture *t = n->textures[n->prefetch_index];
-        if (t && !prefetch_level(n, t, call, seen, out))
-            return;
+        if (t && !prefetch_level(n, t, call, seen, out, &cut_short))
+            return cut_short;
         n->prefetch_index++;
     }
+    return false;
 }
 
 SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call,
@@ -300,8 +306,8 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
         n->starved = stopped;
     const uint32_t unserved = min_u32(count, call->room) - out->count;
     result = out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
-    if (!only && n->config.prefetchLevels && out->count == count)
-        prefetch(n, call, seen, out);
+    if (!only && n->config.prefetchLevels && out->count == count && prefetch(n, call, seen, out))
+        result = SLUICE_INCOMPLETE;
     if (stopped) {
         make_room(n, unserved);
         result = SLUICE_BUDGET_REACHED;

@@ -91,9 +91,8 @@ struct naive_bias {
     uint32_t value; ///< sixteenths of a level
     uint32_t failed_value;
     uint64_t failed_limit;
-    bool demand_known;
-    uint64_t demand;
-    uint64_t maps; ///< merged since the bias was looked at
+    uint64_t demand; ///< 0: unknown
+    uint64_t maps;   ///< merged since the bias was looked at
 };
 
 struct naive_manager {
@@ -147,6 +146,8 @@ void naive_update_minmip(struct naive_manager *n, struct naive_texture *t);
 void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
 void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
+/** Becomes STANDBY, and lists those that are then too many. */
+void naive_stand_by(struct naive_manager *n, struct naive_tile *tile);
 /** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */

@@ -107,6 +107,14 @@ void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint3
     }
 }
 
+void naive_stand_by(struct naive_manager *n, struct naive_tile *tile)
+{
+    tile->state = SLUICE_TILE_STATE_STANDBY;
+    tile->listed = false;
+    tile->standby_at = ++n->stamp;
+    naive_list_standby(n, n->config.numExtraStandbyTiles);
+}
+
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
 {
     tile->wanted = false;
@@ -120,11 +128,7 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         tile->cancel_handed_out = false;
         tile->cancelled_at = ++n->stamp;
         break;
-    case SLUICE_TILE_STATE_MAPPED:
-        tile->state = SLUICE_TILE_STATE_STANDBY;
-        tile->listed = false;
-        tile->standby_at = ++n->stamp;
-        break;
+    case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
     case SLUICE_TILE_STATE_CANCELLED: break;
     case SLUICE_TILE_STATE_FREE:
     case SLUICE_TILE_STATE_STANDBY: abort(); /* these were not wanted */

@@ -95,6 +95,5 @@ void naive_apply_held(struct naive_manager *n, struct naive_texture *t)
     }
     if (!packed)
         apply_to_packed(n, t, false);
-    naive_list_standby(n, n->config.numExtraStandbyTiles);
     free(wishes);
 }

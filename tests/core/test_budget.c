@@ -97,6 +97,7 @@ static void wanted_tiles_are_never_evicted(void **state)
     (void)state;
     struct fixture f;
     SluiceTextureId full = open_full(&f, 1), id = fixture_add_small(&f);
+    fixture_feed(&f, full, 0, 1, 0);
     fixture_feed(&f, id, 0, 1, 0);
     for (uint32_t i = 0; i < 5; i++) {
         CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
@@ -105,6 +106,77 @@ static void wanted_tiles_are_never_evicted(void **state)
     }
     for (uint32_t i = 0; i < 6; i++)
         CHECK_STATE(&f, full, i, MAPPED);
+    fixture_close(&f);
+}
+
+static void a_texture_that_gets_no_more_maps_gives_way(void **state)
+{
+    (void)state;
+    struct fixture f;
+    SluiceTextureId full = open_full(&f, 1), id = fixture_add_small(&f);
+    fixture_feed(&f, full, 0, 10, 4);
+    for (uint64_t time = 11; time < 30; time++) {
+        fixture_feed(&f, id, 0, time, 4);
+        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+        CHECK_STATE(&f, full, 0, MAPPED); /* its maps were 10 apart: less than 40 is not long */
+    }
+    fixture_feed(&f, id, 0, 50, 4);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    CHECK_STATE(&f, full, 0, MAPPED); /* no map came for 21 anywhere, so 40 is still not long */
+    fixture_feed(&f, id, 0, 51, 4);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
+    assert_true(LISTED(&f, full, 0, 1, 2, 3, 4, 5));
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    assert_int_equal(f.count, 6);
+    fixture_close(&f);
+}
+
+/* 16 slots or more: one in 16 is kept, so that new textures show something at once. */
+static void the_last_slots_are_for_packed_tiles(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 32, false);
+    f.heaps.limit = 1;
+    SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
+    SluiceTextureId big = fixture_add(&f, &desc), id = fixture_add_small(&f);
+    fixture_feed(&f, big, 0, 0, 10);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    assert_int_equal(f.count, 30);
+    assert_int_equal(fixture_statistics(&f).reservedSlotCount, 2);
+    assert_int_equal(fixture_statistics(&f).freeSlotCount, 2);
+    fixture_feed(&f, id, 0, 0, 10);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    assert_true(LISTED(&f, id, 5));
+    fixture_close(&f);
+}
+
+static void the_global_bias_rises_with_the_demand_and_falls_with_the_budget(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 32, false);
+    fixture_configure(&f, 0, 1, 0, 0);
+    SluiceStreamedTextureDesc desc = full_chain(2048, 2048, 128, 128); /* 341 tiles and one */
+    SluiceTextureId id = fixture_add(&f, &desc);
+    uint64_t time = 0;
+    fixture_feed(&f, id, 0, time++, 0);
+    assert_int_equal(fixture_statistics(&f).requestedTileCount, 342);
+    for (uint32_t i = 0; i < 40; i++) {
+        fixture_feed(&f, id, 0, time++, 0);
+        assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
+    }
+    SluiceStreamedTextureStatistics s = fixture_statistics(&f);
+    assert_true(s.globalMipBias > 0 && s.requestedTileCount + s.allocatedTileCount <= 3 * 32);
+    fixture_configure(&f, 0, 16, 0, 0);
+    for (uint32_t i = 0; i < 100; i++) {
+        fixture_feed(&f, id, 0, time++, 0);
+        assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
+    }
+    s = fixture_statistics(&f);
+    assert_int_equal(s.globalMipBias, 0);
+    assert_int_equal(s.requestedTileCount + s.allocatedTileCount, 342);
     fixture_close(&f);
 }
 
@@ -263,6 +335,9 @@ int main(void)
         cmocka_unit_test(what_fits_is_handed_out_before_the_budget_is_reached),
         cmocka_unit_test(the_heap_cap_is_kept_without_asking),
         cmocka_unit_test(wanted_tiles_are_never_evicted),
+        cmocka_unit_test(a_texture_that_gets_no_more_maps_gives_way),
+        cmocka_unit_test(the_last_slots_are_for_packed_tiles),
+        cmocka_unit_test(the_global_bias_rises_with_the_demand_and_falls_with_the_budget),
         cmocka_unit_test(standby_is_evicted_oldest_first_as_many_as_needed),
         cmocka_unit_test(a_thousand_wants_take_no_more_than_standby_has),
         cmocka_unit_test(a_slot_is_not_used_again_before_its_value_completed),

@@ -187,6 +187,8 @@ static void several_levels_may_lapse_in_one_call(void **state)
     for (uint8_t last = 0; last < 4; last++) { /* what the map that lets them lapse asks for */
         struct fixture f;
         fixture_open(&f, 16, false);
+        const SluiceStreamedTextureManagerConfig config = {.missesToForget = 1};
+        CHECK_OK(sluiceSetConfig(f.manager, &config));
         SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128); /* 16, 4, 1 and packed */
         SluiceTextureId id = fixture_add(&f, &desc);
         for (uint8_t level = 0; level < 4; level++)
@@ -296,8 +298,8 @@ static void uptime_and_wrap_change_no_decision(void **state)
     assert_true(run_from((UINT64_C(1) << 63) - 150 * frame, frame) == expected);
     for (uint64_t before = 0; before < 40; before += 13)
         assert_true(run_from(UINT64_MAX - before * frame, frame) == expected);
-    assert_true(run_from(0, frame + 1) == expected); /* only ratios of times count */
-    assert_true(run_from(UINT64_MAX - 150, 1) == expected);
+    assert_true(run_from(0, frame + 1) == expected);              /* only ratios of times count */
+    assert_true(run_from(UINT64_MAX - 150 * 16, 16) == expected); /* 16: patience divides by it */
 }
 
 int main(void)

@@ -3,7 +3,8 @@
 
 #include "support/test.h"
 
-enum { FRAMES = 12 };
+/* Enough for the global bias, which a refused heap raises by a level, to fall again. */
+enum { FRAMES = 32 };
 
 static const struct {
     VkResult from;
@@ -150,7 +151,7 @@ static void frames_survive_every_failing_call(void **state)
             if (result == SLUICE_SUCCESS) {
                 /* a heap that the device refuses is only a smaller budget */
                 refused_heaps += failed;
-                assert_int_equal(stats.tilesMapped, 16 + 4 + 1);
+                assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 16 + 4 + 1);
             } else {
                 assert_true(failed);
                 CHECK_RESULT(result, failures[f].to);

@@ -1,0 +1,161 @@
+/** Packed tiles come first and have room, also where wanted tiles hold every slot. */
+#include "core/scene.h"
+
+enum { CAPACITY = 16 };
+
+static const uint32_t heap_counts[] = {1, 4, 64}; /* 16, 64 and 1024 slots */
+enum { BUDGETS = sizeof heap_counts / sizeof *heap_counts };
+
+static const struct scene_window all_of_it = {0, 0, 8, 8, 0, 0};
+
+static struct scene s;
+
+/* One texture that wants many more slots than there are, and holds all but the reserved ones. */
+static void open_full(uint32_t heaps, bool always)
+{
+    if (always)
+        scene_open_packed(&s, CAPACITY, heaps);
+    else
+        scene_open(&s, CAPACITY, heaps);
+    scene_add(&s, 8192, (struct scene_window){0, 0, 64, 64, 0, 0});
+    scene_run(&s, 200);
+    SluiceStreamedTextureStatistics now = fixture_statistics(&s.f);
+    assert_int_equal(now.heapCount, heaps);
+    assert_int_equal(now.freeSlotCount, now.reservedSlotCount);
+    assert_int_equal(now.standbyTileCount, 0);
+    assert_true(now.requestedTileCount > 0);
+}
+
+static void shows_packed_after_the_answer(const struct scene_texture *t)
+{
+    uint32_t packed = t->layout.regularTileCount;
+    bool listed = false;
+    for (uint32_t i = 0; i < s.f.count; i++)
+        listed |= s.f.tiles[i].textureId == t->id && s.f.tiles[i].tileIndex == packed;
+    assert_true(listed);
+    CHECK_STATE(&s.f, t->id, packed, ALLOCATED);
+    scene_run(&s, s.load_frames);
+    CHECK_STATE(&s.f, t->id, packed, MAPPED);
+    assert_true(scene_shows_something(t));
+}
+
+static void a_texture_that_comes_into_view_shows_its_packed_level_after_one_load(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_full(heap_counts[b], false);
+        struct scene_texture *t = scene_add(&s, 1024, all_of_it);
+        scene_run(&s, 1);
+        shows_packed_after_the_answer(t);
+        scene_close(&s);
+    }
+}
+
+static void packed_tiles_that_are_always_mapped_are_listed_right_after_the_add(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_full(heap_counts[b], true);
+        struct scene_texture *t = scene_add(&s, 1024, (struct scene_window){0});
+        s.maps_per_frame = 0;
+        scene_run(&s, 1);
+        assert_int_equal(s.f.count, 1);
+        shows_packed_after_the_answer(t);
+        scene_close(&s);
+    }
+}
+
+static void as_many_textures_as_slots_are_reserved_come_in_one_frame(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_full(heap_counts[b], true);
+        uint32_t count = fixture_statistics(&s.f).reservedSlotCount;
+        assert_in_range(count, 1, SCENE_TEXTURES);
+        count = count < SCENE_TEXTURES ? count : SCENE_TEXTURES - 1;
+        for (uint32_t i = 0; i < count; i++)
+            scene_add(&s, 1024, all_of_it);
+        s.maps_per_frame = SCENE_TEXTURES;
+        scene_run(&s, 1 + s.load_frames);
+        for (uint32_t i = 1; i <= count; i++)
+            assert_true(scene_shows_something(&s.textures[i]));
+        scene_close(&s);
+    }
+}
+
+static void textures_come_one_after_another_up_to_the_reserve(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_full(heap_counts[b], false);
+        uint32_t count = fixture_statistics(&s.f).reservedSlotCount;
+        for (uint32_t i = 0; i < count && s.texture_count < SCENE_TEXTURES; i++) {
+            struct scene_texture *t = scene_add(&s, 1024, all_of_it);
+            s.maps_per_frame = SCENE_TEXTURES;
+            scene_run(&s, 1);
+            shows_packed_after_the_answer(t);
+        }
+        scene_close(&s);
+    }
+}
+
+/* What packed tiles have taken of the reserve is made good as soon as regular tiles go. */
+static void the_reserve_fills_up_again_before_regular_tiles_are_loaded(void **state)
+{
+    (void)state;
+    for (uint32_t b = 0; b < BUDGETS; b++) {
+        open_full(heap_counts[b], false);
+        uint32_t count = fixture_statistics(&s.f).reservedSlotCount;
+        for (uint32_t i = 0; i < count && s.texture_count < SCENE_TEXTURES; i++)
+            scene_add(&s, 1024, all_of_it);
+        s.maps_per_frame = SCENE_TEXTURES;
+        scene_run(&s, 20);
+        s.textures[0].window = (struct scene_window){0, 0, 1, 1, 0, 0};
+        for (uint32_t frame = 0; frame < 300; frame++) {
+            scene_run(&s, 1);
+            bool regular = false;
+            for (uint32_t i = 0; i < s.f.count; i++) {
+                const struct scene_texture *t = &s.textures[(uint32_t)s.f.tiles[i].textureId];
+                regular |= s.f.tiles[i].tileIndex < t->layout.regularTileCount;
+            }
+            SluiceStreamedTextureStatistics now = fixture_statistics(&s.f);
+            assert_true(!regular || now.freeSlotCount >= now.reservedSlotCount);
+        }
+        SluiceStreamedTextureStatistics now = fixture_statistics(&s.f);
+        assert_true(now.freeSlotCount >= now.reservedSlotCount);
+        scene_close(&s);
+    }
+}
+
+static void packed_tiles_stand_first_in_every_list(void **state)
+{
+    (void)state;
+    scene_open(&s, CAPACITY, 16);
+    s.loads_per_frame = 16;
+    for (uint32_t frame = 0; frame < 100; frame++) {
+        if (frame % 3 == 0 && s.texture_count < 30)
+            scene_add(&s, 1024, all_of_it);
+        scene_run(&s, 1);
+        bool regular = false;
+        for (uint32_t i = 0; i < s.f.count; i++) {
+            const struct scene_texture *t = &s.textures[(uint32_t)s.f.tiles[i].textureId];
+            bool packed = s.f.tiles[i].tileIndex >= t->layout.regularTileCount;
+            assert_false(packed && regular);
+            regular |= !packed;
+        }
+    }
+    scene_close(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_texture_that_comes_into_view_shows_its_packed_level_after_one_load),
+        cmocka_unit_test(packed_tiles_that_are_always_mapped_are_listed_right_after_the_add),
+        cmocka_unit_test(as_many_textures_as_slots_are_reserved_come_in_one_frame),
+        cmocka_unit_test(textures_come_one_after_another_up_to_the_reserve),
+        cmocka_unit_test(the_reserve_fills_up_again_before_regular_tiles_are_loaded),
+        cmocka_unit_test(packed_tiles_stand_first_in_every_list),
+    };
+    return RUN_TESTS(tests);
+}
