@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures the manager and prints two tables: each figure beside RTXTS's, the ceiling that was set
 # for it, and the bare copy of the same feedback maps; then what it shows beside a policy that knows
-# the whole trace, and what prefetching adds. About two minutes, half of them for the second table.
+# the whole trace, and what prefetching adds. A minute and a half, half of it for the second table.
 #
 #   bench/manager/run.sh [options]
 #
@@ -199,7 +199,7 @@ parse_clairvoyant() {
         }
         $1 == "reactive_floor" && $2 == "too_coarse" { figure($1 ".regions_too_coarse", "%") }
         $1 == "Belady" && $2 == "uploads" { figure("belady.uploads", "tiles") }
-        $2 == "mean_too_coarse" && $1 != "deadline" { figure($1 ".levels_too_coarse", "levels") }
+        $2 == "mean_too_coarse" { figure($1 ".levels_too_coarse", "levels") }
         $1 == "priced" && $2 == "too_coarse" { figure("priced.regions_too_coarse", "%") }
         $1 == "priced" && $4 == "tiles" { figure("priced." $2, "tiles") }
         END { print run ".reactive_floor.levels_too_coarse", floor, "levels" }'
