@@ -140,8 +140,9 @@ static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
 }
 
 /**
- * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
- * what comes later would not be seen. It ends, because each exchange is for something coarser.
+ * Wanted tiles make room for requests that are two levels coarser: what came first would stay sharp
+ * else, and what comes later would not be seen. It ends, because each exchange is for something
+ * coarser. For one level it is not worth the uploads.
  */
 static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unserved)
 {
@@ -159,10 +160,8 @@ static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unse
         bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
         if (slc_is_asked_for(m, walk.node)) {
             unserved--;
-            uint32_t victim = coming ? 0
-                                     : finest_mapped(m, packed         ? UINT32_MAX
-                                                        : n->level > 1 ? n->level - 1
-                                                                       : 0);
+            uint32_t finer_than = !packed ? n->level - (n->level > 0) : UINT32_MAX;
+            uint32_t victim = coming ? 0 : finest_mapped(m, finer_than);
             if (!coming && !victim)
                 return;
             if (victim)
