@@ -160,7 +160,7 @@ static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unse
         bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
         if (slc_is_asked_for(m, walk.node)) {
             unserved--;
-            uint32_t finer_than = !packed ? n->level - (n->level > 0) : UINT32_MAX;
+            uint32_t finer_than = packed ? UINT32_MAX : n->level > 0 ? n->level - 1u : 0u;
             uint32_t victim = coming ? 0 : finest_mapped(m, finer_than);
             if (!coming && !victim)
                 return;
