@@ -134,6 +134,13 @@ struct slc_global_bias {
     uint64_t demand;       ///< tiles wanted once it had been raised; 0: not known yet
 };
 
+/** A round of maps of all textures. Sequences are those of requests. */
+struct slc_round {
+    uint32_t maps;   ///< merged in it
+    uint64_t began;  ///< the next sequence when it began
+    uint64_t waited; ///< requests before this one have waited for a whole round
+};
+
 struct SluiceStreamedTextureManager {
     SluiceStreamedTextureManagerCreateInfo info; ///< pAllocator points to `given` or is NULL
     SluiceAllocationCallbacks given;
@@ -166,6 +173,7 @@ struct SluiceStreamedTextureManager {
     uint32_t visited_count;
     uint64_t map_interval; ///< of the texture that got a map last
     struct slc_global_bias bias;
+    struct slc_round round;
     bool starved;   ///< the last hand-out stopped for lack of slots
     bool refused;   ///< the heap allocator's last answer
     bool cut_short; ///< host memory ran out while the call under way handed out tiles

@@ -140,9 +140,9 @@ static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
 }
 
 /**
- * Wanted tiles make room for requests that are two levels coarser: what came first would stay sharp
- * else, and what comes later would not be seen. It ends, because each exchange is for something
- * coarser. For one level it is not worth the uploads.
+ * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
+ * what comes later would not be seen. It ends, because each exchange is for something coarser. For
+ * one level it is not worth the upload unless the request has waited for a whole round of maps.
  */
 static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unserved)
 {
@@ -160,7 +160,8 @@ static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unse
         bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
         if (slc_is_asked_for(m, walk.node)) {
             unserved--;
-            uint32_t finer_than = packed ? UINT32_MAX : n->level > 0 ? n->level - 1u : 0u;
+            uint32_t gap = n->order < m->round.waited ? 0 : 1;
+            uint32_t finer_than = packed ? UINT32_MAX : n->level - slc_min_u32(gap, n->level);
             uint32_t victim = coming ? 0 : finest_mapped(m, finer_than);
             if (!coming && !victim)
                 return;
@@ -273,6 +274,16 @@ static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, S
     return SLUICE_SUCCESS;
 }
 
+/** A round is over when as many maps have come as there are textures that hold something. */
+static void end_round(slc_manager *m)
+{
+    if (m->round.maps < slc_max_u32(m->visited_count, 1))
+        return;
+    m->round.maps = 0;
+    m->round.waited = m->round.began;
+    m->round.began = m->requests.next_sequence;
+}
+
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
                              const struct request_key *keys, uint32_t *count, SluiceTile *tiles)
 {
@@ -300,6 +311,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
         result = prefetch(m, room, &written, tiles);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
         return result;
+    end_round(m);
     slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
     m->handed_out_total += written;
     *count = written;

@@ -442,6 +442,7 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     if (t->state) {
         bool held_before = t->held_regions > 0;
         m->bias.maps++;
+        m->round.maps++;
         struct slc_range changed = slc_history_merge(m, t, time, timeout);
         if (t->state->bias != m->bias.value)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
