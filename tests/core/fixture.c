@@ -54,6 +54,8 @@ void fixture_open(struct fixture *f, uint32_t heap_capacity, bool always_map_pac
         .alwaysMapPackedTiles = always_map_packed,
     };
     CHECK_OK(sluiceCreateStreamedTextureManager(&info, &f->manager));
+    /* the timeout alone counts: what is learned from maps has facts of its own */
+    fixture_configure(f, 0, 0, 0, 0);
 }
 
 void fixture_close(struct fixture *f)
@@ -105,7 +107,11 @@ SluiceTextureId fixture_add_small(struct fixture *f)
 void fixture_configure(struct fixture *f, uint32_t standby, uint32_t max_heaps, uint32_t attempts,
                        uint64_t retry_delay)
 {
-    SluiceStreamedTextureManagerConfig config = {standby, max_heaps, attempts, retry_delay};
+    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = standby,
+                                                 .maxHeapCount = max_heaps,
+                                                 .maxLoadAttempts = attempts,
+                                                 .retryDelay = retry_delay,
+                                                 .missesToForget = 1};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
 }
 

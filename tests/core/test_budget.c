@@ -92,20 +92,27 @@ static void the_heap_cap_is_kept_without_asking(void **state)
     fixture_close(&f);
 }
 
-static void wanted_tiles_are_never_evicted(void **state)
+static void wanted_tiles_make_room_for_coarser_requests_only(void **state)
 {
     (void)state;
     struct fixture f;
     SluiceTextureId full = open_full(&f, 1), id = fixture_add_small(&f);
-    fixture_feed(&f, full, 0, 1, 0);
-    fixture_feed(&f, id, 0, 1, 0);
-    for (uint32_t i = 0; i < 5; i++) {
-        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    uint64_t loads = 0;
+    for (uint64_t time = 1; time < 30; time++) {
+        fixture_feed(&f, full, 0, time, 4);
+        fixture_feed(&f, id, 0, time, 4);
         CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
-        assert_int_equal(f.count, 0);
+        loads += f.count;
+        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+        fixture_answer_mapped(&f);
     }
-    for (uint32_t i = 0; i < 6; i++)
-        CHECK_STATE(&f, full, i, MAPPED);
+    assert_int_equal(loads, 2); /* two of level 0 made room, and that was all */
+    CHECK_STATE(&f, id, 5, MAPPED);
+    CHECK_STATE(&f, id, 4, MAPPED);
+    CHECK_STATE(&f, full, 5, MAPPED);
+    CHECK_STATE(&f, full, 4, MAPPED);
+    for (uint32_t i = 0; i < 4; i++)
+        CHECK_STATE(&f, id, i, REQUESTED);
     fixture_close(&f);
 }
 
@@ -118,11 +125,11 @@ static void a_texture_that_gets_no_more_maps_gives_way(void **state)
     for (uint64_t time = 11; time < 30; time++) {
         fixture_feed(&f, id, 0, time, 4);
         CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
-        CHECK_STATE(&f, full, 0, MAPPED); /* its maps were 10 apart: less than 40 is not long */
+        CHECK_STATE(&f, full, 5, MAPPED); /* its maps were 10 apart: less than 40 is not long */
     }
     fixture_feed(&f, id, 0, 50, 4);
     CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
-    CHECK_STATE(&f, full, 0, MAPPED); /* no map came for 21 anywhere, so 40 is still not long */
+    CHECK_STATE(&f, full, 5, MAPPED); /* no map came for 21 anywhere, so 40 is still not long */
     fixture_feed(&f, id, 0, 51, 4);
     CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
     CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
@@ -217,7 +224,7 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     fixture_close(&f);
 }
 
-static void a_thousand_wants_take_no_more_than_standby_has(void **state)
+static void a_thousand_wants_take_no_more_than_what_is_finer(void **state)
 {
     (void)state;
     struct fixture f;
@@ -228,9 +235,9 @@ static void a_thousand_wants_take_no_more_than_standby_has(void **state)
     fixture_feed(&f, id, 0, 1, 0);
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
-    assert_true(LISTED(&f, full, 0, 1, 2));
+    assert_true(LISTED(&f, full, 0, 1, 2, 3, 4)); /* two of them because others are coarser */
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
-    assert_int_equal(f.count, 3);
+    assert_int_equal(f.count, 5);
     CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 0));
     assert_int_equal(f.count, 0);
     fixture_close(&f);
@@ -334,12 +341,12 @@ int main(void)
         cmocka_unit_test(a_refusal_is_the_budget_and_is_heard_once_per_call),
         cmocka_unit_test(what_fits_is_handed_out_before_the_budget_is_reached),
         cmocka_unit_test(the_heap_cap_is_kept_without_asking),
-        cmocka_unit_test(wanted_tiles_are_never_evicted),
+        cmocka_unit_test(wanted_tiles_make_room_for_coarser_requests_only),
         cmocka_unit_test(a_texture_that_gets_no_more_maps_gives_way),
         cmocka_unit_test(the_last_slots_are_for_packed_tiles),
         cmocka_unit_test(the_global_bias_rises_with_the_demand_and_falls_with_the_budget),
         cmocka_unit_test(standby_is_evicted_oldest_first_as_many_as_needed),
-        cmocka_unit_test(a_thousand_wants_take_no_more_than_standby_has),
+        cmocka_unit_test(a_thousand_wants_take_no_more_than_what_is_finer),
         cmocka_unit_test(a_slot_is_not_used_again_before_its_value_completed),
         cmocka_unit_test(slots_of_cancelled_loads_and_removed_textures_retire_too),
         cmocka_unit_test(values_that_completed_already_free_at_once),

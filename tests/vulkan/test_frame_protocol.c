@@ -277,7 +277,7 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
     assert_true(shown > 10000);
-    assert_true(stats.tilesUnmapped > 500);
+    assert_true(stats.tilesUnmapped > 50);
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
     sluiceDestroyVulkanStreamer(m->streamer);
