@@ -48,6 +48,8 @@ SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t wo
 /** The most tiles of one level that a region can touch along one axis. */
 static uint64_t tiles_across(uint32_t region, uint32_t tile)
 {
+    /* no region is larger than the texture; else the products below might not fit */
+    region = slc_min_u32(region, SLUICE_MAX_TEXTURE_SIZE);
     return tile % region == 0 ? 1 : (uint64_t)region / tile + 2;
 }
 
