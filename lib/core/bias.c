@@ -57,9 +57,14 @@ static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit)
     }
 }
 
-/** A step down that was too far before is tried again only if something is different. */
+/**
+ * A step down that was too far before is tried again only if something is different. It surely is
+ * where a whole level finer would fit, which is four times as many tiles.
+ */
 static bool may_lower(slc_manager *m, uint64_t wanted, uint64_t limit)
 {
+    if (wanted * 4 <= limit)
+        return true;
     if (wanted + wanted / 8 > limit)
         return false;
     if (m->bias.value - 1 > m->bias.failed || limit > m->bias.failed_limit)

@@ -36,6 +36,8 @@ static void raise_bias(struct naive_bias *b, uint64_t wanted, uint64_t limit)
 static bool may_lower_bias(const struct naive_bias *b, uint64_t wanted, uint64_t limit)
 {
     const uint64_t more = wanted + wanted / 8;
+    if (wanted <= limit / 4)
+        return true;
     return more <= limit &&
            (b->value - 1 > b->failed_value || limit > b->failed_limit || more <= b->demand);
 }

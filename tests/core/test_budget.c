@@ -187,6 +187,39 @@ static void the_global_bias_rises_with_the_demand_and_falls_with_the_budget(void
     fixture_close(&f);
 }
 
+/* Eight textures ask for far too much until all that is seen is a small one. */
+static void check_bias_after_a_cut(uint64_t cut)
+{
+    struct fixture f;
+    fixture_open(&f, 16, true);
+    fixture_configure(&f, 0, 6, 0, 0);
+    SluiceStreamedTextureDesc large = full_chain(1024, 1024, 32, 32);
+    SluiceTextureId forest[8], wall = fixture_add_small(&f);
+    for (uint32_t i = 0; i < 8; i++)
+        forest[i] = fixture_add(&f, &large);
+    for (uint64_t time = 1; time < 150; time++) {
+        for (uint32_t i = 0; i < 8; i++)
+            fixture_feed(&f, forest[i], time < cut ? 0 : SLUICE_MIP_UNTOUCHED, time, 2);
+        fixture_feed(&f, wall, 0, time, 2);
+        CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, time));
+        CHECK_OK(sluiceCompleteRetireValue(f.manager, time));
+        assert_true(fixture_to_map(&f, SLUICE_ALL_TEXTURES) >= 0);
+        fixture_answer_mapped(&f);
+        if (time == cut - 1)
+            assert_true(fixture_statistics(&f).globalMipBias > 0);
+    }
+    assert_int_equal(fixture_statistics(&f).globalMipBias, 0);
+    CHECK_STATE(&f, wall, 0, MAPPED);
+    fixture_close(&f);
+}
+
+static void the_global_bias_goes_when_the_demand_does_whenever_that_is(void **state)
+{
+    (void)state;
+    for (uint64_t cut = 2; cut < 30; cut++)
+        check_bias_after_a_cut(cut);
+}
+
 static uint32_t listed_for_unmapping(const struct fixture *f)
 {
     uint32_t count = 0;
@@ -345,6 +378,7 @@ int main(void)
         cmocka_unit_test(a_texture_that_gets_no_more_maps_gives_way),
         cmocka_unit_test(the_last_slots_are_for_packed_tiles),
         cmocka_unit_test(the_global_bias_rises_with_the_demand_and_falls_with_the_budget),
+        cmocka_unit_test(the_global_bias_goes_when_the_demand_does_whenever_that_is),
         cmocka_unit_test(standby_is_evicted_oldest_first_as_many_as_needed),
         cmocka_unit_test(a_thousand_wants_take_no_more_than_what_is_finer),
         cmocka_unit_test(a_slot_is_not_used_again_before_its_value_completed),
