@@ -25,7 +25,8 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         s = slc_alloc(&m->cb, size, 1);
         if (!s)
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){.size = size, .bias = m->bias.value};
+        *s = (struct slc_texture_state){
+            .size = size, .bias = m->bias.value, .asked_least = SLUICE_MIP_UNTOUCHED};
         s->nodes = (uint32_t *)(s + 1);
         s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
         s->known = s->asked + padded;
@@ -237,12 +238,13 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 
 static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
 {
-    const struct slc_texture_state *s = t->state;
+    struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
-    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), finest = untouched;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block next = slc_load_block(map + i);
+        finest = slc_min_block(finest, next);
         slc_store_block(asked + i, next);
         if (!slc_block_difference(next, untouched)) {
             if (fresh)
@@ -254,6 +256,9 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
         slc_block before = slc_load_block(kept + i);
         set_least(t, i, before, slc_min_block(before, next), changed);
     }
+    s->asked_least = SLUICE_MIP_UNTOUCHED;
+    for (uint32_t i = 0; i < SLC_BLOCK; i++)
+        s->asked_least = finest[i] < s->asked_least ? finest[i] : s->asked_least;
 }
 
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
@@ -292,6 +297,20 @@ static void regions_under(uint32_t tile, uint32_t level, bool last, uint32_t til
     *end = last || regions > region_count ? region_count : (uint32_t)regions;
 }
 
+/** Whether one of `count` bytes is at most `limit`; a block may be read over the end. */
+static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
+{
+    slc_block limits = slc_block_of((uint8_t)limit), none = slc_block_of(0);
+    for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
+        slc_block v = slc_load_block(bytes + i);
+        uint32_t found = slc_block_difference(slc_equal_block(slc_min_block(v, limits), v), none);
+        uint32_t inside = count - i < SLC_BLOCK ? (1u << (count - i)) - 1 : 0xFFFF;
+        if (found & inside)
+            return true;
+    }
+    return false;
+}
+
 bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
@@ -300,17 +319,16 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
         return true;
     const SluiceStreamedTextureDesc *d = &t->desc;
     struct slc_place p = slc_node_place(t, n);
+    if (t->state->asked_least > p.level)
+        return false; /* as where the camera has left, and the area under a tile can be large */
     const struct slc_level *grid = &t->levels[p.level];
     uint32_t x0, x1, y0, y1;
     regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
                   t->feedback_width, &x0, &x1);
     regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
                   t->feedback_height, &y0, &y1);
-    for (uint32_t y = y0; y < y1; y++) {
-        const uint8_t *row = t->state->asked + (size_t)y * t->feedback_width;
-        for (uint32_t x = x0; x < x1; x++)
-            if (row[x] <= p.level)
-                return true;
-    }
+    for (uint32_t y = y0; y < y1; y++)
+        if (any_at_most(t->state->asked + (size_t)y * t->feedback_width + x0, x1 - x0, p.level))
+            return true;
     return false;
 }

@@ -74,9 +74,10 @@ struct slc_texture_state {
     size_t size;                          ///< bytes of the allocation
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
-    uint32_t bias;    ///< of the manager when `under` was computed
-    uint32_t absence; ///< misses that the last maps stand for, as none saw anything
-    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE
+    uint32_t bias;       ///< of the manager when `under` was computed
+    uint32_t absence;    ///< misses that the last maps stand for, as none saw anything
+    uint8_t asked_least; ///< of `asked`
+    uint32_t *nodes;     ///< [regular tiles]: node index, 0: FREE
     uint8_t *under; ///< [regular tiles + a block]: the least level held in a region under the tile
     uint8_t *asked; ///< [padded regions]: what the last map asked for (a, not w)
     uint8_t *known; ///< [padded regions]: the least of many maps, lapsed ones too; for learning

@@ -77,23 +77,48 @@ static int by_request_order(const void *a, const void *b)
     return x->order < y->order ? -1 : x->order > y->order;
 }
 
+static struct request_key key_of(const slc_manager *m, const struct slc_texture *t, uint32_t node)
+{
+    const struct slc_node *n = slc_node_at(m, node);
+    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+    return (struct request_key){class << 8 | n->need, node, n->order};
+}
+
+/** Fewer requests of all textures than tiles of this one: they stand in order in the queues. */
+static uint32_t pick_requests(const slc_manager *m, const struct slc_texture *t,
+                              struct request_key *keys)
+{
+    uint32_t count = 0;
+    for (uint32_t node = slc_first_request(m); node && count < t->requested_count;
+         node = slc_next_request(m, node))
+        if (in_scope(m, t, node))
+            keys[count++] = key_of(m, t, node);
+    return count;
+}
+
+static uint32_t search_requests(const slc_manager *m, const struct slc_texture *t,
+                                struct request_key *keys)
+{
+    uint32_t count = 0;
+    for (uint32_t tile = 0; tile < t->tile_count && count < t->requested_count; tile++) {
+        uint32_t node = slc_find_node(t, tile);
+        if (node && slc_node_at(m, node)->state == SLUICE_TILE_STATE_REQUESTED)
+            keys[count++] = key_of(m, t, node);
+    }
+    qsort(keys, count, sizeof *keys, by_request_order);
+    return count;
+}
+
 /** The texture's requests in order; the caller frees `requested_count` keys. */
 static struct request_key *sort_requests(const slc_manager *m, const struct slc_texture *t)
 {
     struct request_key *keys = slc_alloc(&m->cb, t->requested_count, sizeof *keys);
     if (!keys)
         return NULL;
-    uint32_t count = 0;
-    for (uint32_t tile = 0; tile < t->tile_count; tile++) {
-        uint32_t node = slc_find_node(t, tile);
-        const struct slc_node *n = slc_node_at(m, node);
-        if (!node || n->state != SLUICE_TILE_STATE_REQUESTED)
-            continue;
-        uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
-        keys[count++] = (struct request_key){class << 8 | n->need, node, n->order};
-    }
+    bool few = m->requests.count < t->tile_count;
+    uint32_t count = few ? pick_requests(m, t, keys) : search_requests(m, t, keys);
+    (void)count;
     assert(count == t->requested_count);
-    qsort(keys, count, sizeof *keys, by_request_order);
     return keys;
 }
 

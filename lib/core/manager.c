@@ -381,7 +381,7 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
     unfollow(m, t);
     while (t->first_follower != SLC_NONE)
         unfollow(m, slc_texture_at(m, t->first_follower));
-    for (uint32_t tile = 0; tile < t->tile_count; tile++)
+    for (uint32_t tile = t->state ? 0 : t->regular_tile_count; tile < t->tile_count; tile++)
         if (slc_find_node(t, tile))
             slc_node_retire(m, slc_find_node(t, tile), retire_value);
     forget_reports(m, id);

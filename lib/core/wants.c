@@ -468,6 +468,7 @@ void slc_wants_forget(slc_manager *m, struct slc_texture *t)
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     memset(s->asked, SLUICE_MIP_UNTOUCHED, padded);
+    s->asked_least = SLUICE_MIP_UNTOUCHED;
     memset(s->known, SLUICE_MIP_UNTOUCHED, padded);
     s->absence = 0;
     memset(s->least, SLUICE_MIP_UNTOUCHED, padded);
