@@ -65,6 +65,18 @@ static const char *check_lists(const slc_manager *m)
         if (wrong)
             return wrong;
     }
+    uint64_t mapped = 0;
+    for (uint32_t l = 0; l < SLUICE_MAX_MIP_LEVELS; l++) {
+        const char *wrong = check_list(m, &m->mapped[l], SLUICE_TILE_STATE_MAPPED);
+        if (wrong)
+            return wrong;
+        mapped += m->mapped[l].count;
+    }
+    REQUIRE(mapped <= m->state_counts[SLUICE_TILE_STATE_MAPPED]); /* packed ones are in none */
+    uint32_t displaced = 0;
+    for (uint32_t node = m->unmapping.head; node; node = slc_node_at(m, node)->next)
+        displaced += (slc_node_at(m, node)->flags & SLC_NODE_WANTED) != 0;
+    REQUIRE(displaced == m->displaced);
     REQUIRE(m->standby.count <= m->config.numExtraStandbyTiles);
     REQUIRE(m->standby.count + m->unmapping.count == m->state_counts[SLUICE_TILE_STATE_STANDBY]);
     REQUIRE(m->failed.count == m->state_counts[SLUICE_TILE_STATE_FAILED]);
@@ -113,8 +125,12 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     REQUIRE(requested == t->requested_count);
     REQUIRE(resident_packed == t->packed_resident);
     *nodes += count;
-    if (!t->state)
+    REQUIRE(t->visited == (t->held_regions > 0));
+    if (!t->state) {
+        REQUIRE(t->held_regions == 0 && t->regular_nodes == 0);
         return NULL;
+    }
+    REQUIRE(t->held_regions > 0 || t->regular_nodes > 0);
     uint32_t with_node = 0;
     for (uint32_t i = 0; i < t->regular_tile_count; i++) {
         with_node += t->state->nodes[i] != 0;
@@ -124,6 +140,22 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;
     REQUIRE(with_node == count);
+    return NULL;
+}
+
+static const char *check_visited(const slc_manager *m)
+{
+    uint32_t count = 0, previous = SLC_NONE;
+    for (uint32_t i = m->visit_first; i != SLC_NONE; i = slc_texture_at(m, i)->visit_next) {
+        const struct slc_texture *t = slc_texture_at(m, i);
+        REQUIRE(t->live && t->visited && t->visit_prev == previous);
+        REQUIRE(previous == SLC_NONE ||
+                (int64_t)(t->map_time - slc_texture_at(m, previous)->map_time) >= 0);
+        REQUIRE(count < m->texture_count);
+        previous = i;
+        count++;
+    }
+    REQUIRE(previous == m->visit_last && count == m->visited_count);
     return NULL;
 }
 
@@ -160,6 +192,8 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
     const char *wrong = check_lists(m);
     if (!wrong)
         wrong = check_heaps(m);
+    if (!wrong)
+        wrong = check_visited(m);
     uint64_t nodes = 0, tiles = 0;
     uint32_t textures = 0;
     for (uint32_t i = 0; i < m->texture_end && !wrong; i++) {

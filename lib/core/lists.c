@@ -256,8 +256,10 @@ static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32
             return SLUICE_INCOMPLETE;
         if (!may_prefetch(m))
             return SLUICE_BUDGET_REACHED;
-        if (!slc_reserve_nodes(m, 1) || slc_state_make(m, t) != SLUICE_SUCCESS)
+        if (!slc_reserve_nodes(m, 1) || slc_state_make(m, t) != SLUICE_SUCCESS) {
+            slc_state_release(m, t); /* half made */
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        }
         uint32_t node = slc_node_prefetch(m, t, tile, level);
         struct slc_node *n = slc_node_at(m, node);
         slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot);

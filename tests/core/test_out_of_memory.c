@@ -1,5 +1,7 @@
 #include "core/fixture.h"
 
+#include "core/check.h"
+
 #include <string.h>
 
 /* One call with all that it needs, so that it can be made again. */
@@ -90,7 +92,8 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
 {
     SluiceStreamedTextureManager *m = f->manager;
     SluiceStreamedTextureDesc desc = op_desc(op->number);
-    SluiceStreamedTextureManagerConfig config = {op->number % 9, 0, 2, 3};
+    SluiceStreamedTextureManagerConfig config = {op->number % 9, 0, 2, 3, op->number % 2,
+                                                 op->number % 5};
     SluiceTextureId id = 0;
     SluiceResult result;
     switch (op->kind) {
@@ -181,12 +184,13 @@ static uint32_t apply_under_pressure(struct fixture *f, struct op *op, uint32_t 
         *result = apply(f, op, &hash);
         bool refused = f->memory.calls > f->memory.refuse_from;
         f->memory.refuse_from = UINT64_MAX;
-        if (refused && *result == SLUICE_INCOMPLETE && op->kind >= 5 && op->kind <= 7)
+        if (refused && *result == SLUICE_INCOMPLETE && op->kind >= 5 && op->kind <= 8)
             op->room = f->count;
         if (*result != SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
             *out = hash;
             return n;
         }
+        assert_null(slc_manager_check(f->manager));
         assert_true(fixture_digest(f, id_count, ids) == digest);
         assert_true(f->memory.live_bytes >= bytes); /* room may be kept for the next attempt */
         assert_true(fixture_statistics(f).hostMemorySize == f->memory.live_bytes);
