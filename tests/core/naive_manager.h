@@ -18,21 +18,21 @@ struct naive_tile {
     SluiceTileState state;
     bool wanted;
     bool cancel_handed_out;
-    bool listed; ///< STANDBY and in the list for unmapping
+    bool listed; ///< STANDBY and in the list for unmapping; wanted as well: displaced
     uint32_t failures;
     uint32_t need;
     uint32_t heap, slot;
     uint64_t due;
     /* Stamps of one counter say who came first. */
-    uint64_t requested_at, cancelled_at, standby_at, listed_at, failed_at, given_up_at;
+    uint64_t requested_at, cancelled_at, mapped_at, standby_at, listed_at, failed_at, given_up_at;
 };
 
 #define NAIVE_MAX_SPANS 6
 
 struct naive_span {
     uint64_t begin, end; ///< times of its first and of its last map
-    uint64_t weight;
-    uint8_t *asked; ///< per region: least `a`, or 255
+    uint64_t weight;     ///< its maps
+    uint8_t *asked;      ///< per region: least `a`, or 255
 };
 
 struct naive_texture {
@@ -41,6 +41,8 @@ struct naive_texture {
     struct naive_tile *tiles;
     uint32_t span_count;
     struct naive_span spans[NAIVE_MAX_SPANS]; ///< oldest first
+    uint8_t *known;   ///< per region: least `a` of many maps, or 255; NULL: none
+    uint64_t absence; ///< misses that the last maps stand for, as none asked for anything
     uint32_t hits, returns;
     uint8_t *held;        ///< per region, 255: nothing
     uint8_t *last_asked;  ///< `a` of the last map, 255: nothing; NULL: never had one
@@ -84,6 +86,7 @@ enum naive_event {
     NAIVE_SPANS_FULL,
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
+    NAIVE_DISPLACED,
     NAIVE_EVENT_COUNT
 };
 
@@ -144,10 +147,13 @@ SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
 void naive_free_texture(struct naive_texture *t);
 void naive_update_minmip(struct naive_manager *n, struct naive_texture *t);
 void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
+void naive_become_mapped(struct naive_manager *n, struct naive_tile *tile);
 void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
 /** Becomes STANDBY, and lists those that are then too many. */
 void naive_stand_by(struct naive_manager *n, struct naive_tile *tile);
+/** A MAPPED tile becomes STANDBY and listed, but stays wanted. */
+void naive_displace(struct naive_manager *n, struct naive_tile *tile);
 /** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
