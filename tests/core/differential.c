@@ -516,6 +516,8 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_RESERVE_KEPT] = "free slots kept for packed tiles",
     [NAIVE_RETURNS] = "maps with returns that were learned from",
     [NAIVE_DISPLACED] = "displaced",
+    [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",
+    [NAIVE_DISPLACED_UNWANTED] = "displaced and no longer wanted",
 };
 
 void differential_print_coverage(const struct differential *d, FILE *file)

@@ -87,6 +87,8 @@ enum naive_event {
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
     NAIVE_DISPLACED,
+    NAIVE_DISPLACED_UNMAPPED,
+    NAIVE_DISPLACED_UNWANTED, ///< before they were unmapped
     NAIVE_EVENT_COUNT
 };
 

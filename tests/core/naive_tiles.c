@@ -143,9 +143,11 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         tile->cancelled_at = ++n->stamp;
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
-    case SLUICE_TILE_STATE_CANCELLED:
-    case SLUICE_TILE_STATE_STANDBY: break; /* a displaced one stays listed */
-    case SLUICE_TILE_STATE_FREE: abort();  /* it was not wanted */
+    case SLUICE_TILE_STATE_CANCELLED: break;
+    case SLUICE_TILE_STATE_STANDBY: /* a displaced one stays listed */
+        n->events[NAIVE_DISPLACED_UNWANTED]++;
+        break;
+    case SLUICE_TILE_STATE_FREE: abort(); /* it was not wanted */
     }
 }
 
