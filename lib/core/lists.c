@@ -164,6 +164,16 @@ static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
     return 0;
 }
 
+/** A wanted tile that may make room for the request; 0 if there is none. */
+static uint32_t displaceable_for(const slc_manager *m, uint32_t request)
+{
+    const struct slc_node *n = slc_node_at(m, request);
+    if (n->tile >= slc_texture_at(m, n->texture)->regular_tile_count)
+        return finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
+    uint32_t gap = n->order < m->round.waited ? 0 : 1;
+    return n->level > gap ? finest_mapped(m, n->level - gap) : 0;
+}
+
 /**
  * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
  * what comes later would not be seen. It ends, because each exchange is for something coarser. For
@@ -181,13 +191,9 @@ static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unse
     }
     coming -= free_slots < reserved ? reserved - free_slots : 0;
     for (uint32_t passed = 0; walk.node && unserved && passed < MAX_PASSED_OVER; passed++) {
-        const struct slc_node *n = slc_node_at(m, walk.node);
-        bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
         if (slc_is_asked_for(m, walk.node)) {
             unserved--;
-            uint32_t gap = n->order < m->round.waited ? 0 : 1;
-            uint32_t finer_than = packed ? UINT32_MAX : n->level - slc_min_u32(gap, n->level);
-            uint32_t victim = coming ? 0 : finest_mapped(m, finer_than);
+            uint32_t victim = coming ? 0 : displaceable_for(m, walk.node);
             if (!coming && !victim)
                 return;
             if (victim)

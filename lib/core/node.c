@@ -116,12 +116,12 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
     return first_of(r, r->classes & ((1u << class) - 1));
 }
 
-/** Takes the node out of the list that its state keeps it in, if any. */
 static bool is_regular(const slc_manager *m, const struct slc_node *n)
 {
     return n->tile < slc_texture_at(m, n->texture)->regular_tile_count;
 }
 
+/** Takes the node out of the list that its state keeps it in, if any. */
 static void leave_list(slc_manager *m, uint32_t node)
 {
     struct slc_node *n = slc_node_at(m, node);

@@ -408,8 +408,8 @@ static void step(struct differential *d)
     }
     if (d->failed)
         return;
-    if (refused && call->kind == CALL_TILES_TO_MAP && d->seen.result == SLUICE_INCOMPLETE &&
-        d->seen.count > 0 && call->null == NULL_NONE)
+    if (refused && (call->kind == CALL_TILES_TO_MAP || call->kind == CALL_TILES_TO_UNMAP) &&
+        d->seen.result == SLUICE_INCOMPLETE && d->seen.count > 0 && call->null == NULL_NONE)
         call->room = d->seen.count; /* host memory ran out after these: as if for lack of room */
     memset(d->expected.bytes, 0xEE, row_bytes(call));
     naive_call(&d->naive, call, &d->seen, &d->expected);
@@ -515,6 +515,9 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_SPANS_FULL] = "maps that met six spans",
     [NAIVE_RESERVE_KEPT] = "free slots kept for packed tiles",
     [NAIVE_RETURNS] = "maps with returns that were learned from",
+    [NAIVE_DISPLACED] = "displaced",
+    [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",
+    [NAIVE_DISPLACED_UNWANTED] = "displaced and no longer wanted",
 };
 
 void differential_print_coverage(const struct differential *d, FILE *file)

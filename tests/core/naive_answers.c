@@ -28,7 +28,7 @@ static void answer_mapped(struct naive_manager *n, struct naive_texture *t, stru
     t->minmip_stale = true;
     n->totals.mappedTotal++;
     if (tile->wanted) {
-        tile->state = SLUICE_TILE_STATE_MAPPED;
+        naive_become_mapped(n, tile);
         return;
     }
     naive_stand_by(n, tile);

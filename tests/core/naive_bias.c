@@ -1,6 +1,8 @@
 /* The section "The global bias". */
 #include "core/naive_manager.h"
 
+#include <stdlib.h>
+
 #define MAX_BIAS 320u
 
 uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_texture *t,
@@ -17,7 +19,7 @@ uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_tex
 static uint64_t wanted_limit(const struct naive_manager *n)
 {
     uint64_t heaps = n->config.maxHeapCount ? n->config.maxHeapCount : UINT64_MAX;
-    if (n->heap_refused && n->heap_count < heaps)
+    if (n->heap_refused && n->heap_count > 0 && n->heap_count < heaps)
         heaps = n->heap_count;
     return heaps == UINT64_MAX ? UINT64_MAX : 3 * heaps * n->capacity;
 }
@@ -42,17 +44,34 @@ static bool may_lower_bias(const struct naive_bias *b, uint64_t wanted, uint64_t
            (b->value - 1 > b->failed_value || limit > b->failed_limit || more <= b->demand);
 }
 
+static uint64_t count_displaced(const struct naive_manager *n)
+{
+    uint32_t standby;
+    uint64_t displaced = 0;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &standby);
+    for (uint32_t i = 0; i < standby; i++)
+        displaced += refs[i].tile->wanted;
+    free(refs);
+    return displaced;
+}
+
+uint64_t naive_count_holding(const struct naive_manager *n)
+{
+    uint64_t holding = 0;
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        holding += n->textures[i] && naive_holds_anything(n->textures[i]);
+    return holding;
+}
+
 void naive_look_at_bias(struct naive_manager *n)
 {
     SluiceStreamedTextureStatistics s;
     struct naive_bias *b = &n->bias;
-    uint64_t holding = 0;
-    for (uint32_t i = 0; i < n->texture_room; i++)
-        holding += n->textures[i] && naive_holds_anything(n->textures[i]);
+    const uint64_t holding = naive_count_holding(n);
     naive_statistics(n, &s);
     const uint64_t limit = wanted_limit(n);
-    const uint64_t wanted =
-        (uint64_t)s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount;
+    const uint64_t wanted = (uint64_t)s.requestedTileCount + s.allocatedTileCount +
+                            s.mappedTileCount + count_displaced(n);
     if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;

@@ -112,13 +112,13 @@ static uint32_t list_empty_heaps(const struct naive_manager *n, const struct nai
 {
     const uint64_t free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
     const bool none_taken = free_slots == (uint64_t)n->heap_count * n->capacity;
+    const uint64_t keep = none_taken ? 0 : n->capacity / 2 + naive_reserved(n);
     uint32_t empty = 0, count = 0;
     for (uint32_t i = 0; i < n->heap_count; i++)
         if (is_empty(n, &n->heaps[i]))
             heaps[empty++] = &n->heaps[i];
     qsort(heaps, empty, sizeof *heaps, compare_heap_numbers);
-    while (count < empty &&
-           (none_taken || free_slots - (uint64_t)(count + 1) * n->capacity >= n->capacity / 2))
+    while (count < empty && free_slots - (uint64_t)(count + 1) * n->capacity >= keep)
         count++;
     return count;
 }

@@ -45,6 +45,7 @@ static void merge_map(struct naive_manager *n, struct naive_texture *t, uint8_t 
     note_time(n, t, time, timeout);
     if (naive_has_state(t) || asks_for_anything(t, asked)) {
         n->bias.maps++;
+        n->round.maps++;
         naive_remember(n, t, asked, time, timeout);
         naive_apply_held(n, t);
     }

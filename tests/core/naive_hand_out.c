@@ -143,7 +143,8 @@ static struct naive_texture *oldest_texture(struct naive_manager *n)
 static bool is_idle(const struct naive_manager *n, const struct naive_texture *t)
 {
     const uint64_t age = n->time - t->map_time;
-    return age > 0 && age / 4 >= max_u64(t->map_timeout, max_u64(t->interval, n->usual));
+    const uint64_t k = t->interval == 0 ? 16 : 4;
+    return age > 0 && age / k >= max_u64(t->map_timeout, max_u64(t->interval, n->usual));
 }
 
 static void forget(struct naive_manager *n, struct naive_texture *t)
@@ -167,24 +168,100 @@ static void count_standby(const struct naive_manager *n, uint32_t *listed, uint3
     free(refs);
 }
 
-/* Room is left for `unserved` requests, but no slot. */
-static void make_room(struct naive_manager *n, uint64_t unserved)
+/* Room is left for `unserved` requests, but no slot. Returns whether a texture was forgotten. */
+static bool make_room(struct naive_manager *n, uint64_t unserved)
 {
     const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
     const uint64_t needed = unserved + (reserved > free_slots ? reserved - free_slots : 0);
     const uint64_t retiring = naive_count_all(n, NAIVE_SLOT_RETIRING);
     uint32_t listed, unlisted;
+    bool forgot = false;
     count_standby(n, &listed, &unlisted);
     while (listed + retiring + unlisted < needed) {
         struct naive_texture *t = oldest_texture(n);
         if (!t || !is_idle(n, t))
             break;
         forget(n, t);
+        forgot = true;
         count_standby(n, &listed, &unlisted);
     }
     if (needed > listed + retiring) {
         const uint64_t more = needed - listed - retiring;
         naive_list_standby(n, more < unlisted ? unlisted - more : 0);
+    }
+    return forgot;
+}
+
+/* The MAPPED regular tile of the finest level below `end`, of equals the first that became so. */
+static struct naive_tile *finest_mapped(const struct naive_manager *n, uint32_t end)
+{
+    uint32_t count;
+    struct naive_tile *finest = NULL;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_MAPPED, &count);
+    for (uint32_t i = 0; i < count; i++) {
+        struct naive_tile *tile = refs[i].tile;
+        if (tile->packed || tile->level >= end)
+            continue;
+        if (!finest || tile->level < finest->level ||
+            (tile->level == finest->level && tile->mapped_at < finest->mapped_at))
+            finest = tile;
+    }
+    free(refs);
+    return finest;
+}
+
+/* The levels below this may make room for a request. */
+static uint32_t displaceable_below(const struct naive_manager *n, const struct naive_tile *request)
+{
+    if (request->packed)
+        return SLUICE_MAX_MIP_LEVELS;
+    if (request->requested_at <= n->round.waited)
+        return request->level;
+    return request->level > 0 ? request->level - 1 : 0;
+}
+
+static void end_round(struct naive_manager *n)
+{
+    if (n->round.maps == 0 || n->round.maps < naive_count_holding(n))
+        return;
+    n->round = (struct naive_round){.began = n->stamp, .waited = n->round.began};
+}
+
+/* Wanted tiles for the reserve. Returns false if there are too few. */
+static bool displace_for_reserve(struct naive_manager *n, uint64_t *coming)
+{
+    const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
+    for (; free_slots + *coming < reserved; ++*coming) {
+        struct naive_tile *tile = finest_mapped(n, SLUICE_MAX_MIP_LEVELS);
+        if (!tile)
+            return false;
+        naive_displace(n, tile);
+    }
+    *coming -= free_slots < reserved ? reserved - free_slots : 0;
+    return true;
+}
+
+/* Wanted tiles for `unserved` of the requests; refs[0] is the one that got no slot. */
+static void displace(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
+                     uint32_t unserved)
+{
+    uint32_t listed, unlisted;
+    count_standby(n, &listed, &unlisted);
+    uint64_t coming = (uint64_t)listed + naive_count_all(n, NAIVE_SLOT_RETIRING);
+    if (!displace_for_reserve(n, &coming))
+        return;
+    for (uint32_t i = 0; i < count && i < MAX_PASSED_OVER && unserved > 0; i++) {
+        if (is_passed_over(n, &refs[i]))
+            continue;
+        unserved--;
+        if (coming > 0) {
+            coming--;
+            continue;
+        }
+        struct naive_tile *tile = finest_mapped(n, displaceable_below(n, refs[i].tile));
+        if (!tile)
+            return;
+        naive_displace(n, tile);
     }
 }
 
@@ -204,10 +281,10 @@ static struct naive_ref *request_queue(const struct naive_manager *n,
     return refs;
 }
 
-/* Returns whether handing out stopped for lack of slots. */
+/* Returns whether handing out stopped for lack of slots, then at request number *stopped_at. */
 static bool hand_out_requests(struct naive_manager *n, const struct call *call,
                               const struct naive_ref *refs, uint32_t count,
-                              const struct outcome *seen, struct outcome *out)
+                              const struct outcome *seen, struct outcome *out, uint32_t *stopped_at)
 {
     uint32_t passed_over = 0;
     bool refused = false;
@@ -219,6 +296,7 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
                 return false;
             continue;
         }
+        *stopped_at = i;
         if (!find_slot(n, tile->packed, &refused, seen, out))
             return true;
         tile->state = SLUICE_TILE_STATE_ALLOCATED;
@@ -299,8 +377,8 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     }
     naive_look_at_bias(n);
     n->events[NAIVE_BIAS_ABOVE_0] += n->bias.value > 0;
-    const bool stopped = hand_out_requests(n, call, refs, count, seen, out);
-    free(refs);
+    uint32_t stopped_at = 0;
+    const bool stopped = hand_out_requests(n, call, refs, count, seen, out, &stopped_at);
     n->events[NAIVE_STARVED] += stopped && !n->starved;
     if (call->room)
         n->starved = stopped;
@@ -308,9 +386,12 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     result = out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
     if (!only && n->config.prefetchLevels && out->count == count && prefetch(n, call, seen, out))
         result = SLUICE_INCOMPLETE;
+    end_round(n);
     if (stopped) {
-        make_room(n, unserved);
+        if (!make_room(n, unserved))
+            displace(n, refs + stopped_at, count - stopped_at, unserved);
         result = SLUICE_BUDGET_REACHED;
     }
+    free(refs);
     return result;
 }

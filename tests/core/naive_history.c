@@ -7,6 +7,11 @@
 #define NOTHING SLUICE_MIP_UNTOUCHED
 #define MAX_WEIGHT UINT32_MAX
 
+static uint64_t max_u64(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
 static uint32_t count_regions(const struct naive_texture *t)
 {
     return t->layout.feedbackWidth * t->layout.feedbackHeight;
@@ -40,6 +45,9 @@ void naive_forget_history(struct naive_texture *t)
 {
     while (t->span_count)
         delete_span(t, t->span_count - 1);
+    free(t->known);
+    t->known = NULL;
+    t->absence = 0;
 }
 
 static uint8_t least_of(const struct naive_texture *t, uint32_t r)
@@ -55,13 +63,13 @@ static uint8_t least_of(const struct naive_texture *t, uint32_t r)
 static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked)
 {
     uint32_t returns = 0;
-    if (!t->last_asked || memcmp(asked, t->last_asked, count_regions(t)) == 0)
+    if (!t->known || memcmp(asked, t->last_asked, count_regions(t)) == 0)
         return;
     for (uint32_t r = 0; r < count_regions(t); r++) {
-        const uint8_t least = least_of(t, r);
-        if (least == NOTHING || asked[r] > least)
+        const uint8_t known = t->known[r];
+        if (known == NOTHING || asked[r] > known)
             continue;
-        if (t->last_asked[r] == least)
+        if (t->last_asked[r] == known)
             t->hits++;
         else
             returns++;
@@ -71,19 +79,35 @@ static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_
     if (t->hits + t->returns >= 4096) {
         t->hits /= 2;
         t->returns /= 2;
+        for (uint32_t r = 0; r < count_regions(t); r++)
+            t->known[r] = least_of(t, r);
     }
 }
 
+static void note_known(struct naive_texture *t, const uint8_t *asked)
+{
+    if (!t->known)
+        t->known = memset(naive_alloc(count_regions(t), 1), NOTHING, count_regions(t));
+    for (uint32_t r = 0; r < count_regions(t); r++)
+        if (asked[r] < t->known[r])
+            t->known[r] = asked[r];
+}
+
+static uint64_t add_weights(uint64_t a, uint64_t b)
+{
+    return a + b < MAX_WEIGHT ? a + b : MAX_WEIGHT;
+}
+
 /* Step 2. */
-static uint64_t weight_of(const struct naive_texture *t, const uint8_t *asked)
+static uint64_t absence_after(const struct naive_texture *t, const uint8_t *asked)
 {
     uint64_t holding = 0;
     for (uint32_t r = 0; r < count_regions(t); r++) {
         if (asked[r] != NOTHING)
-            return 1;
+            return 0;
         holding += least_of(t, r) != NOTHING;
     }
-    return holding ? holding : 1;
+    return add_weights(t->absence, holding ? holding : 1);
 }
 
 /* Step 3. */
@@ -143,19 +167,19 @@ static bool delete_levels(struct naive_manager *n, const struct naive_texture *t
 }
 
 /* Step 4. */
-static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t weight,
-                      uint64_t needed, uint64_t now, uint64_t timeout)
+static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t needed,
+                      uint64_t now, uint64_t timeout)
 {
     const uint32_t s = regions_per_tile_log2(&t->layout.desc);
     bool over_and_empty[NAIVE_MAX_SPANS] = {false};
     for (uint32_t i = 0; i < t->span_count; i++) {
         struct naive_span *span = &t->spans[i];
         const uint64_t age = now - span->end;
-        uint64_t newer = weight;
+        uint64_t newer = 1;
         for (uint32_t k = i + 1; k < t->span_count; k++)
-            newer += t->spans[k].weight;
-        newer = newer < MAX_WEIGHT ? newer : MAX_WEIGHT;
-        if (age >= timeout || (n->starved && newer >= 2 && age >= timeout - timeout / 16 * 5))
+            newer = add_weights(newer, t->spans[k].weight);
+        newer = max_u64(newer, t->absence);
+        if (age >= timeout || (n->starved && newer >= 2 && age >= timeout - timeout / 4))
             over_and_empty[i] = delete_levels(n, t, span, level_to_delete(needed, s, newer));
     }
     uint32_t deleted = 0;
@@ -167,16 +191,14 @@ static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t
 
 /* Step 5. */
 static void join(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
-                 uint64_t weight, uint64_t needed, uint64_t now, uint64_t timeout)
+                 uint64_t needed, uint64_t now, uint64_t timeout)
 {
     struct naive_span *newest = t->span_count ? &t->spans[t->span_count - 1] : NULL;
     n->events[NAIVE_SPANS_FULL] += t->span_count == NAIVE_MAX_SPANS;
     if (newest && (t->span_count == NAIVE_MAX_SPANS || now - newest->begin < timeout / 4 ||
-                   newest->weight < needed / 4)) {
+                   max_u64(newest->weight, t->absence) < needed / 4)) {
         newest->end = now;
-        newest->weight += weight;
-        if (newest->weight > MAX_WEIGHT)
-            newest->weight = MAX_WEIGHT;
+        newest->weight = add_weights(newest->weight, 1);
         for (uint32_t r = 0; r < count_regions(t); r++)
             if (asked[r] < newest->asked[r])
                 newest->asked[r] = asked[r];
@@ -186,7 +208,7 @@ static void join(struct naive_manager *n, struct naive_texture *t, const uint8_t
     t->spans[t->span_count++] = (struct naive_span){
         .begin = now,
         .end = now,
-        .weight = weight,
+        .weight = 1,
         .asked = memcpy(naive_alloc(regions, 1), asked, regions),
     };
 }
@@ -197,10 +219,11 @@ void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint
     const SluiceStreamedTextureLayout *l = &t->layout;
     const uint32_t coarsest = l->desc.mipLevelCount - 1;
     learn(n, t, asked);
-    const uint64_t weight = weight_of(t, asked);
+    note_known(t, asked);
+    t->absence = absence_after(t, asked);
     const uint64_t needed = misses_needed(n, t);
-    let_lapse(n, t, weight, needed, time, timeout);
-    join(n, t, asked, weight, needed, time, timeout);
+    let_lapse(n, t, needed, time, timeout);
+    join(n, t, asked, needed, time, timeout);
     for (uint32_t r = 0; r < count_regions(t); r++) {
         const uint8_t least = least_of(t, r);
         const uint32_t level =

@@ -18,21 +18,21 @@ struct naive_tile {
     SluiceTileState state;
     bool wanted;
     bool cancel_handed_out;
-    bool listed; ///< STANDBY and in the list for unmapping
+    bool listed; ///< STANDBY and in the list for unmapping; wanted as well: displaced
     uint32_t failures;
     uint32_t need;
     uint32_t heap, slot;
     uint64_t due;
     /* Stamps of one counter say who came first. */
-    uint64_t requested_at, cancelled_at, standby_at, listed_at, failed_at, given_up_at;
+    uint64_t requested_at, cancelled_at, mapped_at, standby_at, listed_at, failed_at, given_up_at;
 };
 
 #define NAIVE_MAX_SPANS 6
 
 struct naive_span {
     uint64_t begin, end; ///< times of its first and of its last map
-    uint64_t weight;
-    uint8_t *asked; ///< per region: least `a`, or 255
+    uint64_t weight;     ///< its maps
+    uint8_t *asked;      ///< per region: least `a`, or 255
 };
 
 struct naive_texture {
@@ -41,6 +41,8 @@ struct naive_texture {
     struct naive_tile *tiles;
     uint32_t span_count;
     struct naive_span spans[NAIVE_MAX_SPANS]; ///< oldest first
+    uint8_t *known;   ///< per region: least `a` of many maps, or 255; NULL: none
+    uint64_t absence; ///< misses that the last maps stand for, as none asked for anything
     uint32_t hits, returns;
     uint8_t *held;        ///< per region, 255: nothing
     uint8_t *last_asked;  ///< `a` of the last map, 255: nothing; NULL: never had one
@@ -84,6 +86,9 @@ enum naive_event {
     NAIVE_SPANS_FULL,
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
+    NAIVE_DISPLACED,
+    NAIVE_DISPLACED_UNMAPPED,
+    NAIVE_DISPLACED_UNWANTED, ///< before they were unmapped
     NAIVE_EVENT_COUNT
 };
 
@@ -93,6 +98,11 @@ struct naive_bias {
     uint64_t failed_limit;
     uint64_t demand; ///< 0: unknown
     uint64_t maps;   ///< merged since the bias was looked at
+};
+
+struct naive_round {
+    uint64_t maps;          ///< merged in it
+    uint64_t began, waited; ///< stamps: requests up to `waited` have waited
 };
 
 struct naive_manager {
@@ -109,6 +119,7 @@ struct naive_manager {
     struct naive_given_up *given_up;
     uint64_t stamp;
     struct naive_bias bias;
+    struct naive_round round;
     bool starved;
     bool heap_refused;       ///< the heap allocator's last answer
     uint64_t usual;          ///< interval between maps that was noted last
@@ -144,10 +155,13 @@ SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
 void naive_free_texture(struct naive_texture *t);
 void naive_update_minmip(struct naive_manager *n, struct naive_texture *t);
 void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
+void naive_become_mapped(struct naive_manager *n, struct naive_tile *tile);
 void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need);
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
 /** Becomes STANDBY, and lists those that are then too many. */
 void naive_stand_by(struct naive_manager *n, struct naive_tile *tile);
+/** A MAPPED tile becomes STANDBY and listed, but stays wanted. */
+void naive_displace(struct naive_manager *n, struct naive_tile *tile);
 /** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
@@ -163,6 +177,8 @@ void naive_apply_held(struct naive_manager *n, struct naive_texture *t);
 uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_texture *t,
                            uint32_t rx, uint32_t ry);
 /** Before anything is handed out. */
+/** Textures that hold anything. */
+uint64_t naive_count_holding(const struct naive_manager *n);
 void naive_look_at_bias(struct naive_manager *n);
 /** Of all slots of living heaps. */
 uint32_t naive_reserved(const struct naive_manager *n);

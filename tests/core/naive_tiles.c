@@ -85,13 +85,19 @@ void naive_request(struct naive_manager *n, struct naive_tile *tile, uint32_t ne
     tile->need = need;
 }
 
+void naive_become_mapped(struct naive_manager *n, struct naive_tile *tile)
+{
+    tile->state = SLUICE_TILE_STATE_MAPPED;
+    tile->mapped_at = ++n->stamp;
+}
+
 void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint32_t need)
 {
     tile->wanted = true;
     switch (tile->state) {
     case SLUICE_TILE_STATE_FREE: naive_request(n, tile, need); break;
     case SLUICE_TILE_STATE_STANDBY:
-        tile->state = SLUICE_TILE_STATE_MAPPED;
+        naive_become_mapped(n, tile);
         tile->listed = false;
         n->totals.restoredTotal++;
         break;
@@ -115,6 +121,14 @@ void naive_stand_by(struct naive_manager *n, struct naive_tile *tile)
     naive_list_standby(n, n->config.numExtraStandbyTiles);
 }
 
+void naive_displace(struct naive_manager *n, struct naive_tile *tile)
+{
+    tile->state = SLUICE_TILE_STATE_STANDBY;
+    tile->listed = true;
+    tile->listed_at = ++n->stamp;
+    n->events[NAIVE_DISPLACED]++;
+}
+
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
 {
     tile->wanted = false;
@@ -130,8 +144,10 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
     case SLUICE_TILE_STATE_CANCELLED: break;
-    case SLUICE_TILE_STATE_FREE:
-    case SLUICE_TILE_STATE_STANDBY: abort(); /* these were not wanted */
+    case SLUICE_TILE_STATE_STANDBY: /* a displaced one stays listed */
+        n->events[NAIVE_DISPLACED_UNWANTED]++;
+        break;
+    case SLUICE_TILE_STATE_FREE: abort(); /* it was not wanted */
     }
 }
 
