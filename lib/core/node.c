@@ -189,10 +189,17 @@ static bool add_node_chunk(slc_manager *m)
 
 bool slc_reserve_nodes(slc_manager *m, uint64_t count)
 {
-    while (count >
-           (uint64_t)m->free_node_count + (m->node_chunk_count * SLC_NODES_PER_CHUNK - m->node_end))
-        if (!add_node_chunk(m))
-            return false;
+    uint32_t before = m->node_chunk_count;
+    while (count > (uint64_t)m->free_node_count +
+                       (m->node_chunk_count * SLC_NODES_PER_CHUNK - m->node_end)) {
+        if (add_node_chunk(m))
+            continue;
+        /* what was too much once may be so for good */
+        while (m->node_chunk_count > before)
+            slc_free(&m->cb, m->node_chunks[--m->node_chunk_count], SLC_NODES_PER_CHUNK,
+                     sizeof(struct slc_node));
+        return false;
+    }
     return true;
 }
 
@@ -356,13 +363,13 @@ void slc_node_displace(slc_manager *m, uint32_t node)
 bool slc_node_unmap_displaced(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     struct slc_node *n = slc_node_at(m, node);
-    if (!slc_reserve_nodes(m, 1))
-        return false;
-    if (retire_value > m->completed_retire) {
+    if (retire_value <= m->completed_retire) {
+        slc_node_free_slot(m, node);
+    } else {
+        if (!slc_reserve_nodes(m, 1))
+            return false;
         slc_node_retire_slot(m, n->heap, n->slot, retire_value);
         n->heap = SLC_NONE;
-    } else {
-        slc_node_free_slot(m, node);
     }
     n->need = 0;
     slc_node_set_state(m, node, SLUICE_TILE_STATE_REQUESTED);

@@ -308,12 +308,86 @@ static void a_heap_is_never_lost_for_lack_of_memory(void **state)
     }
 }
 
+/* 32 slots are full of fine tiles, one coarser one is asked for; every node is taken. */
+static SluiceTextureId open_with_a_displaced_tile(struct fixture *f)
+{
+    fixture_open(f, 16, true);
+    fixture_configure(f, 0, 2, 0, 0);
+    SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128), last = {0};
+    SluiceTextureId ids[3];
+    for (uint32_t i = 0; i < 3; i++)
+        ids[i] = fixture_add(f, &desc);
+    fixture_feed(f, ids[0], 0, 1, 100);
+    fixture_feed(f, ids[1], 0, 1, 100);
+    CHECK_RESULT(fixture_to_map(f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    fixture_answer_mapped(f);
+    fixture_feed(f, ids[2], 2, 2, 100);
+    CHECK_RESULT(fixture_to_map(f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    CHECK_OK(sluiceGetTilesToUnmap(f->manager, SLUICE_ALL_TEXTURES, 0, &f->count, NULL));
+    assert_true(f->count > 0);
+    SluiceStreamedTextureStatistics s = fixture_statistics(f);
+    last = (SluiceStreamedTextureDesc){
+        .width = 1, .height = 1, .mipLevelCount = 1, .tileWidth = 1, .tileHeight = 1};
+    last.packedTileCount = 1023 - (s.requestedTileCount + s.allocatedTileCount + s.mappedTileCount +
+                                   s.standbyTileCount);
+    fixture_add(f, &last);
+    return ids[0];
+}
+
+static void a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request(void **state)
+{
+    (void)state;
+    for (uint64_t retire = 0; retire < 2; retire++) {
+        struct fixture f;
+        SluiceTextureId id = open_with_a_displaced_tile(&f);
+        uint64_t digest = fixture_digest(&f, 1, &id);
+        f.memory.refuse_from = f.memory.calls;
+        if (retire) {
+            f.count = FIXTURE_ROOM;
+            CHECK_RESULT(
+                sluiceGetTilesToUnmap(f.manager, SLUICE_ALL_TEXTURES, retire, &f.count, f.tiles),
+                SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+            assert_int_equal(f.count, FIXTURE_ROOM);
+            assert_true(fixture_digest(&f, 1, &id) == digest);
+            assert_null(slc_manager_check(f.manager));
+            f.memory.refuse_from = UINT64_MAX;
+        }
+        CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, retire));
+        assert_true(f.count > 0);
+        check_state(&f, f.tiles[0].textureId, f.tiles[0].tileIndex, SLUICE_TILE_STATE_REQUESTED,
+                    __LINE__);
+        f.memory.refuse_from = UINT64_MAX;
+        fixture_close(&f);
+    }
+}
+
+/* Memory that the nodes of a texture too large for it took is not kept for ever. */
+static void a_texture_that_is_too_large_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, true);
+    fixture_add_small(&f);
+    uint64_t before = f.memory.live_bytes;
+    SluiceStreamedTextureDesc d = {
+        .width = 1, .height = 1, .mipLevelCount = 1, .tileWidth = 1, .tileHeight = 1};
+    d.packedTileCount = 100000;
+    SluiceTextureId id;
+    f.memory.refuse_from = f.memory.calls + 50;
+    CHECK_RESULT(sluiceAddStreamedTexture(f.manager, &d, &id), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    f.memory.refuse_from = UINT64_MAX;
+    assert_true(f.memory.live_bytes < before + 4096); /* of the table of chunks */
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_call_survives_every_refused_allocation),
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(a_heap_is_never_lost_for_lack_of_memory),
+        cmocka_unit_test(a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request),
+        cmocka_unit_test(a_texture_that_is_too_large_leaves_nothing_behind),
     };
     return RUN_TESTS(tests);
 }
