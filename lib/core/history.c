@@ -84,13 +84,33 @@ static uint32_t maps_to_believe(const slc_manager *m, const struct slc_texture *
 
 static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns)
 {
+    size_t regions = slc_region_count(t);
     t->hits += hits;
     t->returns += returns;
-    if (t->hits + t->returns >= 4096) {
+    if (t->hits + t->returns >= (regions < 2048 ? 4096 : 2 * (uint64_t)regions)) {
         t->hits /= 2;
         t->returns /= 2;
-        memcpy(t->state->known, t->state->least, slc_padded(slc_region_count(t)));
+        memcpy(t->state->known, t->state->least, slc_padded(regions));
+        t->state->has_same_hits = false;
     }
+}
+
+/** The hits of a map like the last one. */
+static uint32_t same_hits(const struct slc_texture *t)
+{
+    struct slc_texture_state *s = t->state;
+    size_t padded = slc_padded(slc_region_count(t));
+    slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
+    if (s->has_same_hits)
+        return s->same_hits;
+    s->has_same_hits = true;
+    s->same_hits = 0;
+    for (size_t i = 0; i < padded; i += SLC_BLOCK) {
+        slc_block asked = slc_load_block(s->asked + i);
+        uint32_t other = slc_block_difference(asked, slc_load_block(s->known + i));
+        s->same_hits += slc_count_bits(slc_block_difference(asked, untouched) & ~other);
+    }
+    return s->same_hits;
 }
 
 static uint32_t add_weights(uint32_t a, uint32_t b)
@@ -241,6 +261,7 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
     struct slc_texture_state *s = t->state;
     size_t padded = slc_padded(slc_region_count(t));
     uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
+    s->has_same_hits = false;
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), finest = untouched;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block next = slc_load_block(map + i);
@@ -268,6 +289,8 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     const uint8_t *map = s->next ? s->next : s->asked;
     if (s->next)
         count_returns(t, s->hits, s->returns);
+    else
+        count_returns(t, same_hits(t), 0);
     s->absence = absence(t, map);
     struct now now = {.time = time,
                       .timeout = timeout,

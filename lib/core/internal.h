@@ -83,6 +83,8 @@ struct slc_texture_state {
     uint8_t *known; ///< [padded regions]: the least of many maps, lapsed ones too; for learning
     uint8_t *least; ///< [padded regions]: the least over all spans
     uint8_t *min_mip; ///< [minMipHeight][minMipWidth]
+    bool has_same_hits;
+    uint32_t same_hits; ///< of a map like the last one, if they were counted
     /* The map being merged: */
     const uint8_t *next;    ///< in the manager's scratch, NULL: as `asked`
     uint32_t hits, returns; ///< what slc_texture's will grow by

@@ -63,7 +63,7 @@ static uint8_t least_of(const struct naive_texture *t, uint32_t r)
 static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked)
 {
     uint32_t returns = 0;
-    if (!t->known || memcmp(asked, t->last_asked, count_regions(t)) == 0)
+    if (!t->known)
         return;
     for (uint32_t r = 0; r < count_regions(t); r++) {
         const uint8_t known = t->known[r];
@@ -76,7 +76,8 @@ static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_
     }
     t->returns += returns;
     n->events[NAIVE_RETURNS] += returns > 0 && n->config.missesToForget == 0;
-    if (t->hits + t->returns >= 4096) {
+    const uint64_t regions = count_regions(t);
+    if (t->hits + t->returns >= (regions > 2048 ? 2 * regions : 4096)) {
         t->hits /= 2;
         t->returns /= 2;
         for (uint32_t r = 0; r < count_regions(t); r++)
