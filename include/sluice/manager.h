@@ -309,8 +309,9 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
  * Packed tiles come first, then coarser levels before finer ones, within a level the tile that the
  * most of level 0 under it wants (by powers of two), then the one that was requested earliest.
  * While slots are short, regular tiles that their texture's last map does not ask for are passed
- * over. `textureId` restricts the list to one texture; with SLUICE_ALL_TEXTURES it covers all, and
- * idle ones cost nothing. With prefetchLevels it may go on with tiles that nothing wants, when no
+ * over. `textureId` restricts the list to one texture, which then leaves free slots to the coarser
+ * requests of others: go round all of them. With SLUICE_ALL_TEXTURES it covers all, and idle ones
+ * cost nothing. With prefetchLevels it may go on with tiles that nothing wants, when no
  * request is left; these are CANCELLED at once and not listed by sluiceGetTilesToCancel.
  *
  * With `pTiles` NULL, writes how many are REQUESTED and changes nothing. Otherwise `*pTileCount` is

@@ -53,7 +53,8 @@ struct slc_list {
 struct slc_requests {
     struct slc_list lists[SLC_REQUEST_CLASSES][SLC_REQUEST_NEEDS];
     uint32_t needs[SLC_REQUEST_CLASSES]; ///< bit n: lists[class][n] is not empty
-    uint32_t classes;                    ///< bit c: needs[c] is not 0
+    uint32_t counts[SLC_REQUEST_CLASSES];
+    uint32_t classes; ///< bit c: needs[c] is not 0
     uint32_t count;
     uint64_t next_sequence;
 };

@@ -32,12 +32,29 @@ uint32_t slc_reserved_slots(const slc_manager *m)
     return slots / 16 < 64 ? (uint32_t)(slots / 16) : 64;
 }
 
+/**
+ * Slots that a tile of `level` leaves in a call for one texture when no heap is to be had: what
+ * makes room for coarser requests of other textures must not go to the texture that is asked first.
+ */
+static uint64_t owed_slots(const slc_manager *m, uint32_t level)
+{
+    uint32_t limit = m->config.maxHeapCount;
+    uint64_t owed = 0;
+    if (!m->refused && (!limit || m->heaps.live_count < limit))
+        return 0;
+    for (uint32_t l = level + 1; l < SLUICE_MAX_MIP_LEVELS; l++)
+        owed += m->requests.counts[l];
+    return owed;
+}
+
 /** A free slot for the node, from a new heap if need be. The last ones are for packed tiles. */
-static SluiceResult take_slot(slc_manager *m, uint32_t node, bool *refused)
+static SluiceResult take_slot(slc_manager *m, const struct slc_texture *scope, uint32_t node,
+                              bool *refused)
 {
     struct slc_node *n = slc_node_at(m, node);
     bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
-    if ((packed || m->heaps.free_total > slc_reserved_slots(m)) &&
+    uint64_t kept = slc_reserved_slots(m) + (scope ? owed_slots(m, n->level) : 0);
+    if ((packed || m->heaps.free_total > kept) &&
         slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
         return SLUICE_SUCCESS;
     uint32_t limit = m->config.maxHeapCount;
@@ -332,7 +349,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
             passed_over++;
             continue;
         }
-        result = take_slot(m, node, &refused);
+        result = take_slot(m, scope, node, &refused);
         if (result != SLUICE_SUCCESS)
             break;
         next_request(m, &walk);

@@ -68,6 +68,7 @@ static void request_append(slc_manager *m, uint32_t node)
     r->needs[class] |= 1u << n->need;
     r->classes |= 1u << class;
     r->count++;
+    r->counts[class]++;
     t->requested_count++;
 }
 
@@ -83,6 +84,7 @@ static void request_remove(slc_manager *m, uint32_t node)
     if (r->needs[class] == 0)
         r->classes &= ~(1u << class);
     r->count--;
+    r->counts[class]--;
     slc_texture_at(m, n->texture)->requested_count--;
 }
 

@@ -514,6 +514,7 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_SPAN_THINNED] = "spans thinned",
     [NAIVE_SPANS_FULL] = "maps that met six spans",
     [NAIVE_RESERVE_KEPT] = "free slots kept for packed tiles",
+    [NAIVE_SLOT_OWED] = "free slots left to coarser requests of other textures",
     [NAIVE_RETURNS] = "maps with returns that were learned from",
     [NAIVE_DISPLACED] = "displaced",
     [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",

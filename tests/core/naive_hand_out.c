@@ -105,11 +105,30 @@ static bool slot_for(struct naive_manager *n, bool packed)
     return naive_count_all(n, NAIVE_SLOT_FREE) > (packed ? 0 : naive_reserved(n));
 }
 
-static bool find_slot(struct naive_manager *n, bool packed, bool *refused,
-                      const struct outcome *seen, struct outcome *out)
+/* Slots that a call for one texture leaves to coarser requests if there are no more heaps. */
+static uint32_t owed_slots(const struct naive_manager *n, const struct call *call,
+                           const struct naive_tile *tile)
 {
-    if (slot_for(n, packed))
+    const bool more = n->config.maxHeapCount == 0 || n->heap_count < n->config.maxHeapCount;
+    if (call->texture == SLUICE_ALL_TEXTURES || tile->packed || (more && !n->heap_refused))
+        return 0;
+    uint32_t count, owed = 0;
+    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_REQUESTED, &count);
+    for (uint32_t i = 0; i < count; i++)
+        owed += !refs[i].tile->packed && refs[i].tile->level > tile->level;
+    free(refs);
+    return owed;
+}
+
+static bool find_slot(struct naive_manager *n, const struct call *call,
+                      const struct naive_tile *tile, bool *refused, const struct outcome *seen,
+                      struct outcome *out)
+{
+    const uint32_t owed = owed_slots(n, call, tile);
+    if (slot_for(n, tile->packed) &&
+        (tile->packed || naive_count_all(n, NAIVE_SLOT_FREE) > naive_reserved(n) + owed))
         return true;
+    n->events[NAIVE_SLOT_OWED] += slot_for(n, tile->packed);
     const uint32_t most = n->config.maxHeapCount;
     if (!*refused && (most == 0 || n->heap_count < most)) {
         ask_for_heap(n, seen, out);
@@ -297,7 +316,7 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
             continue;
         }
         *stopped_at = i;
-        if (!find_slot(n, tile->packed, &refused, seen, out))
+        if (!find_slot(n, call, tile, &refused, seen, out))
             return true;
         tile->state = SLUICE_TILE_STATE_ALLOCATED;
         if (!hand_out(n, refs[i].texture, tile, seen, out))

@@ -85,6 +85,7 @@ enum naive_event {
     NAIVE_SPAN_THINNED, ///< levels were deleted, others stayed
     NAIVE_SPANS_FULL,
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
+    NAIVE_SLOT_OWED,    ///< or more than the reserve, but coarser ones are requested
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
     NAIVE_DISPLACED,
     NAIVE_DISPLACED_UNMAPPED,
