@@ -19,6 +19,10 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
     size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
     struct slc_texture_state *s = t->state;
     if (!s) {
+        /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
+        if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
+            t->regular_tile_count + (uint64_t)padded > SIZE_MAX / 32)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         size_t nodes = t->regular_tile_count * sizeof *s->nodes;
         size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
         size_t size = sizeof *s + nodes + under + 3 * padded + texels;
