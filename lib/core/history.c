@@ -305,7 +305,9 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     bool thinned = lapse(t, &now, &changed);
     bool fresh = join_span(s, &now);
     /* a span that was thinned may have lost what a map like the last one asks for again */
-    if (s->next || fresh || thinned)
+    if (!s->next && fresh && !thinned && s->has_same_hits)
+        memcpy(s->spans[s->span_count - 1].map, map, slc_padded(slc_region_count(t)));
+    else if (s->next || fresh || thinned)
         merge(t, map, fresh, &changed);
     return changed;
 }
