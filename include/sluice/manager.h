@@ -145,7 +145,7 @@ typedef enum SluiceTileState {
     SLUICE_TILE_STATE_REQUESTED = 1, ///< wanted; waits to be handed out by sluiceGetTilesToMap
     SLUICE_TILE_STATE_ALLOCATED = 2, ///< handed out: has a slot, its data is on its way
     SLUICE_TILE_STATE_MAPPED = 3,    ///< the data is there, and wanted
-    SLUICE_TILE_STATE_STANDBY = 4,   ///< the data is there, not wanted (any more)
+    SLUICE_TILE_STATE_STANDBY = 4,   ///< the data is there, not wanted (any more) or to make room
     SLUICE_TILE_STATE_CANCELLED = 5, ///< handed out, not wanted (any more); waits for an answer
     SLUICE_TILE_STATE_FAILED = 6,    ///< wanted; its load failed and will be tried again
     SLUICE_TILE_STATE_GIVEN_UP = 7   ///< its load failed too often; see sluiceRetryFailedTiles
@@ -319,13 +319,17 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
  * regular tiles: more than reservedSlotCount) the heap allocator is asked, at most once in vain per
  * call; where it refuses, as many STANDBY tiles as are needed, oldest first, are listed for
  * unmapping, and the requests wait. If there are not enough of them, textures that got no map for
- * four times their usual interval and timeout no longer want anything.
+ * four times their usual interval and timeout no longer want anything; and the finest tiles that
+ * are wanted make room for packed tiles and for requests two levels coarser, or one if these have
+ * waited for a whole round of maps: they are listed for unmapping, STANDBY until then, and
+ * REQUESTED after that.
  *
  * Every tile handed out must be answered with one of sluiceUpdateTilesMapping,
  * sluiceReportFailedTiles and sluiceReportCancelledTiles, or its texture removed.
  *
- * Returns SLUICE_INCOMPLETE if more are left for lack of room, SLUICE_BUDGET_REACHED for lack of
- * slots. Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE, OUT_OF_HOST_MEMORY.
+ * Returns SLUICE_INCOMPLETE if more are left for lack of room or because all that are left were
+ * passed over, SLUICE_BUDGET_REACHED for lack of slots. Errors: NULL_POINTER, UNKNOWN_TEXTURE,
+ * STALE_TEXTURE, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager,
                                             SluiceTextureId textureId, uint32_t *pTileCount,
@@ -389,11 +393,11 @@ SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager 
 
 /**
  * Hands out the tiles whose bindings are to be dropped: STANDBY tiles beyond numExtraStandbyTiles
- * and those whose slots are needed, oldest first. They are FREE afterwards and the MinMip maps no
- * longer show them; their slots come back once `retireValue` has completed, which must be a value
+ * and those whose slots are needed, oldest first. They are FREE afterwards, or REQUESTED if they
+ * only made room, and the MinMip maps no longer show them; their slots come back once `retireValue` has completed, which must be a value
  * that completes after every use of the old MinMip maps. A tile that is wanted again before it was
  * handed out is MAPPED again and not listed. Calling convention as sluiceGetTilesToMap.
- * Errors: also TIME_BACKWARDS.
+ * Errors: also TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager,
                                               SluiceTextureId textureId, uint64_t retireValue,
