@@ -394,10 +394,10 @@ SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager 
 /**
  * Hands out the tiles whose bindings are to be dropped: STANDBY tiles beyond numExtraStandbyTiles
  * and those whose slots are needed, oldest first. They are FREE afterwards, or REQUESTED if they
- * only made room, and the MinMip maps no longer show them; their slots come back once `retireValue` has completed, which must be a value
- * that completes after every use of the old MinMip maps. A tile that is wanted again before it was
- * handed out is MAPPED again and not listed. Calling convention as sluiceGetTilesToMap.
- * Errors: also TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
+ * only made room, and the MinMip maps no longer show them; their slots come back once `retireValue`
+ * has completed, which must be a value that completes after every use of the old MinMip maps. A
+ * tile that is wanted again before it was handed out is MAPPED again and not listed. Calling
+ * convention as sluiceGetTilesToMap. Errors: also TIME_BACKWARDS, OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager,
                                               SluiceTextureId textureId, uint64_t retireValue,
