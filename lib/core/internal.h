@@ -262,14 +262,6 @@ static inline uint32_t slc_tile_index(const struct slc_texture *t, struct slc_pl
 {
     return t->levels[p.level].first_tile + p.y * t->levels[p.level].width + p.x;
 }
-/** p.level must not be the coarsest regular one. */
-static inline struct slc_place slc_parent_place(const struct slc_texture *t, struct slc_place p)
-{
-    const struct slc_level *up = &t->levels[p.level + 1];
-    uint32_t x = p.x >> 1, y = p.y >> 1;
-    return (struct slc_place){p.level + 1, x < up->width ? x : up->width - 1,
-                              y < up->height ? y : up->height - 1};
-}
 /** The place of a tile whose level is known; regularMipCount for packed ones. */
 static inline struct slc_place slc_place_at(const struct slc_texture *t, uint32_t tile,
                                             uint32_t level)
@@ -287,9 +279,6 @@ static inline struct slc_place slc_node_place(const struct slc_texture *t, const
 struct slc_tile_range {
     uint32_t x0, y0, x1, y1; ///< inclusive
 };
-/** Tiles of `level` (regular) that a region touches. */
-struct slc_tile_range slc_region_tiles(const struct slc_texture *t, uint32_t region,
-                                       uint32_t level);
 
 /** Where a tile keeps its node; NULL for a regular one without a state. */
 static inline uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)

@@ -101,24 +101,3 @@ struct slc_place slc_tile_place(const struct slc_texture *t, uint32_t tile)
     tile -= t->levels[l].first_tile;
     return (struct slc_place){l, tile % t->levels[l].width, tile / t->levels[l].width};
 }
-
-static void axis_range(uint32_t region, uint32_t region_size, uint32_t size, uint32_t tile_size,
-                       uint32_t level, uint32_t grid, uint32_t *first, uint32_t *last)
-{
-    uint64_t begin = (uint64_t)region * region_size, end = begin + region_size;
-    if (end > size)
-        end = size;
-    *first = slc_min_u32(((uint32_t)begin >> level) / tile_size, grid - 1);
-    *last = slc_min_u32(((uint32_t)(end - 1) >> level) / tile_size, grid - 1);
-}
-
-struct slc_tile_range slc_region_tiles(const struct slc_texture *t, uint32_t region, uint32_t level)
-{
-    struct slc_tile_range r;
-    const SluiceStreamedTextureDesc *d = &t->desc;
-    axis_range(region % t->feedback_width, d->feedbackRegionWidth, d->width, d->tileWidth, level,
-               t->levels[level].width, &r.x0, &r.x1);
-    axis_range(region / t->feedback_width, d->feedbackRegionHeight, d->height, d->tileHeight, level,
-               t->levels[level].height, &r.y0, &r.y1);
-    return r;
-}
