@@ -84,6 +84,11 @@ static const char *check_lists(const slc_manager *m)
     return check_requests(m);
 }
 
+static uint8_t level_under(const struct slc_texture *t, uint32_t tile)
+{
+    return t->state->history ? t->state->history->under[tile] : SLUICE_MIP_UNTOUCHED;
+}
+
 static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
@@ -99,7 +104,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     if (n->flags & SLC_NODE_WANTED)
         wanted = true;
     if (n->tile < t->regular_tile_count)
-        REQUIRE(wanted == (t->state->under[n->tile] <= n->level));
+        REQUIRE(wanted == (level_under(t, n->tile) <= n->level));
     else
         REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
     return NULL;
@@ -134,7 +139,7 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     uint32_t with_node = 0;
     for (uint32_t i = 0; i < t->regular_tile_count; i++) {
         with_node += t->state->nodes[i] != 0;
-        if (t->state->under[i] <= slc_tile_place(t, i).level)
+        if (level_under(t, i) <= slc_tile_place(t, i).level)
             REQUIRE(t->state->nodes[i] != 0);
     }
     for (uint32_t i = 0; i < t->desc.packedTileCount; i++)

@@ -17,11 +17,21 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
     return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
 }
 
-/** Scratch for the maps of a texture and of those that follow it. */
+/** Textures of more tiles have a history of their own: a log of moves is kept for the others. */
+enum { MAX_SHARED_TILES = 65536 };
+
+static size_t log_size(const struct slc_texture *t)
+{
+    if (t->first_follower == SLC_NONE || t->regular_tile_count > MAX_SHARED_TILES)
+        return 0;
+    return slc_padded(t->regular_tile_count * sizeof(struct slc_move));
+}
+
+/** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
 static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t, bool followers)
 {
     size_t work = slc_wants_work_size(t);
-    uint64_t bytes = slc_padded(slc_region_count(t));
+    uint64_t bytes = slc_padded(slc_region_count(t)) + log_size(t);
     for (uint32_t f = followers ? t->first_follower : SLC_NONE; f != SLC_NONE;
          f = slc_texture_at(m, f)->next_follower) {
         size_t own = slc_wants_work_size(slc_texture_at(m, f));
@@ -31,19 +41,66 @@ static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t,
     return slc_wants_reserve_scratch(m, bytes, work);
 }
 
+static struct slc_history *history_of(const struct slc_texture *t)
+{
+    return t->state ? t->state->history : NULL;
+}
+
+/** How many textures have the texture's history and will get its map: itself and followers. */
+static uint32_t users_of_history(const slc_manager *m, const struct slc_texture *t)
+{
+    const struct slc_history *h = history_of(t);
+    /* a bias is dithered differently in each texture */
+    if (!h || h->users == 1 || m->bias.value || h->bias)
+        return 1;
+    uint32_t users = 1;
+    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
+        users += history_of(slc_texture_at(m, f)) == h;
+    return users;
+}
+
+/** Whether the follower, which has no history, will never differ from its primary's new one. */
+static bool may_share(const slc_manager *m, const struct slc_texture *t,
+                      const struct slc_texture *follower)
+{
+    return history_of(t) && !history_of(follower) && m->bias.value == 0 &&
+           t->hits == follower->hits && t->returns == follower->returns &&
+           t->regular_tile_count <= MAX_SHARED_TILES && slc_have_same_shape(t, follower);
+}
+
+static SluiceResult prepare_followers(slc_manager *m, struct slc_texture *t, bool is_new,
+                                      struct slc_wants_need *need)
+{
+    const struct slc_history *h = history_of(t);
+    const uint8_t *asked = !h ? NULL : h->next ? h->next : h->asked;
+    uint64_t nodes = need->nodes;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = t->first_follower; i != SLC_NONE && result == SLUICE_SUCCESS;) {
+        struct slc_texture *f = slc_texture_at(m, i);
+        if (is_new && may_share(m, t, f)) {
+            result = slc_state_make(m, f);
+            if (result == SLUICE_SUCCESS)
+                slc_history_share(f, t->state->history);
+        }
+        if (h && history_of(f) == h)
+            need->nodes += nodes;
+        else if (result == SLUICE_SUCCESS)
+            result = slc_wants_prepare_follower(m, t, asked, f, need);
+        i = f->next_follower;
+    }
+    return result;
+}
+
 static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
                             const SluiceFeedbackDesc *feedback)
 {
-    struct slc_wants_need need = {0};
+    struct slc_wants_need need = {.scratch = log_size(t)};
+    bool is_new = !history_of(t);
     SluiceResult result = reserve_scratch(m, t, true);
     if (result == SLUICE_SUCCESS)
-        result = slc_wants_prepare(m, t, feedback, &need);
-    for (uint32_t f = t->first_follower; f != SLC_NONE && result == SLUICE_SUCCESS;
-         f = slc_texture_at(m, f)->next_follower) {
-        const struct slc_texture_state *s = t->state;
-        const uint8_t *asked = !s ? NULL : s->next ? s->next : s->asked;
-        result = slc_wants_prepare_follower(m, t, asked, slc_texture_at(m, f), &need);
-    }
+        result = slc_wants_prepare(m, t, feedback, users_of_history(m, t), &need);
+    if (result == SLUICE_SUCCESS)
+        result = prepare_followers(m, t, is_new, &need);
     if (result == SLUICE_SUCCESS)
         result =
             slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -53,6 +110,22 @@ static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
     for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
         slc_wants_abandon(m, slc_texture_at(m, f));
     return result;
+}
+
+static void commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+{
+    const struct slc_history *h = history_of(t); /* followers keep it if the texture ends its own */
+    struct slc_move_log log = {(struct slc_move *)(void *)m->scratch, 0};
+    bool shared = h && h->users > 1;
+    slc_wants_commit(m, t, time, timeout, shared ? &log : NULL);
+    for (uint32_t i = t->first_follower; i != SLC_NONE;) {
+        struct slc_texture *f = slc_texture_at(m, i);
+        if (shared && history_of(f) == h)
+            slc_wants_repeat(m, t, f, time, timeout, &log);
+        else
+            slc_wants_commit(m, f, time, timeout, NULL);
+        i = f->next_follower;
+    }
 }
 
 static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
@@ -65,9 +138,7 @@ static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedb
     if (result != SLUICE_SUCCESS)
         return result;
     slc_advance_time(m, time);
-    slc_wants_commit(m, t, time, timeout);
-    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
-        slc_wants_commit(m, slc_texture_at(m, f), time, timeout);
+    commit(m, t, time, timeout);
     return SLUICE_SUCCESS;
 }
 
@@ -104,8 +175,9 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
     if (p->has_map && (p->state || t->state)) {
         struct slc_wants_need need = {0};
         result = reserve_scratch(m, t, false);
+        const struct slc_history *h = history_of(p);
         if (result == SLUICE_SUCCESS)
-            result = slc_wants_prepare_follower(m, p, p->state ? p->state->asked : NULL, t, &need);
+            result = slc_wants_prepare_follower(m, p, h ? h->asked : NULL, t, &need);
         if (result == SLUICE_SUCCESS)
             result =
                 slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -116,7 +188,7 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
     }
     slc_advance_time(m, time);
     if (p->has_map)
-        slc_wants_commit(m, t, time, timeout);
+        slc_wants_commit(m, t, time, timeout, NULL);
     return SLUICE_SUCCESS;
 }
 

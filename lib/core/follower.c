@@ -44,6 +44,14 @@ static bool has_same_regions(const struct slc_texture *p, const struct slc_textu
            a->feedbackRegionHeight == b->feedbackRegionHeight;
 }
 
+bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *b)
+{
+    const SluiceStreamedTextureDesc *c = &a->desc, *d = &b->desc;
+    return has_same_regions(a, b) && c->tileWidth == d->tileWidth &&
+           c->tileHeight == d->tileHeight && c->mipLevelCount == d->mipLevelCount &&
+           c->regularMipCount == d->regularMipCount && c->packedTileCount == d->packedTileCount;
+}
+
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need)
@@ -51,7 +59,7 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
     if (!follower->state &&
         (!asked || slc_bytes_are(asked, slc_region_count(primary), SLUICE_MIP_UNTOUCHED)))
         return SLUICE_SUCCESS; /* an empty map onto nothing */
-    SluiceResult result = slc_state_make(m, follower);
+    SluiceResult result = slc_history_make(m, follower, 1);
     if (result != SLUICE_SUCCESS)
         return result;
     uint8_t *map = slc_wants_take_map(m, follower, need);

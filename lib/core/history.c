@@ -13,41 +13,122 @@
 
 /* Memory ------------------------------------------------------------------------------------ */
 
+static size_t under_size(const struct slc_texture *t)
+{
+    return (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
+}
+
 SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
 {
-    size_t padded = slc_padded(slc_region_count(t));
+    if (t->state)
+        return SLUICE_SUCCESS;
+    /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
+    if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
+        t->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
-    struct slc_texture_state *s = t->state;
-    if (!s) {
-        /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
-        if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
-            t->regular_tile_count + (uint64_t)padded > SIZE_MAX / 32)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        size_t nodes = t->regular_tile_count * sizeof *s->nodes;
-        size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
-        size_t size = sizeof *s + nodes + under + 3 * padded + texels;
-        s = slc_alloc(&m->cb, size, 1);
-        if (!s)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){
-            .size = size, .bias = m->bias.value, .asked_least = SLUICE_MIP_UNTOUCHED};
-        s->nodes = (uint32_t *)(s + 1);
-        s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
-        s->known = s->asked + padded;
-        s->least = s->known + padded;
-        s->under = s->least + padded;
-        s->min_mip = s->under + under;
-        memset(s->nodes, 0, nodes);
-        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
-        memset(s->min_mip, slc_min_mip_floor(t), texels);
-        t->state = s;
-    }
-    if (s->span_count < SLC_MAX_SPANS && !s->spans[s->span_count].map) {
-        s->spans[s->span_count].map = slc_alloc(&m->cb, padded, 1);
-        if (!s->spans[s->span_count].map)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    }
+    size_t nodes = t->regular_tile_count * sizeof *t->state->nodes;
+    size_t size = sizeof *t->state + nodes + texels;
+    struct slc_texture_state *s = slc_alloc(&m->cb, size, 1);
+    if (!s)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    *s = (struct slc_texture_state){.size = size};
+    s->nodes = (uint32_t *)(s + 1);
+    s->min_mip = (uint8_t *)(s->nodes + t->regular_tile_count);
+    memset(s->nodes, 0, nodes);
+    memset(s->min_mip, slc_min_mip_floor(t), texels);
+    t->state = s;
     return SLUICE_SUCCESS;
+}
+
+static struct slc_history *create_history(slc_manager *m, const struct slc_texture *t)
+{
+    size_t padded = slc_padded(slc_region_count(t)), under = under_size(t);
+    size_t size = sizeof(struct slc_history) + under + 3 * padded;
+    struct slc_history *h = slc_alloc(&m->cb, size, 1);
+    if (!h)
+        return NULL;
+    *h = (struct slc_history){
+        .size = size, .users = 1, .bias = m->bias.value, .asked_least = SLUICE_MIP_UNTOUCHED};
+    h->asked = (uint8_t *)(h + 1);
+    h->known = h->asked + padded;
+    h->least = h->known + padded;
+    h->under = h->least + padded;
+    memset(h->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
+    return h;
+}
+
+static bool add_span_map(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+{
+    if (h->span_count == SLC_MAX_SPANS || h->spans[h->span_count].map)
+        return true;
+    h->spans[h->span_count].map = slc_alloc(&m->cb, slc_padded(slc_region_count(t)), 1);
+    return h->spans[h->span_count].map != NULL;
+}
+
+static void destroy_history(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+{
+    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
+        slc_free(&m->cb, h->spans[i].map, slc_padded(slc_region_count(t)), 1);
+    slc_free(&m->cb, h, h->size, 1);
+}
+
+/** The texture's own from now on. */
+static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_history *from = t->state->history, *h = create_history(m, t);
+    size_t padded = slc_padded(slc_region_count(t));
+    for (uint32_t i = 0; h && i < from->span_count; i++) {
+        h->spans[i] = from->spans[i];
+        h->spans[i].map = slc_alloc(&m->cb, padded, 1);
+        if (!h->spans[i].map) {
+            destroy_history(m, t, h);
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        }
+        memcpy(h->spans[i].map, from->spans[i].map, padded);
+    }
+    if (!h)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    h->span_count = from->span_count;
+    h->bias = from->bias;
+    h->absence = from->absence;
+    h->asked_least = from->asked_least;
+    h->has_same_hits = from->has_same_hits;
+    h->same_hits = from->same_hits;
+    memcpy(h->asked, from->asked, 3 * padded + under_size(t));
+    from->users--;
+    t->state->history = h;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t users)
+{
+    SluiceResult result = slc_state_make(m, t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_texture_state *s = t->state;
+    if (!s->history)
+        s->history = create_history(m, t);
+    else if (s->history->users != users)
+        result = copy_history(m, t);
+    if (!s->history || result != SLUICE_SUCCESS || !add_span_map(m, t, s->history))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return SLUICE_SUCCESS;
+}
+
+void slc_history_share(struct slc_texture *t, struct slc_history *history)
+{
+    assert(t->state && !t->state->history);
+    t->state->history = history;
+    history->users++;
+}
+
+void slc_history_drop(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_history *h = t->state->history;
+    t->state->history = NULL;
+    if (h && --h->users == 0)
+        destroy_history(m, t, h);
 }
 
 void slc_state_destroy(slc_manager *m, struct slc_texture *t)
@@ -55,8 +136,7 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t)
     struct slc_texture_state *s = t->state;
     if (!s)
         return;
-    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
-        slc_free(&m->cb, s->spans[i].map, slc_padded(slc_region_count(t)), 1);
+    slc_history_drop(m, t);
     slc_free(&m->cb, s, s->size, 1);
     t->state = NULL;
 }
@@ -94,27 +174,27 @@ static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns
     if (t->hits + t->returns >= (regions < 2048 ? 4096 : 2 * (uint64_t)regions)) {
         t->hits /= 2;
         t->returns /= 2;
-        memcpy(t->state->known, t->state->least, slc_padded(regions));
-        t->state->has_same_hits = false;
+        memcpy(t->state->history->known, t->state->history->least, slc_padded(regions));
+        t->state->history->has_same_hits = false;
     }
 }
 
 /** The hits of a map like the last one. */
 static uint32_t same_hits(const struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->state->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    if (s->has_same_hits)
-        return s->same_hits;
-    s->has_same_hits = true;
-    s->same_hits = 0;
+    if (h->has_same_hits)
+        return h->same_hits;
+    h->has_same_hits = true;
+    h->same_hits = 0;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block asked = slc_load_block(s->asked + i);
-        uint32_t other = slc_block_difference(asked, slc_load_block(s->known + i));
-        s->same_hits += slc_count_bits(slc_block_difference(asked, untouched) & ~other);
+        slc_block asked = slc_load_block(h->asked + i);
+        uint32_t other = slc_block_difference(asked, slc_load_block(h->known + i));
+        h->same_hits += slc_count_bits(slc_block_difference(asked, untouched) & ~other);
     }
-    return s->same_hits;
+    return h->same_hits;
 }
 
 static uint32_t add_weights(uint32_t a, uint32_t b)
@@ -130,7 +210,7 @@ static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
 {
     if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return 0;
-    return add_weights(t->state->absence, slc_max_u32(t->held_regions, 1));
+    return add_weights(t->state->history->absence, slc_max_u32(t->held_regions, 1));
 }
 
 /** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
@@ -143,11 +223,11 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
 }
 
 /** The least of a block over all spans. */
-static slc_block least_of_spans(const struct slc_texture_state *s, size_t i)
+static slc_block least_of_spans(const struct slc_history *h, size_t i)
 {
-    slc_block least = slc_load_block(s->spans[0].map + i);
-    for (uint32_t k = 1; k < s->span_count; k++)
-        least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+    slc_block least = slc_load_block(h->spans[0].map + i);
+    for (uint32_t k = 1; k < h->span_count; k++)
+        least = slc_min_block(least, slc_load_block(h->spans[k].map + i));
     return least;
 }
 
@@ -158,7 +238,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     if (!slc_block_difference(before, least))
         return;
-    slc_store_block(t->state->least + i, least);
+    slc_store_block(t->state->history->least + i, least);
     slc_range_add(changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
     t->held_regions += slc_count_bits(slc_block_difference(least, untouched));
     t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
@@ -168,7 +248,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
 static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t below,
                       struct slc_range *changed)
 {
-    const struct slc_texture_state *s = t->state;
+    const struct slc_history *h = t->state->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block limit = slc_block_of(below), untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     slc_block rest = untouched;
@@ -180,22 +260,22 @@ static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t belo
         slc_store_block(span->map + i, left);
         rest &= left;
         /* most of it stands in other spans too, and then nothing is to be searched */
-        slc_block before = slc_load_block(s->least + i);
+        slc_block before = slc_load_block(h->least + i);
         slc_block lost = gone & slc_equal_block(v, before) & ~slc_equal_block(v, untouched);
         if (slc_block_difference(lost, slc_block_of(0)))
-            set_least(t, i, before, least_of_spans(s, i), changed);
+            set_least(t, i, before, least_of_spans(h, i), changed);
     }
     span->below = below;
     span->empty = slc_block_difference(rest, untouched) == 0;
 }
 
-static void drop_spans(struct slc_texture_state *s, uint32_t count)
+static void drop_spans(struct slc_history *h, uint32_t count)
 {
     struct slc_span old[SLC_MAX_SPANS];
-    memcpy(old, s->spans, sizeof old);
+    memcpy(old, h->spans, sizeof old);
     for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
-        s->spans[i] = old[(i + count) % SLC_MAX_SPANS];
-    s->span_count -= count;
+        h->spans[i] = old[(i + count) % SLC_MAX_SPANS];
+    h->span_count -= count;
 }
 
 /** What a call knows when it decides about older maps. */
@@ -216,14 +296,14 @@ static bool is_over(const struct slc_span *span, const struct now *now, uint32_t
 /** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
 static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->state->history;
     uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
     if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
         shift = 0;
     uint32_t newer = 1, dropped = 0;
     bool thinned = false;
-    for (uint32_t i = s->span_count; i-- > 0;) {
-        struct slc_span *span = &s->spans[i];
+    for (uint32_t i = h->span_count; i-- > 0;) {
+        struct slc_span *span = &h->spans[i];
         uint32_t misses = slc_max_u32(newer, now->absence);
         bool over = is_over(span, now, misses);
         uint8_t below = first_unbelieved(misses, now->needed, slc_min_u32(shift, 8));
@@ -234,15 +314,15 @@ static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range
         dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
-    drop_spans(s, dropped); /* the oldest ones */
+    drop_spans(h, dropped); /* the oldest ones */
     return thinned;
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
-static bool join_span(struct slc_texture_state *s, const struct now *now)
+static bool join_span(struct slc_history *h, const struct now *now)
 {
-    struct slc_span *newest = s->span_count ? &s->spans[s->span_count - 1] : NULL;
-    if (newest && (s->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
+    struct slc_span *newest = h->span_count ? &h->spans[h->span_count - 1] : NULL;
+    if (newest && (h->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
                    slc_max_u32(newest->weight, now->absence) < now->needed / 4)) {
         newest->end = now->time;
         newest->weight = add_weights(newest->weight, 1);
@@ -250,7 +330,7 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
         newest->empty = false;
         return false;
     }
-    newest = &s->spans[s->span_count++];
+    newest = &h->spans[h->span_count++];
     newest->begin = newest->end = now->time;
     newest->weight = 1;
     newest->below = SLUICE_MIP_UNTOUCHED;
@@ -262,10 +342,10 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 
 static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->state->history;
     size_t padded = slc_padded(slc_region_count(t));
-    uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
-    s->has_same_hits = false;
+    uint8_t *asked = h->asked, *kept = h->least, *span = h->spans[h->span_count - 1].map;
+    h->has_same_hits = false;
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), finest = untouched;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block next = slc_load_block(map + i);
@@ -277,37 +357,37 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
             continue;
         }
         slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
-        slc_store_block(s->known + i, slc_min_block(slc_load_block(s->known + i), next));
+        slc_store_block(h->known + i, slc_min_block(slc_load_block(h->known + i), next));
         slc_block before = slc_load_block(kept + i);
         set_least(t, i, before, slc_min_block(before, next), changed);
     }
-    s->asked_least = SLUICE_MIP_UNTOUCHED;
+    h->asked_least = SLUICE_MIP_UNTOUCHED;
     for (uint32_t i = 0; i < SLC_BLOCK; i++)
-        s->asked_least = finest[i] < s->asked_least ? finest[i] : s->asked_least;
+        h->asked_least = finest[i] < h->asked_least ? finest[i] : h->asked_least;
 }
 
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
                                    uint64_t timeout)
 {
-    struct slc_texture_state *s = t->state;
-    const uint8_t *map = s->next ? s->next : s->asked;
-    if (s->next)
-        count_returns(t, s->hits, s->returns);
+    struct slc_history *h = t->state->history;
+    const uint8_t *map = h->next ? h->next : h->asked;
+    if (h->next)
+        count_returns(t, h->hits, h->returns);
     else
         count_returns(t, same_hits(t), 0);
-    s->absence = absence(t, map);
+    h->absence = absence(t, map);
     struct now now = {.time = time,
                       .timeout = timeout,
-                      .absence = s->absence,
+                      .absence = h->absence,
                       .needed = maps_to_believe(m, t),
                       .starved = m->starved};
     struct slc_range changed = {0, 0};
     bool thinned = lapse(t, &now, &changed);
-    bool fresh = join_span(s, &now);
+    bool fresh = join_span(h, &now);
     /* a span that was thinned may have lost what a map like the last one asks for again */
-    if (!s->next && fresh && !thinned && s->has_same_hits)
-        memcpy(s->spans[s->span_count - 1].map, map, slc_padded(slc_region_count(t)));
-    else if (s->next || fresh || thinned)
+    if (!h->next && fresh && !thinned && h->has_same_hits)
+        memcpy(h->spans[h->span_count - 1].map, map, slc_padded(slc_region_count(t)));
+    else if (h->next || fresh || thinned)
         merge(t, map, fresh, &changed);
     return changed;
 }
@@ -348,7 +428,8 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
         return true;
     const SluiceStreamedTextureDesc *d = &t->desc;
     struct slc_place p = slc_node_place(t, n);
-    if (t->state->asked_least > p.level)
+    const struct slc_history *h = t->state->history;
+    if (!h || h->asked_least > p.level)
         return false; /* as where the camera has left, and the area under a tile can be large */
     const struct slc_level *grid = &t->levels[p.level];
     uint32_t x0, x1, y0, y1;
@@ -357,7 +438,7 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
     regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
                   t->feedback_height, &y0, &y1);
     for (uint32_t y = y0; y < y1; y++)
-        if (any_at_most(t->state->asked + (size_t)y * t->feedback_width + x0, x1 - x0, p.level))
+        if (any_at_most(h->asked + (size_t)y * t->feedback_width + x0, x1 - x0, p.level))
             return true;
     return false;
 }

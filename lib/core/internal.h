@@ -70,25 +70,35 @@ struct slc_span {
     uint8_t *map;        ///< [padded regions], owned; stays for reuse when the span is dropped
 };
 
-/** Per-tile and per-region memory, made when a texture is first sampled. One allocation. */
-struct slc_texture_state {
+/**
+ * What the maps of a texture asked for. One allocation, but for the spans' maps. Textures of a set
+ * that have the same shape and have always got the same maps have one together.
+ */
+struct slc_history {
     size_t size;                          ///< bytes of the allocation
+    uint32_t users;                       ///< textures
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
     uint32_t bias;       ///< of the manager when `under` was computed
     uint32_t absence;    ///< misses that the last maps stand for, as none saw anything
     uint8_t asked_least; ///< of `asked`
-    uint32_t *nodes;     ///< [regular tiles]: node index, 0: FREE
     uint8_t *under; ///< [regular tiles + a block]: the least level held in a region under the tile
     uint8_t *asked; ///< [padded regions]: what the last map asked for (a, not w)
     uint8_t *known; ///< [padded regions]: the least of many maps, lapsed ones too; for learning
     uint8_t *least; ///< [padded regions]: the least over all spans
-    uint8_t *min_mip; ///< [minMipHeight][minMipWidth]
     bool has_same_hits;
     uint32_t same_hits; ///< of a map like the last one, if they were counted
     /* The map being merged: */
     const uint8_t *next;    ///< in the manager's scratch, NULL: as `asked`
     uint32_t hits, returns; ///< what slc_texture's will grow by
+};
+
+/** Per-tile memory, made when a texture is first sampled. One allocation. */
+struct slc_texture_state {
+    size_t size;                 ///< bytes of the allocation
+    uint32_t *nodes;             ///< [regular tiles]: node index, 0: FREE
+    uint8_t *min_mip;            ///< [minMipHeight][minMipWidth]
+    struct slc_history *history; ///< may be shared; NULL: empty
 };
 
 struct slc_texture {

@@ -58,7 +58,7 @@ static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t
                      struct slc_wants_need *need)
 {
     const SluiceStreamedTextureDesc *d = &t->desc;
-    if (t->state->bias > m->bias.value)
+    if (t->state->history->bias > m->bias.value)
         finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
@@ -101,7 +101,7 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
 static bool ask_all(const struct slc_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
-    const uint8_t *asked = t->state->asked;
+    const uint8_t *asked = t->state->history->asked;
     const struct level_blocks l = {slc_block_of(levels->coarsest), slc_block_of(levels->up),
                                    slc_block_of(levels->down), slc_block_of(levels->lowest),
                                    slc_block_of(levels->last)};
@@ -124,7 +124,8 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
 
 static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
 {
-    const uint8_t *asked = t->state->asked, *least = t->state->least, *known = t->state->known;
+    const struct slc_history *h = t->state->history;
+    const uint8_t *asked = h->asked, *least = h->least, *known = h->known;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     struct compared c = {0};
@@ -155,14 +156,14 @@ uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
 void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->state->history;
     struct compared c = {0};
     bool differs = ask_all(t, values, levels, next);
     if (differs)
         c = compare_all(t, next);
-    s->next = differs ? next : NULL;
-    s->hits = c.hits;
-    s->returns = c.returns;
+    h->next = differs ? next : NULL;
+    h->hits = c.hits;
+    h->returns = c.returns;
     add_need(m, t, c.finer, need);
 }
 
@@ -181,11 +182,12 @@ static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFee
 }
 
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
-                               const SluiceFeedbackDesc *feedback, struct slc_wants_need *need)
+                               const SluiceFeedbackDesc *feedback, uint32_t users,
+                               struct slc_wants_need *need)
 {
     if (!t->state && slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return SLUICE_SUCCESS;
-    SluiceResult result = slc_state_make(m, t);
+    SluiceResult result = slc_history_make(m, t, users);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_levels levels = own_levels(t, feedback);
@@ -229,10 +231,8 @@ static slc_block at_most(slc_block values, slc_block limit)
  */
 struct moves {
     uint32_t count;
-    struct {
-        uint32_t tile;
-        uint8_t level, least;
-    } tiles[64];
+    struct slc_move tiles[64];
+    struct slc_move_log *log; ///< NULL: nobody repeats them
 };
 
 /** log2 of the tiles of level 0 that want a tile, which some do. */
@@ -244,7 +244,7 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     slc_block limit = slc_block_of((uint8_t)level);
     uint32_t count = 0;
     for (uint32_t y = r.y0; y <= r.y1; y++) {
-        const uint8_t *row = t->state->under + (size_t)y * t->levels[0].width;
+        const uint8_t *row = t->state->history->under + (size_t)y * t->levels[0].width;
         for (uint32_t x = r.x0; x <= r.x1; x += SLC_BLOCK) {
             uint32_t above =
                 slc_block_difference(at_most(slc_load_block(row + x), limit), slc_block_of(255));
@@ -271,24 +271,26 @@ static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *mo
         __builtin_prefetch(slc_node_at(m, nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
     for (uint32_t i = 0; i < moves->count; i++) {
         uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
-        uint32_t least = moves->tiles[i].least;
-        if (least <= level)
+        if (moves->tiles[i].wanted)
             want_tile(m, t, &nodes[tile], tile, level);
         else
             slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
     }
+    if (moves->log) {
+        memcpy(moves->log->moves + moves->log->count, moves->tiles,
+               moves->count * sizeof *moves->tiles);
+        moves->log->count += moves->count;
+    }
     moves->count = 0;
 }
 
-static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves, uint32_t tile,
-                     uint32_t level, uint8_t least)
+static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves,
+                     struct slc_move move)
 {
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
         settle_moves(m, t, moves);
-    __builtin_prefetch(&t->state->nodes[tile]);
-    moves->tiles[moves->count].tile = tile;
-    moves->tiles[moves->count].level = (uint8_t)level;
-    moves->tiles[moves->count++].least = least;
+    __builtin_prefetch(&t->state->nodes[move.tile]);
+    moves->tiles[moves->count++] = move;
 }
 
 /**
@@ -303,7 +305,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
                                                 255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
-    uint8_t *under = t->state->under + tile;
+    uint8_t *under = t->state->history->under + tile;
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         slc_block before = slc_load_block(under + i), now = slc_load_block(least + i);
         if (count - i < SLC_BLOCK) {
@@ -317,7 +319,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
         uint32_t bits = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; bits; bits &= bits - 1) {
             uint32_t k = i + (uint32_t)__builtin_ctz(bits);
-            add_move(m, t, moves, tile + k, level, least[k]);
+            add_move(m, t, moves, (struct slc_move){tile + k, (uint8_t)level, least[k] <= level});
         }
     }
     return changed;
@@ -326,13 +328,13 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 /** What the regions hold: the least level of their maps, and the bias. */
 static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
-    const struct slc_texture_state *s = t->state;
+    const struct slc_history *h = t->state->history;
     if (m->bias.value == 0)
-        return s->least;
+        return h->least;
     slc_bias_map(m, t, work);
     slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
     for (size_t i = 0; i < slc_padded(slc_region_count(t)); i += SLC_BLOCK) {
-        slc_block least = slc_load_block(s->least + i);
+        slc_block least = slc_load_block(h->least + i);
         slc_block held = slc_min_block(least + slc_load_block(work + i), last);
         held |= slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
         slc_store_block(work + i, held);
@@ -389,7 +391,7 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
 {
     const struct slc_level *fine = &t->levels[level - 1], *here = &t->levels[level];
     uint32_t y0 = 2 * y, y1 = y + 1 == here->height ? fine->height : 2 * y + 2;
-    const uint8_t *row = t->state->under + fine->first_tile + (size_t)y0 * fine->width;
+    const uint8_t *row = t->state->history->under + fine->first_tile + (size_t)y0 * fine->width;
     for (uint32_t x = 0; x < fine->width; x += SLC_BLOCK) {
         slc_block v = slc_load_block(row + x);
         for (uint32_t k = 1; k < y1 - y0; k++)
@@ -421,39 +423,35 @@ static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, stru
     return rows;
 }
 
+static void packed_before(slc_manager *m, struct slc_texture *t, bool held_before)
+{
+    if (!m->info.alwaysMapPackedTiles && !held_before && t->held_regions > 0)
+        packed_wanted(m, t);
+}
+
+static void packed_after(slc_manager *m, struct slc_texture *t, bool held_before)
+{
+    if (!m->info.alwaysMapPackedTiles && held_before && t->held_regions == 0)
+        packed_unwanted(m, t);
+}
+
 /** Some region holds another level. */
 static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regions,
-                   bool held_before)
+                   bool held_before, struct slc_move_log *log)
 {
-    bool packed_move = !m->info.alwaysMapPackedTiles;
-    if (packed_move && !held_before && t->held_regions > 0)
-        packed_wanted(m, t);
+    packed_before(m, t, held_before);
     if (t->desc.regularMipCount > 0) {
-        struct moves moves = {.count = 0};
+        struct moves moves = {.count = 0, .log = log};
         struct slc_range rows = settle_level_0(m, t, &moves, regions);
         for (uint32_t l = 1; l < t->desc.regularMipCount && rows.end > 0; l++)
             rows = settle_level(m, t, &moves, l, rows);
         settle_moves(m, t, &moves);
     }
-    if (packed_move && held_before && t->held_regions == 0)
-        packed_unwanted(m, t);
+    packed_after(m, t, held_before);
 }
 
-void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+static void take_time(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
-    if (t->state) {
-        bool held_before = t->held_regions > 0;
-        m->bias.maps++;
-        m->round.maps++;
-        struct slc_range changed = slc_history_merge(m, t, time, timeout);
-        if (t->state->bias != m->bias.value)
-            changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
-        t->state->bias = m->bias.value;
-        if (changed.end > 0)
-            settle(m, t, changed, held_before);
-        slc_visit(m, t, t->held_regions > 0);
-        slc_state_release(m, t);
-    }
     if (t->has_map && time != t->map_time) {
         t->interval = time - t->map_time;
         m->map_interval = t->interval;
@@ -463,19 +461,76 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     t->map_time = time;
 }
 
+void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
+                      struct slc_move_log *log)
+{
+    if (t->state) {
+        struct slc_history *h = t->state->history;
+        bool held_before = t->held_regions > 0;
+        m->bias.maps++;
+        m->round.maps++;
+        struct slc_range changed = slc_history_merge(m, t, time, timeout);
+        if (h->bias != m->bias.value)
+            changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
+        h->bias = m->bias.value;
+        if (changed.end > 0)
+            settle(m, t, changed, held_before, log);
+        slc_visit(m, t, t->held_regions > 0);
+        slc_state_release(m, t);
+    }
+    take_time(m, t, time, timeout);
+}
+
+void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct slc_texture *t,
+                      uint64_t time, uint64_t timeout, const struct slc_move_log *log)
+{
+    bool held_before = t->held_regions > 0;
+    struct moves moves = {.count = 0};
+    m->bias.maps++;
+    m->round.maps++;
+    t->held_regions = leader->held_regions;
+    t->hits = leader->hits;
+    t->returns = leader->returns;
+    packed_before(m, t, held_before);
+    for (uint32_t i = 0; i < log->count; i++)
+        add_move(m, t, &moves, log->moves[i]);
+    settle_moves(m, t, &moves);
+    packed_after(m, t, held_before);
+    slc_visit(m, t, t->held_regions > 0);
+    slc_state_release(m, t);
+    take_time(m, t, time, timeout);
+}
+
+/** Takes all wants of a texture back whose history the caller ends. */
+static void unwant_all(slc_manager *m, struct slc_texture *t)
+{
+    struct moves moves = {.count = 0};
+    const uint8_t *under = t->state->history->under;
+    for (uint32_t l = 0; l < t->desc.regularMipCount; l++) {
+        const struct slc_level *grid = &t->levels[l];
+        uint32_t first = grid->first_tile, count = grid->width * grid->height;
+        slc_block limit = slc_block_of((uint8_t)l);
+        for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
+            uint32_t bits = ~slc_block_difference(at_most(slc_load_block(under + first + i), limit),
+                                                  slc_block_of(255));
+            bits &= count - i < SLC_BLOCK ? (1u << (count - i)) - 1 : 0xFFFF;
+            for (; bits; bits &= bits - 1)
+                add_move(m, t, &moves,
+                         (struct slc_move){first + i + (uint32_t)__builtin_ctz(bits), (uint8_t)l,
+                                           false});
+        }
+    }
+    settle_moves(m, t, &moves);
+}
+
 void slc_wants_forget(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
-    size_t padded = slc_padded(slc_region_count(t));
-    memset(s->asked, SLUICE_MIP_UNTOUCHED, padded);
-    s->asked_least = SLUICE_MIP_UNTOUCHED;
-    memset(s->known, SLUICE_MIP_UNTOUCHED, padded);
-    s->absence = 0;
-    memset(s->least, SLUICE_MIP_UNTOUCHED, padded);
-    s->span_count = 0;
     t->held_regions = 0;
     slc_visit(m, t, false);
-    /* The scratch has room: the map of which this is the end needed as much. */
-    settle(m, t, (struct slc_range){0, (uint32_t)padded}, true);
+    unwant_all(m, t);
+    packed_after(m, t, true);
+    slc_history_drop(m, t);
     slc_state_release(m, t);
+    if (m->standby.count > m->config.numExtraStandbyTiles)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
