@@ -16,7 +16,7 @@ static bool is_in_flight(const struct slc_node *n)
 
 static SluiceResult check_tile(slc_manager *m, const struct slc_texture *t, uint32_t tile)
 {
-    if (tile >= t->tile_count)
+    if (tile >= t->shape->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tile);
     if (!node || !is_in_flight(slc_node_at(m, node)) || slc_node_at(m, node)->flags & NODE_SEEN)
@@ -32,7 +32,7 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uin
     SluiceResult result = SLUICE_SUCCESS;
     uint32_t checked = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (tiles[i] < t->tile_count) {
+        if (tiles[i] < t->shape->tile_count) {
             __builtin_prefetch(slc_node_at(m, slc_find_node(t, tiles[i])));
             slc_min_mip_prefetch(t, tiles[i]);
         }

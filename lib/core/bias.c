@@ -28,11 +28,11 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
     memset(map, whole, slc_padded(slc_region_count(t)));
     if (part == 0)
         return;
-    for (uint32_t y = 0; y < t->feedback_height; y++) {
-        uint8_t *row = map + (size_t)y * t->feedback_width;
-        for (uint32_t x = 0; x < t->feedback_width; x += BLOCK)
+    for (uint32_t y = 0; y < t->shape->feedback_height; y++) {
+        uint8_t *row = map + (size_t)y * t->shape->feedback_width;
+        for (uint32_t x = 0; x < t->shape->feedback_width; x += BLOCK)
             if (dither(t->index, x / BLOCK, y / BLOCK) < part)
-                memset(row + x, whole + 1, slc_min_u32(BLOCK, t->feedback_width - x));
+                memset(row + x, whole + 1, slc_min_u32(BLOCK, t->shape->feedback_width - x));
     }
 }
 

@@ -86,14 +86,14 @@ static const char *check_lists(const slc_manager *m)
 
 static uint8_t level_under(const struct slc_texture *t, uint32_t tile)
 {
-    return t->state->history ? t->state->history->under[tile] : SLUICE_MIP_UNTOUCHED;
+    return t->history ? t->history->under[tile] : SLUICE_MIP_UNTOUCHED;
 }
 
 static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     REQUIRE(n->texture == t->index);
-    REQUIRE(n->tile < t->tile_count);
+    REQUIRE(n->tile < t->shape->tile_count);
     REQUIRE(slc_find_node(t, n->tile) == node);
     REQUIRE(n->level == slc_tile_place(t, n->tile).level);
     REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
@@ -103,7 +103,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
     if (n->flags & SLC_NODE_WANTED)
         wanted = true;
-    if (n->tile < t->regular_tile_count)
+    if (n->tile < t->shape->regular_tile_count)
         REQUIRE(wanted == (level_under(t, n->tile) <= n->level));
     else
         REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
@@ -113,7 +113,7 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
 static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
-    for (uint32_t tile = 0; tile < t->tile_count; tile++) {
+    for (uint32_t tile = 0; tile < t->shape->tile_count; tile++) {
         uint32_t node = slc_find_node(t, tile);
         if (!node)
             continue;
@@ -122,7 +122,7 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
             return wrong;
         uint8_t state = slc_node_at(m, node)->state;
         requested += state == SLUICE_TILE_STATE_REQUESTED;
-        if (slc_node_at(m, node)->tile >= t->regular_tile_count)
+        if (slc_node_at(m, node)->tile >= t->shape->regular_tile_count)
             resident_packed +=
                 state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
         count++;
@@ -131,18 +131,18 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     REQUIRE(resident_packed == t->packed_resident);
     *nodes += count;
     REQUIRE(t->visited == (t->held_regions > 0));
-    if (!t->state) {
+    if (!t->nodes) {
         REQUIRE(t->held_regions == 0 && t->regular_nodes == 0);
         return NULL;
     }
     REQUIRE(t->held_regions > 0 || t->regular_nodes > 0);
     uint32_t with_node = 0;
-    for (uint32_t i = 0; i < t->regular_tile_count; i++) {
-        with_node += t->state->nodes[i] != 0;
+    for (uint32_t i = 0; i < t->shape->regular_tile_count; i++) {
+        with_node += t->nodes[i] != 0;
         if (level_under(t, i) <= slc_tile_place(t, i).level)
-            REQUIRE(t->state->nodes[i] != 0);
+            REQUIRE(t->nodes[i] != 0);
     }
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;
     REQUIRE(with_node == count);
     return NULL;
@@ -204,7 +204,7 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!t->live)
             continue;
         wrong = check_texture(m, t, &nodes);
-        tiles += t->tile_count;
+        tiles += t->shape->tile_count;
         textures++;
     }
     if (wrong)

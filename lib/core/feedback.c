@@ -12,7 +12,7 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
     SluiceResult result = slc_find_texture(m, id, t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (f->width != (*t)->feedback_width || f->height != (*t)->feedback_height)
+    if (f->width != (*t)->shape->feedback_width || f->height != (*t)->shape->feedback_height)
         return SLUICE_ERROR_SIZE_MISMATCH;
     return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
 }
@@ -22,9 +22,9 @@ enum { MAX_SHARED_TILES = 65536 };
 
 static size_t log_size(const struct slc_texture *t)
 {
-    if (t->first_follower == SLC_NONE || t->regular_tile_count > MAX_SHARED_TILES)
+    if (t->first_follower == SLC_NONE || t->shape->regular_tile_count > MAX_SHARED_TILES)
         return 0;
-    return slc_padded(t->regular_tile_count * sizeof(struct slc_move));
+    return slc_padded(t->shape->regular_tile_count * sizeof(struct slc_move));
 }
 
 /** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
@@ -41,21 +41,16 @@ static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t,
     return slc_wants_reserve_scratch(m, bytes, work);
 }
 
-static struct slc_history *history_of(const struct slc_texture *t)
-{
-    return t->state ? t->state->history : NULL;
-}
-
 /** How many textures have the texture's history and will get its map: itself and followers. */
 static uint32_t users_of_history(const slc_manager *m, const struct slc_texture *t)
 {
-    const struct slc_history *h = history_of(t);
+    const struct slc_history *h = t->history;
     /* a bias is dithered differently in each texture */
     if (!h || h->users == 1 || m->bias.value || h->bias)
         return 1;
     uint32_t users = 1;
     for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
-        users += history_of(slc_texture_at(m, f)) == h;
+        users += slc_texture_at(m, f)->history == h;
     return users;
 }
 
@@ -63,15 +58,15 @@ static uint32_t users_of_history(const slc_manager *m, const struct slc_texture 
 static bool may_share(const slc_manager *m, const struct slc_texture *t,
                       const struct slc_texture *follower)
 {
-    return history_of(t) && !history_of(follower) && m->bias.value == 0 &&
-           t->hits == follower->hits && t->returns == follower->returns &&
-           t->regular_tile_count <= MAX_SHARED_TILES && slc_have_same_shape(t, follower);
+    return t->history && !follower->history && m->bias.value == 0 && t->hits == follower->hits &&
+           t->returns == follower->returns && t->shape->regular_tile_count <= MAX_SHARED_TILES &&
+           slc_have_same_shape(t, follower);
 }
 
 static SluiceResult prepare_followers(slc_manager *m, struct slc_texture *t, bool is_new,
                                       struct slc_wants_need *need)
 {
-    const struct slc_history *h = history_of(t);
+    const struct slc_history *h = t->history;
     const uint8_t *asked = !h ? NULL : h->next ? h->next : h->asked;
     uint64_t nodes = need->nodes;
     SluiceResult result = SLUICE_SUCCESS;
@@ -80,9 +75,9 @@ static SluiceResult prepare_followers(slc_manager *m, struct slc_texture *t, boo
         if (is_new && may_share(m, t, f)) {
             result = slc_state_make(m, f);
             if (result == SLUICE_SUCCESS)
-                slc_history_share(f, t->state->history);
+                slc_history_share(f, t->history);
         }
-        if (h && history_of(f) == h)
+        if (h && f->history == h)
             need->nodes += nodes;
         else if (result == SLUICE_SUCCESS)
             result = slc_wants_prepare_follower(m, t, asked, f, need);
@@ -95,7 +90,7 @@ static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
                             const SluiceFeedbackDesc *feedback)
 {
     struct slc_wants_need need = {.scratch = log_size(t)};
-    bool is_new = !history_of(t);
+    bool is_new = !t->history;
     SluiceResult result = reserve_scratch(m, t, true);
     if (result == SLUICE_SUCCESS)
         result = slc_wants_prepare(m, t, feedback, users_of_history(m, t), &need);
@@ -114,13 +109,13 @@ static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
 
 static void commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
 {
-    const struct slc_history *h = history_of(t); /* followers keep it if the texture ends its own */
+    const struct slc_history *h = t->history; /* followers keep it if the texture ends its own */
     struct slc_move_log log = {(struct slc_move *)(void *)m->scratch, 0};
     bool shared = h && h->users > 1;
     slc_wants_commit(m, t, time, timeout, shared ? &log : NULL);
     for (uint32_t i = t->first_follower; i != SLC_NONE;) {
         struct slc_texture *f = slc_texture_at(m, i);
-        if (shared && history_of(f) == h)
+        if (shared && f->history == h)
             slc_wants_repeat(m, t, f, time, timeout, &log);
         else
             slc_wants_commit(m, f, time, timeout, NULL);
@@ -172,10 +167,10 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (slc_time_is_backwards(m, time))
         return SLUICE_ERROR_TIME_BACKWARDS;
-    if (p->has_map && (p->state || t->state)) {
+    if (p->has_map && (p->nodes || t->nodes)) {
         struct slc_wants_need need = {0};
         result = reserve_scratch(m, t, false);
-        const struct slc_history *h = history_of(p);
+        const struct slc_history *h = p->history;
         if (result == SLUICE_SUCCESS)
             result = slc_wants_prepare_follower(m, p, h ? h->asked : NULL, t, &need);
         if (result == SLUICE_SUCCESS)

@@ -15,29 +15,29 @@
 
 static size_t under_size(const struct slc_texture *t)
 {
-    return (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
+    return (size_t)t->shape->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
+}
+
+static size_t texel_count(const struct slc_texture *t)
+{
+    return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
 }
 
 SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
 {
-    if (t->state)
+    if (t->nodes)
         return SLUICE_SUCCESS;
     /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
     if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
-        t->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
+        t->shape->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
-    size_t nodes = t->regular_tile_count * sizeof *t->state->nodes;
-    size_t size = sizeof *t->state + nodes + texels;
-    struct slc_texture_state *s = slc_alloc(&m->cb, size, 1);
-    if (!s)
+    size_t nodes = t->shape->regular_tile_count * sizeof *t->nodes;
+    t->nodes = slc_alloc(&m->cb, nodes + texel_count(t), 1);
+    if (!t->nodes)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    *s = (struct slc_texture_state){.size = size};
-    s->nodes = (uint32_t *)(s + 1);
-    s->min_mip = (uint8_t *)(s->nodes + t->regular_tile_count);
-    memset(s->nodes, 0, nodes);
-    memset(s->min_mip, slc_min_mip_floor(t), texels);
-    t->state = s;
+    t->min_mip = (uint8_t *)(t->nodes + t->shape->regular_tile_count);
+    memset(t->nodes, 0, nodes);
+    memset(t->min_mip, slc_min_mip_floor(t), texel_count(t));
     return SLUICE_SUCCESS;
 }
 
@@ -76,7 +76,7 @@ static void destroy_history(slc_manager *m, const struct slc_texture *t, struct 
 /** The texture's own from now on. */
 static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_history *from = t->state->history, *h = create_history(m, t);
+    struct slc_history *from = t->history, *h = create_history(m, t);
     size_t padded = slc_padded(slc_region_count(t));
     for (uint32_t i = 0; h && i < from->span_count; i++) {
         h->spans[i] = from->spans[i];
@@ -97,7 +97,7 @@ static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
     h->same_hits = from->same_hits;
     memcpy(h->asked, from->asked, 3 * padded + under_size(t));
     from->users--;
-    t->state->history = h;
+    t->history = h;
     return SLUICE_SUCCESS;
 }
 
@@ -106,45 +106,44 @@ SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t us
     SluiceResult result = slc_state_make(m, t);
     if (result != SLUICE_SUCCESS)
         return result;
-    struct slc_texture_state *s = t->state;
-    if (!s->history)
-        s->history = create_history(m, t);
-    else if (s->history->users != users)
+    if (!t->history)
+        t->history = create_history(m, t);
+    else if (t->history->users != users)
         result = copy_history(m, t);
-    if (!s->history || result != SLUICE_SUCCESS || !add_span_map(m, t, s->history))
+    if (!t->history || result != SLUICE_SUCCESS || !add_span_map(m, t, t->history))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     return SLUICE_SUCCESS;
 }
 
 void slc_history_share(struct slc_texture *t, struct slc_history *history)
 {
-    assert(t->state && !t->state->history);
-    t->state->history = history;
+    assert(t->nodes && !t->history);
+    t->history = history;
     history->users++;
 }
 
 void slc_history_drop(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_history *h = t->state->history;
-    t->state->history = NULL;
+    struct slc_history *h = t->history;
+    t->history = NULL;
     if (h && --h->users == 0)
         destroy_history(m, t, h);
 }
 
 void slc_state_destroy(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
-    if (!s)
+    if (!t->nodes)
         return;
     slc_history_drop(m, t);
-    slc_free(&m->cb, s, s->size, 1);
-    t->state = NULL;
+    slc_free(&m->cb, t->nodes, t->shape->regular_tile_count * sizeof *t->nodes + texel_count(t), 1);
+    t->nodes = NULL;
+    t->min_mip = NULL;
 }
 
 void slc_state_release(slc_manager *m, struct slc_texture *t)
 {
     /* Nothing held and nothing left: the last map was empty, which is what no state means. */
-    if (t->state && t->held_regions == 0 && t->regular_nodes == 0)
+    if (t->nodes && t->held_regions == 0 && t->regular_nodes == 0)
         slc_state_destroy(m, t);
 }
 
@@ -174,15 +173,15 @@ static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns
     if (t->hits + t->returns >= (regions < 2048 ? 4096 : 2 * (uint64_t)regions)) {
         t->hits /= 2;
         t->returns /= 2;
-        memcpy(t->state->history->known, t->state->history->least, slc_padded(regions));
-        t->state->history->has_same_hits = false;
+        memcpy(t->history->known, t->history->least, slc_padded(regions));
+        t->history->has_same_hits = false;
     }
 }
 
 /** The hits of a map like the last one. */
 static uint32_t same_hits(const struct slc_texture *t)
 {
-    struct slc_history *h = t->state->history;
+    struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     if (h->has_same_hits)
@@ -210,7 +209,7 @@ static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
 {
     if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return 0;
-    return add_weights(t->state->history->absence, slc_max_u32(t->held_regions, 1));
+    return add_weights(t->history->absence, slc_max_u32(t->held_regions, 1));
 }
 
 /** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
@@ -238,7 +237,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     if (!slc_block_difference(before, least))
         return;
-    slc_store_block(t->state->history->least + i, least);
+    slc_store_block(t->history->least + i, least);
     slc_range_add(changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
     t->held_regions += slc_count_bits(slc_block_difference(least, untouched));
     t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
@@ -248,7 +247,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
 static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t below,
                       struct slc_range *changed)
 {
-    const struct slc_history *h = t->state->history;
+    const struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block limit = slc_block_of(below), untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     slc_block rest = untouched;
@@ -296,9 +295,9 @@ static bool is_over(const struct slc_span *span, const struct now *now, uint32_t
 /** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
 static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
-    struct slc_history *h = t->state->history;
-    uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
-    if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
+    struct slc_history *h = t->history;
+    uint32_t shift = slc_min_u32(t->shape->region_shift_x, t->shape->region_shift_y);
+    if (t->shape->region_shift_x == SLC_UNALIGNED || t->shape->region_shift_y == SLC_UNALIGNED)
         shift = 0;
     uint32_t newer = 1, dropped = 0;
     bool thinned = false;
@@ -342,7 +341,7 @@ static bool join_span(struct slc_history *h, const struct now *now)
 
 static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
 {
-    struct slc_history *h = t->state->history;
+    struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
     uint8_t *asked = h->asked, *kept = h->least, *span = h->spans[h->span_count - 1].map;
     h->has_same_hits = false;
@@ -369,7 +368,7 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
                                    uint64_t timeout)
 {
-    struct slc_history *h = t->state->history;
+    struct slc_history *h = t->history;
     const uint8_t *map = h->next ? h->next : h->asked;
     if (h->next)
         count_returns(t, h->hits, h->returns);
@@ -424,21 +423,21 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
-    if (n->tile >= t->regular_tile_count)
+    if (n->tile >= t->shape->regular_tile_count)
         return true;
-    const SluiceStreamedTextureDesc *d = &t->desc;
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
     struct slc_place p = slc_node_place(t, n);
-    const struct slc_history *h = t->state->history;
+    const struct slc_history *h = t->history;
     if (!h || h->asked_least > p.level)
         return false; /* as where the camera has left, and the area under a tile can be large */
-    const struct slc_level *grid = &t->levels[p.level];
+    const struct slc_level *grid = &t->shape->levels[p.level];
     uint32_t x0, x1, y0, y1;
     regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
-                  t->feedback_width, &x0, &x1);
+                  t->shape->feedback_width, &x0, &x1);
     regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
-                  t->feedback_height, &y0, &y1);
+                  t->shape->feedback_height, &y0, &y1);
     for (uint32_t y = y0; y < y1; y++)
-        if (any_at_most(h->asked + (size_t)y * t->feedback_width + x0, x1 - x0, p.level))
+        if (any_at_most(h->asked + (size_t)y * t->shape->feedback_width + x0, x1 - x0, p.level))
             return true;
     return false;
 }

@@ -6,7 +6,7 @@
 
 static inline size_t slc_region_count(const struct slc_texture *t)
 {
-    return (size_t)t->feedback_width * t->feedback_height;
+    return t->shape->region_count;
 }
 
 /** Makes the per-tile memory if it is not there yet. */

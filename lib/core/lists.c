@@ -52,7 +52,7 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_texture *scope, u
                               bool *refused)
 {
     struct slc_node *n = slc_node_at(m, node);
-    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count;
     uint64_t kept = slc_reserved_slots(m) + (scope ? owed_slots(m, n->level) : 0);
     if ((packed || m->heaps.free_total > kept) &&
         slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
@@ -97,7 +97,7 @@ static int by_request_order(const void *a, const void *b)
 static struct request_key key_of(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
-    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     return (struct request_key){class << 8 | n->need, node, n->order};
 }
 
@@ -117,7 +117,7 @@ static uint32_t search_requests(const slc_manager *m, const struct slc_texture *
                                 struct request_key *keys)
 {
     uint32_t count = 0;
-    for (uint32_t tile = 0; tile < t->tile_count && count < t->requested_count; tile++) {
+    for (uint32_t tile = 0; tile < t->shape->tile_count && count < t->requested_count; tile++) {
         uint32_t node = slc_find_node(t, tile);
         if (node && slc_node_at(m, node)->state == SLUICE_TILE_STATE_REQUESTED)
             keys[count++] = key_of(m, t, node);
@@ -132,7 +132,7 @@ static struct request_key *sort_requests(const slc_manager *m, const struct slc_
     struct request_key *keys = slc_alloc(&m->cb, t->requested_count, sizeof *keys);
     if (!keys)
         return NULL;
-    bool few = m->requests.count < t->tile_count;
+    bool few = m->requests.count < t->shape->tile_count;
     uint32_t count = few ? pick_requests(m, t, keys) : search_requests(m, t, keys);
     (void)count;
     assert(count == t->requested_count);
@@ -185,7 +185,7 @@ static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
 static uint32_t displaceable_for(const slc_manager *m, uint32_t request)
 {
     const struct slc_node *n = slc_node_at(m, request);
-    if (n->tile >= slc_texture_at(m, n->texture)->regular_tile_count)
+    if (n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count)
         return finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
     uint32_t gap = n->order < m->round.waited ? 0 : 1;
     return n->level > gap ? finest_mapped(m, n->level - gap) : 0;
@@ -250,7 +250,7 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
     __builtin_prefetch(t);
-    __builtin_prefetch(&t->levels[n->level]);
+    __builtin_prefetch(&t->shape->levels[n->level]);
     __builtin_prefetch(slc_node_at(m, n->next));
 }
 
@@ -270,7 +270,7 @@ static bool may_prefetch(const slc_manager *m)
 static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level,
                                    uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
-    const struct slc_level *grid = &t->levels[level];
+    const struct slc_level *grid = &t->shape->levels[level];
     uint32_t end = grid->first_tile + grid->width * grid->height;
     for (uint32_t tile = grid->first_tile; tile < end; tile++) {
         if (slc_find_node(t, tile))
@@ -306,7 +306,7 @@ static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, S
         if (m->prefetch_level >= m->config.prefetchLevels)
             m->prefetch_level = 0;
         struct slc_texture *t = slc_texture_at(m, m->prefetch_texture);
-        uint32_t levels = t->live ? t->desc.regularMipCount : 0;
+        uint32_t levels = t->live ? t->shape->desc.regularMipCount : 0;
         if (m->prefetch_level < levels) {
             SluiceResult result =
                 prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles);

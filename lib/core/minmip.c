@@ -13,20 +13,21 @@
 
 uint8_t slc_min_mip_floor(const struct slc_texture *t)
 {
-    bool packed = t->desc.packedTileCount > 0 && t->packed_resident == t->desc.packedTileCount;
-    return packed ? (uint8_t)t->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
+    bool packed =
+        t->shape->desc.packedTileCount > 0 && t->packed_resident == t->shape->desc.packedTileCount;
+    return packed ? (uint8_t)t->shape->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
 }
 
 static bool is_resident(const struct slc_texture *t, struct slc_place p)
 {
-    return t->state->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
+    return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
 /** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
 static struct slc_tile_range children(const struct slc_texture *t, uint32_t level,
                                       struct slc_tile_range r)
 {
-    const struct slc_level *here = &t->levels[level], *fine = &t->levels[level - 1];
+    const struct slc_level *here = &t->shape->levels[level], *fine = &t->shape->levels[level - 1];
     return (struct slc_tile_range){
         r.x0 * 2,
         r.y0 * 2,
@@ -46,7 +47,7 @@ static void axis_area(uint32_t i, uint32_t count, uint32_t level, uint32_t fine_
 
 struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
 {
-    const struct slc_level *grid = &t->levels[p.level], *fine = &t->levels[0];
+    const struct slc_level *grid = &t->shape->levels[p.level], *fine = &t->shape->levels[0];
     struct slc_tile_range r;
     axis_area(p.x, grid->width, p.level, fine->width, &r.x0, &r.x1);
     axis_area(p.y, grid->height, p.level, fine->height, &r.y0, &r.y1);
@@ -82,7 +83,9 @@ static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_ra
 
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t)
 {
-    mark_dirty(m, t, (struct slc_tile_range){0, 0, t->min_mip_width - 1, t->min_mip_height - 1});
+    mark_dirty(
+        m, t,
+        (struct slc_tile_range){0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1});
 }
 
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
@@ -104,7 +107,7 @@ void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
 static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 {
     for (uint32_t y = r.y0; y <= r.y1; y++)
-        slc_fill_bytes(t->state->min_mip + (size_t)y * t->min_mip_width + r.x0, value,
+        slc_fill_bytes(t->min_mip + (size_t)y * t->shape->min_mip_width + r.x0, value,
                        r.x1 - r.x0 + 1);
 }
 
@@ -125,14 +128,14 @@ static void show(struct slc_texture *t, struct slc_place p)
 
 static void show_everything(struct slc_texture *t)
 {
-    struct slc_tile_range all = {0, 0, t->min_mip_width - 1, t->min_mip_height - 1};
+    struct slc_tile_range all = {0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1};
     fill(t, all, slc_min_mip_floor(t));
-    if (t->desc.regularMipCount == 0 || t->packed_resident < t->desc.packedTileCount)
+    if (t->shape->desc.regularMipCount == 0 || t->packed_resident < t->shape->desc.packedTileCount)
         return;
-    const struct slc_level *top = &t->levels[t->desc.regularMipCount - 1];
+    const struct slc_level *top = &t->shape->levels[t->shape->desc.regularMipCount - 1];
     for (uint32_t y = 0; y < top->height; y++)
         for (uint32_t x = 0; x < top->width; x++) {
-            struct slc_place p = {t->desc.regularMipCount - 1, x, y};
+            struct slc_place p = {t->shape->desc.regularMipCount - 1, x, y};
             if (is_resident(t, p))
                 show(t, p);
         }
@@ -140,45 +143,46 @@ static void show_everything(struct slc_texture *t)
 
 static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
 {
-    bool before = t->packed_resident == t->desc.packedTileCount;
+    bool before = t->packed_resident == t->shape->desc.packedTileCount;
     t->packed_resident += resident ? 1u : UINT32_MAX;
-    if (before == (t->packed_resident == t->desc.packedTileCount))
+    if (before == (t->packed_resident == t->shape->desc.packedTileCount))
         return;
-    if (t->state)
+    if (t->nodes)
         show_everything(t);
     slc_min_mip_dirty_all(m, t);
 }
 
 void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile)
 {
-    if (tile >= t->regular_tile_count || !t->state)
+    if (tile >= t->shape->regular_tile_count || !t->nodes)
         return;
     struct slc_place p = slc_tile_place(t, tile);
-    size_t row = slc_min_u32(p.y << p.level, t->min_mip_height - 1);
-    __builtin_prefetch(t->state->min_mip + row * t->min_mip_width + (p.x << p.level));
+    size_t row = slc_min_u32(p.y << p.level, t->shape->min_mip_height - 1);
+    __builtin_prefetch(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
 }
 
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
                          bool resident)
 {
-    if (n->tile >= t->regular_tile_count) {
+    if (n->tile >= t->shape->regular_tile_count) {
         packed_changed(m, t, resident);
         return;
     }
-    t->state->nodes[n->tile] ^= SLC_RESIDENT;
+    t->nodes[n->tile] ^= SLC_RESIDENT;
     /* Under a tile that does not count the map has one value: that of the last one above that does.
      */
     struct slc_place p = slc_node_place(t, n);
     struct slc_tile_range r = slc_area(t, p);
-    uint8_t shown = t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0];
-    bool coarsest = p.level + 1 == t->desc.regularMipCount;
+    uint8_t shown = t->min_mip[(size_t)r.y0 * t->shape->min_mip_width + r.x0];
+    bool coarsest = p.level + 1 == t->shape->desc.regularMipCount;
     uint8_t above = coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
-    if (resident ? shown != above || t->packed_resident < t->desc.packedTileCount : shown > p.level)
+    if (resident ? shown != above || t->packed_resident < t->shape->desc.packedTileCount
+                 : shown > p.level)
         return;
     if (!resident)
         fill(t, r, above);
     else if (p.level == 0)
-        t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0] = 0;
+        t->min_mip[(size_t)r.y0 * t->shape->min_mip_width + r.x0] = 0;
     else
         show(t, p);
     mark_dirty(m, t, r);
@@ -187,15 +191,15 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
 static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,
                       uint8_t *out)
 {
-    if (t->state && r->width == t->min_mip_width && row_pitch == r->width) {
-        const uint8_t *rows = t->state->min_mip + (size_t)r->y * r->width;
+    if (t->nodes && r->width == t->shape->min_mip_width && row_pitch == r->width) {
+        const uint8_t *rows = t->min_mip + (size_t)r->y * r->width;
         memcpy(out, rows, (size_t)r->width * r->height);
         return;
     }
     for (uint32_t y = 0; y < r->height; y++) {
         uint8_t *row = out + y * row_pitch;
-        if (t->state)
-            memcpy(row, t->state->min_mip + (size_t)(r->y + y) * t->min_mip_width + r->x, r->width);
+        if (t->nodes)
+            memcpy(row, t->min_mip + (size_t)(r->y + y) * t->shape->min_mip_width + r->x, r->width);
         else
             memset(row, slc_min_mip_floor(t), r->width);
     }
@@ -211,9 +215,9 @@ SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, pRect->textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= t->min_mip_width ||
-        pRect->y >= t->min_mip_height || pRect->width > t->min_mip_width - pRect->x ||
-        pRect->height > t->min_mip_height - pRect->y)
+    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= t->shape->min_mip_width ||
+        pRect->y >= t->shape->min_mip_height || pRect->width > t->shape->min_mip_width - pRect->x ||
+        pRect->height > t->shape->min_mip_height - pRect->y)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     size_t rows, needed;
     if (rowPitch < pRect->width || !slc_mul_size(pRect->height - 1, rowPitch, &rows) ||
@@ -233,7 +237,7 @@ SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceMinMipRect whole = {textureId, 0, 0, t->min_mip_width, t->min_mip_height};
+    SluiceMinMipRect whole = {textureId, 0, 0, t->shape->min_mip_width, t->shape->min_mip_height};
     return sluiceWriteMinMipRect(manager, &whole, rowPitch, size, pMinMip);
 }
 

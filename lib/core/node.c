@@ -53,7 +53,7 @@ static void insert_by_due(slc_manager *m, struct slc_list *list, uint32_t node)
 
 static uint32_t request_class(const slc_manager *m, const struct slc_node *n)
 {
-    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count;
     return packed ? SLC_PACKED_CLASS : n->level;
 }
 
@@ -62,7 +62,7 @@ static void request_append(slc_manager *m, uint32_t node)
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
     struct slc_texture *t = slc_texture_at(m, n->texture);
-    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     n->order = r->next_sequence++;
     slc_list_append(m, &r->lists[class][n->need], node);
     r->needs[class] |= 1u << n->need;
@@ -120,7 +120,7 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
 
 static bool is_regular(const slc_manager *m, const struct slc_node *n)
 {
-    return n->tile < slc_texture_at(m, n->texture)->regular_tile_count;
+    return n->tile < slc_texture_at(m, n->texture)->shape->regular_tile_count;
 }
 
 /** Takes the node out of the list that its state keeps it in, if any. */
@@ -227,7 +227,7 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell,
                                               .level = (uint8_t)level,
                                               .state = (uint8_t)state};
     *cell = node;
-    t->regular_nodes += tile < t->regular_tile_count;
+    t->regular_nodes += tile < t->shape->regular_tile_count;
     m->state_counts[state]++;
     return node;
 }
@@ -247,7 +247,7 @@ static void detach_node(slc_manager *m, uint32_t node)
     struct slc_node *n = slc_node_at(m, node);
     struct slc_texture *t = slc_texture_at(m, n->texture);
     *slc_node_cell(t, n->tile) = 0;
-    t->regular_nodes -= n->tile < t->regular_tile_count;
+    t->regular_nodes -= n->tile < t->shape->regular_tile_count;
 }
 
 static bool is_resident(uint8_t state)
@@ -461,8 +461,7 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level)
 {
-    uint32_t node =
-        take_node(m, t, &t->state->nodes[tile], tile, level, SLUICE_TILE_STATE_CANCELLED);
+    uint32_t node = take_node(m, t, &t->nodes[tile], tile, level, SLUICE_TILE_STATE_CANCELLED);
     slc_node_at(m, node)->flags = SLC_NODE_LISTED;
     return node;
 }

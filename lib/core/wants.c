@@ -13,15 +13,15 @@
 /** Two rows of tiles. */
 static size_t rows_work_size(const struct slc_texture *t)
 {
-    return 2 * (slc_padded(t->levels[0].width) + SLC_BLOCK);
+    return 2 * (slc_padded(t->shape->levels[0].width) + SLC_BLOCK);
 }
 
 size_t slc_wants_work_size(const struct slc_texture *t)
 {
-    if (t->desc.regularMipCount == 0)
+    if (t->shape->desc.regularMipCount == 0)
         return 0;
     /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
-    size_t tiles = (size_t)t->levels[0].width * t->levels[0].height + SLC_BLOCK;
+    size_t tiles = (size_t)t->shape->levels[0].width * t->shape->levels[0].height + SLC_BLOCK;
     size_t regions = slc_padded(slc_region_count(t)) + SLC_BLOCK;
     return rows_work_size(t) + regions + (slc_regions_are_tiles(t) ? 0 : tiles);
 }
@@ -57,13 +57,13 @@ static uint64_t tiles_across(uint32_t region, uint32_t tile)
 static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t finer,
                      struct slc_wants_need *need)
 {
-    const SluiceStreamedTextureDesc *d = &t->desc;
-    if (t->state->history->bias > m->bias.value)
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
+    if (t->history->bias > m->bias.value)
         finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
                      tiles_across(d->feedbackRegionHeight, d->tileHeight);
-    need->nodes += nodes < t->regular_tile_count ? nodes : t->regular_tile_count;
+    need->nodes += nodes < t->shape->regular_tile_count ? nodes : t->shape->regular_tile_count;
     if (t->held_regions == 0)
         need->nodes += d->packedTileCount;
 }
@@ -101,7 +101,7 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
 static bool ask_all(const struct slc_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
-    const uint8_t *asked = t->state->history->asked;
+    const uint8_t *asked = t->history->asked;
     const struct level_blocks l = {slc_block_of(levels->coarsest), slc_block_of(levels->up),
                                    slc_block_of(levels->down), slc_block_of(levels->lowest),
                                    slc_block_of(levels->last)};
@@ -124,7 +124,7 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
 
 static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
 {
-    const struct slc_history *h = t->state->history;
+    const struct slc_history *h = t->history;
     const uint8_t *asked = h->asked, *least = h->least, *known = h->known;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
@@ -156,7 +156,7 @@ uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
 void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
 {
-    struct slc_history *h = t->state->history;
+    struct slc_history *h = t->history;
     struct compared c = {0};
     bool differs = ask_all(t, values, levels, next);
     if (differs)
@@ -171,21 +171,21 @@ void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *val
 static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFeedbackDesc *f)
 {
     uint32_t lowest = 0;
-    if (f->streamedMipLevels && f->streamedMipLevels < t->desc.regularMipCount)
-        lowest = t->desc.regularMipCount - f->streamedMipLevels;
+    if (f->streamedMipLevels && f->streamedMipLevels < t->shape->desc.regularMipCount)
+        lowest = t->shape->desc.regularMipCount - f->streamedMipLevels;
     int32_t bias = f->mipBias < -32 ? -32 : f->mipBias > 32 ? 32 : f->mipBias;
     return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
                                .down = (uint8_t)(bias < 0 ? -bias : 0),
                                .lowest = (uint8_t)lowest,
-                               .coarsest = (uint8_t)(t->desc.mipLevelCount - 1),
-                               .last = (uint8_t)(t->desc.mipLevelCount - 1)};
+                               .coarsest = (uint8_t)(t->shape->desc.mipLevelCount - 1),
+                               .last = (uint8_t)(t->shape->desc.mipLevelCount - 1)};
 }
 
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
                                const SluiceFeedbackDesc *feedback, uint32_t users,
                                struct slc_wants_need *need)
 {
-    if (!t->state && slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+    if (!t->nodes && slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return SLUICE_SUCCESS;
     SluiceResult result = slc_history_make(m, t, users);
     if (result != SLUICE_SUCCESS)
@@ -204,14 +204,14 @@ void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 
 static void packed_wanted(slc_manager *m, struct slc_texture *t)
 {
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
-        slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
-                        t->desc.regularMipCount);
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
+        slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
+                        t->shape->desc.regularMipCount);
 }
 
 static void packed_unwanted(slc_manager *m, struct slc_texture *t)
 {
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         slc_tile_unwanted(m, t->packed_nodes[i]);
 }
 
@@ -244,7 +244,7 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     slc_block limit = slc_block_of((uint8_t)level);
     uint32_t count = 0;
     for (uint32_t y = r.y0; y <= r.y1; y++) {
-        const uint8_t *row = t->state->history->under + (size_t)y * t->levels[0].width;
+        const uint8_t *row = t->history->under + (size_t)y * t->shape->levels[0].width;
         for (uint32_t x = r.x0; x <= r.x1; x += SLC_BLOCK) {
             uint32_t above =
                 slc_block_difference(at_most(slc_load_block(row + x), limit), slc_block_of(255));
@@ -266,7 +266,7 @@ static void want_tile(slc_manager *m, struct slc_texture *t, uint32_t *cell, uin
 
 static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
-    uint32_t *nodes = t->state->nodes;
+    uint32_t *nodes = t->nodes;
     for (uint32_t i = 0; i < moves->count; i++)
         __builtin_prefetch(slc_node_at(m, nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
     for (uint32_t i = 0; i < moves->count; i++) {
@@ -289,7 +289,7 @@ static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves,
 {
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
         settle_moves(m, t, moves);
-    __builtin_prefetch(&t->state->nodes[move.tile]);
+    __builtin_prefetch(&t->nodes[move.tile]);
     moves->tiles[moves->count++] = move;
 }
 
@@ -305,7 +305,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
                                                 255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
-    uint8_t *under = t->state->history->under + tile;
+    uint8_t *under = t->history->under + tile;
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         slc_block before = slc_load_block(under + i), now = slc_load_block(least + i);
         if (count - i < SLC_BLOCK) {
@@ -328,11 +328,11 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 /** What the regions hold: the least level of their maps, and the bias. */
 static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
-    const struct slc_history *h = t->state->history;
+    const struct slc_history *h = t->history;
     if (m->bias.value == 0)
         return h->least;
     slc_bias_map(m, t, work);
-    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
+    slc_block last = slc_block_of((uint8_t)(t->shape->desc.mipLevelCount - 1));
     for (size_t i = 0; i < slc_padded(slc_region_count(t)); i += SLC_BLOCK) {
         slc_block least = slc_load_block(h->least + i);
         slc_block held = slc_min_block(least + slc_load_block(work + i), last);
@@ -344,14 +344,14 @@ static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, u
 
 static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *held, uint8_t *work)
 {
-    const SluiceStreamedTextureDesc *d = &t->desc;
-    const struct slc_level *grid = &t->levels[0];
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
+    const struct slc_level *grid = &t->shape->levels[0];
     struct slc_grid regions = {.width = d->width,
                                .height = d->height,
                                .cell_width = d->feedbackRegionWidth,
                                .cell_height = d->feedbackRegionHeight,
-                               .columns = t->feedback_width,
-                               .rows = t->feedback_height};
+                               .columns = t->shape->feedback_width,
+                               .rows = t->shape->feedback_height};
     struct slc_grid tiles = {.width = d->width,
                              .height = d->height,
                              .cell_width = d->tileWidth,
@@ -366,7 +366,7 @@ static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *h
 static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, struct moves *moves,
                                        struct slc_range regions)
 {
-    const struct slc_level *grid = &t->levels[0];
+    const struct slc_level *grid = &t->shape->levels[0];
     uint8_t *work = slc_wants_work(m, t) + rows_work_size(t);
     const uint8_t *least = held_levels(m, t, work);
     if (!slc_regions_are_tiles(t))
@@ -389,9 +389,9 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, st
 static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, uint8_t *columns,
                        uint8_t *least)
 {
-    const struct slc_level *fine = &t->levels[level - 1], *here = &t->levels[level];
+    const struct slc_level *fine = &t->shape->levels[level - 1], *here = &t->shape->levels[level];
     uint32_t y0 = 2 * y, y1 = y + 1 == here->height ? fine->height : 2 * y + 2;
-    const uint8_t *row = t->state->history->under + fine->first_tile + (size_t)y0 * fine->width;
+    const uint8_t *row = t->history->under + fine->first_tile + (size_t)y0 * fine->width;
     for (uint32_t x = 0; x < fine->width; x += SLC_BLOCK) {
         slc_block v = slc_load_block(row + x);
         for (uint32_t k = 1; k < y1 - y0; k++)
@@ -408,7 +408,7 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
 static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, struct moves *moves,
                                      uint32_t level, struct slc_range below)
 {
-    const struct slc_level *grid = &t->levels[level];
+    const struct slc_level *grid = &t->shape->levels[level];
     uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
     uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
@@ -440,10 +440,10 @@ static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regio
                    bool held_before, struct slc_move_log *log)
 {
     packed_before(m, t, held_before);
-    if (t->desc.regularMipCount > 0) {
+    if (t->shape->desc.regularMipCount > 0) {
         struct moves moves = {.count = 0, .log = log};
         struct slc_range rows = settle_level_0(m, t, &moves, regions);
-        for (uint32_t l = 1; l < t->desc.regularMipCount && rows.end > 0; l++)
+        for (uint32_t l = 1; l < t->shape->desc.regularMipCount && rows.end > 0; l++)
             rows = settle_level(m, t, &moves, l, rows);
         settle_moves(m, t, &moves);
     }
@@ -464,8 +464,8 @@ static void take_time(slc_manager *m, struct slc_texture *t, uint64_t time, uint
 void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
                       struct slc_move_log *log)
 {
-    if (t->state) {
-        struct slc_history *h = t->state->history;
+    if (t->nodes) {
+        struct slc_history *h = t->history;
         bool held_before = t->held_regions > 0;
         m->bias.maps++;
         m->round.maps++;
@@ -505,9 +505,9 @@ void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct s
 static void unwant_all(slc_manager *m, struct slc_texture *t)
 {
     struct moves moves = {.count = 0};
-    const uint8_t *under = t->state->history->under;
-    for (uint32_t l = 0; l < t->desc.regularMipCount; l++) {
-        const struct slc_level *grid = &t->levels[l];
+    const uint8_t *under = t->history->under;
+    for (uint32_t l = 0; l < t->shape->desc.regularMipCount; l++) {
+        const struct slc_level *grid = &t->shape->levels[l];
         uint32_t first = grid->first_tile, count = grid->width * grid->height;
         slc_block limit = slc_block_of((uint8_t)l);
         for (uint32_t i = 0; i < count; i += SLC_BLOCK) {

@@ -13,8 +13,8 @@ struct slc_wants_need {
 /** Whether the regions are the tiles of level 0. */
 static inline bool slc_regions_are_tiles(const struct slc_texture *t)
 {
-    return t->desc.feedbackRegionWidth == t->desc.tileWidth &&
-           t->desc.feedbackRegionHeight == t->desc.tileHeight;
+    return t->shape->desc.feedbackRegionWidth == t->shape->desc.tileWidth &&
+           t->shape->desc.feedbackRegionHeight == t->shape->desc.tileHeight;
 }
 
 /** Scratch that a commit needs beside the map, and where it is. */
