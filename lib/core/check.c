@@ -110,6 +110,38 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     return NULL;
 }
 
+static bool is_resident(const struct slc_texture *t, struct slc_place p)
+{
+    return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
+}
+
+/** Whether a coarser tile over a regular one, or a packed one, is not resident. */
+static bool is_hidden(const struct slc_texture *t, uint32_t tile)
+{
+    struct slc_place p = slc_tile_place(t, tile);
+    bool hidden = t->packed_resident < t->shape->desc.packedTileCount;
+    while (++p.level < t->shape->desc.regularMipCount) {
+        const struct slc_level *grid = &t->shape->levels[p.level];
+        p.x = p.x / 2 < grid->width ? p.x / 2 : grid->width - 1;
+        p.y = p.y / 2 < grid->height ? p.y / 2 : grid->height - 1;
+        hidden = hidden || !is_resident(t, p);
+    }
+    return hidden;
+}
+
+static const char *check_resident(const struct slc_texture *t)
+{
+    uint32_t resident = 0, hidden = 0;
+    for (uint32_t i = 0; t->nodes && i < t->shape->regular_tile_count; i++) {
+        if (!(t->nodes[i] & SLC_RESIDENT))
+            continue;
+        resident++;
+        hidden += is_hidden(t, i);
+    }
+    REQUIRE(resident == t->resident_tiles && hidden == t->hidden_tiles);
+    return NULL;
+}
+
 static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
@@ -145,7 +177,7 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;
     REQUIRE(with_node == count);
-    return NULL;
+    return check_resident(t);
 }
 
 static const char *check_visited(const slc_manager *m)

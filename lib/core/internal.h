@@ -124,6 +124,8 @@ struct slc_texture {
     uint32_t held_regions;   ///< that hold anything
     uint32_t first_follower; ///< index, SLC_NONE, as those below
 
+    uint32_t resident_tiles; ///< regular ones, MAPPED or STANDBY
+    uint32_t hidden_tiles;   ///< of these: some coarser tile over it is not resident
     uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1; ///< exclusive ends
     uint32_t dirty_prev, dirty_next;
     uint32_t visit_prev, visit_next;
@@ -324,6 +326,8 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                         uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
+/** An ALLOCATED tile becomes MAPPED. */
+void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
 /** Changes the state and moves the node to the end of that state's list. */
@@ -363,7 +367,7 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
 /** The tiles of level 0 under a tile, which are the texels of the map. */
 struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p);
 /** That is going to be called for a tile. */
-void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile);
+void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n);
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t);
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t);
 /** What the map is where no regular tile is resident. */

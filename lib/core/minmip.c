@@ -81,11 +81,14 @@ static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_ra
     t->dirty_y1 = slc_max_u32(t->dirty_y1, r.y1 + 1);
 }
 
+static struct slc_tile_range all_texels(const struct slc_texture *t)
+{
+    return (struct slc_tile_range){0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1};
+}
+
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t)
 {
-    mark_dirty(
-        m, t,
-        (struct slc_tile_range){0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1});
+    mark_dirty(m, t, all_texels(t));
 }
 
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
@@ -104,40 +107,100 @@ void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
     m->dirty_count--;
 }
 
+/** `unit` bytes at the beginning and at the end of each row: all of it, if rows are no longer. */
+static inline void fill_ends(uint8_t *row, size_t pitch, uint32_t rows, size_t width, size_t unit,
+                             uint64_t word)
+{
+    for (; rows > 0; rows--, row += pitch) {
+        memcpy(row, &word, unit);
+        memcpy(row + width - unit, &word, unit);
+    }
+}
+
 static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 {
-    for (uint32_t y = r.y0; y <= r.y1; y++)
-        slc_fill_bytes(t->min_mip + (size_t)y * t->shape->min_mip_width + r.x0, value,
-                       r.x1 - r.x0 + 1);
+    size_t pitch = t->shape->min_mip_width, width = r.x1 - r.x0 + 1;
+    uint32_t rows = r.y1 - r.y0 + 1;
+    uint8_t *row = t->min_mip + r.y0 * pitch + r.x0;
+    uint64_t word = UINT64_C(0x0101010101010101) * value;
+    if (width == 1)
+        fill_ends(row, pitch, rows, width, 1, word);
+    else if (width < 4)
+        fill_ends(row, pitch, rows, width, 2, word);
+    else if (width < 8)
+        fill_ends(row, pitch, rows, width, 4, word);
+    else if (width <= 16)
+        fill_ends(row, pitch, rows, width, 8, word);
+    else
+        for (; rows > 0; rows--, row += pitch)
+            memset(row, value, width);
+}
+
+static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area);
+
+/** The tiles below one that counts, which therefore count if they are resident. */
+static void show_children(struct slc_texture *t, struct slc_place p)
+{
+    struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+    for (uint32_t y = c.y0; y <= c.y1; y++)
+        for (uint32_t x = c.x0; x <= c.x1; x++) {
+            struct slc_place child = {p.level - 1, x, y};
+            if (is_resident(t, child)) {
+                t->hidden_tiles--;
+                show(t, child, slc_area(t, child));
+            }
+        }
 }
 
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
-static void show(struct slc_texture *t, struct slc_place p)
+static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area)
 {
-    fill(t, slc_area(t, p), (uint8_t)p.level);
+    fill(t, area, (uint8_t)p.level);
+    if (p.level > 0 && t->hidden_tiles > 0)
+        show_children(t, p);
+}
+
+static bool is_filled(const struct slc_texture *t, struct slc_tile_range r, uint8_t value)
+{
+    size_t pitch = t->shape->min_mip_width, width = r.x1 - r.x0 + 1;
+    for (uint32_t y = r.y0; y <= r.y1; y++) {
+        const uint8_t *row = t->min_mip + y * pitch + r.x0;
+        if (row[0] != value || (width > 1 && !slc_bytes_are(row, width, value)))
+            return false;
+    }
+    return true;
+}
+
+/** How many tiles below one count. */
+static uint32_t count_shown(const struct slc_texture *t, struct slc_place p)
+{
+    uint32_t count = 0;
     if (p.level == 0)
-        return;
+        return 0;
     struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
     for (uint32_t y = c.y0; y <= c.y1; y++)
         for (uint32_t x = c.x0; x <= c.x1; x++) {
             struct slc_place child = {p.level - 1, x, y};
             if (is_resident(t, child))
-                show(t, child);
+                count += 1 + count_shown(t, child);
         }
+    return count;
 }
 
 static void show_everything(struct slc_texture *t)
 {
-    struct slc_tile_range all = {0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1};
-    fill(t, all, slc_min_mip_floor(t));
+    fill(t, all_texels(t), slc_min_mip_floor(t));
+    t->hidden_tiles = t->resident_tiles;
     if (t->shape->desc.regularMipCount == 0 || t->packed_resident < t->shape->desc.packedTileCount)
         return;
     const struct slc_level *top = &t->shape->levels[t->shape->desc.regularMipCount - 1];
     for (uint32_t y = 0; y < top->height; y++)
         for (uint32_t x = 0; x < top->width; x++) {
             struct slc_place p = {t->shape->desc.regularMipCount - 1, x, y};
-            if (is_resident(t, p))
-                show(t, p);
+            if (is_resident(t, p)) {
+                t->hidden_tiles--;
+                show(t, p, slc_area(t, p));
+            }
         }
 }
 
@@ -152,19 +215,44 @@ static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
     slc_min_mip_dirty_all(m, t);
 }
 
-void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile)
+void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n)
 {
-    if (tile >= t->shape->regular_tile_count || !t->nodes)
+    if (n->tile >= t->shape->regular_tile_count)
         return;
-    struct slc_place p = slc_tile_place(t, tile);
+    struct slc_place p = slc_node_place(t, n);
     size_t row = slc_min_u32(p.y << p.level, t->shape->min_mip_height - 1);
     __builtin_prefetch(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
+}
+
+static void tile_came(slc_manager *m, struct slc_texture *t, struct slc_place p,
+                      struct slc_tile_range area, bool counts)
+{
+    t->resident_tiles++;
+    t->hidden_tiles += !counts;
+    if (!counts)
+        return;
+    show(t, p, area);
+    mark_dirty(m, t, area);
+}
+
+static void tile_went(slc_manager *m, struct slc_texture *t, struct slc_place p,
+                      struct slc_tile_range area, bool counted, uint8_t above)
+{
+    t->resident_tiles--;
+    t->hidden_tiles -= !counted;
+    if (!counted)
+        return;
+    if (!is_filled(t, area, (uint8_t)p.level))
+        t->hidden_tiles += count_shown(t, p);
+    fill(t, area, above);
+    mark_dirty(m, t, area);
 }
 
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
                          bool resident)
 {
-    if (n->tile >= t->shape->regular_tile_count) {
+    const struct slc_shape *shape = t->shape;
+    if (n->tile >= shape->regular_tile_count) {
         packed_changed(m, t, resident);
         return;
     }
@@ -173,19 +261,13 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
      */
     struct slc_place p = slc_node_place(t, n);
     struct slc_tile_range r = slc_area(t, p);
-    uint8_t shown = t->min_mip[(size_t)r.y0 * t->shape->min_mip_width + r.x0];
-    bool coarsest = p.level + 1 == t->shape->desc.regularMipCount;
+    uint8_t shown = t->min_mip[(size_t)r.y0 * shape->min_mip_width + r.x0];
+    bool coarsest = p.level + 1 == shape->desc.regularMipCount;
     uint8_t above = coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
-    if (resident ? shown != above || t->packed_resident < t->shape->desc.packedTileCount
-                 : shown > p.level)
-        return;
-    if (!resident)
-        fill(t, r, above);
-    else if (p.level == 0)
-        t->min_mip[(size_t)r.y0 * t->shape->min_mip_width + r.x0] = 0;
+    if (resident)
+        tile_came(m, t, p, r, shown == above && t->packed_resident == shape->desc.packedTileCount);
     else
-        show(t, p);
-    mark_dirty(m, t, r);
+        tile_went(m, t, p, r, shown <= p.level, above);
 }
 
 static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,

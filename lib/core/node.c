@@ -431,6 +431,16 @@ static void park(slc_manager *m, uint32_t node)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
 
+void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    n->flags = 0;
+    count_move(m, n, SLUICE_TILE_STATE_MAPPED);
+    if (n->tile < t->shape->regular_tile_count)
+        slc_list_append(m, &m->mapped[n->level], node);
+    slc_min_mip_changed(m, t, n, true);
+}
+
 void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                         uint32_t level, uint32_t need)
 {
