@@ -160,15 +160,19 @@ static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_rang
         show_children(t, p);
 }
 
-static bool is_filled(const struct slc_texture *t, struct slc_tile_range r, uint8_t value)
+/** Whether a tile below one that counts does: then the map has a finer level where that begins. */
+static bool shows_children(const struct slc_texture *t, struct slc_place p)
 {
-    size_t pitch = t->shape->min_mip_width, width = r.x1 - r.x0 + 1;
-    for (uint32_t y = r.y0; y <= r.y1; y++) {
-        const uint8_t *row = t->min_mip + y * pitch + r.x0;
-        if (row[0] != value || (width > 1 && !slc_bytes_are(row, width, value)))
-            return false;
+    if (p.level == 0)
+        return false;
+    struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+    for (uint32_t y = c.y0; y <= c.y1; y++) {
+        const uint8_t *row = t->min_mip + ((size_t)y << (p.level - 1)) * t->shape->min_mip_width;
+        for (uint32_t x = c.x0; x <= c.x1; x++)
+            if (row[x << (p.level - 1)] < p.level)
+                return true;
     }
-    return true;
+    return false;
 }
 
 /** How many tiles below one count. */
@@ -242,10 +246,26 @@ static void tile_went(slc_manager *m, struct slc_texture *t, struct slc_place p,
     t->hidden_tiles -= !counted;
     if (!counted)
         return;
-    if (!is_filled(t, area, (uint8_t)p.level))
+    if (shows_children(t, p))
         t->hidden_tiles += count_shown(t, p);
     fill(t, area, above);
     mark_dirty(m, t, area);
+}
+
+/** As below for most tiles there are: on level 0 a tile is a texel. */
+static void finest_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, uint8_t above,
+                           bool resident)
+{
+    uint8_t *texel = &t->min_mip[tile];
+    bool counts = resident ? *texel == above : *texel == 0;
+    uint32_t one = resident ? 1 : UINT32_MAX;
+    t->resident_tiles += one;
+    t->hidden_tiles += counts ? 0 : one;
+    if (!counts)
+        return;
+    *texel = resident ? 0 : above;
+    uint32_t x = tile % t->shape->min_mip_width, y = tile / t->shape->min_mip_width;
+    mark_dirty(m, t, (struct slc_tile_range){x, y, x, y});
 }
 
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
@@ -257,6 +277,10 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
         return;
     }
     t->nodes[n->tile] ^= SLC_RESIDENT;
+    if (n->level == 0 && shape->desc.regularMipCount > 1) {
+        finest_changed(m, t, n->tile, 1, resident);
+        return;
+    }
     /* Under a tile that does not count the map has one value: that of the last one above that does.
      */
     struct slc_place p = slc_node_place(t, n);

@@ -235,24 +235,34 @@ struct moves {
     struct slc_move_log *log; ///< NULL: nobody repeats them
 };
 
+/** 255 in the first `count` bytes, at most a block. */
+static slc_block first_bytes(uint32_t count)
+{
+    static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
+                                                255, 255, 255, 255, 255, 255, 255, 255};
+    return slc_load_block(ramp + SLC_BLOCK - count);
+}
+
 /** log2 of the tiles of level 0 that want a tile, which some do. */
 static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t level)
 {
     if (level == 0)
         return 0;
     struct slc_tile_range r = slc_area(t, slc_place_at(t, tile, level));
-    slc_block limit = slc_block_of((uint8_t)level);
-    uint32_t count = 0;
-    for (uint32_t y = r.y0; y <= r.y1; y++) {
-        const uint8_t *row = t->history->under + (size_t)y * t->shape->levels[0].width;
-        for (uint32_t x = r.x0; x <= r.x1; x += SLC_BLOCK) {
-            uint32_t above =
-                slc_block_difference(at_most(slc_load_block(row + x), limit), slc_block_of(255));
-            uint32_t inside = r.x1 - x < SLC_BLOCK - 1 ? (2u << (r.x1 - x)) - 1 : 0xFFFF;
-            count += slc_count_bits(~above & inside);
+    const uint8_t *under = t->history->under + r.x0;
+    uint32_t pitch = t->shape->levels[0].width, width = r.x1 - r.x0 + 1;
+    slc_block limit = slc_block_of((uint8_t)level), sums = slc_block_of(0);
+    uint32_t count = 0, added = 0;
+    for (uint32_t y = r.y0; y <= r.y1; y++)
+        for (uint32_t x = 0; x < width; x += SLC_BLOCK) {
+            slc_block inside = first_bytes(slc_min_u32(width - x, SLC_BLOCK));
+            sums -= at_most(slc_load_block(under + (size_t)y * pitch + x), limit) & inside;
+            if (++added % 255 == 0) { /* a byte of the sum holds no more */
+                count += slc_block_sum(sums);
+                sums = slc_block_of(0);
+            }
         }
-    }
-    return 31u - (uint32_t)__builtin_clz(count);
+    return 31u - (uint32_t)__builtin_clz(count + slc_block_sum(sums));
 }
 
 static void want_tile(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
@@ -301,15 +311,13 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
                                      uint32_t level, uint32_t tile, const uint8_t *least,
                                      uint32_t count)
 {
-    static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
-                                                255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
     uint8_t *under = t->history->under + tile;
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         slc_block before = slc_load_block(under + i), now = slc_load_block(least + i);
         if (count - i < SLC_BLOCK) {
-            slc_block inside = slc_load_block(ramp + SLC_BLOCK - (count - i));
+            slc_block inside = first_bytes(count - i);
             now = (now & inside) | (before & ~inside);
         }
         if (!slc_block_difference(before, now))
