@@ -30,13 +30,13 @@ static size_t log_size(const struct slc_texture *t)
 /** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
 static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t, bool followers)
 {
-    size_t work = slc_wants_work_size(t);
-    uint64_t bytes = slc_padded(slc_region_count(t)) + log_size(t);
-    for (uint32_t f = followers ? t->first_follower : SLC_NONE; f != SLC_NONE;
-         f = slc_texture_at(m, f)->next_follower) {
-        size_t own = slc_wants_work_size(slc_texture_at(m, f));
-        bytes += slc_padded(slc_region_count(slc_texture_at(m, f)));
-        work = own > work ? own : work;
+    size_t work = t->shape->work_size;
+    uint64_t bytes = slc_padded(t->shape->region_count) + log_size(t);
+    for (uint32_t i = followers ? t->first_follower : SLC_NONE; i != SLC_NONE;) {
+        const struct slc_texture *f = slc_texture_at(m, i);
+        bytes += slc_padded(f->shape->region_count);
+        work = f->shape->work_size > work ? f->shape->work_size : work;
+        i = f->next_follower;
     }
     return slc_wants_reserve_scratch(m, bytes, work);
 }
@@ -123,12 +123,24 @@ static void commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_
     }
 }
 
+/** Nothing was asked for before and nothing is now. */
+static bool changes_nothing(const slc_manager *m, const struct slc_texture *t,
+                            const SluiceFeedbackDesc *feedback)
+{
+    if (t->nodes || !slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+        return false;
+    for (uint32_t i = t->first_follower; i != SLC_NONE; i = slc_texture_at(m, i)->next_follower)
+        if (slc_texture_at(m, i)->nodes)
+            return false;
+    return true;
+}
+
 static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
                            uint64_t time, uint64_t timeout)
 {
     struct slc_texture *t;
     SluiceResult result = check_feedback(m, id, feedback, time, &t);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS && !changes_nothing(m, t, feedback))
         result = prepare(m, t, feedback);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -103,6 +103,7 @@ struct slc_shape {
     uint32_t feedback_width, feedback_height, region_count;
     uint32_t min_mip_width, min_mip_height;
     uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
+    size_t work_size;                       ///< see wants.h
     struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
 };
 

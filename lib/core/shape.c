@@ -2,7 +2,7 @@
  * Textures of one description share what follows from it. There are few descriptions, so that is
  * nearly always in the cache, and a texture itself is small.
  */
-#include "core/internal.h"
+#include "core/wants.h"
 
 #include "base/alloc.h"
 
@@ -45,6 +45,7 @@ SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *des
     if (result != SLUICE_SUCCESS)
         return result;
     layout.hash = hash_of(&layout.desc);
+    layout.work_size = slc_wants_work_size(&layout);
     struct slc_shape **bucket = &m->shapes[layout.hash % SLC_SHAPE_BUCKETS], *s = *bucket;
     for (uint32_t i = 0; s && i < MAX_SEARCHED; i++, s = s->next)
         if (s->hash == layout.hash && are_equal(&s->desc, &layout.desc)) {

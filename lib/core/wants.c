@@ -11,19 +11,19 @@
 /* Room -------------------------------------------------------------------------------------- */
 
 /** Two rows of tiles. */
-static size_t rows_work_size(const struct slc_texture *t)
+static size_t rows_work_size(const struct slc_shape *s)
 {
-    return 2 * (slc_padded(t->shape->levels[0].width) + SLC_BLOCK);
+    return 2 * (slc_padded(s->levels[0].width) + SLC_BLOCK);
 }
 
-size_t slc_wants_work_size(const struct slc_texture *t)
+size_t slc_wants_work_size(const struct slc_shape *s)
 {
-    if (t->shape->desc.regularMipCount == 0)
+    if (s->desc.regularMipCount == 0)
         return 0;
     /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
-    size_t tiles = (size_t)t->shape->levels[0].width * t->shape->levels[0].height + SLC_BLOCK;
-    size_t regions = slc_padded(slc_region_count(t)) + SLC_BLOCK;
-    return rows_work_size(t) + regions + (slc_regions_are_tiles(t) ? 0 : tiles);
+    size_t tiles = (size_t)s->levels[0].width * s->levels[0].height + SLC_BLOCK;
+    size_t regions = slc_padded(s->region_count) + SLC_BLOCK;
+    return rows_work_size(s) + regions + (slc_regions_are_tiles(s) ? 0 : tiles);
 }
 
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work)
@@ -375,12 +375,12 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, st
                                        struct slc_range regions)
 {
     const struct slc_level *grid = &t->shape->levels[0];
-    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t);
+    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t->shape);
     const uint8_t *least = held_levels(m, t, work);
-    if (!slc_regions_are_tiles(t))
+    if (!slc_regions_are_tiles(t->shape))
         least = search_tiles(t, least, work + slc_padded(slc_region_count(t)));
     struct slc_range all = {0, grid->width * grid->height};
-    if (slc_regions_are_tiles(t)) {
+    if (slc_regions_are_tiles(t->shape)) {
         all.first = regions.first;
         all.end = slc_min_u32(all.end, regions.end);
     }
@@ -417,7 +417,7 @@ static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, stru
                                      uint32_t level, struct slc_range below)
 {
     const struct slc_level *grid = &t->shape->levels[level];
-    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
+    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t->shape) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
     uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
     struct slc_range rows = {0, 0};

@@ -11,17 +11,17 @@ struct slc_wants_need {
 };
 
 /** Whether the regions are the tiles of level 0. */
-static inline bool slc_regions_are_tiles(const struct slc_texture *t)
+static inline bool slc_regions_are_tiles(const struct slc_shape *s)
 {
-    return t->shape->desc.feedbackRegionWidth == t->shape->desc.tileWidth &&
-           t->shape->desc.feedbackRegionHeight == t->shape->desc.tileHeight;
+    return s->desc.feedbackRegionWidth == s->desc.tileWidth &&
+           s->desc.feedbackRegionHeight == s->desc.tileHeight;
 }
 
-/** Scratch that a commit needs beside the map, and where it is. */
-size_t slc_wants_work_size(const struct slc_texture *t);
+/** Scratch that a commit needs beside the map: shape->work_size, and where it is. */
+size_t slc_wants_work_size(const struct slc_shape *s);
 static inline uint8_t *slc_wants_work(slc_manager *m, const struct slc_texture *t)
 {
-    return m->scratch + m->scratch_room - slc_wants_work_size(t);
+    return m->scratch + m->scratch_room - t->shape->work_size;
 }
 /** Room for the maps of one call, `bytes` padded bytes in all, and for one texture's work. */
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work);
