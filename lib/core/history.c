@@ -292,29 +292,25 @@ static bool is_over(const struct slc_span *span, const struct now *now, uint32_t
     return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
 }
 
-/** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
-static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
+/** Lets go of what is too old and believed to be gone. */
+static void lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_history *h = t->history;
     uint32_t shift = slc_min_u32(t->shape->region_shift_x, t->shape->region_shift_y);
     if (t->shape->region_shift_x == SLC_UNALIGNED || t->shape->region_shift_y == SLC_UNALIGNED)
         shift = 0;
     uint32_t newer = 1, dropped = 0;
-    bool thinned = false;
     for (uint32_t i = h->span_count; i-- > 0;) {
         struct slc_span *span = &h->spans[i];
         uint32_t misses = slc_max_u32(newer, now->absence);
         bool over = is_over(span, now, misses);
         uint8_t below = first_unbelieved(misses, now->needed, slc_min_u32(shift, 8));
-        if (over && below < span->below) {
+        if (over && below < span->below)
             thin_span(t, span, below, changed);
-            thinned = true;
-        }
         dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
     drop_spans(h, dropped); /* the oldest ones */
-    return thinned;
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
@@ -381,13 +377,15 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
                       .needed = maps_to_believe(m, t),
                       .starved = m->starved};
     struct slc_range changed = {0, 0};
-    bool thinned = lapse(t, &now, &changed);
+    lapse(t, &now, &changed);
+    /* a map like the last one is in the newest span, unless that has just lost it */
+    bool has_map = !h->next && h->span_count > 0 &&
+                   h->spans[h->span_count - 1].below == SLUICE_MIP_UNTOUCHED;
     bool fresh = join_span(h, &now);
-    /* a span that was thinned may have lost what a map like the last one asks for again */
-    if (!h->next && fresh && !thinned && h->has_same_hits)
-        memcpy(h->spans[h->span_count - 1].map, map, slc_padded(slc_region_count(t)));
-    else if (h->next || fresh || thinned)
+    if (!has_map)
         merge(t, map, fresh, &changed);
+    else if (fresh)
+        memcpy(h->spans[h->span_count - 1].map, map, slc_padded(slc_region_count(t)));
     return changed;
 }
 
