@@ -379,8 +379,8 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     struct slc_range changed = {0, 0};
     lapse(t, &now, &changed);
     /* a map like the last one is in the newest span, unless that has just lost it */
-    bool has_map = !h->next && h->span_count > 0 &&
-                   h->spans[h->span_count - 1].below == SLUICE_MIP_UNTOUCHED;
+    bool has_map =
+        !h->next && h->span_count > 0 && h->spans[h->span_count - 1].below == SLUICE_MIP_UNTOUCHED;
     bool fresh = join_span(h, &now);
     if (!has_map)
         merge(t, map, fresh, &changed);

@@ -329,6 +329,16 @@ void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, u
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
 /** An ALLOCATED tile becomes MAPPED. */
 void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node);
+/** Regular tiles of one level on their way between MAPPED and STANDBY. */
+struct slc_run {
+    uint32_t first, last, next; ///< nodes; `next` followed the last one
+    uint32_t count, level;
+    bool wanted;
+};
+/** The tile's move joins the run or begins the next one; false, and nothing, if it is another. */
+bool slc_run_add(slc_manager *m, struct slc_run *run, uint32_t node, uint32_t level, bool wanted);
+/** The moves of the run are made. */
+void slc_run_end(slc_manager *m, struct slc_run *run);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
 /** Changes the state and moves the node to the end of that state's list. */

@@ -431,6 +431,77 @@ static void park(slc_manager *m, uint32_t node)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
 
+/* Runs: neighbours in one list that go to the end of another one are moved as a piece. A texture
+ * that comes into view or leaves it makes long ones. */
+
+static void splice(slc_manager *m, struct slc_list *from, struct slc_list *to,
+                   const struct slc_run *run)
+{
+    struct slc_node *first = slc_node_at(m, run->first), *last = slc_node_at(m, run->last);
+    if (first->prev)
+        slc_node_at(m, first->prev)->next = last->next;
+    else
+        from->head = last->next;
+    if (last->next)
+        slc_node_at(m, last->next)->prev = first->prev;
+    else
+        from->tail = first->prev;
+    from->count -= run->count;
+    first->prev = to->tail;
+    last->next = 0;
+    if (to->tail)
+        slc_node_at(m, to->tail)->next = run->first;
+    else
+        to->head = run->first;
+    to->tail = run->last;
+    to->count += run->count;
+}
+
+void slc_run_end(slc_manager *m, struct slc_run *run)
+{
+    struct slc_list *mapped = &m->mapped[run->level];
+    uint32_t count = run->count;
+    if (count == 0)
+        return;
+    if (run->wanted) {
+        splice(m, &m->standby, mapped, run);
+        m->restored_total += count;
+    } else {
+        splice(m, mapped, &m->standby, run);
+    }
+    uint32_t *counts = m->state_counts;
+    counts[SLUICE_TILE_STATE_MAPPED] += run->wanted ? count : 0 - count;
+    counts[SLUICE_TILE_STATE_STANDBY] += run->wanted ? 0 - count : count;
+    run->count = 0;
+    if (m->standby.count > m->config.numExtraStandbyTiles)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
+}
+
+/** Whether it is in the list that runs are taken from. */
+static bool fits_run(const struct slc_node *n, bool wanted)
+{
+    if (wanted)
+        return n->state == SLUICE_TILE_STATE_STANDBY && n->flags == 0;
+    return n->state == SLUICE_TILE_STATE_MAPPED;
+}
+
+bool slc_run_add(slc_manager *m, struct slc_run *run, uint32_t node, uint32_t level, bool wanted)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    if (run->count &&
+        !(run->next == node && run->wanted == wanted && run->level == level && fits_run(n, wanted)))
+        slc_run_end(m, run); /* which may list this tile for unmapping */
+    if (!fits_run(n, wanted))
+        return false;
+    if (run->count == 0)
+        *run = (struct slc_run){.first = node, .level = level, .wanted = wanted};
+    run->last = node;
+    run->next = n->next;
+    run->count++;
+    n->state = wanted ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY;
+    return true;
+}
+
 void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
 {
     struct slc_node *n = slc_node_at(m, node);

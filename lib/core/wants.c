@@ -159,8 +159,8 @@ void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *val
     struct slc_history *h = t->history;
     struct compared c = {0};
     /* what was asked for once asks for itself */
-    bool plain = !levels->up && !levels->down && !levels->lowest &&
-                 levels->coarsest == levels->last;
+    bool plain =
+        !levels->up && !levels->down && !levels->lowest && levels->coarsest == levels->last;
     bool differs = !(plain && memcmp(values, h->asked, slc_region_count(t)) == 0) &&
                    ask_all(t, values, levels, next);
     if (differs)
@@ -269,27 +269,29 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     return 31u - (uint32_t)__builtin_clz(count + slc_block_sum(sums));
 }
 
-static void want_tile(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                      uint32_t level)
+static void settle_move(slc_manager *m, struct slc_texture *t, struct slc_run *run,
+                        const struct slc_move *move)
 {
-    if (*cell)
-        slc_tile_wanted(m, t, cell, tile, level);
+    uint32_t *cell = &t->nodes[move->tile], node = *cell & ~SLC_RESIDENT;
+    if (node && slc_run_add(m, run, node, move->level, move->wanted))
+        return;
+    if (!move->wanted)
+        slc_tile_unwanted(m, node);
+    else if (node)
+        slc_tile_wanted(m, t, cell, move->tile, move->level);
     else
-        slc_tile_requested(m, t, cell, tile, level, need_of(t, tile, level));
+        slc_tile_requested(m, t, cell, move->tile, move->level,
+                           need_of(t, move->tile, move->level));
 }
 
 static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
-    uint32_t *nodes = t->nodes;
+    struct slc_run run = {.count = 0};
     for (uint32_t i = 0; i < moves->count; i++)
-        __builtin_prefetch(slc_node_at(m, nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
-    for (uint32_t i = 0; i < moves->count; i++) {
-        uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
-        if (moves->tiles[i].wanted)
-            want_tile(m, t, &nodes[tile], tile, level);
-        else
-            slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
-    }
+        __builtin_prefetch(slc_node_at(m, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
+    for (uint32_t i = 0; i < moves->count; i++)
+        settle_move(m, t, &run, &moves->tiles[i]);
+    slc_run_end(m, &run);
     if (moves->log) {
         memcpy(moves->log->moves + moves->log->count, moves->tiles,
                moves->count * sizeof *moves->tiles);
