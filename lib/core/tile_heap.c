@@ -99,7 +99,8 @@ SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocatio
                                  .allocator = *allocator,
                                  .capacity = capacity,
                                  .tile_size = tile_size,
-                                 .open = UINT32_MAX};
+                                 .open = UINT32_MAX,
+                                 .loose = UINT32_MAX};
     bit_level_offsets(capacity + 1, offsets);
     h->bit_words = offsets[BIT_LEVELS];
     h->buckets = slc_alloc(cb, (size_t)capacity + 1, sizeof *h->buckets);
@@ -190,12 +191,27 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
     return SLUICE_SUCCESS;
 }
 
-static void close_open(struct slc_tile_heaps *h)
+/** Takes the heap out of its bucket until the buckets are looked at again. */
+static void loosen(struct slc_tile_heaps *h, uint32_t index)
 {
-    if (h->open == UINT32_MAX)
+    struct slc_tile_heap *heap = &h->heaps[index];
+    if (heap->loose)
         return;
-    bucket_insert(h, h->open);
+    bucket_remove(h, index);
+    heap->loose = true;
+    heap->next = h->loose;
+    h->loose = index;
+}
+
+static void put_loose_back(struct slc_tile_heaps *h)
+{
     h->open = UINT32_MAX;
+    while (h->loose != UINT32_MAX) {
+        uint32_t index = h->loose;
+        h->loose = h->heaps[index].next;
+        h->heaps[index].loose = false;
+        bucket_insert(h, index);
+    }
 }
 
 static uint32_t lowest_free(struct slc_tile_heap *heap)
@@ -218,13 +234,13 @@ uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h)
 {
     if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
         return h->open;
-    close_open(h);
+    put_loose_back(h);
     uint32_t bucket = find_bit_above_zero(h);
     if (bucket == UINT32_MAX)
         return UINT32_MAX;
-    h->open = h->buckets[bucket];
-    bucket_remove(h, h->open);
-    return h->open;
+    uint32_t fullest = h->buckets[bucket];
+    loosen(h, fullest);
+    return h->open = fullest;
 }
 
 uint32_t slc_tile_heaps_take_wish(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t node,
@@ -251,11 +267,10 @@ uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap_index,
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count != SLC_HEAP_DEAD && heap->free_count > 0);
-    close_open(h); /* this one may become the fullest */
-    bucket_remove(h, heap_index);
+    loosen(h, heap_index);
+    h->open = UINT32_MAX; /* this one may become the fullest */
     uint32_t slot = lowest_free(heap);
     take_slot(h, heap, slot, node);
-    bucket_insert(h, heap_index);
     return slot;
 }
 
@@ -265,13 +280,12 @@ void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t
     assert(heap->free_count < h->capacity && heap->nodes[slot] != 0);
     /* others may be fuller now, or this one, if it was full */
     if (heap_index == h->open || heap->free_count == 0)
-        close_open(h);
-    bucket_remove(h, heap_index);
+        h->open = UINT32_MAX;
+    loosen(h, heap_index);
     heap->free[slot / 64] |= UINT64_C(1) << slot % 64;
     heap->low = slot / 64 < heap->low ? slot / 64 : heap->low;
     heap->free_count++;
     heap->nodes[slot] = 0;
-    bucket_insert(h, heap_index);
     h->free_total++;
 }
 
@@ -287,7 +301,7 @@ void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap_index)
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count == h->capacity);
-    close_open(h);
+    put_loose_back(h);
     bucket_remove(h, heap_index);
     h->allocator.pfnReleaseHeap(h->allocator.pUserData, heap->id);
     free_books(h, heap);

@@ -10,6 +10,7 @@ struct slc_tile_heap {
     uint32_t free_count; ///< SLC_HEAP_DEAD: this entry is unused
     uint32_t retiring_count;
     uint32_t prev, next; ///< among heaps with equally many free slots, UINT32_MAX ends
+    bool loose;          ///< in no bucket until one has to be found
     uint32_t low;        ///< in words below this one no slot is free
     uint64_t *free;      ///< owned, a bit per slot
     uint32_t *nodes;     ///< owned, [capacity]: who lives in the slot, 0: nobody
@@ -24,8 +25,8 @@ struct slc_tile_heaps {
     uint32_t tile_size;
     struct slc_tile_heap *heaps; ///< owned, [end], dead ones in between
     uint32_t end, room, live_count;
-    /** Slots are taken from it until it has none or another one may have fewer: in no bucket. */
-    uint32_t open;     ///< UINT32_MAX: none
+    uint32_t loose; ///< heaps in no bucket, linked by `next`
+    uint32_t open;  ///< slots are taken from it while no other has fewer; loose; UINT32_MAX: none
     uint32_t *buckets; ///< owned, [capacity + 1]: first heap with that many free slots
     uint64_t *bits;    ///< owned: which buckets are not empty, and words over words of that
     uint32_t bit_words;
