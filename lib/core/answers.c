@@ -7,6 +7,9 @@
 /** Marks a node while an answer is checked, so that a tile that stands twice is seen. */
 #define NODE_SEEN 128
 
+/** Tiles in a call from which on it pays to fetch memory for all of them before the first one. */
+#define MANY 4
+
 static bool is_in_flight(const struct slc_node *n)
 {
     return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELLED;
@@ -24,7 +27,6 @@ static SluiceResult mark_tile(slc_manager *m, const struct slc_texture *t, uint3
     if (!is_in_flight(n) || n->flags & NODE_SEEN)
         return SLUICE_ERROR_INVALID_TILE_STATE;
     n->flags |= NODE_SEEN;
-    slc_min_mip_prefetch(t, n);
     return SLUICE_SUCCESS;
 }
 
@@ -42,11 +44,14 @@ static void unmark_tiles(slc_manager *m, const struct slc_texture *t, uint32_t c
 static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
                                 const uint32_t *tiles)
 {
-    for (uint32_t i = 0; i < count; i++)
+    bool many = count >= MANY;
+    for (uint32_t i = 0; many && i < count; i++)
         if (tiles[i] < t->shape->tile_count)
             __builtin_prefetch(slc_node_at(m, slc_find_node(t, tiles[i])));
     for (uint32_t i = 0; i < count; i++) {
         SluiceResult result = mark_tile(m, t, tiles[i]);
+        if (many && result == SLUICE_SUCCESS)
+            slc_min_mip_prefetch(t, slc_node_at(m, slc_find_node(t, tiles[i])));
         if (result == SLUICE_SUCCESS)
             continue;
         unmark_tiles(m, t, i, tiles);

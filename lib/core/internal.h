@@ -327,6 +327,8 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                         uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
+/** A REQUESTED tile, which has got a slot, becomes ALLOCATED. */
+void slc_tile_handed_out(slc_manager *m, uint32_t node);
 /** An ALLOCATED tile becomes MAPPED. */
 void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node);
 /** Regular tiles of one level on their way between MAPPED and STANDBY. */

@@ -354,7 +354,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
             break;
         next_request(m, &walk);
         prefetch_request(m, walk.node);
-        slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
+        slc_tile_handed_out(m, node);
         tiles[written++] = slc_node_tile(m, node);
     }
     if (!scope && m->requests.count == 0 && m->config.prefetchLevels && result == SLUICE_SUCCESS)

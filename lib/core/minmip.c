@@ -311,6 +311,18 @@ static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, si
     }
 }
 
+/** A rectangle inside the map, to where there is room for it. */
+static SluiceResult write_rect(const struct slc_texture *t, const SluiceMinMipRect *r,
+                               size_t row_pitch, size_t size, uint8_t *out)
+{
+    size_t rows, needed;
+    if (row_pitch < r->width || !slc_mul_size(r->height - 1, row_pitch, &rows) ||
+        !slc_add_size(rows, r->width, &needed) || size < needed)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    copy_rect(t, r, row_pitch, out);
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
                                    const SluiceMinMipRect *pRect, size_t rowPitch, size_t size,
                                    uint8_t *pMinMip)
@@ -321,16 +333,11 @@ SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, pRect->textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= t->shape->min_mip_width ||
-        pRect->y >= t->shape->min_mip_height || pRect->width > t->shape->min_mip_width - pRect->x ||
-        pRect->height > t->shape->min_mip_height - pRect->y)
+    uint32_t width = t->shape->min_mip_width, height = t->shape->min_mip_height;
+    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= width || pRect->y >= height ||
+        pRect->width > width - pRect->x || pRect->height > height - pRect->y)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    size_t rows, needed;
-    if (rowPitch < pRect->width || !slc_mul_size(pRect->height - 1, rowPitch, &rows) ||
-        !slc_add_size(rows, pRect->width, &needed) || size < needed)
-        return SLUICE_ERROR_SIZE_MISMATCH;
-    copy_rect(t, pRect, rowPitch, pMinMip);
-    return SLUICE_SUCCESS;
+    return write_rect(t, pRect, rowPitch, size, pMinMip);
 }
 
 SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
@@ -343,8 +350,8 @@ SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceMinMipRect whole = {textureId, 0, 0, t->shape->min_mip_width, t->shape->min_mip_height};
-    return sluiceWriteMinMipRect(manager, &whole, rowPitch, size, pMinMip);
+    SluiceMinMipRect whole = {.width = t->shape->min_mip_width, .height = t->shape->min_mip_height};
+    return write_rect(t, &whole, rowPitch, size, pMinMip);
 }
 
 static SluiceResult get_updates(slc_manager *m, uint32_t *count, SluiceMinMipRect *rects)

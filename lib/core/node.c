@@ -76,7 +76,8 @@ static void request_remove(slc_manager *m, uint32_t node)
 {
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
-    uint32_t class = request_class(m, n);
+    struct slc_texture *t = slc_texture_at(m, n->texture);
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     struct slc_list *list = &r->lists[class][n->need];
     slc_list_remove(m, list, node);
     if (list->count == 0)
@@ -85,7 +86,7 @@ static void request_remove(slc_manager *m, uint32_t node)
         r->classes &= ~(1u << class);
     r->count--;
     r->counts[class]--;
-    slc_texture_at(m, n->texture)->requested_count--;
+    t->requested_count--;
 }
 
 static uint32_t last_bit(uint32_t bits)
@@ -429,6 +430,12 @@ static void park(slc_manager *m, uint32_t node)
     count_move(m, n, SLUICE_TILE_STATE_STANDBY);
     if (m->standby.count > m->config.numExtraStandbyTiles)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
+}
+
+void slc_tile_handed_out(slc_manager *m, uint32_t node)
+{
+    request_remove(m, node);
+    count_move(m, slc_node_at(m, node), SLUICE_TILE_STATE_ALLOCATED);
 }
 
 /* Runs: neighbours in one list that go to the end of another one are moved as a piece. A texture
