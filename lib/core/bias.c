@@ -13,7 +13,7 @@
  * texture has had a map.
  */
 
-enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT = 3 };
+enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT_HALVES = 7 };
 
 static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
 {
@@ -42,7 +42,7 @@ uint64_t slc_slot_limit(const slc_manager *m)
     /* no heap at all says nothing yet */
     if (m->refused && m->heaps.live_count > 0 && m->heaps.live_count < heaps)
         heaps = m->heaps.live_count;
-    return heaps * m->heaps.capacity * OVERCOMMIT;
+    return heaps * m->heaps.capacity * OVERCOMMIT_HALVES / 2;
 }
 
 static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit)

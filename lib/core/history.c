@@ -212,6 +212,13 @@ static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
     return add_weights(t->history->absence, slc_max_u32(t->held_regions, 1));
 }
 
+/** log2 of the regions along the side of a tile of level 0; 0 where they do not fit. */
+static uint32_t region_shift(const struct slc_texture *t)
+{
+    uint8_t x = t->shape->region_shift_x, y = t->shape->region_shift_y;
+    return x == SLC_UNALIGNED || y == SLC_UNALIGNED ? 0 : slc_min_u32(slc_min_u32(x, y), 8);
+}
+
 /** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
 static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region_shift)
 {
@@ -282,29 +289,18 @@ struct now {
     uint64_t time, timeout;
     uint32_t absence; ///< misses that the last maps, all of them empty, stand for
     uint32_t needed;  ///< maps to believe
-    bool starved;     ///< slots are short: what two maps missed has to make room sooner
 };
-
-static bool is_over(const struct slc_span *span, const struct now *now, uint32_t newer)
-{
-    uint64_t age = now->time - span->end;
-    uint64_t patience = now->timeout - now->timeout / 4;
-    return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
-}
 
 /** Lets go of what is too old and believed to be gone. */
 static void lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_history *h = t->history;
-    uint32_t shift = slc_min_u32(t->shape->region_shift_x, t->shape->region_shift_y);
-    if (t->shape->region_shift_x == SLC_UNALIGNED || t->shape->region_shift_y == SLC_UNALIGNED)
-        shift = 0;
-    uint32_t newer = 1, dropped = 0;
+    uint32_t shift = region_shift(t), newer = 1, dropped = 0;
     for (uint32_t i = h->span_count; i-- > 0;) {
         struct slc_span *span = &h->spans[i];
         uint32_t misses = slc_max_u32(newer, now->absence);
-        bool over = is_over(span, now, misses);
-        uint8_t below = first_unbelieved(misses, now->needed, slc_min_u32(shift, 8));
+        bool over = now->time - span->end >= now->timeout;
+        uint8_t below = first_unbelieved(misses, now->needed, shift);
         if (over && below < span->below)
             thin_span(t, span, below, changed);
         dropped = over && span->empty ? dropped + 1 : 0;
@@ -371,11 +367,8 @@ struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, 
     else
         count_returns(t, same_hits(t), 0);
     h->absence = absence(t, map);
-    struct now now = {.time = time,
-                      .timeout = timeout,
-                      .absence = h->absence,
-                      .needed = maps_to_believe(m, t),
-                      .starved = m->starved};
+    struct now now = {
+        .time = time, .timeout = timeout, .absence = h->absence, .needed = maps_to_believe(m, t)};
     struct slc_range changed = {0, 0};
     lapse(t, &now, &changed);
     /* a map like the last one is in the newest span, unless that has just lost it */
@@ -417,25 +410,53 @@ static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
     return false;
 }
 
+/** Whether the last map asks for a level in a region under tiles of it; `r` is inclusive. */
+static bool is_asked_in(const struct slc_texture *t, uint32_t level, struct slc_tile_range r)
+{
+    const struct slc_shape *s = t->shape;
+    const struct slc_level *grid = &s->levels[level];
+    const SluiceStreamedTextureDesc *d = &s->desc;
+    uint32_t x0, x1, y0, y1, inside;
+    if (!t->history || t->history->asked_least > level)
+        return false; /* as where the camera has left, and the area under a tile can be large */
+    regions_under(r.x0, level, r.x0 + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
+                  s->feedback_width, &x0, &x1);
+    regions_under(r.y0, level, r.y0 + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
+                  s->feedback_height, &y0, &y1);
+    if (r.x1 > r.x0)
+        regions_under(r.x1, level, r.x1 + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
+                      s->feedback_width, &inside, &x1);
+    if (r.y1 > r.y0)
+        regions_under(r.y1, level, r.y1 + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
+                      s->feedback_height, &inside, &y1);
+    for (uint32_t y = y0; y < y1; y++)
+        if (any_at_most(t->history->asked + (size_t)y * s->feedback_width + x0, x1 - x0, level))
+            return true;
+    return false;
+}
+
 bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
     if (n->tile >= t->shape->regular_tile_count)
         return true;
-    const SluiceStreamedTextureDesc *d = &t->shape->desc;
     struct slc_place p = slc_node_place(t, n);
-    const struct slc_history *h = t->history;
-    if (!h || h->asked_least > p.level)
-        return false; /* as where the camera has left, and the area under a tile can be large */
+    return is_asked_in(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+}
+
+bool slc_is_seen(const slc_manager *m, uint32_t node)
+{
+    const struct slc_node *n = slc_node_at(m, node);
+    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    struct slc_place p = slc_node_place(t, n);
+    /* one map misses nine tiles by chance as rarely as nine maps miss one; half of what is needed
+     * to forget for good will do */
+    if (first_unbelieved(18, maps_to_believe(m, t), region_shift(t)) > p.level)
+        return true;
     const struct slc_level *grid = &t->shape->levels[p.level];
-    uint32_t x0, x1, y0, y1;
-    regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
-                  t->shape->feedback_width, &x0, &x1);
-    regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
-                  t->shape->feedback_height, &y0, &y1);
-    for (uint32_t y = y0; y < y1; y++)
-        if (any_at_most(h->asked + (size_t)y * t->shape->feedback_width + x0, x1 - x0, p.level))
-            return true;
-    return false;
+    return is_asked_in(t, p.level,
+                       (struct slc_tile_range){p.x > 0 ? p.x - 1 : 0, p.y > 0 ? p.y - 1 : 0,
+                                               slc_min_u32(p.x + 1, grid->width - 1),
+                                               slc_min_u32(p.y + 1, grid->height - 1)});
 }

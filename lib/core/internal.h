@@ -160,6 +160,8 @@ struct slc_round {
     uint32_t maps;   ///< merged in it
     uint64_t began;  ///< the next sequence when it began
     uint64_t waited; ///< requests before this one have waited for a whole round
+    uint32_t count;
+    uint64_t began_long, waited_long; ///< the same, for some rounds
 };
 
 struct SluiceStreamedTextureManager {
@@ -256,6 +258,8 @@ uint32_t slc_reserved_slots(const slc_manager *m);
 /* history.c */
 /** Whether the texture's last map asks for the tile; packed tiles always are. */
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
+/** The same for a regular tile or one of its neighbours: chance hides one, not all of them. */
+bool slc_is_seen(const slc_manager *m, uint32_t node);
 
 /* bias.c */
 /** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
