@@ -5,6 +5,7 @@
 #include <sluice/loader.h>
 
 #include "vulkan/buffer.h"
+#include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
@@ -43,6 +44,8 @@ struct slc_texture {
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;
+    struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
+    bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place; ///< in primaries; SLC_NONE for followers
     uint64_t added_frame;   ///< the last one begun before; its feedback and table entry come later
     uint64_t removed_frame;
@@ -125,6 +128,7 @@ struct SluiceVulkanStreamer {
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
     uint8_t *min_mip_shadow;           ///< owned; what min_mip holds after the frames begun
     uint8_t *zero_map;                 ///< owned; for mapEverything, maxRegionCount
+    uint8_t *feedback_levels;          ///< owned; a byte per region, as resolved last
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
 
@@ -161,7 +165,10 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
 /* minmip_upload.c: publishes what the manager changed */
 SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 
-/* feedback.c: which maps are read back, and what the manager gets of them */
+/* feedback.c: which textures' feedback is resolved, and what the manager gets of it */
+void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture);
+void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                             VkCommandBuffer commands);
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 
