@@ -98,10 +98,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     bool mapEverything;      ///< every tile is wanted always: the fully resident truth
     uint32_t maxRegionCount; ///< feedback regions (tiles of level 0), at most 2^28; 0: 2^20
     /**
-     * Bytes of resolved feedback that a frame can bring to the host: 4 per region that changed since
-     * its texture's turn before, at most 1 per region of a texture. Textures for which there is no
-     * room keep their marks and come first in a later frame. Must hold the map of any one texture.
-     * 0: maxRegionCount, with which there always is room, at most 2^22.
+     * Bytes of resolved feedback that a frame can bring to the host: 4 per region that changed
+     * since its texture's turn before, at most 1 per region of a texture. Textures for which there
+     * is no room keep their marks and come first in a later frame. Must hold the map of any one
+     * texture. 0: maxRegionCount, with which there always is room, at most 2^22.
      */
     uint32_t feedbackReadbackSize;
     /** Bring all of each map to the host instead of what changed. The decisions are the same; to
@@ -114,7 +114,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
  *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
  *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
  *         LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
- *         feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ *         feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -159,8 +160,8 @@ typedef struct SluiceVulkanTexture {
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
  *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device
- * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount, maxRegionCount or feedbackReadbackSize; what
- * the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount, maxRegionCount or
+ * feedbackReadbackSize; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
@@ -220,9 +221,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
-    uint64_t feedbackMaps;     ///< resolved and given to the manager
-    uint32_t loadsInFlight;    ///< reads not collected, and uploads not recorded
-    uint64_t deviceMemorySize; ///< bytes of heaps
+    uint64_t feedbackMaps;      ///< resolved and given to the manager
+    uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
+    uint64_t deviceMemorySize;  ///< bytes of heaps
     uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
     uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
 } SluiceVulkanStreamerStatistics;

@@ -60,9 +60,8 @@ static SluiceResult create_pipeline(const struct slc_resolve *r, const struct sl
                                     const uint32_t *code, size_t size, uint32_t encoding,
                                     VkPipeline *pipeline)
 {
-    VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = size,
-                                            .pCode = code};
+    VkShaderModuleCreateInfo module_info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
     VkShaderModule module;
     SluiceResult result =
         slc_vk_result(vk, vk->CreateShaderModule(vk->device, &module_info, NULL, &module),
@@ -97,8 +96,7 @@ static SluiceResult create_pipelines(struct slc_resolve *r, const struct slc_vk 
                    {resolve_write_comp, sizeof resolve_write_comp}};
     SluiceResult result = SLUICE_SUCCESS;
     for (uint32_t i = 0; i < 3 && result == SLUICE_SUCCESS; i++)
-        result =
-            create_pipeline(r, vk, passes[i].code, passes[i].size, encoding, &r->pipelines[i]);
+        result = create_pipeline(r, vk, passes[i].code, passes[i].size, encoding, &r->pipelines[i]);
     return result;
 }
 
@@ -215,8 +213,7 @@ bool slc_resolve_add(struct slc_resolve *resolve, uint32_t first_region, uint32_
     struct SluiceResolveItem *items = r->table.mapped;
     segments += first_record(r);
     items += first_record(r) + r->max_segments;
-    items[r->item_count] =
-        (struct SluiceResolveItem){r->segment_count, count, region_count, flags};
+    items[r->item_count] = (struct SluiceResolveItem){r->segment_count, count, region_count, flags};
     for (uint32_t i = 0, done = 0; i < count; i++, done += SLUICE_RESOLVE_SEGMENT_SIZE)
         segments[r->segment_count++] = (struct SluiceResolveSegment){
             first_region + done, slc_min_u32(region_count - done, SLUICE_RESOLVE_SEGMENT_SIZE),

@@ -19,8 +19,8 @@ struct slc_resolve_create_info {
 };
 
 struct slc_resolve {
-    struct slc_buffer last;    ///< a byte per region: the level that was resolved last
-    struct slc_buffer table;   ///< a slot per frame in flight: max_segments segments, then the items
+    struct slc_buffer last;  ///< a byte per region: the level that was resolved last
+    struct slc_buffer table; ///< a slot per frame in flight: max_segments segments, then the items
     struct slc_buffer scratch; ///< of one frame: sums of the segments, then places of the items
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;

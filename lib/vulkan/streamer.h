@@ -46,8 +46,8 @@ struct slc_texture {
     uint32_t region_first, region_count;
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
-    uint32_t primary_place; ///< in primaries; SLC_NONE for followers
-    uint64_t added_frame;   ///< the last one begun before; its feedback and table entry come later
+    uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
+    uint64_t added_frame; ///< the last one begun before; its feedback and table entry come later
     uint64_t removed_frame;
     uint32_t unit_count; ///< staging slots that name it
 

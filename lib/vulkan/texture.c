@@ -54,7 +54,8 @@ static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *te
     texture->region_count = (uint32_t)count;
     if ((count + 3) / 4 <= s->readback.capacity)
         return SLUICE_SUCCESS;
-    slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s: its %llu feedback regions exceed feedbackReadbackSize",
+    slc_log(&s->info.log, SLUICE_LOG_ERROR,
+            "%s: its %llu feedback regions exceed feedbackReadbackSize",
             texture->info.pName ? texture->info.pName : "image", (unsigned long long)count);
     return SLUICE_ERROR_LIMIT_EXCEEDED;
 }

@@ -425,8 +425,7 @@ static void resolve_item(struct fake_vulkan *fake, uint32_t index, uint32_t *at)
         (const struct SluiceResolveItem *)words_of(fake->table) + fake->push.firstItem + index;
     uint32_t first = segments[fake->push.firstSegment + item->firstSegment].firstRegion;
     uint32_t *words = words_of(fake->readback);
-    struct SluiceResolveResult result = {
-        SLUICE_RESOLVED_MAP, (item->regionCount + 3) / 4, *at, 0};
+    struct SluiceResolveResult result = {SLUICE_RESOLVED_MAP, (item->regionCount + 3) / 4, *at, 0};
     if (result.count > fake->push.capacity - *at)
         result = (struct SluiceResolveResult){SLUICE_RESOLVED_NOTHING, 0, 0, 0};
     *at += result.count;
@@ -438,7 +437,8 @@ static void resolve_item(struct fake_vulkan *fake, uint32_t index, uint32_t *at)
     memcpy(&words[fake->push.resultOffset + 4 * index], &result, sizeof result);
 }
 
-/* The resolve passes, with the feedback that the test wants: whole maps, which are always allowed. */
+/* The resolve passes, with the feedback that the test wants: whole maps, which are always allowed.
+ */
 static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y,
                                            uint32_t z)
 {

@@ -2,8 +2,8 @@
  * What the host and the passes of shaders/resolve tell each other.
  *
  * A frame resolves the feedback of some textures, its items, in the order that the host gives them.
- * Each is cut into segments of SLUICE_RESOLVE_SEGMENT_SIZE regions, one workgroup each. Four regions
- * share a word of packed levels, the first in the low byte.
+ * Each is cut into segments of SLUICE_RESOLVE_SEGMENT_SIZE regions, one workgroup each. Four
+ * regions share a word of packed levels, the first in the low byte.
  */
 #ifndef SLUICE_SHARED_RESOLVE_H
 #define SLUICE_SHARED_RESOLVE_H
