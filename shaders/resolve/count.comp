@@ -7,7 +7,7 @@
 layout(local_size_x = SLUICE_RESOLVE_GROUP_SIZE) in;
 layout(std430, binding = 3) writeonly buffer Scratch { uvec2 sums[]; } scratch;
 
-shared uvec2 sums[SLUICE_RESOLVE_GROUP_SIZE];
+shared uint sum;
 
 uint checksum(SluiceResolveSegment segment, uint place, uint packedLevels)
 {
@@ -28,12 +28,11 @@ void main()
     uint place = gl_LocalInvocationIndex;
     SluiceResolveSegment segment = sluiceResolveSegment(index);
     SluiceQuad quad = sluiceLoadQuad(segment, place);
-    sums[place] = uvec2(sluiceCountChanges(quad), checksum(segment, place, quad.levels));
-    for (uint step = SLUICE_RESOLVE_GROUP_SIZE / 2u; step > 0u; step /= 2u) {
-        barrier();
-        if (place < step)
-            sums[place] += sums[place + step];
-    }
     if (place == 0u)
-        scratch.sums[index] = sums[0];
+        sum = 0u;
+    sluiceShareChanges(quad);
+    atomicAdd(sum, checksum(segment, place, quad.levels)); /* in whatever order: it is modulo 2^32 */
+    barrier();
+    if (place == 0u)
+        scratch.sums[index] = uvec2(sluiceCountChangesBefore(SLUICE_RESOLVE_GROUP_SIZE), sum);
 }

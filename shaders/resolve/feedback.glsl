@@ -32,8 +32,33 @@ bvec4 sluiceChanged(SluiceQuad quad)
     return notEqual(sluiceUnpackLevels(quad.levels), sluiceUnpackLevels(quad.before));
 }
 
-uint sluiceCountChanges(SluiceQuad quad)
+#define SLUICE_QUADS_PER_WORD 8u
+#define SLUICE_CHANGE_WORDS (SLUICE_RESOLVE_GROUP_SIZE / SLUICE_QUADS_PER_WORD)
+
+/* A bit per region of the segment: one look at it replaces a scan step by step. */
+shared uint changedRegions[SLUICE_CHANGE_WORDS];
+
+/** Fills changedRegions; to be called by the whole workgroup, once. */
+void sluiceShareChanges(SluiceQuad quad)
 {
-    uvec4 changed = uvec4(sluiceChanged(quad));
-    return changed.x + changed.y + changed.z + changed.w;
+    uint at = gl_LocalInvocationIndex;
+    if (at < SLUICE_CHANGE_WORDS)
+        changedRegions[at] = 0u;
+    barrier();
+    uvec4 bits = uvec4(sluiceChanged(quad)) << uvec4(0u, 1u, 2u, 3u);
+    uint mask = bits.x | bits.y | bits.z | bits.w;
+    if (mask != 0u)
+        atomicOr(changedRegions[at / SLUICE_QUADS_PER_WORD], mask << 4u * (at % SLUICE_QUADS_PER_WORD));
+    barrier();
+}
+
+/** How many regions changed among the first `quads` four of the segment. */
+uint sluiceCountChangesBefore(uint quads)
+{
+    uint word = quads / SLUICE_QUADS_PER_WORD, count = 0u;
+    for (uint i = 0u; i < word; i++)
+        count += uint(bitCount(changedRegions[i]));
+    if (word < SLUICE_CHANGE_WORDS)
+        count += uint(bitCount(changedRegions[word] & ((1u << 4u * (quads % SLUICE_QUADS_PER_WORD)) - 1u)));
+    return count;
 }

@@ -4,28 +4,9 @@
 
 #include "feedback.glsl"
 
-#define GROUP SLUICE_RESOLVE_GROUP_SIZE
-
-layout(local_size_x = GROUP) in;
+layout(local_size_x = SLUICE_RESOLVE_GROUP_SIZE) in;
 layout(std430, binding = 3) readonly buffer Scratch { uvec2 sums[]; } scratch;
 layout(std430, binding = 4) writeonly buffer Readback { uint words[]; } readback;
-
-shared uint sums[GROUP];
-
-/** The sum over all invocations before this one. */
-uint sumBefore(uint own)
-{
-    uint at = gl_LocalInvocationIndex, sum = own;
-    sums[at] = own;
-    for (uint step = 1u; step < GROUP; step *= 2u) {
-        barrier();
-        uint left = at >= step ? sums[at - step] : 0u;
-        barrier();
-        sum += left;
-        sums[at] = sum;
-    }
-    return sum - own;
-}
 
 void writeChanges(SluiceQuad quad, uint region, uint at)
 {
@@ -54,15 +35,17 @@ void main()
     if (item.y == SLUICE_RESOLVED_NOTHING)
         return;
     uint place = gl_LocalInvocationIndex;
+    uint first = scratch.sums[index].x;
     SluiceQuad quad = sluiceLoadQuad(segment, place);
-    uint before = sumBefore(sluiceCountChanges(quad));
+    if (item.y == SLUICE_RESOLVED_CHANGES && scratch.sums[index + 1u].x != first) {
+        sluiceShareChanges(quad);
+        writeChanges(quad, segment.offset + place * 4u,
+                     params.dataOffset + item.x + first + sluiceCountChangesBefore(place));
+    }
     if (place * 4u >= segment.regionCount)
         return;
     if (item.y == SLUICE_RESOLVED_MAP)
         readback.words[params.dataOffset + item.x + segment.offset / 4u + place] = quad.levels;
-    else
-        writeChanges(quad, segment.offset + place * 4u,
-                     params.dataOffset + item.x + scratch.sums[index].x + before);
     if (quad.levels != quad.before)
         last.quads[quad.index] = quad.levels;
     if (quad.levels != 0xFFFFFFFFu)

@@ -42,7 +42,7 @@ static void init_buffers(struct rig *r)
     harness_buffer_init(r->h, &r->feedback, words * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     uint64_t slot = 4ull * r->max_items + r->max_data;
     harness_buffer_init(r->h, &r->readback, SLOTS * slot * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    memset(r->feedback.mapped, 0x5A, words * 4); /* what is nobody's stays as it is */
+    memset(r->feedback.mapped, 0x5A, words * 4); /* new textures begin clean, whatever was there */
 }
 
 static void rig_init(struct rig *r, struct harness *h, uint32_t encoding, uint32_t region_capacity,
@@ -338,6 +338,103 @@ static void segments_fill_more_than_one_row_of_workgroups(void **state)
     rig_finish(&r);
 }
 
+/* The stop watch of a queue; the harness needs none of it otherwise. */
+struct watch {
+    PFN_vkCreateQueryPool CreateQueryPool;
+    PFN_vkDestroyQueryPool DestroyQueryPool;
+    PFN_vkCmdResetQueryPool CmdResetQueryPool;
+    PFN_vkCmdWriteTimestamp CmdWriteTimestamp;
+    PFN_vkGetQueryPoolResults GetQueryPoolResults;
+    VkQueryPool pool;
+    double period; /* ns */
+    struct rig *rig;
+};
+
+static void watch_init(struct watch *w, struct rig *r)
+{
+    *w = (struct watch){.rig = r};
+    struct harness *h = r->h;
+#define LOAD(name) w->name = (PFN_vk##name)h->GetDeviceProcAddr(h->device, "vk" #name)
+    LOAD(CreateQueryPool);
+    LOAD(DestroyQueryPool);
+    LOAD(CmdResetQueryPool);
+    LOAD(CmdWriteTimestamp);
+    LOAD(GetQueryPoolResults);
+#undef LOAD
+    VkPhysicalDeviceProperties properties;
+    h->GetPhysicalDeviceProperties(h->physical_device, &properties);
+    w->period = (double)properties.limits.timestampPeriod;
+    VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = 2};
+    assert_int_equal(w->CreateQueryPool(h->device, &info, NULL, &w->pool), VK_SUCCESS);
+}
+
+static void record_timed(void *user, VkCommandBuffer commands)
+{
+    struct watch *w = user;
+    w->CmdResetQueryPool(commands, w->pool, 0, 2);
+    w->CmdWriteTimestamp(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, w->pool, 0);
+    record(w->rig, commands);
+    w->CmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, w->pool, 1);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+enum { TIMED = 21 };
+
+/* Median of the GPU's time to resolve all textures after `marks` random marks, in microseconds. */
+static double time_resolve(struct watch *w, uint32_t marks)
+{
+    struct rig *r = w->rig;
+    double times[TIMED];
+    take_all(r, 0);
+    for (uint32_t i = 0; i < TIMED; i++) {
+        for (uint32_t j = 0; j < marks; j++)
+            mark(r, &r->textures[(uint32_t)rand() % r->texture_count], (uint32_t)rand() % 256,
+                 (uint8_t)(rand() % 9));
+        slc_resolve_begin(&r->resolve, 0);
+        r->slot = 0;
+        harness_run(r->h, record_timed, w);
+        r->data_count = oracle_resolve(r->items, r->item_count, r->capacity, r->results, r->data);
+        assert_memory_equal((uint32_t *)r->readback.mapped + 4 * r->max_items, r->data,
+                            r->data_count * 4ull);
+        uint64_t stamps[2];
+        assert_int_equal(w->GetQueryPoolResults(r->h->device, w->pool, 0, 2, sizeof stamps, stamps,
+                                                8, VK_QUERY_RESULT_64_BIT),
+                         VK_SUCCESS);
+        times[i] = (double)(stamps[1] - stamps[0]) * w->period * 1e-3;
+    }
+    qsort(times, TIMED, sizeof times[0], compare_doubles);
+    return times[TIMED / 2];
+}
+
+/* 4096^2 BC7 has 16 x 16 tiles of level 0. */
+static void a_thousand_textures_are_resolved_and_timed(void **state)
+{
+    struct rig r;
+    srand(55);
+    rig_init(&r, *state, SLUICE_FEEDBACK_LEVELS, 256000, 1000);
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < 1000; i++)
+        add_texture(&r, &next, 256);
+    struct watch watch;
+    watch_init(&watch, &r);
+    const uint32_t marks[] = {0, 2560, 25600, 256000};
+    for (size_t i = 0; i < sizeof marks / sizeof marks[0]; i++) {
+        double time = time_resolve(&watch, marks[i]);
+        fprintf(stderr,
+                "# resolve of 1000 maps of 256 regions, %u marks, %u words come back: %.1f us\n",
+                marks[i], r.data_count, time);
+    }
+    watch.DestroyQueryPool(r.h->device, watch.pool, NULL);
+    rig_finish(&r);
+}
+
 static void the_list_refuses_what_it_has_no_room_for(void **state)
 {
     struct rig r;
@@ -364,6 +461,7 @@ int main(void)
         cmocka_unit_test(what_has_no_room_stays_and_comes_later),
         cmocka_unit_test(a_new_texture_begins_untouched_where_an_old_one_was),
         cmocka_unit_test(segments_fill_more_than_one_row_of_workgroups),
+        cmocka_unit_test(a_thousand_textures_are_resolved_and_timed),
         cmocka_unit_test(the_list_refuses_what_it_has_no_room_for),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
