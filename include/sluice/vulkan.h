@@ -39,6 +39,12 @@ typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_SPARSE = 1 ///< sparse residency images
 } SluiceResidencyMode;
 
+/** What shaders write for each feedback region; their SLUICE_FEEDBACK_ENCODING must be the same. */
+typedef enum SluiceFeedbackEncoding {
+    SLUICE_FEEDBACK_ENCODING_LEVELS = 0, ///< a word with the finest level
+    SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< half a word with a bit per level; half the memory
+} SluiceFeedbackEncoding;
+
 /** What a device can do for Sluice, and what is known to be odd about it. */
 typedef struct SluiceVulkanDeviceCapabilities {
     bool sparse;                     ///< sparse residency 2D images and a queue that binds them
@@ -107,6 +113,15 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     /** Bring all of each map to the host instead of what changed. The decisions are the same; to
      *  measure and to test with. */
     bool wholeFeedbackMaps;
+    SluiceFeedbackEncoding feedbackEncoding;
+    /**
+     * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for the textures that are
+     * resolved at the end of the same frame: for the others that is one load and no arithmetic.
+     * What it costs: with N textures not in a set a texture collects marks in one frame of
+     * N / texturesPerFrame, not in all, so what few pixels see is noticed that many times later,
+     * and feedbackTimeout must be as much longer. Best where every visible pixel writes.
+     */
+    bool feedbackInTurns;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -177,9 +192,10 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 
 /** The buffers that shaders need, as storage buffers; the same for the streamer's whole life. */
 typedef struct SluiceVulkanBuffers {
-    VkBuffer textureTable; ///< SluiceTextureEntry[maxTextureCount], read
-    VkBuffer feedback;     ///< uint[], read and written
-    VkBuffer minMip;       ///< uint[], read
+    VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
+    VkBuffer feedback;      ///< uint[], read and written
+    VkBuffer minMip;        ///< uint[], read
+    VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
 } SluiceVulkanBuffers;
 
 SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,

@@ -4,6 +4,8 @@
 #include "base/checked.h"
 #include "base/log.h"
 
+#include <string.h>
+
 /* The one place where feedback enters the manager. */
 static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const uint8_t *map,
                              uint32_t width, uint32_t height, uint64_t time_stamp, uint64_t timeout)
@@ -56,14 +58,27 @@ void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture)
                           texture->layout.feedbackWidth * texture->layout.feedbackHeight);
 }
 
+uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
+{
+    return (uint64_t)region_count *
+           (s->info.feedbackEncoding == SLUICE_FEEDBACK_ENCODING_MASKS ? 2 : 4);
+}
+
+uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s)
+{
+    return s->info.feedbackEncoding == SLUICE_FEEDBACK_ENCODING_MASKS ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
 void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
                              VkCommandBuffer commands)
 {
     slc_resolve_record_new(&s->resolve, &s->vk, commands, texture->region_first,
                            texture->region_count);
-    if (s->buffers_cleared) /* else the whole buffer has just been filled */
-        s->vk.CmdFillBuffer(commands, s->feedback.buffer, (uint64_t)texture->region_first * 4,
-                            (uint64_t)texture->region_count * 4, SLUICE_MIP_UNTOUCHED);
+    if (!s->buffers_cleared)
+        return; /* the whole buffer has just been filled */
+    uint64_t size = slc_feedback_size(s, 4);
+    s->vk.CmdFillBuffer(commands, s->feedback.buffer, texture->region_first / 4 * size,
+                        (texture->region_count + 3) / 4 * size, slc_feedback_clear_value(s));
 }
 
 /* There was no room: its marks are still there, and next time it is among the first. */
@@ -118,6 +133,38 @@ SluiceResult slc_feedback_read(SluiceVulkanStreamer *s)
     return SLUICE_SUCCESS;
 }
 
+static bool takes_part(const SluiceVulkanStreamer *s, uint32_t index)
+{
+    return !s->info.feedbackInTurns || (s->turns[index / 32] >> index % 32 & 1);
+}
+
+/* Those that slc_feedback_record of this frame will come to. */
+static void choose_turns(SluiceVulkanStreamer *s)
+{
+    memset(s->turns, 0, slc_turns_size(s));
+    uint32_t cursor = s->primary_cursor;
+    for (uint32_t i = share_of_frame(s); i > 0; i--) {
+        uint32_t index = next_primary(s);
+        s->turns[index / 32] |= 1u << index % 32;
+    }
+    s->primary_cursor = cursor;
+}
+
+void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    if (!s->info.feedbackInTurns) {
+        if (!s->buffers_cleared)
+            s->vk.CmdFillBuffer(commands, s->feedback_turns.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
+        return;
+    }
+    choose_turns(s);
+    const uint8_t *bytes = (const uint8_t *)s->turns;
+    for (uint64_t done = 0, size = slc_turns_size(s); done < size; done += 65536) {
+        uint64_t piece = size - done < 65536 ? size - done : 65536; /* as much as an update takes */
+        s->vk.CmdUpdateBuffer(commands, s->feedback_turns.buffer, done, piece, bytes + done);
+    }
+}
+
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     uint32_t share = share_of_frame(s);
@@ -126,9 +173,12 @@ void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     struct slc_readback_slot *slot = slc_readback_begin(&s->readback, s->frame, s->time_stamp);
     slc_resolve_begin(&s->resolve, (uint32_t)(s->frame % s->info.framesInFlight));
     for (uint32_t i = 0; i < share; i++) {
-        const struct slc_texture *texture = &s->textures[next_primary(s)];
+        uint32_t index = next_primary(s);
+        const struct slc_texture *texture = &s->textures[index];
         if (texture->added_frame == s->frame)
             continue; /* the next frame clears what an older texture left in its regions */
+        if (!takes_part(s, index))
+            continue; /* others came or went since the frame began */
         bool whole = texture->feedback_whole || s->info.wholeFeedbackMaps;
         if (!slc_resolve_add(&s->resolve, texture->region_first, texture->feedback.region_count,
                              whole ? SLUICE_RESOLVE_WHOLE : 0))

@@ -128,6 +128,8 @@ struct SluiceVulkanStreamer {
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
     uint8_t *min_mip_shadow;           ///< owned; what min_mip holds after the frames begun
     uint8_t *zero_map;                 ///< owned; for mapEverything, maxRegionCount
+    struct slc_buffer feedback_turns;  ///< a bit per texture: takes part in this frame
+    uint32_t *turns;                   ///< owned; the same on the host
     uint8_t *feedback_levels;          ///< owned; a byte per region, as resolved last
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
@@ -138,6 +140,12 @@ struct SluiceVulkanStreamer {
 static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, SluiceTextureId id)
 {
     return &s->textures[s->by_manager_index[(uint32_t)id]];
+}
+
+/** Bytes of the bits that say which textures write feedback. */
+static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
+{
+    return ((uint64_t)s->info.maxTextureCount + 31) / 32 * 4;
 }
 
 /** Logs what the manager refuses although it should not; returns `result`. */
@@ -169,6 +177,9 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
 void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture);
 void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
                              VkCommandBuffer commands);
+void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count); ///< bytes
+uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s);                 ///< of each word
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 

@@ -8,6 +8,7 @@
 #ifndef SLUICE_SHARED_RESOLVE_H
 #define SLUICE_SHARED_RESOLVE_H
 
+#include "feedback.h"
 #include "types.h"
 
 #define SLUICE_RESOLVE_GROUP_SIZE 64
@@ -27,9 +28,7 @@
 /* A change has 24 bits for the region; larger maps come whole. */
 #define SLUICE_RESOLVE_MAX_LISTED_REGIONS 0x1000000
 
-/* Specialization constant 0 of the passes: what a shader writes per region. */
-#define SLUICE_FEEDBACK_LEVELS 0 /* a word: the finest level, 255 if untouched */
-#define SLUICE_FEEDBACK_MASKS 1  /* half a word: a bit per level, the low half first */
+/* Specialization constant 0 of the passes is the encoding, see feedback.h. */
 
 struct SluiceResolveSegment {
     uint firstRegion; /* in the buffers, a multiple of 4 */
