@@ -97,6 +97,9 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
  * sluiceWriteFeedback costs the selected ones. Fragment shaders only, in uniform control flow, with
  * `selected` in place of a branch around it. `tex` must be the whole texture that is streamed, with
  * the sampler that it is sampled with. Define SLUICE_FEEDBACK_QUERY to have it.
+ *
+ * With anisotropy the finer of this level and the computed one counts: where derivatives exceed
+ * maxAnisotropy, a widely used driver names levels half of its logarithm coarser than it samples.
  */
 void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
                               float maxAnisotropy, bool selected)
@@ -108,7 +111,13 @@ void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lod
     lod = lod == lod ? clamp(lod, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
     lod += sluiceClampLodBias(lodBias);
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    uint level = sluiceFinestLevel(lod, SLUICE_QUERY_MARGIN, entry.mipLevelCount);
+    float finest = lod - SLUICE_QUERY_MARGIN;
+    if (maxAnisotropy > 1.0) {
+        vec2 size = vec2(entry.width, entry.height);
+        float computed = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+        finest = min(finest, computed - sluiceLodMargin(maxAnisotropy));
+    }
+    uint level = sluiceFinestLevel(finest, 0.0, entry.mipLevelCount);
     uint coarsest = sluiceCoarsestLevel(lod + SLUICE_QUERY_MARGIN, entry.mipLevelCount);
     sluiceMarkFootprint(entry,
                         sluiceComputeFootprint(
