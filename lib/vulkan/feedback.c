@@ -56,6 +56,7 @@ void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
     slc_feedback_map_init(&texture->feedback, s->feedback_levels + texture->region_first,
                           texture->layout.feedbackWidth * texture->layout.feedbackHeight);
+    texture->feedback_whole = s->info.wholeFeedbackMaps;
 }
 
 uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
@@ -90,6 +91,12 @@ static void try_again(SluiceVulkanStreamer *s, const struct slc_texture *texture
     *first = false;
 }
 
+static void ask_for_all(SluiceVulkanStreamer *s, struct slc_texture *texture, bool all)
+{
+    s->list_version += texture->feedback_whole != all;
+    texture->feedback_whole = all;
+}
+
 static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback_slot *slot)
 {
     bool first_without_room = true;
@@ -105,10 +112,10 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         }
         if (!data || !slc_feedback_map_update(&texture->feedback, &resolved, data)) {
             slc_log(&s->info.log, SLUICE_LOG_WARNING, "feedback came back damaged");
-            texture->feedback_whole = true;
+            ask_for_all(s, texture, true);
             continue;
         }
-        texture->feedback_whole = false;
+        ask_for_all(s, texture, s->info.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
         SluiceResult result =
             give_map(s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
@@ -165,25 +172,42 @@ void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands
     }
 }
 
+static void list_items(SluiceVulkanStreamer *s, struct slc_readback_slot *slot, uint32_t share)
+{
+    slc_resolve_begin(&s->resolve, (uint32_t)(slot - s->readback.slots));
+    slot->item_count = 0;
+    slot->list_version = s->list_version;
+    slot->list_first = s->primary_cursor;
+    for (uint32_t i = 0; i < share; i++) {
+        uint32_t index = next_primary(s);
+        const struct slc_texture *texture = &s->textures[index];
+        /* The next frame clears what an older texture left in the regions of a new one; and those
+         * that came or went since the frame began may have shifted the turns. */
+        if (texture->added_frame == s->frame || !takes_part(s, index)) {
+            slot->list_version = 0;
+            continue;
+        }
+        if (!slc_resolve_add(&s->resolve, texture->region_first, texture->feedback.region_count,
+                             texture->feedback_whole ? SLUICE_RESOLVE_WHOLE : 0))
+            break; /* cannot be: there is room for all textures */
+        slot->items[slot->item_count++] = texture->id;
+    }
+    slot->list_end = s->primary_cursor;
+    slot->segment_count = s->resolve.segment_count;
+}
+
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     uint32_t share = share_of_frame(s);
     if (share == 0 || s->info.mapEverything)
         return;
     struct slc_readback_slot *slot = slc_readback_begin(&s->readback, s->frame, s->time_stamp);
-    slc_resolve_begin(&s->resolve, (uint32_t)(s->frame % s->info.framesInFlight));
-    for (uint32_t i = 0; i < share; i++) {
-        uint32_t index = next_primary(s);
-        const struct slc_texture *texture = &s->textures[index];
-        if (texture->added_frame == s->frame)
-            continue; /* the next frame clears what an older texture left in its regions */
-        if (!takes_part(s, index))
-            continue; /* others came or went since the frame began */
-        bool whole = texture->feedback_whole || s->info.wholeFeedbackMaps;
-        if (!slc_resolve_add(&s->resolve, texture->region_first, texture->feedback.region_count,
-                             whole ? SLUICE_RESOLVE_WHOLE : 0))
-            break; /* cannot be: there is room for all textures */
-        slot->items[slot->item_count++] = texture->id;
+    if (slot->list_version == s->list_version && slot->list_first == s->primary_cursor) {
+        slc_resolve_resume(&s->resolve, (uint32_t)(slot - s->readback.slots), slot->item_count,
+                           slot->segment_count);
+        s->primary_cursor = slot->list_end;
+    } else {
+        list_items(s, slot, share);
     }
     if (slot->item_count)
         slc_resolve_record(&s->resolve, &s->vk, commands,

@@ -51,7 +51,6 @@ struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uin
     assert(slot->frame == 0);
     slot->frame = frame;
     slot->time_stamp = time_stamp;
-    slot->item_count = 0;
     return slot;
 }
 

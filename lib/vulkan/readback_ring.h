@@ -12,8 +12,11 @@
 struct slc_readback_slot {
     uint64_t frame; ///< 0: empty
     uint64_t time_stamp;
-    uint32_t item_count;
-    SluiceTextureId *items; ///< part of slc_readback_ring.items
+    /** What was resolved into it last, which may be what is resolved into it next. */
+    uint32_t item_count, segment_count;
+    SluiceTextureId *items;        ///< part of slc_readback_ring.items
+    uint64_t list_version;         ///< SluiceVulkanStreamer.list_version at that time; 0: none
+    uint32_t list_first, list_end; ///< cursors before and after
 };
 
 /** In the buffer a slot is max_items results and then `capacity` words that they name. */
@@ -35,7 +38,7 @@ SluiceResult slc_readback_ring_init(struct slc_readback_ring *ring, const struct
 void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb);
 
-/** The slot of `frame`, which must have been read; empty from here on. */
+/** The slot of `frame`, which must have been read; its items are those of its last frame. */
 struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint64_t frame,
                                              uint64_t time_stamp);
 /** Words of the buffer: where the slot's results are, and where what they name is. */

@@ -197,8 +197,15 @@ static uint32_t first_record(const struct slc_resolve *r)
 
 void slc_resolve_begin(struct slc_resolve *resolve, uint32_t slot)
 {
+    slc_resolve_resume(resolve, slot, 0, 0);
+}
+
+void slc_resolve_resume(struct slc_resolve *resolve, uint32_t slot, uint32_t item_count,
+                        uint32_t segment_count)
+{
     resolve->slot = slot;
-    resolve->segment_count = resolve->item_count = 0;
+    resolve->item_count = item_count;
+    resolve->segment_count = segment_count;
 }
 
 bool slc_resolve_add(struct slc_resolve *resolve, uint32_t first_region, uint32_t region_count,

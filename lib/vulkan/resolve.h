@@ -48,6 +48,9 @@ void slc_resolve_record_new(const struct slc_resolve *resolve, const struct slc_
 
 /** Begins a frame's list of items in `slot`, which no frame under way uses. */
 void slc_resolve_begin(struct slc_resolve *resolve, uint32_t slot);
+/** Takes up the list that was made in `slot` last, which has these counts. */
+void slc_resolve_resume(struct slc_resolve *resolve, uint32_t slot, uint32_t item_count,
+                        uint32_t segment_count);
 /** The next item. `first_region` is a multiple of 4; flags SLUICE_RESOLVE_... False if the list is
  *  full, which it never is before max_items while no region is named twice. */
 bool slc_resolve_add(struct slc_resolve *resolve, uint32_t first_region, uint32_t region_count,

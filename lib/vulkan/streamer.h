@@ -106,6 +106,7 @@ struct SluiceVulkanStreamer {
     uint32_t texture_high;        ///< textures from here on were never used
     uint32_t *primaries;          ///< owned; textures whose feedback is read back
     uint32_t primary_count, primary_cursor;
+    uint64_t list_version;  ///< counts whatever makes lists of what to resolve out of date
     uint32_t *new_textures; ///< owned; added since the last frame
     uint32_t new_texture_count;
     uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING

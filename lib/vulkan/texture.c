@@ -93,6 +93,7 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
 
 static void add_primary(SluiceVulkanStreamer *s, uint32_t index)
 {
+    s->list_version++;
     s->textures[index].primary_place = s->primary_count;
     s->primaries[s->primary_count++] = index;
 }
@@ -102,6 +103,7 @@ static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
     uint32_t place = s->textures[index].primary_place;
     if (place == SLC_NONE)
         return;
+    s->list_version++;
     uint32_t last = s->primaries[--s->primary_count];
     s->primaries[place] = last;
     s->textures[last].primary_place = place;
