@@ -134,11 +134,11 @@ static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
         setting = "maxTextureCount";
     else if (slc_feedback_size(s, s->regions.size) > limit)
         setting = "maxRegionCount";
+    else if (slc_resolve_table_size(&resolve) > limit || slc_resolve_scratch_size(&resolve) > limit)
+        setting = "texturesPerFrame";
     else if (slc_readback_ring_size(s->info.framesInFlight, s->info.texturesPerFrame,
                                     s->info.feedbackReadbackSize / 4) > limit)
         setting = "feedbackReadbackSize";
-    else if (slc_resolve_table_size(&resolve) > limit || slc_resolve_scratch_size(&resolve) > limit)
-        setting = "texturesPerFrame";
     if (!setting)
         return SLUICE_SUCCESS;
     slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s needs a storage buffer beyond the %llu bytes of %s",

@@ -434,6 +434,9 @@ static void resolve_item(struct fake_vulkan *fake, uint32_t index, uint32_t *at)
         levels[i] = fake->want(fake->user, first + i);
         result.checksum += slc_resolve_weight(i) * (SLUICE_MIP_UNTOUCHED - (uint32_t)levels[i]);
     }
+    if (fake->damage_count && fake->damage_count--)
+        result.checksum ^= 1;
+    fake->whole_count += (item->flags & SLUICE_RESOLVE_WHOLE) != 0;
     memcpy(&words[fake->push.resultOffset + 4 * index], &result, sizeof result);
 }
 

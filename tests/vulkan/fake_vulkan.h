@@ -53,6 +53,8 @@ struct fake_vulkan {
     void *user;
     /** The feedback of one region, by its index in the feedback buffer. */
     uint8_t (*want)(void *user, uint32_t region);
+    uint32_t damage_count; ///< so many results that are resolved next have a wrong checksum
+    uint32_t whole_count;  ///< items of which the whole map was asked for
 
     struct fake_object *table, *readback; ///< buffers of the resolve passes
     struct SluiceResolveParams push;
