@@ -1,15 +1,17 @@
 #include "vulkan/readback_ring.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 
 #include <assert.h>
 #include <string.h>
 
 #define RESULT_WORDS 4u
 
+/* Whole results, so that those of the next slot are aligned. */
 static uint32_t slot_words(uint32_t max_items, uint32_t capacity)
 {
-    return RESULT_WORDS * max_items + capacity;
+    return RESULT_WORDS * (max_items + slc_div_up_u32(capacity, RESULT_WORDS));
 }
 
 uint64_t slc_readback_ring_size(uint32_t slot_count, uint32_t max_items, uint32_t capacity)

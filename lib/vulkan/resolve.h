@@ -56,9 +56,9 @@ void slc_resolve_resume(struct slc_resolve *resolve, uint32_t slot, uint32_t ite
 bool slc_resolve_add(struct slc_resolve *resolve, uint32_t first_region, uint32_t region_count,
                      uint32_t flags);
 /**
- * Resolves the items: results at word `result_offset` of the readback buffer, data from word
- * `data_offset` on, at most `capacity` words. With barriers to all that shaders did before and to
- * all that shaders and the host do later.
+ * Resolves the items: results at word `result_offset` of the readback buffer, a multiple of 4, data
+ * from word `data_offset` on, at most `capacity` words. With barriers to all that shaders did
+ * before and to all that shaders and the host do later.
  */
 void slc_resolve_record(const struct slc_resolve *resolve, const struct slc_vk *vk,
                         VkCommandBuffer commands, uint32_t result_offset, uint32_t data_offset,

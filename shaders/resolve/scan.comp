@@ -13,7 +13,8 @@ layout(local_size_x = GROUP) in;
 /* In: count and checksum per segment. Out: their sums over all segments before, one element more;
  * and per item where its data begins and its state. */
 layout(std430, binding = 3) coherent buffer Scratch { uvec2 sums[]; } scratch;
-layout(std430, binding = 4) writeonly buffer Readback { uint words[]; } readback;
+/* Whole results, because each store may be a transfer to the host. */
+layout(std430, binding = 4) writeonly buffer Readback { uvec4 results[]; } readback;
 
 shared uvec2 sums[GROUP];
 
@@ -84,11 +85,8 @@ void placeItems()
         at += result.count;
         if (result.count > 0u && at > params.capacity)
             result = SluiceResolveResult(SLUICE_RESOLVED_NOTHING, 0u, 0u, 0u);
-        uint word = params.resultOffset + i * 4u;
-        readback.words[word] = result.state;
-        readback.words[word + 1u] = result.count;
-        readback.words[word + 2u] = result.offset;
-        readback.words[word + 3u] = result.checksum;
+        readback.results[params.resultOffset / 4u + i] =
+            uvec4(result.state, result.count, result.offset, result.checksum);
         /* so that write.comp only has to add a segment's place to it */
         uint base = result.state == SLUICE_RESOLVED_CHANGES ? result.offset - firstChange : result.offset;
         scratch.sums[params.scratchItem + i] = uvec2(base, result.state);

@@ -60,7 +60,7 @@ struct SluiceResolveParams {
     uint itemCount;
     uint firstSegment; /* in the table, 16 bytes each */
     uint firstItem;    /* in the table, 16 bytes each */
-    uint resultOffset; /* words in the readback buffer */
+    uint resultOffset; /* words in the readback buffer, a multiple of 4 */
     uint dataOffset;   /* words in the readback buffer */
     uint capacity;     /* words from there on */
     uint scratchItem;  /* first place of the items in the scratch buffer, 8 bytes each */
