@@ -39,6 +39,12 @@ typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_SPARSE = 1 ///< sparse residency images
 } SluiceResidencyMode;
 
+/** What shaders write for each feedback region; their SLUICE_FEEDBACK_ENCODING must be the same. */
+typedef enum SluiceFeedbackEncoding {
+    SLUICE_FEEDBACK_ENCODING_LEVELS = 0, ///< a word with the finest level
+    SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< half a word with a bit per level; half the memory
+} SluiceFeedbackEncoding;
+
 /** What a device can do for Sluice, and what is known to be odd about it. */
 typedef struct SluiceVulkanDeviceCapabilities {
     bool sparse;                     ///< sparse residency 2D images and a queue that binds them
@@ -97,14 +103,34 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint64_t retryDelay;     ///< in the same unit, see manager.h
     bool mapEverything;      ///< every tile is wanted always: the fully resident truth
     uint32_t maxRegionCount; ///< feedback regions (tiles of level 0), at most 2^28; 0: 2^20
+    /**
+     * Bytes of resolved feedback that a frame can bring to the host: 4 per region that changed
+     * since its texture's turn before, at most 1 per region of a texture. Textures for which there
+     * is no room keep their marks and come first in a later frame. Must hold the map of any one
+     * texture. 0: maxRegionCount, with which there always is room, at most 2^22.
+     */
+    uint32_t feedbackReadbackSize;
+    /** Bring all of each map to the host instead of what changed. The decisions are the same; to
+     *  measure and to test with. */
+    bool wholeFeedbackMaps;
+    SluiceFeedbackEncoding feedbackEncoding;
+    /**
+     * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for the textures that are
+     * resolved at the end of the same frame: for the others that is one load and no arithmetic.
+     * What it costs: with N textures not in a set a texture collects marks in one frame of
+     * N / texturesPerFrame, not in all, so what few pixels see is noticed that many times later,
+     * and feedbackTimeout must be as much longer. Best where every visible pixel writes.
+     */
+    bool feedbackInTurns;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
  * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
  *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
  *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
- *         LIMIT_EXCEEDED if maxTextureCount or maxRegionCount need a storage buffer beyond the
- *         device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ *         LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
+ *         feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -149,8 +175,8 @@ typedef struct SluiceVulkanTexture {
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
  *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device
- * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what
- * the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount, maxRegionCount or
+ * feedbackReadbackSize; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
@@ -166,9 +192,10 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 
 /** The buffers that shaders need, as storage buffers; the same for the streamer's whole life. */
 typedef struct SluiceVulkanBuffers {
-    VkBuffer textureTable; ///< SluiceTextureEntry[maxTextureCount], read
-    VkBuffer feedback;     ///< uint[], read and written
-    VkBuffer minMip;       ///< uint[], read
+    VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
+    VkBuffer feedback;      ///< uint[], read and written
+    VkBuffer minMip;        ///< uint[], read
+    VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
 } SluiceVulkanBuffers;
 
 SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
@@ -210,9 +237,11 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
-    uint64_t feedbackMaps;     ///< read back and given to the manager
-    uint32_t loadsInFlight;    ///< reads not collected, and uploads not recorded
-    uint64_t deviceMemorySize; ///< bytes of heaps
+    uint64_t feedbackMaps;      ///< resolved and given to the manager
+    uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
+    uint64_t deviceMemorySize;  ///< bytes of heaps
+    uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
+    uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

@@ -123,7 +123,8 @@ static void barrier_after(SluiceVulkanStreamer *s, VkCommandBuffer commands,
 
 static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
-    s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE, SLUICE_MIP_UNTOUCHED);
+    s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE,
+                        slc_feedback_clear_value(s));
     s->vk.CmdFillBuffer(commands, s->min_mip.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
     s->vk.CmdFillBuffer(commands, s->texture_table.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
@@ -135,6 +136,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     if (!s->buffers_cleared)
         clear_buffers(s, commands);
     slc_textures_record_new(s, commands);
+    slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
     SluiceResult result = slc_tile_uploads_record(s, commands);
     if (result >= 0)

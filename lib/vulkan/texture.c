@@ -52,7 +52,12 @@ static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *te
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     }
     texture->region_count = (uint32_t)count;
-    return SLUICE_SUCCESS;
+    if ((count + 3) / 4 <= s->readback.capacity)
+        return SLUICE_SUCCESS;
+    slc_log(&s->info.log, SLUICE_LOG_ERROR,
+            "%s: its %llu feedback regions exceed feedbackReadbackSize",
+            texture->info.pName ? texture->info.pName : "image", (unsigned long long)count);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
 }
 
 static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *texture)
@@ -88,6 +93,7 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
 
 static void add_primary(SluiceVulkanStreamer *s, uint32_t index)
 {
+    s->list_version++;
     s->textures[index].primary_place = s->primary_count;
     s->primaries[s->primary_count++] = index;
 }
@@ -97,6 +103,7 @@ static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
     uint32_t place = s->textures[index].primary_place;
     if (place == SLC_NONE)
         return;
+    s->list_version++;
     uint32_t last = s->primaries[--s->primary_count];
     s->primaries[place] = last;
     s->textures[last].primary_place = place;
@@ -166,6 +173,7 @@ SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
     if (index == s->texture_high)
         s->texture_high++;
     s->by_manager_index[(uint32_t)texture->id] = index;
+    slc_feedback_add(s, texture);
     s->new_textures[s->new_texture_count++] = index;
     texture->primary_place = SLC_NONE;
     if (texture->primary_id == SLUICE_NO_TEXTURE)
@@ -278,9 +286,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         struct SluiceTextureEntry entry = table_entry(texture);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
-        if (s->buffers_cleared) /* else the whole buffer has just been filled */
-            s->vk.CmdFillBuffer(commands, s->feedback.buffer, (uint64_t)texture->region_first * 4,
-                                (uint64_t)texture->region_count * 4, SLUICE_MIP_UNTOUCHED);
+        slc_feedback_record_new(s, texture, commands);
     }
     s->new_texture_count = 0;
 }

@@ -7,6 +7,7 @@
 #ifndef TESTS_VULKAN_FAKE_VULKAN_H
 #define TESTS_VULKAN_FAKE_VULKAN_H
 
+#include <sluice/shared/resolve.h>
 #include <sluice/vulkan.h>
 
 #define FAKE_TILE 128u
@@ -52,9 +53,12 @@ struct fake_vulkan {
     void *user;
     /** The feedback of one region, by its index in the feedback buffer. */
     uint8_t (*want)(void *user, uint32_t region);
+    uint32_t damage_count; ///< so many results that are resolved next have a wrong checksum
+    uint32_t whole_count;  ///< items of which the whole map was asked for
 
-    struct fake_object *resolved; ///< the buffer of the second binding
-    uint32_t push[3];
+    struct fake_object *table, *readback; ///< buffers of the resolve passes
+    struct SluiceResolveParams push;
+    uint32_t dispatch_count;
 };
 
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);
