@@ -60,7 +60,8 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
 /**
  * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
  * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
- * and for what else he needs, which stays set. No extension is needed. `pLog` may be NULL.
+ * and for what else he needs, which stays set. No extension is needed. textureCompressionBC is set
+ * where the device has it, for the BC formats. `pLog` may be NULL.
  * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(

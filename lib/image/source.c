@@ -1,12 +1,24 @@
 #include <sluice/image.h>
 
-#include "base/checked.h"
+#include "image/format.h"
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {
     if (!source || !pInfo)
         return SLUICE_ERROR_NULL_POINTER;
     return source->pInterface->pfnGetInfo(source, pInfo);
+}
+
+/* Whole blocks; only the right and lower edge of a level may cut one. */
+static bool region_is_aligned(const SluiceImageRegion *region, const SluiceImageInfo *info,
+                              const SluiceFormatInfo *format)
+{
+    uint32_t right = region->x + region->width, bottom = region->y + region->height;
+    return region->x % format->blockWidth == 0 && region->y % format->blockHeight == 0 &&
+           (right % format->blockWidth == 0 ||
+            right == slc_mip_size(info->width, region->mipLevel)) &&
+           (bottom % format->blockHeight == 0 ||
+            bottom == slc_mip_size(info->height, region->mipLevel));
 }
 
 static bool region_is_inside(const SluiceImageRegion *region, const SluiceImageInfo *info)
@@ -28,9 +40,10 @@ SluiceResult sluiceReadImageRegion(SluiceImageSource *source, const SluiceImageR
     SluiceResult result = source->pInterface->pfnGetInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    size_t row;
-    if (!region_is_inside(pRegion, &info) ||
-        !slc_mul_size(pRegion->width, sluiceFormatTexelSize(info.format), &row) || rowPitch < row)
+    SluiceFormatInfo format;
+    if (sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS ||
+        !region_is_inside(pRegion, &info) || !region_is_aligned(pRegion, &info, &format) ||
+        rowPitch < slc_format_row_size(&format, pRegion->width))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     return source->pInterface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
 }

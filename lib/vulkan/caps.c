@@ -110,6 +110,8 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
     pFeatures->sparseBinding = VK_TRUE;
     pFeatures->sparseResidencyImage2D = VK_TRUE;
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
+    if (there.features.textureCompressionBC)
+        pFeatures->textureCompressionBC = VK_TRUE;
     pVulkan12->timelineSemaphore = VK_TRUE;
     return SLUICE_SUCCESS;
 }

@@ -49,10 +49,11 @@ SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_ca
 /* At least what the driver will say; it may not even be asked for more than it allows. */
 static uint64_t texel_bytes(const SluiceImageInfo *info)
 {
-    uint64_t texels = 0;
+    uint64_t size = 0;
     for (uint32_t level = 0; level < info->mipLevelCount; level++)
-        texels += (uint64_t)slc_mip_size(info->width, level) * slc_mip_size(info->height, level);
-    return texels * sluiceFormatTexelSize(info->format);
+        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                       slc_mip_size(info->height, level));
+    return size;
 }
 
 static const char *check_format(const struct slc_vk *vk, const struct slc_caps *caps,

@@ -18,6 +18,9 @@ struct slc_sparse_layout {
     bool uneven;                             ///< some level's size is not twice the next one's
 };
 
+/** The extent of a tile in texels: the granularity, or what a driver means that counts blocks. */
+VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity);
+
 /**
  * `metadata` may be NULL. Errors: UNSUPPORTED if the driver's tiles are not 64 KiB pages, or the
  * image is larger than `address_space_size`.

@@ -59,8 +59,10 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
 {
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     texture->packed_first_unit = SLC_NONE;
-    SluiceResult result = slc_packed_units_init(
-        &texture->packed, &s->cb, desc, sluiceFormatTexelSize(texture->info.format), SLC_TILE_SIZE);
+    SluiceFormatInfo format;
+    SluiceResult result = sluiceGetFormatInfo(texture->info.format, &format);
+    if (result == SLUICE_SUCCESS)
+        result = slc_packed_units_init(&texture->packed, &s->cb, desc, &format, SLC_TILE_SIZE);
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {

@@ -75,9 +75,9 @@ static SluiceResult upload_texture(SluiceVulkanStreamer *s, VkCommandBuffer comm
         struct slc_unit *unit = &s->units[units[i]];
         uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
         for (uint32_t j = copy_count; j < copy_count + added; j++)
-            s->counts.bytesUploaded += (uint64_t)s->copies[j].imageExtent.width *
-                                       s->copies[j].imageExtent.height *
-                                       sluiceFormatTexelSize(s->textures[texture].info.format);
+            s->counts.bytesUploaded += sluiceFormatRegionSize(s->textures[texture].info.format,
+                                                              s->copies[j].imageExtent.width,
+                                                              s->copies[j].imageExtent.height);
         copy_count += added;
         assert(copy_count <= s->copy_capacity);
         if (unit->packed_unit == SLC_NONE) {
