@@ -211,6 +211,8 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
+    uint64_t unbinds;          ///< tiles whose page was taken away
+    uint64_t unbindsSaved;     ///< unmapped tiles that were bound again, or gone, before that
     uint64_t feedbackMaps;     ///< read back and given to the manager
     uint32_t loadsInFlight;    ///< reads not collected, and uploads not recorded
     uint64_t deviceMemorySize; ///< bytes of heaps

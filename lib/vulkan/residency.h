@@ -69,6 +69,7 @@ struct slc_residency_interface {
 /** What is counted for the public statistics. */
 struct slc_residency_counters {
     uint64_t bind_calls, bind_runs, device_memory_size;
+    uint64_t unbinds, unbinds_saved; ///< tiles
 };
 
 /** The first member of every implementation's own struct. */

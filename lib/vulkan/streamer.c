@@ -291,6 +291,8 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
     const struct slc_residency_counters *counters = &streamer->residency->counters;
     pStatistics->bindCalls = counters->bind_calls;
     pStatistics->bindRuns = counters->bind_runs;
+    pStatistics->unbinds = counters->unbinds;
+    pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->deviceMemorySize = counters->device_memory_size;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;

@@ -231,7 +231,10 @@ static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory me
     (void)cb;
     if (!memory)
         return;
-    fake_of(device)->live_memory -= OBJECT(memory)->size;
+    struct fake_vulkan *fake = fake_of(device);
+    fake->live_memory -= OBJECT(memory)->size;
+    if (fake->freed_count < FAKE_EVENTS)
+        fake->freed_memories[fake->freed_count++] = memory;
     free(OBJECT(memory)->memory);
     drop(fake_of(device), memory);
 }

@@ -39,7 +39,8 @@ struct fake_vulkan {
     struct fake_bind binds[FAKE_EVENTS];
     struct fake_copy copies[FAKE_EVENTS];
     VkImage destroyed_images[FAKE_EVENTS];
-    uint32_t bind_count, copy_count, destroyed_count, bind_calls;
+    VkDeviceMemory freed_memories[FAKE_EVENTS];
+    uint32_t bind_count, copy_count, destroyed_count, freed_count, bind_calls;
     bool published; ///< copies to images are over: MinMip maps were copied
 
     /** The call that fails, counted from 1 among those that may; 0: none. And with what. */

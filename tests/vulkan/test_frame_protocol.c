@@ -3,7 +3,8 @@
  * - texels are copied only into tiles whose binding is over,
  * - MinMip maps show only tiles that are bound and were copied to since,
  * - no binding of a tile changes, and no image goes, while a frame that may read it is incomplete,
- * - no page belongs to two tiles.
+ * - no page belongs to two tiles,
+ * - memory goes only when nothing is bound to it any more, and nothing under way was.
  */
 #include "vulkan/fake_vulkan.h"
 
@@ -17,8 +18,9 @@ enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
 struct tile {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
     uint64_t offset;
-    uint64_t batch; ///< of the last change
-    bool copied;    ///< since it was bound
+    uint64_t batch;        ///< of the last change
+    VkDeviceMemory before; ///< that change
+    bool copied;           ///< since it was bound
 };
 
 struct texture {
@@ -37,7 +39,7 @@ struct model {
     SluiceVulkanStreamer *streamer;
     struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
     uint64_t frame;
-    uint64_t applied_batch;
+    uint32_t heaps_freed;
     uint32_t window; ///< seed of what the camera sees
 };
 
@@ -143,7 +145,8 @@ static void take_binds(struct model *m)
         check_unseen(m, t, index);
         struct tile *tile = &t->tiles[index];
         assert_true(tile->batch < m->fake.submitted_bind_value); /* once in a batch */
-        *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value, false};
+        *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value,
+                              tile->memory, false};
     }
     assert_true(m->fake.bind_calls <= 1);
     for (uint32_t i = 0; i < m->fake.bind_count; i++) { /* when all of them are done */
@@ -151,6 +154,20 @@ static void take_binds(struct model *m)
         const struct texture *t = find_image(m, bind->image);
         check_page(m, &t->tiles[tile_index(t, bind->level, bind->x, bind->y)]);
     }
+}
+
+/* Images that are gone have been taken out before. */
+static void take_freed(struct model *m)
+{
+    for (uint32_t f = 0; f < m->fake.freed_count; f++)
+        for (uint32_t i = 0; i < 2 * TEXTURES; i++)
+            for (uint32_t j = 0; j < m->textures[i].layout.tileCount; j++) {
+                const struct tile *tile = &m->textures[i].tiles[j];
+                assert_true(tile->memory != m->fake.freed_memories[f]);
+                assert_true(tile->before != m->fake.freed_memories[f] ||
+                            tile->batch <= m->fake.bind_value);
+            }
+    m->heaps_freed += m->fake.freed_count;
 }
 
 static void check_copied_into(const struct model *m, const struct tile *tile)
@@ -209,7 +226,8 @@ static uint64_t advance(uint64_t value, uint64_t end)
 static uint32_t model_frame(struct model *m, uint64_t time)
 {
     struct fake_vulkan *fake = &m->fake;
-    fake->bind_count = fake->copy_count = fake->destroyed_count = fake->bind_calls = 0;
+    fake->bind_count = fake->copy_count = fake->destroyed_count = 0;
+    fake->freed_count = fake->bind_calls = 0;
     fake->published = false;
     fake->frame_value = advance(fake->frame_value, m->frame);
     if (rand() % 4 == 0) /* slow at times, so that batches pile up */
@@ -227,6 +245,7 @@ static uint32_t model_frame(struct model *m, uint64_t time)
     fake->frame_semaphore = frame.semaphore;
     m->frame = frame.frameIndex;
     take_destroyed(m);
+    take_freed(m); /* before the binds of this frame */
     take_binds(m);
     take_copies(m);
     uint32_t visible = take_visible(m);
@@ -244,6 +263,18 @@ static void remove_any(struct model *m)
     t->removed = true;
     t->removed_frame = m->frame;
     model_add(m);
+}
+
+/* As an application does that wants its memory back; some of it is needed again at once. */
+static void release_heaps(struct model *m)
+{
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    uint32_t heaps[8], count = 8;
+    CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
+    SluiceResult result = sluiceGetEmptyHeaps(manager, &count, heaps);
+    assert_true(result >= 0);
+    for (uint32_t i = 0; i < count; i++)
+        CHECK_OK(sluiceReleaseHeap(manager, heaps[i]));
 }
 
 static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps, unsigned seed)
@@ -272,12 +303,17 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
             m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
         if (step % 50 == 0)
             remove_any(m);
+        if (step % 7 == 0)
+            release_heaps(m);
         shown += model_frame(m, step);
     }
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
     assert_true(shown > 10000);
     assert_true(stats.tilesUnmapped > 50);
+    assert_true(stats.unbinds + stats.unbindsSaved > 50);
+    assert_true(stats.unbindsSaved > 0);
+    assert_true(heaps == 0 || m->heaps_freed > 0);
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
     sluiceDestroyVulkanStreamer(m->streamer);
