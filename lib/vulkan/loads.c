@@ -284,8 +284,21 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
     }
 }
 
+/* Before anything is read for it: the tile cannot ever be bound. */
+static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    s->counts.tilesFailed++;
+    return slc_streamer_check(s,
+                              sluiceReportFailedTiles(s->manager, s->textures[texture].id, 1,
+                                                      &tile->tileIndex, s->manager_time),
+                              "sluiceReportFailedTiles");
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
+    const struct slc_residency_interface *interface = s->residency->interface;
+    if (interface->reserve && !interface->reserve(s->residency, texture, tile))
+        return refuse_tile(s, texture, tile);
     uint32_t unit = unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_tile_map_add(&s->tile_units, slc_tile_key(texture, tile->tileIndex), unit);

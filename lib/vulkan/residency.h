@@ -36,6 +36,9 @@ struct slc_residency_interface {
     /** True when no change of it is pending or under way. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
 
+    /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
+    bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+
     /** As SluiceHeapAllocator. */
     SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
                                   uint32_t *heap_id);
@@ -84,7 +87,8 @@ struct slc_residency_create_info {
     const SluiceAllocationCallbacks *cb;
     VkQueue sparse_queue;
     uint32_t max_image_count;
-    uint32_t max_changes; ///< maps and unmaps per frame
+    uint32_t max_changes;       ///< maps and unmaps per frame
+    uint32_t max_touched_tiles; ///< 0: no limit
 };
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,

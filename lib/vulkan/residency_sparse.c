@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
 #include "vulkan/page_table.h"
@@ -44,6 +45,8 @@ struct sparse_residency {
     uint32_t max_image_count, max_changes;
     struct slc_device_heaps heaps;
     struct slc_sparse_image *images; ///< owned
+    struct slc_touch_budget touched;
+    bool told_of_touched;
 
     struct pending_unmap *pending; ///< owned ring, oldest first, frames never decrease
     uint32_t pending_first, pending_count, pending_capacity;
@@ -79,6 +82,44 @@ static uint64_t place_key(uint32_t index, struct slc_tile_place place)
     return (uint64_t)index << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
 }
 
+static void destroy_image(struct slc_residency *residency, uint32_t index)
+{
+    struct sparse_residency *s = sparse(residency);
+    slc_page_table_drop_image(&s->pages, index);
+    slc_touched_tiles_finish(&s->images[index].touched, s->cb, &s->touched);
+    slc_sparse_image_destroy(&s->images[index], s->vk);
+}
+
+/* Packed tiles are needed always, so they count from the beginning. */
+static SluiceResult reserve_packed(struct sparse_residency *s, struct slc_sparse_image *image,
+                                   const SluiceImageInfo *info)
+{
+    SluiceStreamedTextureLayout layout;
+    SluiceResult result = sluiceGetStreamedTextureLayout(&image->layout.desc, &layout);
+    if (result == SLUICE_SUCCESS)
+        result = slc_touched_tiles_init(&image->touched, s->cb, &s->touched, layout.tileCount,
+                                        layout.regularTileCount);
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        slc_log(&s->vk->log, SLUICE_LOG_ERROR,
+                "%s: %u of %u tiles were bound, which is all %s bears",
+                info->pName ? info->pName : "image", s->touched.count, s->touched.limit,
+                s->caps->public.deviceName);
+    return result;
+}
+
+static bool reserve(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    if (slc_touched_tiles_touch(&s->images[index].touched, &s->touched, tile->tileIndex))
+        return true;
+    if (!s->told_of_touched)
+        slc_log(&s->vk->log, SLUICE_LOG_WARNING,
+                "%u different tiles were bound, %s bears no more: textures stay coarser",
+                s->touched.count, s->caps->public.deviceName);
+    s->told_of_touched = true;
+    return false;
+}
+
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
                                  const SluiceImageInfo *info, struct slc_residency_image *image)
 {
@@ -87,18 +128,15 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     assert(!sparse_image->image);
     SluiceResult result =
         slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info);
-    if (result != SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS)
+        result = reserve_packed(s, sparse_image, info);
+    if (result != SLUICE_SUCCESS) {
+        destroy_image(residency, index);
         return result;
+    }
     *image = (struct slc_residency_image){sparse_image->image, sparse_image->layout.desc,
                                           sparse_image->layout.uneven};
     return SLUICE_SUCCESS;
-}
-
-static void destroy_image(struct slc_residency *residency, uint32_t index)
-{
-    struct sparse_residency *s = sparse(residency);
-    slc_page_table_drop_image(&s->pages, index);
-    slc_sparse_image_destroy(&s->images[index], s->vk);
 }
 
 static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
@@ -410,9 +448,9 @@ static void destroy(struct slc_residency *residency)
 {
     struct sparse_residency *s = sparse(residency);
     const SluiceAllocationCallbacks *cb = s->cb;
-    if (s->images)
+    if (s->images && s->pages.first_pages)
         for (uint32_t i = 0; i < s->max_image_count; i++)
-            slc_sparse_image_destroy(&s->images[i], s->vk);
+            destroy_image(residency, i);
     slc_device_heaps_finish(&s->heaps, s->vk, cb);
     s->vk->DestroySemaphore(s->vk->device, s->semaphore, NULL);
     uint32_t capacity = s->list.capacity, page_capacity = capacity + s->max_image_count;
@@ -434,6 +472,7 @@ static const struct slc_residency_interface sparse_interface = {
     .create_image = create_image,
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
+    .reserve = reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,
@@ -495,6 +534,7 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     s->queue = info->sparse_queue;
     s->max_image_count = info->max_image_count;
     s->max_changes = info->max_changes;
+    s->touched.limit = info->max_touched_tiles;
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = create_semaphore(s);

@@ -3,25 +3,25 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
+#include "vulkan/format_caps.h"
 
 #define MAX_ASPECTS 4u
 
 static VkImageCreateInfo image_create_info(VkFormat format, uint32_t width, uint32_t height,
                                            uint32_t level_count)
 {
-    return (VkImageCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .flags = VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = format,
-        .extent = {width, height, 1},
-        .mipLevels = level_count,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+    return (VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .flags = SLC_IMAGE_SPARSE_FLAGS,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {width, height, 1},
+                               .mipLevels = level_count,
+                               .arrayLayers = 1,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = SLC_IMAGE_USAGE,
+                               .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                               .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
 }
 
 SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,
@@ -57,25 +57,20 @@ static uint64_t texel_bytes(const SluiceImageInfo *info)
 }
 
 static const char *check_format(const struct slc_vk *vk, const struct slc_caps *caps,
-                                const VkImageCreateInfo *info, const SluiceImageInfo *image)
+                                const SluiceImageInfo *image)
 {
-    VkImageFormatProperties limits;
-    if (info->format == VK_FORMAT_UNDEFINED)
+    SluiceVulkanFormatCapabilities format;
+    if (slc_vk_format(image->format) == VK_FORMAT_UNDEFINED)
         return "has no Vulkan format";
-    if (vk->GetPhysicalDeviceImageFormatProperties(vk->physical_device, info->format,
-                                                   info->imageType, info->tiling, info->usage,
-                                                   info->flags, &limits) != VK_SUCCESS)
+    slc_format_caps_init(&format, vk, image->format);
+    if (!format.tileWidth)
         return "is not available as a sparse image";
-    uint32_t count = 0;
-    vk->GetPhysicalDeviceSparseImageFormatProperties(vk->physical_device, info->format,
-                                                     info->imageType, info->samples, info->usage,
-                                                     info->tiling, &count, NULL);
-    if (count == 0)
-        return "is not available as a sparse image";
-    if (info->extent.width > limits.maxExtent.width ||
-        info->extent.height > limits.maxExtent.height || info->mipLevels > limits.maxMipLevels)
+    if (!format.sparse)
+        return "has tiles that are not pages of 64 KiB";
+    if (image->width > format.maxWidth || image->height > format.maxHeight ||
+        image->mipLevelCount > format.maxMipLevelCount)
         return "is larger than the device allows";
-    if (texel_bytes(image) > limits.maxResourceSize ||
+    if (texel_bytes(image) > format.maxImageSize ||
         texel_bytes(image) > caps->public.sparseAddressSpaceSize)
         return "is larger than the sparse address space";
     return NULL;
@@ -117,7 +112,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
     *image = (struct slc_sparse_image){0};
     VkImageCreateInfo create = image_create_info(slc_vk_format(info->format), info->width,
                                                  info->height, info->mipLevelCount);
-    const char *trouble = check_format(vk, caps, &create, info);
+    const char *trouble = check_format(vk, caps, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (!trouble) {
         result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),
@@ -149,4 +144,64 @@ void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_v
     vk->DestroyImage(vk->device, image->image, NULL);
     vk->FreeMemory(vk->device, image->metadata, NULL);
     *image = (struct slc_sparse_image){0};
+}
+
+static void describe(SluiceVulkanSparseImageLayout *out, const struct slc_vk *vk,
+                     const struct slc_sparse_image *image)
+{
+    const struct slc_sparse_layout *layout = &image->layout;
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image->image, &memory);
+    *out = (SluiceVulkanSparseImageLayout){
+        .mipLevelCount = layout->desc.mipLevelCount,
+        .tileWidth = layout->desc.tileWidth,
+        .tileHeight = layout->desc.tileHeight,
+        .regularMipCount = layout->desc.regularMipCount,
+        .packedTileCount = layout->desc.packedTileCount,
+        .driverTail = layout->opaque_tail,
+        .tailSize = layout->tail_size,
+        .metadataSize = layout->metadata_size,
+        .imageSize = memory.size,
+        .alignment = memory.alignment,
+        .memoryTypeBits = memory.memoryTypeBits,
+    };
+}
+
+SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDevice physicalDevice,
+                                              VkDevice device,
+                                              PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
+                                              const SluiceLogCallback *pLog,
+                                              const SluiceImageInfo *pImage,
+                                              SluiceVulkanSparseImageLayout *pLayout)
+{
+    if (!instance || !physicalDevice || !device || !pfnGetInstanceProcAddr || !pImage || !pLayout)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pImage->width == 0 || pImage->height == 0)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_vk vk;
+    struct slc_caps caps;
+    struct slc_sparse_image image;
+    uint32_t memory_type;
+    SluiceImageInfo info = *pImage;
+    info.mipLevelCount = slc_mip_count(slc_max_u32(info.width, info.height));
+    SluiceResult result =
+        slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
+    if (result == SLUICE_SUCCESS)
+        result = slc_vk_init_device(&vk, device);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_caps_init(&caps, &vk);
+    if (!caps.public.sparse) {
+        slc_log(pLog, SLUICE_LOG_ERROR, "%s has no sparse residency of 2D images",
+                caps.public.deviceName);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    result = slc_sparse_memory_type(&vk, &caps, &memory_type);
+    if (result == SLUICE_SUCCESS)
+        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    describe(pLayout, &vk, &image);
+    slc_sparse_image_destroy(&image, &vk);
+    return SLUICE_SUCCESS;
 }

@@ -4,14 +4,16 @@
 
 #include "vulkan/caps.h"
 #include "vulkan/sparse_layout.h"
+#include "vulkan/touched_tiles.h"
 
 struct slc_sparse_image {
     VkImage image;
     struct slc_sparse_layout layout;
     VkDeviceMemory metadata; ///< owned; VK_NULL_HANDLE where there is none
     bool metadata_bound;
-    uint64_t last_value;  ///< of the last batch that names it
-    uint32_t unmap_count; ///< not yet in a batch
+    struct slc_touched_tiles touched; ///< the residency's business
+    uint64_t last_value;              ///< of the last batch that names it
+    uint32_t unmap_count;             ///< not yet in a batch
 };
 
 /** Errors: UNSUPPORTED with a message that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY. */

@@ -59,6 +59,8 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .sparse_queue = s->info.sparseQueue,
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
+        .max_touched_tiles =
+            s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
     };
     return slc_create_sparse_residency(&info, &s->residency);
 }

@@ -119,6 +119,13 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
         .queueCount = 1};
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
+                                                      VkFormatProperties *properties)
+{
+    (void)device, (void)format;
+    *properties = (VkFormatProperties){0};
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
                                                  VkImageType type, VkImageTiling tiling,
                                                  VkImageUsageFlags usage, VkImageCreateFlags flags,
@@ -137,7 +144,9 @@ static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkF
                                                     VkSparseImageFormatProperties *properties)
 {
     (void)device, (void)format, (void)type, (void)samples, (void)usage, (void)tiling;
-    (void)properties;
+    if (properties && *count)
+        properties[0] = (VkSparseImageFormatProperties){
+            VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0};
     *count = 1;
 }
 
@@ -488,6 +497,7 @@ static const struct {
 } functions[] = {
     ENTRY(GetDeviceProcAddr, get_device_function),
     ENTRY(GetPhysicalDeviceFeatures2, get_features),
+    ENTRY(GetPhysicalDeviceFormatProperties, get_format_features),
     ENTRY(GetPhysicalDeviceImageFormatProperties, get_format),
     ENTRY(GetPhysicalDeviceMemoryProperties, get_memory),
     ENTRY(GetPhysicalDeviceProperties2, get_properties),

@@ -1,0 +1,223 @@
+/* Sparse images of all kinds of sizes, and what a device says of them and can bear. */
+#include "device/scene.h"
+
+#include "base/checked.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+
+static SluiceVulkanStreamerCreateInfo sparse_info(void)
+{
+    return (SluiceVulkanStreamerCreateInfo){.residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+                                            .feedbackTimeout = 100};
+}
+
+static const SluiceFormat rgba8 = SLUICE_FORMAT_R8G8B8A8_UNORM;
+
+/* A corner and the opposite one, so that first and last tiles of the finest levels come. */
+static void aim_at_corners(struct scene *scene, uint32_t t, const SluiceImageInfo *info)
+{
+    struct ProbeInput *inputs = scene_inputs(scene, t);
+    double width = 60.0 / info->width, height = 60.0 / info->height;
+    struct scene_aim aim = {0, 0, width < 1 ? width : 1, height < 1 ? height : 1, 0, 1, 0, 0};
+    scene_aim(scene, t, 32, &aim);
+    struct ProbeInput near[16];
+    for (uint32_t i = 0; i < 16; i++)
+        near[i] = inputs[i];
+    aim.left = 1 - aim.width;
+    aim.top = 1 - aim.height;
+    scene_aim(scene, t, 32, &aim);
+    for (uint32_t i = 0; i < 16; i++)
+        inputs[i] = near[i];
+}
+
+static void check_sizes(struct harness *h, const uint32_t (*sizes)[2], uint32_t count,
+                        SluiceFormat format)
+{
+    struct scene scene;
+    SluiceVulkanStreamerCreateInfo info = sparse_info();
+    info.tilesPerFrame = 64;
+    scene_init(&scene, h, info);
+    srand(5);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t t =
+            scene_add(&scene, pattern_source(PATTERN_LEVEL, sizes[i][0], sizes[i][1], format));
+        aim_at_corners(&scene, t, &scene.textures[t].info);
+    }
+    scene_settle(&scene, 20);
+    scene_check_levels(&scene);
+    assert_int_equal(scene_missing(&scene), 0);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+}
+
+static void smallest_and_odd_sizes_are_streamed(void **state)
+{
+    static const uint32_t sizes[][2] = {{1, 1},     {2, 1},       {1, 3},       {127, 129},
+                                        {128, 128}, {129, 127},   {255, 1023},  {1000, 1000},
+                                        {1, 5000},  {4097, 3001}, {16384, 128}, {64, 8192}};
+    check_sizes(*state, sizes, sizeof sizes / sizeof sizes[0], rgba8);
+}
+
+static void sizes_up_to_the_limit_are_streamed(void **state)
+{
+    struct harness *h = *state;
+    SluiceVulkanFormatCapabilities format;
+    CHECK_OK(sluiceGetVulkanFormatCapabilities(h->instance, h->physical_device, h->get,
+                                               SLUICE_FORMAT_R8_UNORM, &format));
+    uint32_t width = format.maxWidth, height = format.maxHeight;
+    const uint32_t sizes[][2] = {
+        {width, height}, {width, 1}, {1, height}, {width - 1, height / 2 + 3}};
+    check_sizes(h, sizes, 4, SLUICE_FORMAT_R8_UNORM);
+    struct scene scene;
+    scene_init(&scene, h, sparse_info());
+    h->quiet = true;
+    const uint32_t beyond[][2] = {{width + 1, 1}, {1, height + 1}, {2 * width, 2 * height}};
+    for (uint32_t i = 0; i < 3; i++) {
+        SluiceImageSource *source =
+            pattern_source(PATTERN_LEVEL, beyond[i][0], beyond[i][1], SLUICE_FORMAT_R8_UNORM);
+        SluiceVulkanTexture texture;
+        CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer,
+                                            &(SluiceVulkanTextureCreateInfo){.source = source},
+                                            &texture),
+                     SLUICE_ERROR_UNSUPPORTED);
+        sluiceDestroyImageSource(source);
+    }
+    h->quiet = false;
+    scene_finish(&scene);
+}
+
+/* What the format says is what an image gets; and the arithmetic of tails holds everywhere. */
+static void layouts_agree_with_formats(void **state)
+{
+    struct harness *h = *state;
+    static const uint32_t sizes[][2] = {{1, 1}, {1024, 1024}, {1000, 600}, {8192, 64}};
+    uint32_t sparse_count = 0;
+    for (uint32_t f = 1; f < SLUICE_FORMAT_COUNT; f++) {
+        SluiceVulkanFormatCapabilities format;
+        CHECK_OK(sluiceGetVulkanFormatCapabilities(h->instance, h->physical_device, h->get,
+                                                   (SluiceFormat)f, &format));
+        sparse_count += format.sparse;
+        for (uint32_t s = 0; s < 4 && format.sparse; s++) {
+            SluiceImageInfo info = {sizes[s][0], sizes[s][1], 0, (SluiceFormat)f, "probe"};
+            SluiceVulkanSparseImageLayout layout;
+            CHECK_OK(sluiceGetVulkanSparseImageLayout(h->instance, h->physical_device, h->device,
+                                                      h->get, NULL, &info, &layout));
+            assert_int_equal(layout.tileWidth, format.tileWidth);
+            assert_int_equal(layout.tileHeight, format.tileHeight);
+            assert_int_equal(
+                sluiceFormatRegionSize((SluiceFormat)f, layout.tileWidth, layout.tileHeight),
+                65536);
+            assert_true(layout.regularMipCount <= layout.mipLevelCount);
+            assert_true(layout.packedTileCount > 0 ||
+                        layout.regularMipCount == layout.mipLevelCount);
+            if (layout.driverTail)
+                assert_true(layout.tailSize <= layout.packedTileCount * 65536ull);
+            else
+                assert_int_equal(layout.packedTileCount,
+                                 layout.mipLevelCount - layout.regularMipCount);
+        }
+    }
+    assert_true(sparse_count >= 6); /* what Vulkan demands of a device with sparse residency */
+    harness_check_silence(h);
+}
+
+static void capabilities_make_sense(void **state)
+{
+    struct harness *h = *state;
+    const SluiceVulkanDeviceCapabilities *caps = &h->caps;
+    assert_true(caps->sparse && caps->timelineSemaphore && caps->fragmentStoresAndAtomics);
+    assert_true(caps->maxImageExtent >= 4096 && caps->maxImageArrayLayers >= 256);
+    assert_true(caps->sparseQueueCount >= 1);
+    assert_true(caps->deviceLocalMemorySize > 0);
+    assert_true(caps->driverName[0] != '\0');
+    assert_true(caps->shaderResourceResidency || !caps->residencyCodesExact);
+    if (caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+        assert_false(caps->residencyCodesExact);
+        assert_in_range(caps->maxTouchedTiles, 1, UINT32_MAX);
+    } else {
+        assert_int_equal(caps->maxTouchedTiles, 0);
+    }
+}
+
+/* As many tiles as the device bears, and no more; the rest stays coarse, and nothing waits. */
+static void textures_stay_coarse_where_no_more_tiles_are_borne(void **state)
+{
+    struct harness *h = *state;
+    struct scene scene;
+    SluiceVulkanStreamerCreateInfo info = sparse_info();
+    info.maxTouchedTiles = 40;
+    scene_init(&scene, h, info);
+    srand(6);
+    h->quiet = true;
+    const struct scene_aim everywhere = {0, 0, 1, 1, 0, 3, 0, 0};
+    uint32_t t = scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, rgba8));
+    scene_aim(&scene, t, 128, &everywhere);
+    scene_settle(&scene, 30);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_int_equal(stats.manager.mappedTileCount, 40);
+    assert_int_equal(stats.loadsInFlight, 0);
+    assert_true(stats.tilesFailed > 0);
+    assert_true(scene_missing(&scene) > 0);
+    scene_check_levels(&scene);
+    assert_int_equal(scene_non_resident(&scene), 0);
+
+    SluiceImageSource *source = pattern_source(PATTERN_LEVEL, 64, 64, rgba8);
+    SluiceVulkanTextureCreateInfo create = {.source = source};
+    SluiceVulkanTexture texture;
+    CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &create, &texture),
+                 SLUICE_ERROR_LIMIT_EXCEEDED);
+    scene_remove(&scene, t);
+    scene_settle(&scene, 8);
+    CHECK_OK(sluiceAddVulkanTexture(scene.streamer, &create, &texture)); /* there is room again */
+    h->quiet = false;
+    scene_finish(&scene);
+    sluiceDestroyImageSource(source);
+}
+
+/* Unmapped tiles that come back, with nothing else in between, cost no unbind. */
+static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
+{
+    struct scene scene;
+    SluiceVulkanStreamerCreateInfo info = sparse_info();
+    info.feedbackTimeout = 3;
+    scene_init(&scene, *state, info);
+    srand(7);
+    uint32_t t = scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, rgba8));
+    const struct scene_aim fine = {0, 0, 0.5, 0.5, 0, 0.5, 0, 0}, coarse = {0, 0, 1, 1, 3, 4, 0, 0};
+    for (uint32_t round = 0; round < 4; round++) {
+        scene_aim(&scene, t, 64, round % 2 ? &coarse : &fine);
+        scene_settle(&scene, 20);
+        CHECK_OK(sluiceTrimStandbyTiles(sluiceGetVulkanStreamerManager(scene.streamer), 0));
+        scene_settle(&scene, 6);
+        scene_check_levels(&scene);
+        assert_int_equal(scene_missing(&scene), 0);
+    }
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_true(stats.tilesUnmapped > 40);
+    assert_true(stats.unbindsSaved > 20);
+    assert_true(stats.unbinds + stats.unbindsSaved <= stats.tilesUnmapped);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+}
+
+int main(void)
+{
+    struct harness h;
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    struct CMUnitTest tests[] = {
+        cmocka_unit_test(capabilities_make_sense),
+        cmocka_unit_test(layouts_agree_with_formats),
+        cmocka_unit_test(smallest_and_odd_sizes_are_streamed),
+        cmocka_unit_test(sizes_up_to_the_limit_are_streamed),
+        cmocka_unit_test(textures_stay_coarse_where_no_more_tiles_are_borne),
+        cmocka_unit_test(tiles_that_come_back_to_their_pages_need_no_unbind),
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
+        tests[i].initial_state = &h;
+    return harness_finish(&h, RUN_TESTS(tests));
+}
