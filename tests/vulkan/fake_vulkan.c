@@ -189,8 +189,12 @@ static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage i
     uint32_t tail = 0;
     while (object->extent.width >> tail > FAKE_TILE || object->extent.height >> tail > FAKE_TILE)
         tail++;
-    *count = 1;
-    *requirements = (VkSparseImageMemoryRequirements){
+    *count = fake->metadata_size ? 2 : 1;
+    requirements[1] = (VkSparseImageMemoryRequirements){
+        .formatProperties = {VK_IMAGE_ASPECT_METADATA_BIT, {0}, 0},
+        .imageMipTailSize = fake->metadata_size,
+        .imageMipTailOffset = 1ull << 31};
+    requirements[0] = (VkSparseImageMemoryRequirements){
         .formatProperties = {VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0},
         .imageMipTailFirstLod = fake->tail_page_count ? tail : object->level_count,
         .imageMipTailSize = fake->tail_page_count * 65536ull,
@@ -342,6 +346,13 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
     for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
         for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
             const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
+            if (b->flags & VK_SPARSE_MEMORY_BIND_METADATA_BIT) {
+                assert_int_equal(b->resourceOffset, 1ull << 31);
+                assert_int_equal(b->size, fake->metadata_size);
+                assert_true(b->memory != VK_NULL_HANDLE);
+                fake->metadata_binds++;
+                continue;
+            }
             assert_int_equal(b->size, 65536);
             uint32_t page = (uint32_t)((b->resourceOffset - (1ull << 30)) / 65536);
             note_bind(fake, &(struct fake_bind){info->pImageOpaqueBinds[i].image, FAKE_TAIL, page,

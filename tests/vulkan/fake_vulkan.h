@@ -28,6 +28,8 @@ struct fake_copy {
 
 struct fake_vulkan {
     uint32_t tail_page_count; ///< 0: no tail
+    uint64_t metadata_size;   ///< of every image; 0: none
+    uint64_t metadata_binds;
 
     /** What the two timelines stand at; the test sets them. */
     uint64_t frame_value, bind_value;

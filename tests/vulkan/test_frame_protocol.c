@@ -39,7 +39,7 @@ struct model {
     SluiceVulkanStreamer *streamer;
     struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
     uint64_t frame;
-    uint32_t heaps_freed;
+    uint32_t heaps_freed, added;
     uint32_t window; ///< seed of what the camera sees
 };
 
@@ -69,6 +69,7 @@ static void model_add(struct model *m)
         return; /* the removed ones are not gone yet */
     const uint32_t *size = sizes[rand() % 5];
     struct texture *t = &m->textures[i];
+    m->added++;
     *t = (struct texture){.used = true};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo info = {.width = size[0],
@@ -277,11 +278,15 @@ static void release_heaps(struct model *m)
         CHECK_OK(sluiceReleaseHeap(manager, heaps[i]));
 }
 
-static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps, unsigned seed)
+static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
+                uint32_t heaps, unsigned seed)
 {
     static struct model model; /* large */
     struct model *m = &model;
-    *m = (struct model){.fake = {.tail_page_count = tail_page_count, .want = want, .user = m}};
+    *m = (struct model){.fake = {.tail_page_count = tail_page_count,
+                                 .metadata_size = metadata_size,
+                                 .want = want,
+                                 .user = m}};
     SluiceVulkanStreamerCreateInfo info = {.framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
@@ -313,6 +318,9 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
+    /* once each, but for those that came last */
+    assert_in_range(m->fake.metadata_binds, metadata_size ? m->added - 2 * TEXTURES : 0,
+                    metadata_size ? m->added : 0);
     assert_true(heaps == 0 || m->heaps_freed > 0);
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
@@ -326,25 +334,31 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
 static void promises_hold_without_a_tail(void **state)
 {
     (void)state;
-    run(0, 64, 6, 41);
+    run(0, 0, 64, 6, 41);
 }
 
 static void promises_hold_with_a_tail_of_one_page(void **state)
 {
     (void)state;
-    run(1, 64, 6, 42);
+    run(1, 0, 64, 6, 42);
 }
 
 static void promises_hold_with_a_tail_of_many_pages_and_little_memory(void **state)
 {
     (void)state;
-    run(5, 32, 3, 43);
+    run(5, 0, 32, 3, 43);
+}
+
+static void promises_hold_with_metadata_that_is_bound_once(void **state)
+{
+    (void)state;
+    run(1, 196608, 64, 6, 45);
 }
 
 static void promises_hold_with_room_for_everything(void **state)
 {
     (void)state;
-    run(2, 256, 0, 44);
+    run(2, 0, 256, 0, 44);
 }
 
 /* Its regions still hold what was asked of a texture that is gone; they are cleared by the next. */
@@ -382,6 +396,7 @@ int main(void)
         cmocka_unit_test(promises_hold_without_a_tail),
         cmocka_unit_test(promises_hold_with_a_tail_of_one_page),
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
+        cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
         cmocka_unit_test(promises_hold_with_room_for_everything),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),
     };
