@@ -81,7 +81,8 @@ typedef struct SluiceImageInfo {
     uint32_t width, height; ///< texels of level 0; level l has max(1, size >> l)
     uint32_t mipLevelCount; ///< the full chain: floor(log2(max(width, height))) + 1
     SluiceFormat format;
-    const char *pName; ///< for messages; lives as long as the source
+    const char *pName;        ///< for messages; lives as long as the source
+    uint32_t arrayLayerCount; ///< images of the same size and format in one; 0: 1
 } SluiceImageInfo;
 
 /**
@@ -92,6 +93,7 @@ typedef struct SluiceImageInfo {
 typedef struct SluiceImageRegion {
     uint32_t mipLevel;
     uint32_t x, y, width, height;
+    uint32_t arrayLayer;
 } SluiceImageRegion;
 
 typedef struct SluiceImageSource SluiceImageSource;
@@ -147,7 +149,8 @@ typedef struct SluiceProceduralImage {
  * and round, sRGB encodes, NaN becomes 0 but in 32-bit float formats. Formats without a sign round
  * to the nearest value that they have, ties to even (E5B9G9R9: up, as its specification says),
  * saturate, and make 0 of what is negative. Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED for
- * compressed formats: bring an own source; OUT_OF_HOST_MEMORY. Any thread.
+ * compressed formats: bring an own source, and for
+ * arrays; OUT_OF_HOST_MEMORY. Any thread.
  * Source of E5B9G9R9: Vulkan specification, "RGB to Shared Exponent Conversion".
  */
 SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
@@ -158,12 +161,22 @@ SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
  * Texels in memory, level 0 given, the other levels made by a box filter once (in linear light for
  * sRGB), each texel the mean of the area it covers in the level above, NaN counting as 0. `pTexels`
  * is [height][width] of pInfo->format, tightly packed, and is copied. Errors: NULL_POINTER,
- * INVALID_ARGUMENT; UNSUPPORTED for compressed formats; OUT_OF_HOST_MEMORY. Any thread.
+ * INVALID_ARGUMENT; UNSUPPORTED for compressed formats and arrays; OUT_OF_HOST_MEMORY. Any thread.
  */
 SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       const SluiceImageInfo *pInfo,
                                                       const SluiceAllocationCallbacks *pAllocator,
                                                       SluiceImageSource **pSource);
+
+/**
+ * An array whose layers are `layerCount` sources of one size and format. They must outlive it and
+ * have one layer each. Errors: NULL_POINTER; INVALID_ARGUMENT for no layers or layers that differ;
+ * what the sources say; OUT_OF_HOST_MEMORY. Any thread.
+ */
+SLUICE_API SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers,
+                                                     uint32_t layerCount,
+                                                     const SluiceAllocationCallbacks *pAllocator,
+                                                     SluiceImageSource **pSource);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -23,7 +23,8 @@ static bool region_is_aligned(const SluiceImageRegion *region, const SluiceImage
 
 static bool region_is_inside(const SluiceImageRegion *region, const SluiceImageInfo *info)
 {
-    if (region->mipLevel >= info->mipLevelCount || region->width == 0 || region->height == 0)
+    if (region->arrayLayer >= slc_max_u32(1, info->arrayLayerCount) ||
+        region->mipLevel >= info->mipLevelCount || region->width == 0 || region->height == 0)
         return false;
     uint32_t width = slc_mip_size(info->width, region->mipLevel);
     uint32_t height = slc_mip_size(info->height, region->mipLevel);

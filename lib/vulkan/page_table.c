@@ -6,13 +6,6 @@
 #include <assert.h>
 #include <string.h>
 
-static uint64_t key_of(uint32_t image, struct slc_tile_place place)
-{
-    /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
-    uint32_t level = place.level == SLC_TAIL_LEVEL ? 31 : place.level;
-    return (uint64_t)image << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
-}
-
 static struct slc_page *page_of(const struct slc_page_table *table, uint32_t heap_id, uint32_t slot)
 {
     assert(slot < table->heap_page_count);
@@ -55,7 +48,7 @@ static SluiceResult grow(struct slc_page_table *table, const SluiceAllocationCal
         memcpy(pages, table->pages, table->page_count * sizeof *pages);
     for (uint32_t i = 0; i < table->page_count; i++)
         if (pages[i].image != SLC_NO_IMAGE)
-            slc_tile_map_add(&places, key_of(pages[i].image, pages[i].place), i);
+            slc_tile_map_add(&places, slc_place_key(pages[i].image, pages[i].place), i);
     for (uint32_t i = table->page_count; i < page_count; i++)
         pages[i] = (struct slc_page){.image = SLC_NO_IMAGE};
     slc_free(cb, table->pages, table->page_count, sizeof *pages);
@@ -93,7 +86,7 @@ static void forget(struct slc_page_table *table, struct slc_page *page)
     *from = page->next;
     if (page->next != SLC_NO_PAGE)
         table->pages[page->next].previous = page->previous;
-    slc_tile_map_remove(&table->places, key_of(page->image, page->place));
+    slc_tile_map_remove(&table->places, slc_place_key(page->image, page->place));
     page->image = SLC_NO_IMAGE;
 }
 
@@ -105,7 +98,7 @@ static void remember(struct slc_page_table *table, struct slc_page *page, uint32
     if (first != SLC_NO_PAGE)
         table->pages[first].previous = index;
     table->first_pages[image] = index;
-    slc_tile_map_add(&table->places, key_of(image, place), index);
+    slc_tile_map_add(&table->places, slc_place_key(image, place), index);
 }
 
 static void put_unbind(struct slc_page_table *table, struct slc_bind_list *list,
@@ -119,6 +112,31 @@ static void put_unbind(struct slc_page_table *table, struct slc_bind_list *list,
     forget(table, page);
 }
 
+/* Neighbours in a row that were given up, too: one run now instead of more runs later. */
+static void put_unbinds_beside(struct slc_page_table *table, struct slc_bind_list *list,
+                               uint32_t image, struct slc_tile_place place, int step)
+{
+    while (list->count < list->capacity / 2 && !(step < 0 && place.x == 0)) {
+        place.x += (uint32_t)step;
+        uint32_t page = slc_tile_map_get(&table->places, slc_place_key(image, place));
+        if (page == SLC_TILE_MAP_NONE || table->pages[page].live)
+            return;
+        put_unbind(table, list, &table->pages[page]);
+    }
+}
+
+static void put_unbind_run(struct slc_page_table *table, struct slc_bind_list *list,
+                           struct slc_page *page)
+{
+    uint32_t image = page->image;
+    struct slc_tile_place place = page->place;
+    put_unbind(table, list, page);
+    if (place.level == SLC_TAIL_LEVEL) /* pages of a tail stay single */
+        return;
+    put_unbinds_beside(table, list, image, place, -1);
+    put_unbinds_beside(table, list, image, place, 1);
+}
+
 bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *list, uint32_t image,
                          struct slc_tile_place place, uint32_t heap_id, uint32_t slot,
                          uint32_t *displaced)
@@ -127,7 +145,7 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
     if (list->capacity - list->count < 2)
         return false;
     struct slc_page *page = page_of(table, heap_id, slot);
-    uint32_t there = slc_tile_map_get(&table->places, key_of(image, place));
+    uint32_t there = slc_tile_map_get(&table->places, slc_place_key(image, place));
     if (there != SLC_TILE_MAP_NONE) { /* its unbind merges with the bind, or both fall away */
         assert(!table->pages[there].live);
         table->unbinds_saved++;
@@ -139,7 +157,7 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
     }
     if (page->image != SLC_NO_IMAGE) {
         *displaced = page->image;
-        put_unbind(table, list, page);
+        put_unbind_run(table, list, page);
     }
     slc_bind_list_put(list, image, place, heap_id, slot);
     remember(table, page, image, place);
@@ -149,7 +167,7 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
 void slc_page_table_give_up(struct slc_page_table *table, uint32_t image,
                             struct slc_tile_place place)
 {
-    uint32_t page = slc_tile_map_get(&table->places, key_of(image, place));
+    uint32_t page = slc_tile_map_get(&table->places, slc_place_key(image, place));
     assert(page != SLC_TILE_MAP_NONE && table->pages[page].live);
     table->pages[page].live = false;
 }
@@ -163,7 +181,7 @@ bool slc_page_table_unbind(struct slc_page_table *table, struct slc_bind_list *l
         return true;
     if (list->count == list->capacity)
         return false;
-    put_unbind(table, list, page);
+    put_unbind_run(table, list, page);
     return true;
 }
 

@@ -3,8 +3,9 @@
  * nobody has needed the page since.
  *
  * A tile that is given up keeps its binding: its page is unbound when another tile gets it, or when
- * its heap goes. Until then nothing is paid, and if the tile is bound again first, or its image
- * goes, nothing ever is. Knows nothing of Vulkan handles, frames or time.
+ * its heap goes; then the neighbours in its row that were given up are unbound with it, since a run
+ * costs as much as one tile. Until then nothing is paid, and if the tile is bound again first, or
+ * its image goes, nothing ever is. Knows nothing of Vulkan handles, frames or time.
  */
 #ifndef SLC_VULKAN_PAGE_TABLE_H
 #define SLC_VULKAN_PAGE_TABLE_H
@@ -14,6 +15,14 @@
 
 #define SLC_NO_PAGE UINT32_MAX
 #define SLC_NO_IMAGE UINT32_MAX
+
+/** Of one tile of one image among all. */
+static inline uint64_t slc_place_key(uint32_t image, struct slc_tile_place place)
+{
+    /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
+    uint32_t level = place.level == SLC_TAIL_LEVEL ? 31 : place.level;
+    return (uint64_t)image << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
+}
 
 struct slc_page {
     uint32_t image; ///< SLC_NO_IMAGE: bound nowhere
@@ -46,10 +55,10 @@ SluiceResult slc_page_table_add_heap(struct slc_page_table *table,
                                      uint32_t page_count);
 
 /**
- * Puts into the list what binds the tile to the page: at most the bind, and the unbind of the tile
- * that had given up the page; nothing where that is the tile itself. `*displaced` is the image of
- * the unbind, or SLC_NO_IMAGE. No tile that has not been given up may have the page or lie there.
- * False, and nothing has changed, if the list has no room for two.
+ * Puts into the list what binds the tile to the page: the bind, and the unbind of the tile that had
+ * given up the page and of its neighbours; nothing where that is the tile itself. `*displaced` is
+ * the image of the unbind, or SLC_NO_IMAGE. No tile that has not been given up may have the page or
+ * lie there. False, and nothing has changed, if the list has no room for two.
  */
 bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *list, uint32_t image,
                          struct slc_tile_place place, uint32_t heap_id, uint32_t slot,

@@ -75,13 +75,6 @@ static const struct sparse_residency *const_sparse(const struct slc_residency *r
     return (const struct sparse_residency *)residency;
 }
 
-static uint64_t place_key(uint32_t index, struct slc_tile_place place)
-{
-    /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
-    uint32_t level = place.level == SLC_TAIL_LEVEL ? 31 : place.level;
-    return (uint64_t)index << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
-}
-
 static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct sparse_residency *s = sparse(residency);
@@ -245,7 +238,7 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     assert(s->pending_count < s->pending_capacity);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     uint32_t at = (s->pending_first + s->pending_count++) % s->pending_capacity;
-    s->pending[at] = (struct pending_unmap){frame, place_key(index, place), index, place};
+    s->pending[at] = (struct pending_unmap){frame, slc_place_key(index, place), index, place};
     slc_tile_map_add(&s->pending_tiles, s->pending[at].key, at);
     s->images[index].unmap_count++;
 }
@@ -255,7 +248,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     /* Frames under way may still read the old page through their MinMip maps. */
-    if (slc_tile_map_get(&s->pending_tiles, place_key(index, place)) != SLC_TILE_MAP_NONE)
+    if (slc_tile_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_TILE_MAP_NONE)
         return SLUICE_NOT_READY;
     uint32_t displaced, count = s->list.count;
     /* While no batch can be submitted the list only grows, so it may be full. */

@@ -179,6 +179,69 @@ static void memory_levels_are_what_was_given_and_its_means(void **state)
     sluiceDestroyImageSource(source);
 }
 
+static void array_layers_are_the_sources_given(void **state)
+{
+    (void)state;
+    SluiceImageInfo info = {2, 2, 0, SLUICE_FORMAT_R8_UNORM, "layer"};
+    SluiceImageSource *layers[3], *array = NULL;
+    for (int i = 0; i < 3; i++) {
+        const uint8_t texels[4] = {(uint8_t)i, (uint8_t)(10 + i), 20, 30};
+        CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &layers[i]));
+    }
+    CHECK_OK(sluiceCreateArrayImageSource(layers, 3, NULL, &array));
+    CHECK_OK(sluiceGetImageInfo(array, &info));
+    assert_int_equal(info.arrayLayerCount, 3);
+    assert_int_equal(info.mipLevelCount, 2);
+    for (uint32_t i = 0; i < 3; i++) {
+        uint8_t read[2];
+        SluiceImageRegion region = {0, 0, 0, 2, 1, i};
+        CHECK_OK(sluiceReadImageRegion(array, &region, read, 2));
+        assert_int_equal(read[0], i);
+        assert_int_equal(read[1], 10 + i);
+        region.arrayLayer = i + 1;
+        if (i < 2)
+            CHECK_RESULT(sluiceReadImageRegion(layers[i], &region, read, 2),
+                         SLUICE_ERROR_INVALID_ARGUMENT);
+    }
+    uint8_t read[4];
+    CHECK_RESULT(sluiceReadImageRegion(array, &(SluiceImageRegion){0, 0, 0, 2, 2, 3}, read, 2),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    sluiceDestroyImageSource(array);
+    for (int i = 0; i < 3; i++)
+        sluiceDestroyImageSource(layers[i]);
+}
+
+static void array_layers_must_be_alike(void **state)
+{
+    (void)state;
+    SluiceImageSource *marked = create_marked(4, 4), *wide = create_marked(8, 4), *array = NULL;
+    SluiceImageSource *different[] = {marked, wide}, *same[] = {marked, marked};
+    CHECK_RESULT(sluiceCreateArrayImageSource(different, 2, NULL, &array),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceCreateArrayImageSource(same, 0, NULL, &array),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceCreateArrayImageSource(NULL, 2, NULL, &array), SLUICE_ERROR_NULL_POINTER);
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct failing_allocator a;
+        failing_allocator_init(&a, n);
+        result = sluiceCreateArrayImageSource(same, 2, &a.callbacks, &array);
+        if (result == SLUICE_SUCCESS) {
+            SluiceImageSource *nested[] = {array, array}, *other;
+            CHECK_RESULT(sluiceCreateArrayImageSource(nested, 2, NULL, &other),
+                         SLUICE_ERROR_INVALID_ARGUMENT);
+            sluiceDestroyImageSource(array);
+        }
+        assert_int_equal(a.live_bytes, 0);
+    }
+    SluiceProceduralImage image = {NULL, mark};
+    SluiceImageInfo info = {8, 8, 0, SLUICE_FORMAT_R8_UNORM, "array", 2};
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, &array),
+                 SLUICE_ERROR_UNSUPPORTED);
+    sluiceDestroyImageSource(marked);
+    sluiceDestroyImageSource(wide);
+}
+
 static void creation_survives_every_refused_allocation(void **state)
 {
     (void)state;
@@ -232,6 +295,8 @@ int main(void)
         cmocka_unit_test(sources_that_compute_texels_cannot_compress),
         cmocka_unit_test(wrong_descriptions_are_refused),
         cmocka_unit_test(memory_levels_are_what_was_given_and_its_means),
+        cmocka_unit_test(array_layers_are_the_sources_given),
+        cmocka_unit_test(array_layers_must_be_alike),
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(null_pointers_are_refused),
     };

@@ -73,6 +73,40 @@ static void page_that_was_given_up_is_taken_from_its_tile_when_another_gets_it(v
     assert_int_equal(f->table.unbinds_saved, 0);
 }
 
+static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **state)
+{
+    struct fixture *f = *state;
+    for (uint32_t x = 0; x < 7; x++)
+        bind(f, 0, x, 1, 13 - 2 * x);
+    for (uint32_t x = 0; x < 7; x++)
+        if (x != 1)
+            slc_page_table_give_up(&f->table, 0, at(x));
+    slc_bind_list_clear(&f->list);
+    assert_int_equal(bind(f, 2, 9, 1, 13 - 2 * 4), 0);
+    slc_bind_list_build_runs(&f->list);
+    assert_int_equal(f->list.run_count, 2);
+    const struct slc_bind_run *run = &f->list.runs[0]; /* up to the one that is wanted still */
+    assert_int_equal(run->heap_id, SLC_UNBIND);
+    assert_int_equal(run->place.x, 2);
+    assert_int_equal(run->count, 5);
+    assert_int_equal(f->table.unbind_count, 5);
+    assert_int_equal(bind(f, 3, 0, 1, 13 - 2 * 6), SLC_NO_IMAGE);
+    assert_int_equal(bind(f, 3, 1, 1, 13), 0);
+}
+
+static void pages_of_a_tail_are_unbound_one_by_one(void **state)
+{
+    struct fixture *f = *state;
+    uint32_t displaced;
+    for (uint32_t x = 0; x < 3; x++) {
+        struct slc_tile_place place = {SLC_TAIL_LEVEL, x, 0};
+        assert_true(slc_page_table_bind(&f->table, &f->list, 0, place, 0, x, &displaced));
+        slc_page_table_give_up(&f->table, 0, place);
+    }
+    assert_int_equal(bind(f, 1, 0, 0, 1), 0);
+    assert_int_equal(f->table.unbind_count, 1);
+}
+
 static void tile_that_gets_another_page_is_bound_over(void **state)
 {
     struct fixture *f = *state;
@@ -248,6 +282,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(page_that_was_given_up_is_taken_from_its_tile_when_another_gets_it),
+        TEST(neighbours_that_were_given_up_are_unbound_in_the_same_run),
+        TEST(pages_of_a_tail_are_unbound_one_by_one),
         TEST(tile_that_gets_another_page_is_bound_over),
         TEST(tile_that_gets_its_page_again_needs_no_bind),
         TEST(swapped_pages_are_two_binds),
