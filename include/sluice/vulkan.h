@@ -212,7 +212,9 @@ typedef struct SluiceVulkanTexture {
     VkImageView imageView; ///< 2D, all levels
     VkFormat format;
     uint32_t width, height, mipLevelCount;
-    uint32_t tableIndex; ///< place in the texture table, for the shader functions
+    uint32_t tableIndex;   ///< place in the texture table, for the shader functions
+    uint32_t arrayLayer;   ///< of `image`; `imageView` shows this layer alone
+    VkImageView arrayView; ///< 2D_ARRAY, all layers and levels; VK_NULL_HANDLE if not of an array
 } SluiceVulkanTexture;
 
 /**
@@ -226,6 +228,18 @@ typedef struct SluiceVulkanTexture {
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
+
+/**
+ * As sluiceAddVulkanTexture, of a source with `layerCount` array layers. Each is a streamed texture
+ * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
+ * each other, and all are layers of one image. They are removed together, with any of their ids.
+ *
+ * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
+ * device or the residency mode cannot stream arrays.
+ */
+SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
+    SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,
+    uint32_t layerCount, SluiceVulkanTexture *pLayers);
 
 /**
  * The image is destroyed when the frames begun so far have completed; do not draw with it again.

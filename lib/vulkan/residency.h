@@ -28,10 +28,12 @@ struct slc_residency_interface {
     /** Nothing of it is in use on the GPU. */
     void (*destroy)(struct slc_residency *residency);
 
+    /** create_image takes arrays: their layers have the indices from `index` on. */
+    bool has_arrays;
     /** `index` is the streamer's; it names the image in the other calls. Logs what it refuses. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
                                  const SluiceImageInfo *info, struct slc_residency_image *image);
-    /** No frame that uses it is incomplete and image_is_idle. */
+    /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
     /** True when no change of it is pending or under way. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);

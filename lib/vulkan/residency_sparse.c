@@ -78,8 +78,10 @@ static const struct sparse_residency *const_sparse(const struct slc_residency *r
 static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct sparse_residency *s = sparse(residency);
-    slc_page_table_drop_image(&s->pages, index);
-    slc_touched_tiles_finish(&s->images[index].touched, s->cb, &s->touched);
+    for (uint32_t i = 0; i < slc_max_u32(1, s->images[index].layer_count); i++) {
+        slc_page_table_drop_image(&s->pages, index + i);
+        slc_touched_tiles_finish(&s->images[index + i].touched, s->cb, &s->touched);
+    }
     slc_sparse_image_destroy(&s->images[index], s->vk);
 }
 
@@ -121,8 +123,8 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     assert(!sparse_image->image);
     SluiceResult result =
         slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info);
-    if (result == SLUICE_SUCCESS)
-        result = reserve_packed(s, sparse_image, info);
+    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < sparse_image->layer_count; i++)
+        result = reserve_packed(s, &sparse_image[i], info);
     if (result != SLUICE_SUCCESS) {
         destroy_image(residency, index);
         return result;
@@ -321,7 +323,7 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
     uint32_t x = run->place.x * desc->tileWidth, y = run->place.y * desc->tileHeight;
     bool bound = run->heap_id != SLC_UNBIND;
     return (VkSparseImageMemoryBind){
-        .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0},
+        .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, image->layer},
         .offset = {(int32_t)x, (int32_t)y, 0},
         /* A tile at the edge ends with the level. */
         .extent = {slc_min_u32(run->count * desc->tileWidth, slc_mip_size(desc->width, level) - x),
@@ -338,7 +340,8 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
     const struct slc_sparse_layout *layout = &image->layout;
     uint64_t offset = (uint64_t)run->place.x * SLC_TILE_SIZE;
     bool bound = run->heap_id != SLC_UNBIND;
-    return (VkSparseMemoryBind){.resourceOffset = layout->tail_offset + offset,
+    uint64_t tail = layout->tail_offset + image->layer * layout->tail_stride;
+    return (VkSparseMemoryBind){.resourceOffset = tail + offset,
                                 .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
                                 .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
                                 .memoryOffset =
@@ -359,9 +362,11 @@ static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32
     }
     if (image->metadata && !image->metadata_bound) {
         s->page_binds[(*page_count)++] =
-            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset,
+            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset +
+                                                   image->layer * image->layout.metadata_stride,
                                  .size = image->layout.metadata_size,
                                  .memory = image->metadata,
+                                 .memoryOffset = image->layer * image->layout.metadata_size,
                                  .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
         image->metadata_bound = true;
     }
@@ -443,7 +448,8 @@ static void destroy(struct slc_residency *residency)
     const SluiceAllocationCallbacks *cb = s->cb;
     if (s->images && s->pages.first_pages)
         for (uint32_t i = 0; i < s->max_image_count; i++)
-            destroy_image(residency, i);
+            if (s->images[i].layer == 0)
+                destroy_image(residency, i);
     slc_device_heaps_finish(&s->heaps, s->vk, cb);
     s->vk->DestroySemaphore(s->vk->device, s->semaphore, NULL);
     uint32_t capacity = s->list.capacity, page_capacity = capacity + s->max_image_count;
@@ -461,6 +467,7 @@ static void destroy(struct slc_residency *residency)
 }
 
 static const struct slc_residency_interface sparse_interface = {
+    .has_arrays = true,
     .destroy = destroy,
     .create_image = create_image,
     .destroy_image = destroy_image,

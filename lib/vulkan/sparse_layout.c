@@ -61,6 +61,11 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         SLC_TILE_SIZE % memory->alignment != 0 || memory->size > address_space_size)
         return SLUICE_ERROR_UNSUPPORTED;
 
+    bool shared = color->formatProperties.flags & VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    bool has_tail = color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize;
+    if (info->arrayLayerCount > 1 && has_tail && shared)
+        return SLUICE_ERROR_UNSUPPORTED;
+
     *layout = (struct slc_sparse_layout){0};
     SluiceStreamedTextureDesc *desc = &layout->desc;
     desc->width = info->width;
@@ -68,8 +73,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     desc->mipLevelCount = info->mipLevelCount;
     desc->tileWidth = tile.width;
     desc->tileHeight = tile.height;
-    layout->opaque_tail =
-        color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize > 0;
+    layout->opaque_tail = has_tail;
     if (layout->opaque_tail) {
         uint64_t pages = (color->imageMipTailSize + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE;
         if (pages > SLUICE_MAX_TILES_PER_TEXTURE)
@@ -78,6 +82,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         desc->packedTileCount = (uint32_t)pages;
         layout->tail_offset = color->imageMipTailOffset;
         layout->tail_size = color->imageMipTailSize;
+        layout->tail_stride = color->imageMipTailStride;
     } else {
         desc->regularMipCount = own_packed_level(info, tile);
         if (desc->regularMipCount > info->mipLevelCount)
@@ -87,6 +92,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     if (metadata) {
         layout->metadata_offset = metadata->imageMipTailOffset;
         layout->metadata_size = metadata->imageMipTailSize;
+        layout->metadata_stride = metadata->imageMipTailStride;
     }
     set_regions(desc);
     layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||

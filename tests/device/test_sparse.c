@@ -203,6 +203,169 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
     scene_finish(&scene);
 }
 
+#define LAYERS 3u
+
+/* Two patterns, so that neighbouring layers differ. */
+static enum pattern_kind kind_of(uint32_t layer)
+{
+    return layer % 2 ? PATTERN_HASH : PATTERN_LEVEL;
+}
+
+struct array {
+    struct scene scene;
+    SluiceImageSource *layers[LAYERS], *source;
+    uint32_t textures[LAYERS]; ///< of the scene
+};
+
+static void array_init(struct array *a, struct harness *h, SluiceVulkanStreamerCreateInfo info,
+                       bool mixed, const uint32_t size[2], SluiceFormat format)
+{
+    scene_init(&a->scene, h, info);
+    for (uint32_t i = 0; i < LAYERS; i++)
+        a->layers[i] = pattern_source(mixed ? kind_of(i) : PATTERN_LEVEL, size[0], size[1], format);
+    CHECK_OK(sluiceCreateArrayImageSource(a->layers, LAYERS, NULL, &a->source));
+    SluiceVulkanTexture textures[LAYERS];
+    SluiceVulkanTextureCreateInfo create = {.source = a->source};
+    CHECK_OK(sluiceAddVulkanTextureArray(a->scene.streamer, &create, LAYERS, textures));
+    for (uint32_t i = 0; i < LAYERS; i++) {
+        struct scene_texture *t = &a->scene.textures[i];
+        a->textures[i] = i;
+        assert_int_equal(textures[i].tableIndex, textures[0].tableIndex + i);
+        assert_int_equal(textures[i].arrayLayer, i);
+        assert_ptr_equal(textures[i].image, textures[0].image);
+        assert_true(textures[i].arrayView != VK_NULL_HANDLE);
+        *t = (struct scene_texture){
+            .used = true, .source = a->layers[i], .texture = textures[i], .anisotropy = 1};
+        CHECK_OK(sluiceGetImageInfo(a->layers[i], &t->info));
+        t->probe = prober_texture(&a->scene.prober, &t->texture, t->u, t->v, 1);
+    }
+}
+
+static void array_finish(struct array *a)
+{
+    scene_finish(&a->scene);
+    sluiceDestroyImageSource(a->source);
+    for (uint32_t i = 0; i < LAYERS; i++)
+        sluiceDestroyImageSource(a->layers[i]);
+}
+
+struct fetch {
+    struct scene *scene;
+    uint32_t texture, count;
+};
+
+static void record_fetch(void *user, VkCommandBuffer commands)
+{
+    struct fetch *fetch = user;
+    prober_record(&fetch->scene->prober, commands, fetch->scene->textures[fetch->texture].probe, 0,
+                  fetch->count, PROBE_FETCH);
+}
+
+static void check_layer(struct array *a, uint32_t layer)
+{
+    const struct scene_texture *t = &a->scene.textures[a->textures[layer]];
+    struct ProbeInput *inputs = prober_inputs(&a->scene.prober);
+    struct fetch fetch = {&a->scene, a->textures[layer], 0};
+    for (uint32_t level = 0; level < t->info.mipLevelCount; level++)
+        for (uint32_t i = 0; i < 64; i++)
+            inputs[fetch.count++] = (struct ProbeInput){
+                .uv = {(float)((uint32_t)rand() % slc_mip_size(t->info.width, level)),
+                       (float)((uint32_t)rand() % slc_mip_size(t->info.height, level))},
+                .lodBias = (float)level};
+    harness_run(a->scene.h, record_fetch, &fetch);
+    for (uint32_t i = 0; i < fetch.count; i++) {
+        float expected[4];
+        pattern_texel(kind_of(layer), (uint32_t)inputs[i].lodBias, (uint32_t)inputs[i].uv[0],
+                      (uint32_t)inputs[i].uv[1], expected);
+        for (uint32_t c = 0; c < 4; c++)
+            assert_float_equal(prober_outputs(&a->scene.prober)[i].color[c], expected[c], 0.003);
+    }
+}
+
+static void layers_of_an_array_hold_their_own_texels(void **state)
+{
+    static const uint32_t sizes[][2] = {{1000, 600}, {16, 16}, {4096, 128}};
+    srand(8);
+    for (uint32_t s = 0; s < 3; s++) {
+        struct array a;
+        array_init(&a, *state,
+                   (SluiceVulkanStreamerCreateInfo){.residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+                                                    .mapEverything = true},
+                   true, sizes[s], rgba8);
+        scene_settle(&a.scene, 12);
+        SluiceVulkanStreamerStatistics stats;
+        sluiceGetVulkanStreamerStatistics(a.scene.streamer, &stats);
+        assert_int_equal(stats.manager.mappedTileCount, stats.manager.tileCount);
+        for (uint32_t layer = 0; layer < LAYERS; layer++)
+            check_layer(&a, layer);
+        array_finish(&a);
+    }
+}
+
+/* Each layer has feedback of its own; they go together, and others take their place. */
+static void layers_of_an_array_are_streamed_apart_and_removed_together(void **state)
+{
+    static const uint32_t size[2] = {2048, 1024};
+    struct array a;
+    srand(9);
+    array_init(&a, *state, sparse_info(), false, size, rgba8);
+    const struct scene_aim fine = {0, 0, 0.4, 0.4, 0, 1, 0, 0};
+    scene_aim(&a.scene, 1, 64, &fine);
+    scene_settle(&a.scene, 14);
+    scene_check_levels(&a.scene);
+    assert_int_equal(scene_missing(&a.scene), 0);
+    assert_int_equal(scene_non_resident(&a.scene), 0);
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(a.scene.streamer);
+    uint32_t mapped[LAYERS] = {0};
+    for (uint32_t i = 0; i < LAYERS; i++) {
+        SluiceTextureId id = a.scene.textures[i].texture.textureId;
+        SluiceStreamedTextureLayout layout;
+        CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
+        for (uint32_t tile = 0; tile < layout.regularTileCount; tile++) {
+            SluiceTileState tile_state;
+            CHECK_OK(sluiceGetTileState(manager, id, tile, &tile_state, NULL));
+            mapped[i] += tile_state == SLUICE_TILE_STATE_MAPPED;
+        }
+    }
+    assert_int_equal(mapped[0], 0);
+    assert_true(mapped[1] > 8);
+    assert_int_equal(mapped[2], 0);
+
+    CHECK_OK(sluiceRemoveVulkanTexture(a.scene.streamer, a.scene.textures[1].texture.textureId));
+    CHECK_RESULT(sluiceRemoveVulkanTexture(a.scene.streamer, a.scene.textures[0].texture.textureId),
+                 SLUICE_ERROR_STALE_TEXTURE);
+    uint32_t first = a.scene.textures[0].texture.tableIndex;
+    for (uint32_t i = 0; i < LAYERS; i++)
+        a.scene.textures[i] = (struct scene_texture){.used = false};
+    scene_settle(&a.scene, 8);
+    uint32_t t = scene_add(&a.scene, pattern_source(PATTERN_LEVEL, 700, 700, rgba8));
+    assert_int_equal(a.scene.textures[t].texture.tableIndex, first);
+    assert_true(a.scene.textures[t].texture.arrayView == VK_NULL_HANDLE);
+    scene_aim(&a.scene, t, 64, &fine);
+    scene_settle(&a.scene, 14);
+    assert_int_equal(scene_missing(&a.scene), 0);
+    array_finish(&a);
+}
+
+static void arrays_need_the_right_call(void **state)
+{
+    struct scene scene;
+    scene_init(&scene, *state, sparse_info());
+    SluiceImageSource *layer = pattern_source(PATTERN_LEVEL, 64, 64, rgba8), *array;
+    SluiceImageSource *layers[] = {layer, layer};
+    CHECK_OK(sluiceCreateArrayImageSource(layers, 2, NULL, &array));
+    SluiceVulkanTextureCreateInfo info = {.source = array};
+    SluiceVulkanTexture textures[2];
+    CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &info, textures),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceAddVulkanTextureArray(scene.streamer, &info, 1, textures),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceAddVulkanTextureArray(scene.streamer, &info, 2, textures));
+    scene_finish(&scene);
+    sluiceDestroyImageSource(array);
+    sluiceDestroyImageSource(layer);
+}
+
 int main(void)
 {
     struct harness h;
@@ -216,6 +379,9 @@ int main(void)
         cmocka_unit_test(sizes_up_to_the_limit_are_streamed),
         cmocka_unit_test(textures_stay_coarse_where_no_more_tiles_are_borne),
         cmocka_unit_test(tiles_that_come_back_to_their_pages_need_no_unbind),
+        cmocka_unit_test(layers_of_an_array_hold_their_own_texels),
+        cmocka_unit_test(layers_of_an_array_are_streamed_apart_and_removed_together),
+        cmocka_unit_test(arrays_need_the_right_call),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;

@@ -132,8 +132,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkForm
                                                  VkImageFormatProperties *properties)
 {
     (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
-    *properties = (VkImageFormatProperties){
-        .maxExtent = {16384, 16384, 1}, .maxMipLevels = 15, .maxResourceSize = 1ull << 40};
+    *properties = (VkImageFormatProperties){.maxExtent = {16384, 16384, 1},
+                                            .maxMipLevels = 15,
+                                            .maxArrayLayers = 64,
+                                            .maxResourceSize = 1ull << 40};
     return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
 }
 
@@ -193,12 +195,14 @@ static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage i
     requirements[1] = (VkSparseImageMemoryRequirements){
         .formatProperties = {VK_IMAGE_ASPECT_METADATA_BIT, {0}, 0},
         .imageMipTailSize = fake->metadata_size,
-        .imageMipTailOffset = 1ull << 31};
+        .imageMipTailOffset = 1ull << 31,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
     requirements[0] = (VkSparseImageMemoryRequirements){
         .formatProperties = {VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0},
         .imageMipTailFirstLod = fake->tail_page_count ? tail : object->level_count,
         .imageMipTailSize = fake->tail_page_count * 65536ull,
-        .imageMipTailOffset = 1ull << 30};
+        .imageMipTailOffset = 1ull << 30,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo *info,
@@ -347,7 +351,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
         for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
             const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
             if (b->flags & VK_SPARSE_MEMORY_BIND_METADATA_BIT) {
-                assert_int_equal(b->resourceOffset, 1ull << 31);
+                assert_int_equal(b->resourceOffset % FAKE_TAIL_STRIDE, 0);
+                assert_true(b->resourceOffset >= 1ull << 31);
+                assert_int_equal((b->resourceOffset - (1ull << 31)) / FAKE_TAIL_STRIDE,
+                                 b->memoryOffset / fake->metadata_size); /* the layer */
                 assert_int_equal(b->size, fake->metadata_size);
                 assert_true(b->memory != VK_NULL_HANDLE);
                 fake->metadata_binds++;

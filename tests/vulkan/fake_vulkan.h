@@ -11,6 +11,7 @@
 
 #define FAKE_TILE 128u
 #define FAKE_TAIL UINT32_MAX
+#define FAKE_TAIL_STRIDE (1ull << 24) ///< from layer to layer
 #define FAKE_EVENTS 4096u
 
 /** One page; merged runs are taken apart. */

@@ -390,6 +390,54 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     assert_int_equal(m->fake.live_objects, 0);
 }
 
+/* Pages of the tails of three layers: two of each, a stride apart; and metadata once per layer. */
+static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    fake = (struct fake_vulkan){.tail_page_count = 2, .metadata_size = 131072, .want = want};
+    struct model window = {.window = 1};
+    fake.user = &window;
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "grey"};
+    SluiceImageSource *layer, *array;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &layer));
+    CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
+                                          &array));
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
+    fake_vulkan_fill(&fake, &info);
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceVulkanTextureCreateInfo create = {.source = array};
+    SluiceVulkanTexture textures[3];
+    CHECK_OK(sluiceAddVulkanTextureArray(streamer, &create, 3, textures));
+    uint32_t seen[3] = {0}, stride = (uint32_t)(FAKE_TAIL_STRIDE / 65536);
+    for (uint64_t i = 1; i <= 6; i++) {
+        SluiceStreamingFrame frame;
+        fake.bind_count = fake.copy_count = 0;
+        fake.published = false;
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+        CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(&fake), i, &frame));
+        for (uint32_t b = 0; b < fake.bind_count; b++)
+            if (fake.binds[b].level == FAKE_TAIL) {
+                assert_true(fake.binds[b].x / stride < 3 && fake.binds[b].x % stride < 2);
+                seen[fake.binds[b].x / stride] |= 1u << fake.binds[b].x % stride;
+            }
+        CHECK_OK(sluiceEndStreamingFrame(streamer, fake_vulkan_commands(&fake)));
+        fake.frame_semaphore = frame.semaphore;
+        fake.frame_value = i;
+        fake.bind_value = fake.submitted_bind_value;
+    }
+    assert_int_equal(fake.metadata_binds, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        assert_int_equal(seen[i], 3);
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyImageSource(array);
+    sluiceDestroyImageSource(layer);
+    assert_int_equal(fake.live_objects, 0);
+    assert_int_equal(fake.live_memory, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -398,6 +446,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
         cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
         cmocka_unit_test(promises_hold_with_room_for_everything),
+        cmocka_unit_test(layers_of_an_array_bind_tails_and_metadata_of_their_own),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),
     };
     return RUN_TESTS(tests);

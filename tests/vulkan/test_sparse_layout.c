@@ -189,6 +189,28 @@ static void block_tiles_that_are_not_pages_are_refused(void **state)
                  SLUICE_ERROR_UNSUPPORTED);
 }
 
+static void layers_of_an_array_have_tails_of_their_own_or_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageInfo info = image(1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    info.arrayLayerCount = 6;
+    VkSparseImageMemoryRequirements c = color(128, 128, 3, 2 * 65536, 1 << 23);
+    c.imageMipTailStride = 1 << 24;
+    struct slc_sparse_layout layout;
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+    assert_int_equal(layout.tail_stride, 1 << 24);
+    assert_int_equal(layout.desc.packedTileCount, 2);
+    c.formatProperties.flags = VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    CHECK_RESULT(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE),
+                 SLUICE_ERROR_UNSUPPORTED);
+    info.arrayLayerCount = 1; /* then there is only one to share it */
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+    info.arrayLayerCount = 6;
+    c = color(128, 128, info.mipLevelCount, 0, 0); /* no tail at all */
+    c.formatProperties.flags = VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+}
+
 static void metadata_is_remembered(void **state)
 {
     (void)state;
@@ -213,6 +235,7 @@ int main(void)
         cmocka_unit_test(tiles_that_are_not_pages_and_images_beyond_the_space_are_refused),
         cmocka_unit_test(granularity_in_blocks_is_told_from_granularity_in_texels),
         cmocka_unit_test(block_tiles_that_are_not_pages_are_refused),
+        cmocka_unit_test(layers_of_an_array_have_tails_of_their_own_or_are_refused),
         cmocka_unit_test(metadata_is_remembered),
     };
     return RUN_TESTS(tests);
