@@ -32,7 +32,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
                               "sluiceCompleteRetireValue");
 }
 
-/* Tiles leave the MinMip maps with this frame, and their page tables when older frames are over. */
+/* Tiles leave the MinMip maps with this frame; their pages are free when older frames are over. */
 static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
 {
     for (;;) {

@@ -125,6 +125,16 @@ static void texels_of_every_compressed_format_are_as_in_the_source(void **state)
                   100);
 }
 
+/* Where a driver has a tail it may be the whole of such an image. */
+static void texels_of_elongated_compressed_images_are_as_in_the_source(void **state)
+{
+    static const uint32_t sizes[][2] = {{16384, 128}, {128, 16384}, {16380, 5}};
+    check_formats(*state, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK, SLUICE_FORMAT_BC2_UNORM_BLOCK, sizes,
+                  3, 60);
+    check_formats(*state, SLUICE_FORMAT_BC6H_SFLOAT_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK, sizes, 3,
+                  60);
+}
+
 /* The loop works for tiles that are not square and cut at the edge, not only when all is mapped. */
 static void compressed_textures_are_streamed_by_feedback(void **state)
 {
@@ -156,6 +166,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_of_every_uncompressed_format_are_as_in_the_source),
         cmocka_unit_test(texels_of_every_compressed_format_are_as_in_the_source),
+        cmocka_unit_test(texels_of_elongated_compressed_images_are_as_in_the_source),
         cmocka_unit_test(compressed_textures_are_streamed_by_feedback),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
