@@ -55,6 +55,28 @@ typedef struct SluiceVulkanDeviceCapabilities {
     uint32_t sparseQueueFamilyIndex;
     uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
     char deviceName[256];
+    char driverName[256], driverInfo[256];
+    VkPhysicalDeviceType deviceType;
+    uint32_t apiVersion;           ///< as VK_MAKE_API_VERSION
+    bool timelineSemaphore;        ///< required
+    bool fragmentStoresAndAtomics; ///< required
+    bool textureCompressionBC;     ///< BC formats can be streamed
+    bool samplerAnisotropy;
+    bool sparseResidencyAliased; ///< a page may lie at several places
+    bool standardTiles;          ///< sparse tiles have the shapes of sluiceGetStandardTileShape
+    /** Residency codes exist and can be believed: not on software devices, whose codes are wrong
+     *  for filters between levels. Sluice itself samples by MinMip maps alone. */
+    bool residencyCodesExact;
+    bool dedicatedSparseQueue; ///< of a family that neither draws nor computes
+    uint32_t sparseQueueCount; ///< of sparseQueueFamilyIndex
+    /** Different tiles that a process may bind in the life of their images; 0: as many as it likes.
+     *  Software devices keep a memory map for each. */
+    uint32_t maxTouchedTiles;
+    uint32_t maxImageExtent, maxImageArrayLayers;
+    uint32_t maxStorageBufferRange; ///< bytes
+    float maxSamplerAnisotropy;
+    float timestampPeriod;          ///< nanoseconds per tick; 0: no time stamps
+    uint64_t deviceLocalMemorySize; ///< bytes of the largest such heap
 } SluiceVulkanDeviceCapabilities;
 
 /** Errors: NULL_POINTER, UNSUPPORTED if pfnGetInstanceProcAddr lacks a function. */
@@ -63,10 +85,55 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
                                   PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                   SluiceVulkanDeviceCapabilities *pCapabilities);
 
+/** What a device makes of one format, as a 2D image that is sampled and copied to. */
+typedef struct SluiceVulkanFormatCapabilities {
+    bool sampled;      ///< at all
+    bool linearFilter; ///< by samplers that interpolate
+    bool sparse;       ///< as a sparse residency image of 64 KiB tiles: what can be streamed
+    /** Texels as the driver says it; 0 if it is not sparse at all. */
+    uint32_t granularityWidth, granularityHeight;
+    uint32_t tileWidth, tileHeight; ///< texels of a tile, where the driver counts blocks corrected
+    /** Of sparse images, or of others where it is not sparse. */
+    uint32_t maxWidth, maxHeight, maxMipLevelCount, maxArrayLayerCount;
+    uint64_t maxImageSize; ///< bytes
+} SluiceVulkanFormatCapabilities;
+
+/** Errors: NULL_POINTER; UNSUPPORTED for unknown formats or if a function is missing. */
+SLUICE_API SluiceResult sluiceGetVulkanFormatCapabilities(
+    VkInstance instance, VkPhysicalDevice physicalDevice,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceFormat format,
+    SluiceVulkanFormatCapabilities *pCapabilities);
+
+/** How a device lays out one sparse image; found out by making it. */
+typedef struct SluiceVulkanSparseImageLayout {
+    uint32_t mipLevelCount;
+    uint32_t tileWidth, tileHeight; ///< texels
+    uint32_t regularMipCount;       ///< levels whose tiles come and go one by one
+    uint32_t packedTileCount;       ///< pages of the others, together
+    bool driverTail;                ///< the driver packs those; else each is a tile of its own
+    uint64_t tailSize;              ///< bytes, 0 without driverTail
+    uint64_t metadataSize;          ///< bytes, bound apart; 0: none
+    uint64_t imageSize;             ///< bytes of address space
+    uint64_t alignment;             ///< bytes
+    uint32_t memoryTypeBits;
+} SluiceVulkanSparseImageLayout;
+
+/**
+ * `device` was created with the features of sluiceRequireVulkanFeatures. Of `pImage` size and
+ * format matter, mipLevelCount may be 0. Errors: NULL_POINTER; UNSUPPORTED, with a message to
+ * `pLog` (may be NULL), if the image cannot be streamed; INVALID_ARGUMENT for a size of 0;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
+    VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, const SluiceLogCallback *pLog,
+    const SluiceImageInfo *pImage, SluiceVulkanSparseImageLayout *pLayout);
+
 /**
  * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
  * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
- * and for what else he needs, which stays set. No extension is needed. `pLog` may be NULL.
+ * and for what else he needs, which stays set. No extension is needed. textureCompressionBC is set
+ * where the device has it, for the BC formats. `pLog` may be NULL.
  * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
@@ -122,6 +189,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * and feedbackTimeout must be as much longer. Best where every visible pixel writes.
      */
     bool feedbackInTurns;
+    /** Different tiles bound in the life of their images, see SluiceVulkanDeviceCapabilities; the
+     *  streamers of a process share what the device bears. Finer tiles beyond it are not loaded.
+     *  0: maxTouchedTiles of the device. */
+    uint32_t maxTouchedTiles;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -167,7 +238,9 @@ typedef struct SluiceVulkanTexture {
     VkImageView imageView; ///< 2D, all levels
     VkFormat format;
     uint32_t width, height, mipLevelCount;
-    uint32_t tableIndex; ///< place in the texture table, for the shader functions
+    uint32_t tableIndex;   ///< place in the texture table, for the shader functions
+    uint32_t arrayLayer;   ///< of `image`; `imageView` shows this layer alone
+    VkImageView arrayView; ///< 2D_ARRAY, all layers and levels; VK_NULL_HANDLE if not of an array
 } SluiceVulkanTexture;
 
 /**
@@ -181,6 +254,18 @@ typedef struct SluiceVulkanTexture {
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
+
+/**
+ * As sluiceAddVulkanTexture, of a source with `layerCount` array layers. Each is a streamed texture
+ * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
+ * each other, and all are layers of one image. They are removed together, with any of their ids.
+ *
+ * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
+ * device or the residency mode cannot stream arrays.
+ */
+SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
+    SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,
+    uint32_t layerCount, SluiceVulkanTexture *pLayers);
 
 /**
  * The image is destroyed when the frames begun so far have completed; do not draw with it again.
@@ -237,6 +322,8 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
+    uint64_t unbinds;           ///< tiles whose page was taken away
+    uint64_t unbindsSaved;      ///< unmapped tiles that were bound again, or gone, before that
     uint64_t feedbackMaps;      ///< resolved and given to the manager
     uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
     uint64_t deviceMemorySize;  ///< bytes of heaps

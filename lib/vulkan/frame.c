@@ -32,7 +32,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
                               "sluiceCompleteRetireValue");
 }
 
-/* Tiles leave the MinMip maps with this frame, and their page tables when older frames are over. */
+/* Tiles leave the MinMip maps with this frame; their pages are free when older frames are over. */
 static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
 {
     for (;;) {
@@ -94,7 +94,8 @@ static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     uint32_t done = 0;
     do {
         uint32_t count = 0;
-        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++)
+        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++) {
+            const struct slc_texture *texture = &s->textures[s->new_textures[done]];
             images[count] = (VkImageMemoryBarrier){
                 .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                 .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_READ_BIT,
@@ -102,8 +103,10 @@ static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
                 .newLayout = VK_IMAGE_LAYOUT_GENERAL,
                 .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                 .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                .image = s->textures[s->new_textures[done]].image.image,
-                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1}};
+                .image = texture->image.image,
+                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS,
+                                     texture->layer, 1}};
+        }
         s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                  VK_PIPELINE_STAGE_TRANSFER_BIT |
                                      VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,

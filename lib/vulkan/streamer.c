@@ -62,6 +62,8 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .sparse_queue = s->info.sparseQueue,
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
+        .max_touched_tiles =
+            s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
     };
     return slc_create_sparse_residency(&info, &s->residency);
 }
@@ -319,6 +321,8 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
     const struct slc_residency_counters *counters = &streamer->residency->counters;
     pStatistics->bindCalls = counters->bind_calls;
     pStatistics->bindRuns = counters->bind_runs;
+    pStatistics->unbinds = counters->unbinds;
+    pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->deviceMemorySize = counters->device_memory_size;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;

@@ -40,7 +40,9 @@ struct slc_texture {
     SluiceImageSource *source; ///< borrowed
     SluiceImageInfo info;
     struct slc_residency_image image;
+    uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
     VkImageView view;
+    VkImageView array_view; ///< owned by layer 0, of all layers
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;

@@ -122,14 +122,23 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
         .queueCount = 1};
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
+                                                      VkFormatProperties *properties)
+{
+    (void)device, (void)format;
+    *properties = (VkFormatProperties){0};
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
                                                  VkImageType type, VkImageTiling tiling,
                                                  VkImageUsageFlags usage, VkImageCreateFlags flags,
                                                  VkImageFormatProperties *properties)
 {
     (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
-    *properties = (VkImageFormatProperties){
-        .maxExtent = {16384, 16384, 1}, .maxMipLevels = 15, .maxResourceSize = 1ull << 40};
+    *properties = (VkImageFormatProperties){.maxExtent = {16384, 16384, 1},
+                                            .maxMipLevels = 15,
+                                            .maxArrayLayers = 64,
+                                            .maxResourceSize = 1ull << 40};
     return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
 }
 
@@ -140,7 +149,9 @@ static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkF
                                                     VkSparseImageFormatProperties *properties)
 {
     (void)device, (void)format, (void)type, (void)samples, (void)usage, (void)tiling;
-    (void)properties;
+    if (properties && *count)
+        properties[0] = (VkSparseImageFormatProperties){
+            VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0};
     *count = 1;
 }
 
@@ -183,12 +194,18 @@ static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage i
     uint32_t tail = 0;
     while (object->extent.width >> tail > FAKE_TILE || object->extent.height >> tail > FAKE_TILE)
         tail++;
-    *count = 1;
-    *requirements = (VkSparseImageMemoryRequirements){
+    *count = fake->metadata_size ? 2 : 1;
+    requirements[1] = (VkSparseImageMemoryRequirements){
+        .formatProperties = {VK_IMAGE_ASPECT_METADATA_BIT, {0}, 0},
+        .imageMipTailSize = fake->metadata_size,
+        .imageMipTailOffset = 1ull << 31,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
+    requirements[0] = (VkSparseImageMemoryRequirements){
         .formatProperties = {VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0},
         .imageMipTailFirstLod = fake->tail_page_count ? tail : object->level_count,
         .imageMipTailSize = fake->tail_page_count * 65536ull,
-        .imageMipTailOffset = 1ull << 30};
+        .imageMipTailOffset = 1ull << 30,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo *info,
@@ -234,7 +251,10 @@ static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory me
     (void)cb;
     if (!memory)
         return;
-    fake_of(device)->live_memory -= OBJECT(memory)->size;
+    struct fake_vulkan *fake = fake_of(device);
+    fake->live_memory -= OBJECT(memory)->size;
+    if (fake->freed_count < FAKE_EVENTS)
+        fake->freed_memories[fake->freed_count++] = memory;
     free(OBJECT(memory)->memory);
     drop(fake_of(device), memory);
 }
@@ -333,6 +353,16 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
     for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
         for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
             const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
+            if (b->flags & VK_SPARSE_MEMORY_BIND_METADATA_BIT) {
+                assert_int_equal(b->resourceOffset % FAKE_TAIL_STRIDE, 0);
+                assert_true(b->resourceOffset >= 1ull << 31);
+                assert_int_equal((b->resourceOffset - (1ull << 31)) / FAKE_TAIL_STRIDE,
+                                 b->memoryOffset / fake->metadata_size); /* the layer */
+                assert_int_equal(b->size, fake->metadata_size);
+                assert_true(b->memory != VK_NULL_HANDLE);
+                fake->metadata_binds++;
+                continue;
+            }
             assert_int_equal(b->size, 65536);
             uint32_t page = (uint32_t)((b->resourceOffset - (1ull << 30)) / 65536);
             note_bind(fake, &(struct fake_bind){info->pImageOpaqueBinds[i].image, FAKE_TAIL, page,
@@ -520,6 +550,7 @@ static const struct {
 } functions[] = {
     ENTRY(GetDeviceProcAddr, get_device_function),
     ENTRY(GetPhysicalDeviceFeatures2, get_features),
+    ENTRY(GetPhysicalDeviceFormatProperties, get_format_features),
     ENTRY(GetPhysicalDeviceImageFormatProperties, get_format),
     ENTRY(GetPhysicalDeviceMemoryProperties, get_memory),
     ENTRY(GetPhysicalDeviceProperties2, get_properties),

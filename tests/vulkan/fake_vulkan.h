@@ -12,6 +12,7 @@
 
 #define FAKE_TILE 128u
 #define FAKE_TAIL UINT32_MAX
+#define FAKE_TAIL_STRIDE (1ull << 24) ///< from layer to layer
 #define FAKE_EVENTS 4096u
 
 /** One page; merged runs are taken apart. */
@@ -29,6 +30,8 @@ struct fake_copy {
 
 struct fake_vulkan {
     uint32_t tail_page_count; ///< 0: no tail
+    uint64_t metadata_size;   ///< of every image; 0: none
+    uint64_t metadata_binds;
 
     /** What the two timelines stand at; the test sets them. */
     uint64_t frame_value, bind_value;
@@ -40,7 +43,8 @@ struct fake_vulkan {
     struct fake_bind binds[FAKE_EVENTS];
     struct fake_copy copies[FAKE_EVENTS];
     VkImage destroyed_images[FAKE_EVENTS];
-    uint32_t bind_count, copy_count, destroyed_count, bind_calls;
+    VkDeviceMemory freed_memories[FAKE_EVENTS];
+    uint32_t bind_count, copy_count, destroyed_count, freed_count, bind_calls;
     bool published; ///< copies to images are over: MinMip maps were copied
 
     /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
