@@ -151,7 +151,6 @@ static inline void slc_twin_region_range(float coordinate, float below, float ab
         middle = fabsf(coordinate);
         below = above = fmaxf(below, above);
     }
-    middle = middle > 0.0f ? fminf(middle, 1.0f) : 0.0f;
     out[0] = slc_twin_region_index(middle - below, regions_per_unit, region_count);
     out[1] = slc_twin_region_index(middle + above, regions_per_unit, region_count);
     out[2] = out[1];

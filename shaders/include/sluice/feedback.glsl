@@ -24,6 +24,15 @@ void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
         atomicMin(SLUICE_FEEDBACK_WORD(at), level);
 }
 
+void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint level)
+{
+    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
+    if (sluiceFootprintIsOneRegion(at))
+        return;
+    for (uint i = 1u; i < 9u; i++)
+        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+}
+
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
  * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
@@ -40,11 +49,17 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
     SluiceFootprint at = sluiceComputeFootprint(
         entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest);
-    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
-    if (sluiceFootprintIsOneRegion(at))
-        return;
-    for (uint i = 1u; i < 9u; i++)
-        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+    sluiceMarkFootprint(entry, at, level);
+}
+
+/** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */
+void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    lod = sluiceIsFinite(uv) ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
+    SluiceFootprint at = sluiceComputeFootprint(entry, uv, vec2(0.0),
+                                                sluiceCoarsestLevel(lod, entry.mipLevelCount));
+    sluiceMarkFootprint(entry, at, sluiceFinestLevel(lod, 0.0, entry.mipLevelCount));
 }
 
 #endif

@@ -60,7 +60,7 @@ uvec3 sluiceRegionRange(float coordinate, float below, float above, uint address
         middle = abs(coordinate);
         below = above = max(below, above);
     }
-    middle = middle > 0.0 ? min(middle, 1.0) : 0.0;
+    /* the ends are clamped, not the middle: a box outside touches no more than the edge */
     uint first = sluiceRegionIndex(middle - below, regionsPerUnit, regionCount);
     uint last = sluiceRegionIndex(middle + above, regionsPerUnit, regionCount);
     return uvec3(first, last, last);

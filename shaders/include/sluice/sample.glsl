@@ -73,12 +73,6 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
     dy = vec2(-direction.y, direction.x) * width / size;
 }
 
-/** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
-bool sluiceIsFinite(vec2 v)
-{
-    return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
-}
-
 /**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
  * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless

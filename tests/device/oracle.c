@@ -1,0 +1,262 @@
+#include "device/oracle.h"
+
+#include "support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What docs/feedback.md promises not to exceed. */
+#define LOD_MARGIN 0.125
+#define LOD_MARGIN_ANISOTROPIC 0.1875
+#define TEXEL_MARGIN 0.0625
+#define FLOAT_ERROR 2e-3
+#define STEPS 33 /* along an anisotropic footprint */
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+void oracle_tiles_init(struct oracle_tiles *t, const struct SluiceTextureEntry *entry)
+{
+    t->entry = *entry;
+    t->count = 0;
+    for (uint32_t l = 0; l < entry->mipLevelCount; l++) {
+        t->first[l] = t->count;
+        t->width[l] = (level_size(entry->width, l) + entry->regionWidth - 1) / entry->regionWidth;
+        t->height[l] =
+            (level_size(entry->height, l) + entry->regionHeight - 1) / entry->regionHeight;
+        t->count += t->width[l] * t->height[l];
+    }
+    assert_true(entry->mipLevelCount <= ORACLE_LEVELS && t->count <= ORACLE_TILES);
+    memset(t->has, 0, t->count * sizeof t->has[0]);
+}
+
+bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y)
+{
+    assert_true(level < t->entry.mipLevelCount && x < t->width[level] && y < t->height[level]);
+    return &t->has[t->first[level] + y * t->width[level] + x];
+}
+
+static bool is_finite_input(const struct ConformInput *in)
+{
+    if (!isfinite(in->uv[0]) || !isfinite(in->uv[1]))
+        return false;
+    if (in->mode == CONFORM_LOD)
+        return !isnan(in->lod);
+    return isfinite(in->dx[0]) && isfinite(in->dx[1]) && isfinite(in->dy[0]) &&
+           isfinite(in->dy[1]) && !isnan(in->lodBias);
+}
+
+static double anisotropy_of(const struct ConformInput *in)
+{
+    return in->mode != CONFORM_LOD && in->maxAnisotropy > 1 ? fmin(in->maxAnisotropy, 16) : 1;
+}
+
+static double lod_of(double major, double minor, double anisotropy, double bias)
+{
+    if (major == 0)
+        return -INFINITY;
+    return log2(fmax(minor, major / anisotropy)) + bias;
+}
+
+struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in)
+{
+    if (!is_finite_input(in))
+        return (struct oracle_lod){NAN, NAN};
+    if (in->mode == CONFORM_LOD)
+        return (struct oracle_lod){in->lod, in->lod};
+    double ax = (double)in->dx[0] * entry->width, ay = (double)in->dx[1] * entry->height;
+    double bx = (double)in->dy[0] * entry->width, by = (double)in->dy[1] * entry->height;
+    double a = hypot(ax, ay), b = hypot(bx, by), n = anisotropy_of(in), bias = in->lodBias;
+    if (n == 1)
+        return (struct oracle_lod){lod_of(fmax(a, b), 0, 1, bias), lod_of(fmax(a, b), 0, 1, bias)};
+    struct oracle_lod lod = {.lengths = lod_of(fmax(a, b), fmin(a, b), n, bias)};
+    /* singular values: their squares sum up to a2 + b2, their product is the determinant */
+    double sum = a * a + b * b, area = fabs(ax * by - ay * bx);
+    double major = sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
+    lod.ellipse = lod_of(major, major > 0 ? area / major : 0, n, bias);
+    return lod;
+}
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* -1: the border, which is no texel. */
+static int64_t address(double texel, uint32_t size, uint32_t mode)
+{
+    double n = size;
+    switch (mode) {
+    case SLUICE_ADDRESS_MODE_REPEAT: return (int64_t)(texel - n * floor(texel / n));
+    case SLUICE_ADDRESS_MODE_MIRRORED_REPEAT:
+        texel -= 2 * n * floor(texel / (2 * n));
+        return (int64_t)(texel < n ? texel : 2 * n - 1 - texel);
+    case SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER: return texel < 0 || texel >= n ? -1 : (int64_t)texel;
+    case SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE:
+        texel = texel < 0 ? -1 - texel : texel;
+        return (int64_t)clamp(texel, 0, n - 1);
+    default: return (int64_t)clamp(texel, 0, n - 1);
+    }
+}
+
+/* Tiles along one axis under one tap; at most four. */
+static uint32_t tap_tiles(double coordinate, uint32_t size, uint32_t tile, uint32_t mode,
+                          struct oracle_filter filter, uint32_t out[4])
+{
+    double at = coordinate * size, half = filter.nearest ? 0 : 0.5;
+    double low = floor(at - half - filter.subtexel);
+    double high =
+        filter.nearest ? floor(at + filter.subtexel) : ceil(at + half + filter.subtexel) - 1;
+    uint32_t count = 0;
+    for (double texel = low; texel <= high && count < 4; texel++) {
+        int64_t t = address(texel, size, mode);
+        if (t >= 0)
+            out[count++] = (uint32_t)t / tile;
+        if (texel + 1 == texel) /* beyond 2^53 there are no neighbours */
+            break;
+    }
+    return count;
+}
+
+static void require_tap(struct oracle_tiles *t, uint32_t level, double u, double v,
+                        struct oracle_filter filter)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    uint32_t xs[4], ys[4];
+    uint32_t nx =
+        tap_tiles(u, level_size(e->width, level), e->regionWidth, e->addressModeU, filter, xs);
+    uint32_t ny =
+        tap_tiles(v, level_size(e->height, level), e->regionHeight, e->addressModeV, filter, ys);
+    for (uint32_t y = 0; y < ny; y++)
+        for (uint32_t x = 0; x < nx; x++)
+            *oracle_tile(t, level, xs[x], ys[y]) = true;
+}
+
+static void require_level(struct oracle_tiles *t, uint32_t level, const struct ConformInput *in,
+                          struct oracle_filter filter)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    if (anisotropy_of(in) == 1) {
+        require_tap(t, level, in->uv[0], in->uv[1], filter);
+        return;
+    }
+    double a = hypot((double)in->dx[0] * e->width, (double)in->dx[1] * e->height);
+    double b = hypot((double)in->dy[0] * e->width, (double)in->dy[1] * e->height);
+    const float *axis = a >= b ? in->dx : in->dy;
+    for (int i = 0; i < STEPS; i++) {
+        double at = (double)i / (STEPS - 1) - 0.5;
+        require_tap(t, level, in->uv[0] + at * (double)axis[0], in->uv[1] + at * (double)axis[1],
+                    filter);
+    }
+}
+
+void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
+                    struct oracle_filter filter)
+{
+    double last = t->entry.mipLevelCount - 1;
+    double lod = oracle_lod(&t->entry, in).lengths;
+    if (isnan(lod))
+        return; /* a sample of nothing known needs nothing */
+    lod = clamp(lod + filter.lod_offset, 0, last);
+    uint32_t level = (uint32_t)lod;
+    require_level(t, level, in, filter);
+    if (lod - level >= filter.lod_quantum && lod > level)
+        require_level(t, level + 1, in, filter);
+}
+
+/* Of the tile of level 0 that a region is, the one of the next level, and so on. */
+static uint32_t parent(uint32_t tile, uint32_t coarser_count)
+{
+    return tile / 2 < coarser_count ? tile / 2 : coarser_count - 1;
+}
+
+void oracle_decode(struct oracle_tiles *t, const uint32_t *map)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    for (uint32_t y = 0; y < e->regionCountY; y++)
+        for (uint32_t x = 0; x < e->regionCountX; x++) {
+            uint32_t mark = map[y * e->regionCountX + x], tx = x, ty = y;
+            if (mark == SLUICE_MIP_UNTOUCHED)
+                continue;
+            for (uint32_t l = 0; l < e->mipLevelCount; l++) {
+                if (l) {
+                    tx = parent(tx, t->width[l]);
+                    ty = parent(ty, t->height[l]);
+                }
+                if (l >= mark)
+                    *oracle_tile(t, l, tx, ty) = true;
+            }
+        }
+}
+
+void oracle_close(struct oracle_tiles *t)
+{
+    for (uint32_t l = 1; l < t->entry.mipLevelCount; l++)
+        for (uint32_t y = 0; y < t->height[l - 1]; y++)
+            for (uint32_t x = 0; x < t->width[l - 1]; x++)
+                if (*oracle_tile(t, l - 1, x, y))
+                    *oracle_tile(t, l, parent(x, t->width[l]), parent(y, t->height[l])) = true;
+}
+
+/* Regions within `below` before and `above` behind a coordinate, walked in small steps. */
+static void allow_axis(bool *regions, double coordinate, double below, double above, uint32_t mode,
+                       uint32_t size, uint32_t region, uint32_t region_count)
+{
+    assert_true(region_count <= ORACLE_REGIONS);
+    memset(regions, 0, region_count * sizeof regions[0]);
+    double step = 0.25 * region / size;
+    if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles at the other side */
+        below = above = fmax(below, above);
+    below = fmin(below, 2);
+    above = fmin(above, 2);
+    uint32_t steps = (uint32_t)((below + above) / step) + 1;
+    for (uint32_t i = 0; i <= steps; i++) {
+        double at = coordinate - below + (below + above) * i / steps;
+        if (mode == SLUICE_ADDRESS_MODE_REPEAT)
+            at -= floor(at);
+        else if (mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
+            at = fabs(at - 2 * floor(at / 2 + 0.5));
+        else if (mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+            at = fabs(at);
+        double index = clamp(floor(clamp(at, 0, 1) * size / region), 0, region_count - 1);
+        regions[(uint32_t)index] = true;
+    }
+}
+
+static void allow_all(struct oracle_allowed *a, const struct SluiceTextureEntry *e)
+{
+    memset(a->x, true, e->regionCountX * sizeof a->x[0]);
+    memset(a->y, true, e->regionCountY * sizeof a->y[0]);
+}
+
+void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
+                  const struct ConformInput *in)
+{
+    double last = e->mipLevelCount - 1;
+    struct oracle_lod lod = oracle_lod(e, in);
+    a->level = e->mipLevelCount - 1;
+    if (isnan(lod.lengths)) {
+        allow_all(a, e);
+        return;
+    }
+    double margin = in->mode == CONFORM_LOD ? 0
+                    : anisotropy_of(in) > 1 ? LOD_MARGIN_ANISOTROPIC
+                                            : LOD_MARGIN;
+    a->level = (uint32_t)clamp(lod.ellipse - margin - FLOAT_ERROR, 0, last);
+    uint32_t coarsest = (uint32_t)clamp(floor(lod.lengths + FLOAT_ERROR) + 1, 0, last);
+    /* a tile may begin a texel before the regions that it is over */
+    double above = 0.5 + TEXEL_MARGIN + FLOAT_ERROR;
+    double below = above + (e->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? 1 : 0);
+    double box[2] = {0, 0};
+    if (anisotropy_of(in) > 1)
+        for (int i = 0; i < 2; i++)
+            box[i] = 0.5 * hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
+    double wide = 1.0 / level_size(e->width, coarsest),
+           high = 1.0 / level_size(e->height, coarsest);
+    allow_axis(a->x, in->uv[0], below * wide + box[0], above * wide + box[0], e->addressModeU,
+               e->width, e->regionWidth, e->regionCountX);
+    allow_axis(a->y, in->uv[1], below * high + box[1], above * high + box[1], e->addressModeV,
+               e->height, e->regionHeight, e->regionCountY);
+}
