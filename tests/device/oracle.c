@@ -75,7 +75,7 @@ struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struc
     /* singular values: their squares sum up to a2 + b2, their product is the determinant */
     double sum = a * a + b * b, area = fabs(ax * by - ay * bx);
     double major = sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
-    lod.ellipse = lod_of(major, major > 0 ? area / major : 0, n, bias);
+    lod.finest = lod_of(fmax(a, b), major > 0 ? area / major : 0, n, bias);
     return lod;
 }
 
@@ -200,28 +200,37 @@ void oracle_close(struct oracle_tiles *t)
                     *oracle_tile(t, l, parent(x, t->width[l]), parent(y, t->height[l])) = true;
 }
 
+static uint32_t region_of(double at, uint32_t mode, double regions_per_unit, uint32_t count)
+{
+    if (mode == SLUICE_ADDRESS_MODE_REPEAT)
+        at -= floor(at);
+    else if (mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
+        at = fabs(at - 2 * floor(at / 2 + 0.5));
+    else if (mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+        at = fabs(at);
+    return (uint32_t)clamp(floor(clamp(at, 0, 1) * regions_per_unit), 0, count - 1);
+}
+
 /* Regions within `below` before and `above` behind a coordinate, walked in small steps. */
 static void allow_axis(bool *regions, double coordinate, double below, double above, uint32_t mode,
-                       uint32_t size, uint32_t region, uint32_t region_count)
+                       double regions_per_unit, uint32_t count)
 {
-    assert_true(region_count <= ORACLE_REGIONS);
-    memset(regions, 0, region_count * sizeof regions[0]);
-    double step = 0.25 * region / size;
+    assert_true(count <= ORACLE_REGIONS);
+    memset(regions, 0, count * sizeof regions[0]);
     if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles at the other side */
         below = above = fmax(below, above);
-    below = fmin(below, 2);
-    above = fmin(above, 2);
-    uint32_t steps = (uint32_t)((below + above) / step) + 1;
-    for (uint32_t i = 0; i <= steps; i++) {
-        double at = coordinate - below + (below + above) * i / steps;
-        if (mode == SLUICE_ADDRESS_MODE_REPEAT)
-            at -= floor(at);
-        else if (mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
-            at = fabs(at - 2 * floor(at / 2 + 0.5));
-        else if (mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
-            at = fabs(at);
-        double index = clamp(floor(clamp(at, 0, 1) * size / region), 0, region_count - 1);
-        regions[(uint32_t)index] = true;
+    bool repeats =
+        mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
+    double low = coordinate - below, high = coordinate + above;
+    low = repeats ? fmax(low, coordinate - 2) : clamp(low, -2, 2);
+    high = repeats ? fmin(high, coordinate + 2) : clamp(high, -2, 2);
+    uint32_t steps = (uint32_t)((high - low) * regions_per_unit * 4) + 1;
+    for (uint32_t i = 0; i <= steps; i++)
+        regions[region_of(low + (high - low) * i / steps, mode, regions_per_unit, count)] = true;
+    /* the last region may be narrow: it lies before each edge of the image */
+    for (double edge = ceil(low); edge <= high && edge + 1 > edge; edge++) {
+        regions[region_of(edge - 1e-9, mode, regions_per_unit, count)] = true;
+        regions[region_of(edge, mode, regions_per_unit, count)] = true;
     }
 }
 
@@ -244,8 +253,9 @@ void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
     double margin = in->mode == CONFORM_LOD ? 0
                     : anisotropy_of(in) > 1 ? LOD_MARGIN_ANISOTROPIC
                                             : LOD_MARGIN;
-    a->level = (uint32_t)clamp(lod.ellipse - margin - FLOAT_ERROR, 0, last);
-    uint32_t coarsest = (uint32_t)clamp(floor(lod.lengths + FLOAT_ERROR) + 1, 0, last);
+    a->level = (uint32_t)clamp(lod.finest - margin - FLOAT_ERROR, 0, last);
+    double rounded = floor(clamp(lod.lengths + FLOAT_ERROR, 0, last));
+    uint32_t coarsest = (uint32_t)clamp(rounded + 1, 0, last);
     /* a tile may begin a texel before the regions that it is over */
     double above = 0.5 + TEXEL_MARGIN + FLOAT_ERROR;
     double below = above + (e->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? 1 : 0);
@@ -256,7 +266,7 @@ void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
     double wide = 1.0 / level_size(e->width, coarsest),
            high = 1.0 / level_size(e->height, coarsest);
     allow_axis(a->x, in->uv[0], below * wide + box[0], above * wide + box[0], e->addressModeU,
-               e->width, e->regionWidth, e->regionCountX);
+               (double)e->width / e->regionWidth, e->regionCountX);
     allow_axis(a->y, in->uv[1], below * high + box[1], above * high + box[1], e->addressModeV,
-               e->height, e->regionHeight, e->regionCountY);
+               (double)e->height / e->regionHeight, e->regionCountY);
 }

@@ -26,11 +26,13 @@ struct oracle_tiles {
 void oracle_tiles_init(struct oracle_tiles *t, const struct SluiceTextureEntry *entry);
 bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y);
 
-/** Levels of detail that a device may choose: by the lengths of the derivatives, as Vulkan has it,
- *  and by the axes of the ellipse that they span, as some devices do. -INFINITY for no derivatives,
- *  NAN where an argument is not finite. */
+/**
+ * Levels of detail that a device may choose: Vulkan's, by the lengths of the derivatives; and the
+ * finest, where some devices take the ellipse that the derivatives span, which is narrower than
+ * either is short. -INFINITY for no derivatives, NAN where an argument is not finite.
+ */
 struct oracle_lod {
-    double lengths, ellipse;
+    double lengths, finest;
 };
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in);
 

@@ -2,139 +2,12 @@
  * What a sample marks, case by case, against brute force: required, marked and allowed tiles lie in
  * each other. What is marked beyond what is required is printed, in tiles.
  */
-#include "device/conform.h"
-#include "device/oracle.h"
+#include "device/suite.h"
 
 #include "support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-#define MAX_SAMPLES 65536u
-
-static const uint32_t modes[] = {SLUICE_ADDRESS_MODE_REPEAT, SLUICE_ADDRESS_MODE_MIRRORED_REPEAT,
-                                 SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                 SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER,
-                                 SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
-#define MODES 5u
-
-struct suite {
-    struct conform c;
-    struct conform_sample samples[MAX_SAMPLES];
-    uint32_t count;
-    struct oracle_filter filter;
-    struct oracle_tiles required, asked;
-    struct oracle_allowed allowed;
-    uint64_t needed, excess, marks;
-};
-
-static struct suite suite;
-static struct {
-    uint64_t needed, excess, samples;
-} total;
-
-static struct suite *begin(struct harness *h)
-{
-    conform_init(&suite.c, h);
-    suite.count = 0;
-    suite.needed = suite.excess = suite.marks = 0;
-    suite.filter = (struct oracle_filter){.subtexel = (double)suite.c.subtexel};
-    return &suite;
-}
-
-/* Gradients of one texel of a level, along the axes. */
-static struct ConformInput level_input(const struct SluiceTextureEntry *e, double lod)
-{
-    double texels = exp2(lod);
-    return (struct ConformInput){.dx = {(float)(texels / e->width), 0},
-                                 .dy = {0, (float)(texels / e->height)},
-                                 .maxAnisotropy = 1};
-}
-
-static void add(struct suite *s, struct SluiceTextureEntry entry, struct ConformInput in, double u,
-                double v)
-{
-    assert_true(s->count < MAX_SAMPLES);
-    in.uv[0] = (float)u;
-    in.uv[1] = (float)v;
-    s->samples[s->count++] = (struct conform_sample){entry, in};
-}
-
-static void describe(const struct conform_sample *sample, const char *what, uint32_t level,
-                     uint32_t x, uint32_t y)
-{
-    const struct SluiceTextureEntry *e = &sample->entry;
-    const struct ConformInput *in = &sample->in;
-    struct oracle_lod lod = oracle_lod(e, in);
-    fail_msg("%s: level %u (%u, %u) of %ux%u in regions of %ux%u, mode %u; uv %.9g %.9g dx %g %g "
-             "dy %g %g bias %g anisotropy %g lod %g as %u; %g by lengths, %g by the ellipse",
-             what, level, x, y, e->width, e->height, e->regionWidth, e->regionHeight,
-             e->addressModeU, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
-             (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
-             (double)in->maxAnisotropy, (double)in->lod, in->mode, lod.lengths, lod.ellipse);
-}
-
-static void check_allowed(struct suite *s, const struct conform_sample *sample, const uint32_t *map)
-{
-    const struct SluiceTextureEntry *e = &sample->entry;
-    oracle_allow(&s->allowed, e, &sample->in);
-    for (uint32_t y = 0; y < e->regionCountY; y++)
-        for (uint32_t x = 0; x < e->regionCountX; x++) {
-            uint32_t mark = map[y * e->regionCountX + x];
-            if (mark == SLUICE_MIP_UNTOUCHED)
-                continue;
-            s->marks++;
-            if (mark < s->allowed.level || mark >= e->mipLevelCount)
-                describe(sample, "a level is marked that is not allowed", mark, x, y);
-            if (!s->allowed.x[x] || !s->allowed.y[y])
-                describe(sample, "a region is marked that is not allowed", mark, x, y);
-        }
-}
-
-static void check_sample(void *user, const struct conform_sample *sample, const uint32_t *map)
-{
-    struct suite *s = user;
-    oracle_tiles_init(&s->required, &sample->entry);
-    oracle_tiles_init(&s->asked, &sample->entry);
-    oracle_require(&s->required, &sample->in, s->filter);
-    oracle_decode(&s->asked, map);
-    for (uint32_t l = 0; l < sample->entry.mipLevelCount; l++)
-        for (uint32_t y = 0; y < s->required.height[l]; y++)
-            for (uint32_t x = 0; x < s->required.width[l]; x++)
-                if (*oracle_tile(&s->required, l, x, y) && !*oracle_tile(&s->asked, l, x, y))
-                    describe(sample, "a tile is required and not asked for", l, x, y);
-    check_allowed(s, sample, map);
-    oracle_close(&s->required);
-    for (uint32_t i = 0; i < s->required.count; i++) {
-        s->needed += s->required.has[i];
-        s->excess += s->asked.has[i] && !s->required.has[i];
-    }
-}
-
-static void run(struct suite *s, enum conform_stage stage)
-{
-    for (uint32_t at = 0; at < s->count;)
-        at += conform_run(&s->c, stage, s->samples + at, s->count - at, check_sample, s);
-}
-
-/* Both stages; the figures are of compute, and the same in the other. */
-static void end(struct suite *s, const char *name)
-{
-    run(s, CONFORM_STAGE_COMPUTE);
-    uint64_t needed = s->needed, excess = s->excess, marks = s->marks;
-    s->needed = s->excess = s->marks = 0;
-    run(s, CONFORM_STAGE_FRAGMENT);
-    assert_int_equal(s->needed, needed);
-    print_message("# samples.%s %u samples\n# needed.%s %llu tiles\n# overmarked.%s %llu tiles\n",
-                  name, s->count, name, (unsigned long long)needed, name,
-                  (unsigned long long)excess);
-    assert_true(marks > 0);
-    total.samples += s->count;
-    total.needed += needed;
-    total.excess += excess;
-    conform_finish(&s->c);
-}
 
 static const double offsets[] = {-4,
                                  -1,
@@ -162,7 +35,7 @@ static void add_borders(struct suite *s, struct SluiceTextureEntry e, bool aniso
         double w = e.width >> l ? e.width >> l : 1, h = e.height >> l ? e.height >> l : 1;
         for (uint32_t b = 0; b * e.regionWidth <= w; b++)
             for (uint32_t i = 0; i < OFFSETS; i++) {
-                struct ConformInput in = level_input(&e, l);
+                struct ConformInput in = suite_level_input(&e, l);
                 double reach = 0;
                 if (anisotropic) {
                     in.maxAnisotropy = (float)(2u << (i + b + l) % 4);
@@ -171,42 +44,258 @@ static void add_borders(struct suite *s, struct SluiceTextureEntry e, bool aniso
                 }
                 double at = (b * e.regionWidth + offsets[i] + reach) / w;
                 double other = (b * e.regionHeight + offsets[(i * 7) % OFFSETS]) / h;
-                add(s, e, in, at, 0.37);
-                add(s, e, in, at, other);
+                suite_add(s, e, in, at, 0.37);
+                suite_add(s, e, in, at, other);
                 if (!anisotropic)
-                    add(s, e, in, 0.61, other);
+                    suite_add(s, e, in, 0.61, other);
             }
     }
 }
 
 static void point_footprints_find_their_tiles_at_borders(void **state)
 {
-    struct suite *s = begin(*state);
+    struct suite *s = suite_begin(*state);
     s->filter = (struct oracle_filter){.nearest = true};
-    for (uint32_t m = 0; m < MODES; m++)
-        add_borders(s, conform_entry(256, 256, 64, 64, modes[m]), false);
-    end(s, "point_border");
+    for (uint32_t m = 0; m < SUITE_MODES; m++)
+        add_borders(s, conform_entry(256, 256, 64, 64, suite_modes[m]), false);
+    suite_end(s, "point_border");
 }
 
 static void linear_footprints_find_their_tiles_at_borders(void **state)
 {
-    struct suite *s = begin(*state);
-    for (uint32_t m = 0; m < MODES; m++) {
-        add_borders(s, conform_entry(256, 256, 64, 64, modes[m]), false);
-        add_borders(s, conform_entry(512, 256, 128, 64, modes[m]), false);
-        add_borders(s, conform_entry(200, 300, 32, 64, modes[m]), false);
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        add_borders(s, conform_entry(256, 256, 64, 64, suite_modes[m]), false);
+        add_borders(s, conform_entry(512, 256, 128, 64, suite_modes[m]), false);
+        add_borders(s, conform_entry(200, 300, 32, 64, suite_modes[m]), false);
     }
-    end(s, "linear_border");
+    suite_end(s, "linear_border");
 }
 
 static void anisotropic_footprints_find_their_tiles_at_borders(void **state)
 {
-    struct suite *s = begin(*state);
-    for (uint32_t m = 0; m < MODES; m++) {
-        add_borders(s, conform_entry(512, 512, 64, 64, modes[m]), true);
-        add_borders(s, conform_entry(600, 500, 128, 128, modes[m]), true);
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        add_borders(s, conform_entry(512, 512, 64, 64, suite_modes[m]), true);
+        add_borders(s, conform_entry(600, 500, 128, 128, suite_modes[m]), true);
     }
-    end(s, "anisotropic_border");
+    suite_end(s, "anisotropic_border");
+}
+
+/* The second level begins to show at a fraction of 1/256, on devices with 8 bits of it. */
+static void levels_at_a_fraction_find_their_tiles(void **state)
+{
+    const double fractions[] = {-1.0 / 256,    -0.5 / 256,    0,    0.5 / 256, 1.0 / 256, 1.5 / 256,
+                                0.12,          0.125,         0.13, 0.1875,    0.5,       0.99,
+                                1 - 1.0 / 256, 1 - 0.5 / 256, 1.0};
+    struct suite *s = suite_begin(*state);
+    s->filter.lod_quantum = 1.0 / 256;
+    for (uint32_t a = 0; a < 3; a++)
+        for (uint32_t m = 0; m < SUITE_MODES; m++) {
+            struct SluiceTextureEntry e = conform_entry(512, 512, 64, 64, suite_modes[m]);
+            for (uint32_t l = 0; l < e.mipLevelCount; l++)
+                for (uint32_t i = 0; i < sizeof fractions / sizeof fractions[0]; i++) {
+                    struct ConformInput in = suite_level_input(&e, l + fractions[i]);
+                    in.maxAnisotropy = a == 2 ? 4 : 1;
+                    in.mode = a == 1 ? CONFORM_LOD : CONFORM_GRAD;
+                    in.lod = (float)(l + fractions[i]);
+                    double texel = exp2(l) / 512;
+                    suite_add(s, e, in, 0.5 - 0.75 * texel, 0.25 + 0.75 * texel);
+                    suite_add(s, e, in, 0.55, 0.55);
+                    suite_add(s, e, in, 0.75 + 0.6 * texel, 1 - 0.4 * texel);
+                }
+        }
+    suite_end(s, "fraction");
+}
+
+/* Samplers may come out finer than the formula: 0.12 levels is what was seen. */
+static void samplers_a_little_finer_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    s->filter.lod_offset = -0.12;
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        struct SluiceTextureEntry e = conform_entry(500, 512, 64, 32, suite_modes[m]);
+        for (double lod = 0; lod < 9; lod += 0.04)
+            for (int i = 0; i < 4; i++) {
+                struct ConformInput in = suite_level_input(&e, lod);
+                suite_add(s, e, in, 0.5 + 0.13 * i, 0.21 * i);
+                in.maxAnisotropy = 8;
+                in.dx[0] *= 8;
+                suite_add(s, e, in, 0.5 + 0.13 * i, 0.21 * i);
+            }
+    }
+    suite_end(s, "finer_sampler");
+}
+
+static void biases_at_both_ends_of_the_chain_are_clamped(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        struct SluiceTextureEntry e = conform_entry(256, 512, 64, 64, suite_modes[m]);
+        for (int l = -1; l <= (int)e.mipLevelCount; l++)
+            for (int b = -48; b <= 48; b++) {
+                struct ConformInput in = suite_level_input(&e, l);
+                /* sixteenths up to 1, then whole levels, far beyond the chain */
+                in.lodBias = abs(b) <= 16 ? (float)b / 16 : (float)(b > 0 ? b - 15 : b + 15);
+                suite_add(s, e, in, 0.49 + 0.002 * b, 0.7);
+            }
+    }
+    suite_end(s, "bias");
+}
+
+/* The bias moves the level and, on some devices, not the length of the footprint. */
+static void anisotropic_footprints_with_a_bias_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        struct SluiceTextureEntry e = conform_entry(2048, 1024, 64, 64, suite_modes[m]);
+        for (int l = 0; l < 9; l++)
+            for (int b = -16; b <= 8; b++)
+                for (int n = 2; n <= 16; n *= 2) {
+                    struct ConformInput in = suite_level_input(&e, l);
+                    in.lodBias = (float)b / 4;
+                    in.maxAnisotropy = (float)n;
+                    in.dx[0] *= (float)n;
+                    suite_add(s, e, in, 0.49 + 0.02 * b, 0.7);
+                    in = suite_level_input(&e, l);
+                    in.lodBias = (float)b / 4;
+                    in.maxAnisotropy = (float)n;
+                    in.dy[1] *= (float)n;
+                    in.dy[0] = in.dy[1] * 0.6f;
+                    suite_add(s, e, in, 0.49 + 0.02 * b, 0.7);
+                }
+    }
+    suite_end(s, "anisotropic_bias");
+}
+
+/* Derivatives that are nearly parallel: the ellipse is narrow, the lengths say it is wide. */
+static void skewed_footprints_find_their_tiles_by_either_rule(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    srand(71);
+    for (uint32_t i = 0; i < 8192; i++) {
+        struct SluiceTextureEntry e = conform_entry(512, 512, 64, 64, suite_modes[i % SUITE_MODES]);
+        double angle = 6.2832 * rand() / RAND_MAX, turn = 0.3 * rand() / RAND_MAX;
+        double length = exp2(7.0 * rand() / RAND_MAX) / 512, ratio = exp2(2.0 * rand() / RAND_MAX);
+        struct ConformInput in = {
+            .dx = {(float)(cos(angle) * length), (float)(sin(angle) * length)},
+            .dy = {(float)(cos(angle + turn) * length * ratio),
+                   (float)(sin(angle + turn) * length * ratio)},
+            .maxAnisotropy = (float)(2 << rand() % 4)};
+        double border = 64.0 * (rand() % 9) / 512,
+               away = 3 * length * (2.0 * rand() / RAND_MAX - 1);
+        suite_add(s, e, in, border + away, (double)rand() / RAND_MAX);
+    }
+    suite_end(s, "skewed");
+}
+
+/* Without derivatives the sample is of level 0; with large ones of the last, which is one texel. */
+static void levels_beyond_the_chain_are_its_ends(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++)
+        for (uint32_t size = 1; size <= 4096; size *= 4) {
+            struct SluiceTextureEntry e = conform_entry(size, size, 128, 128, suite_modes[m]);
+            for (double lod = -60; lod <= 60; lod += 3.5)
+                for (int n = 1; n <= 16; n *= 4) {
+                    struct ConformInput in = suite_level_input(&e, lod);
+                    in.maxAnisotropy = (float)n;
+                    suite_add(s, e, in, 0.3, 0.6);
+                    in.mode = CONFORM_LOD;
+                    in.lod = (float)lod;
+                    suite_add(s, e, in, 0.3, 0.6);
+                }
+            struct ConformInput none = {.maxAnisotropy = 1};
+            suite_add(s, e, none, 0.3, 0.6);
+            none.maxAnisotropy = 16;
+            suite_add(s, e, none, 0.3, 0.6);
+        }
+    suite_end(s, "chain_ends");
+}
+
+/* A grid that is no multiple of anything, at all levels. */
+static void add_grid(struct suite *s, struct SluiceTextureEntry e, uint32_t steps, double lod_step)
+{
+    for (double lod = 0; lod <= e.mipLevelCount; lod += lod_step)
+        for (uint32_t y = 0; y <= steps; y++)
+            for (uint32_t x = 0; x <= steps; x++) {
+                struct ConformInput in = suite_level_input(&e, lod);
+                in.mode = (x + y) % 4 == 0 ? CONFORM_LOD : CONFORM_GRAD;
+                in.lod = (float)lod;
+                suite_add(s, e, in, (double)x / steps, (double)y / steps);
+            }
+}
+
+static void sizes_that_do_not_halve_evenly_find_their_tiles(void **state)
+{
+    const uint32_t sizes[][4] = {
+        {15, 15, 4, 4},         {17, 17, 8, 8},         {15, 17, 4, 8},
+        {100, 100, 32, 32},     {100, 100, 16, 4},      {1025, 1025, 128, 128},
+        {4100, 4100, 128, 128}, {4100, 1025, 256, 128}, {511, 513, 64, 64}};
+    struct suite *s = suite_begin(*state);
+    for (uint32_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
+        for (uint32_t m = 0; m < SUITE_MODES; m++)
+            add_grid(
+                s,
+                conform_entry(sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3], suite_modes[m]),
+                7, 1.1);
+    suite_end(s, "uneven");
+}
+
+/* A tile of level 1 may lie over three regions in each direction. */
+static void level_1_of_odd_sizes_finds_its_tiles_at_every_border(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t size = 257; size <= 511; size += 18)
+        for (uint32_t m = 0; m < SUITE_MODES; m++) {
+            struct SluiceTextureEntry e = conform_entry(size, size + 1, 32, 32, suite_modes[m]);
+            for (uint32_t texel = 0; texel < size / 2; texel++) {
+                struct ConformInput in = suite_level_input(&e, 1);
+                if (texel % 32 < 2 || texel % 32 > 29)
+                    suite_add(s, e, in, (texel + 0.5) / (size / 2), (texel + 0.25) / (size / 2));
+            }
+        }
+    suite_end(s, "three_by_three");
+}
+
+static void textures_one_texel_wide_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        add_grid(s, conform_entry(1, 1000, 128, 128, suite_modes[m]), 9, 0.7);
+        add_grid(s, conform_entry(4096, 1, 256, 64, suite_modes[m]), 9, 0.7);
+        add_grid(s, conform_entry(1, 1, 128, 128, suite_modes[m]), 9, 0.7);
+        add_grid(s, conform_entry(2, 3, 128, 128, suite_modes[m]), 9, 0.7);
+    }
+    suite_end(s, "one_texel");
+}
+
+/* The levels of one tile are asked for by their own numbers, down to the last. */
+static void tail_levels_are_marked_as_they_are(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t m = 0; m < SUITE_MODES; m++) {
+        add_grid(s, conform_entry(1024, 1024, 16, 16, suite_modes[m]), 7, 1);
+        add_grid(s, conform_entry(64, 64, 128, 128, suite_modes[m]), 7, 0.5);
+    }
+    suite_end(s, "tail");
+}
+
+static void the_largest_textures_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    srand(72);
+    for (uint32_t i = 0; i < 300; i++) {
+        struct SluiceTextureEntry e =
+            conform_entry(16384, i % 3 ? 16384 : 16383, 128, 128, suite_modes[i % SUITE_MODES]);
+        struct ConformInput in = suite_level_input(&e, 15.0 * rand() / RAND_MAX);
+        in.maxAnisotropy = (float)(1 << rand() % 5);
+        in.dx[0] *= (float)(1 + rand() % 20);
+        double border = 128.0 * (rand() % 129) / 16384;
+        double away = exp2(16.0 * rand() / RAND_MAX) / 16384;
+        suite_add(s, e, in, rand() % 2 ? border + away : border - away, (double)rand() / RAND_MAX);
+    }
+    suite_end(s, "largest");
 }
 
 int main(void)
@@ -219,14 +308,21 @@ int main(void)
         cmocka_unit_test(point_footprints_find_their_tiles_at_borders),
         cmocka_unit_test(linear_footprints_find_their_tiles_at_borders),
         cmocka_unit_test(anisotropic_footprints_find_their_tiles_at_borders),
+        cmocka_unit_test(levels_at_a_fraction_find_their_tiles),
+        cmocka_unit_test(samplers_a_little_finer_find_their_tiles),
+        cmocka_unit_test(biases_at_both_ends_of_the_chain_are_clamped),
+        cmocka_unit_test(anisotropic_footprints_with_a_bias_find_their_tiles),
+        cmocka_unit_test(skewed_footprints_find_their_tiles_by_either_rule),
+        cmocka_unit_test(levels_beyond_the_chain_are_its_ends),
+        cmocka_unit_test(sizes_that_do_not_halve_evenly_find_their_tiles),
+        cmocka_unit_test(level_1_of_odd_sizes_finds_its_tiles_at_every_border),
+        cmocka_unit_test(textures_one_texel_wide_find_their_tiles),
+        cmocka_unit_test(tail_levels_are_marked_as_they_are),
+        cmocka_unit_test(the_largest_textures_find_their_tiles),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
     status = RUN_TESTS(tests);
-    print_message(
-        "# samples.total %llu samples\n# needed.total %llu tiles\n# overmarked.total %llu "
-        "tiles\n",
-        (unsigned long long)total.samples, (unsigned long long)total.needed,
-        (unsigned long long)total.excess);
+    suite_print_total();
     return harness_finish(&h, status);
 }

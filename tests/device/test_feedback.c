@@ -202,9 +202,11 @@ static void extremes_stay_inside_the_map(void **state)
 static void paint(uint8_t *map, const struct SluiceTextureEntry *e,
                   const struct slc_twin_wants *wants, uint32_t level)
 {
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++) {
-            uint8_t *at = &map[wants->regions.y[y] * e->regionCountX + wants->regions.x[x]];
+    const uint32_t *xs = wants->regions.x, *ys = wants->regions.y;
+    for (uint32_t y = 0; y < slc_twin_range_steps(ys, level); y++)
+        for (uint32_t x = 0; x < slc_twin_range_steps(xs, level); x++) {
+            uint8_t *at = &map[slc_twin_range_region(ys, level, y) * e->regionCountX +
+                               slc_twin_range_region(xs, level, x)];
             if (level < *at)
                 *at = (uint8_t)level;
         }

@@ -29,8 +29,11 @@ void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint leve
     sluiceMarkRegion(entry, at.x.x, at.y.x, level);
     if (sluiceFootprintIsOneRegion(at))
         return;
-    for (uint i = 1u; i < 9u; i++)
-        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+    uvec2 steps = sluiceFootprintSteps(at, level);
+    for (uint i = 1u; i < steps.x * steps.y; i++) {
+        uvec2 region = sluiceFootprintRegion(at, level, uvec2(i % steps.x, i / steps.x));
+        sluiceMarkRegion(entry, region.x, region.y, level);
+    }
 }
 
 /**
@@ -44,9 +47,10 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 {
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);
-    float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
-    uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
-    uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    vec2 lods = sluiceIsFinite(uv) ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
+                                   : vec2(SLUICE_LOD_LIMIT);
+    uint level = sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
+    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     SluiceFootprint at = sluiceComputeFootprint(
         entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest);
     sluiceMarkFootprint(entry, at, level);
