@@ -4,13 +4,13 @@
 
 #include "conform_comp.h"
 #include "conform_frag.h"
-#include "picture_vert.h"
+#include "conform_vert.h"
 
 #include <string.h>
 
 #define BUFFERS 3u
 
-static VkShaderModule module(struct harness *h, const uint32_t *code, size_t size)
+VkShaderModule conform_module(struct harness *h, const uint32_t *code, size_t size)
 {
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = code};
@@ -19,90 +19,104 @@ static VkShaderModule module(struct harness *h, const uint32_t *code, size_t siz
     return result;
 }
 
-static void create_set(struct conform *c)
+void conform_create_set(struct harness *h, uint32_t buffer_count, uint32_t texture_count,
+                        uint32_t push_size, struct conform_set *set)
 {
-    struct harness *h = c->h;
     const VkShaderStageFlags stages = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    VkDescriptorSetLayoutBinding bindings[BUFFERS];
-    for (uint32_t i = 0; i < BUFFERS; i++)
+    const VkDescriptorType buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    const VkDescriptorType texture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    VkDescriptorSetLayoutBinding bindings[8];
+    uint32_t count = buffer_count + texture_count;
+    for (uint32_t i = 0; i < count; i++)
         bindings[i] =
             (VkDescriptorSetLayoutBinding){.binding = i,
-                                           .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                           .descriptorType = i < buffer_count ? buffer : texture,
                                            .descriptorCount = 1,
                                            .stageFlags = stages};
-    VkDescriptorSetLayoutCreateInfo set = {.sType =
-                                               VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                           .bindingCount = BUFFERS,
-                                           .pBindings = bindings};
-    assert_int_equal(h->CreateDescriptorSetLayout(h->device, &set, NULL, &c->set_layout),
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = count,
+                                            .pBindings = bindings};
+    assert_int_equal(h->CreateDescriptorSetLayout(h->device, &info, NULL, &set->set_layout),
                      VK_SUCCESS);
-    VkPushConstantRange push = {stages, 0, sizeof(uint32_t)};
+    VkPushConstantRange push = {stages, 0, push_size};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                          .setLayoutCount = 1,
-                                         .pSetLayouts = &c->set_layout,
+                                         .pSetLayouts = &set->set_layout,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
-    assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &c->layout), VK_SUCCESS);
-    VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS};
+    assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &set->layout), VK_SUCCESS);
+    VkDescriptorPoolSize sizes[2] = {{buffer, buffer_count}, {texture, texture_count}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = 1,
-                                       .poolSizeCount = 1,
-                                       .pPoolSizes = &size};
-    assert_int_equal(h->CreateDescriptorPool(h->device, &pool, NULL, &c->pool), VK_SUCCESS);
+                                       .poolSizeCount = texture_count ? 2 : 1,
+                                       .pPoolSizes = sizes};
+    assert_int_equal(h->CreateDescriptorPool(h->device, &pool, NULL, &set->pool), VK_SUCCESS);
     VkDescriptorSetAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                            .descriptorPool = c->pool,
+                                            .descriptorPool = set->pool,
                                             .descriptorSetCount = 1,
-                                            .pSetLayouts = &c->set_layout};
-    assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &c->set), VK_SUCCESS);
-    VkDescriptorBufferInfo infos[BUFFERS] = {{c->table.buffer, 0, VK_WHOLE_SIZE},
-                                             {c->feedback.buffer, 0, VK_WHOLE_SIZE},
-                                             {c->inputs.buffer, 0, VK_WHOLE_SIZE}};
+                                            .pSetLayouts = &set->set_layout};
+    assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &set->set), VK_SUCCESS);
+}
+
+void conform_destroy_set(struct harness *h, struct conform_set *set)
+{
+    h->DestroyDescriptorPool(h->device, set->pool, NULL);
+    h->DestroyPipelineLayout(h->device, set->layout, NULL);
+    h->DestroyDescriptorSetLayout(h->device, set->set_layout, NULL);
+}
+
+void conform_write_buffers(struct harness *h, const struct conform_set *set, uint32_t count,
+                           const struct harness_buffer *const *buffers)
+{
+    VkDescriptorBufferInfo infos[8];
+    for (uint32_t i = 0; i < count; i++)
+        infos[i] = (VkDescriptorBufferInfo){buffers[i]->buffer, 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                  .dstSet = c->set,
-                                  .descriptorCount = BUFFERS,
+                                  .dstSet = set->set,
+                                  .descriptorCount = count,
                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                   .pBufferInfo = infos};
     h->UpdateDescriptorSets(h->device, 1, &write, 0, NULL);
 }
 
-static void create_compute(struct conform *c)
+VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
+                                    VkShaderModule compute)
 {
-    struct harness *h = c->h;
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module(h, conform_comp, sizeof conform_comp),
+                  .module = compute,
                   .pName = "main"},
-        .layout = c->layout};
-    assert_int_equal(h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL,
-                                               &c->pipelines[CONFORM_STAGE_COMPUTE]),
-                     VK_SUCCESS);
-    h->DestroyShaderModule(h->device, info.stage.module, NULL);
+        .layout = layout};
+    VkPipeline pipeline;
+    assert_int_equal(
+        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
+        VK_SUCCESS);
+    h->DestroyShaderModule(h->device, compute, NULL);
+    return pipeline;
 }
 
-/* Nothing is attached: fragments only write to buffers. */
-static void create_target(struct conform *c)
+void conform_create_target(struct harness *h, VkRenderPass *pass, VkFramebuffer *framebuffer)
 {
-    struct harness *h = c->h;
     VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS};
-    VkRenderPassCreateInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                   .subpassCount = 1,
-                                   .pSubpasses = &subpass};
-    assert_int_equal(h->CreateRenderPass(h->device, &pass, NULL, &c->pass), VK_SUCCESS);
-    VkFramebufferCreateInfo framebuffer = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                           .renderPass = c->pass,
-                                           .width = CONFORM_TARGET_SIZE,
-                                           .height = CONFORM_TARGET_SIZE,
-                                           .layers = 1};
-    assert_int_equal(h->CreateFramebuffer(h->device, &framebuffer, NULL, &c->framebuffer),
-                     VK_SUCCESS);
+    VkRenderPassCreateInfo pass_info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                        .subpassCount = 1,
+                                        .pSubpasses = &subpass};
+    assert_int_equal(h->CreateRenderPass(h->device, &pass_info, NULL, pass), VK_SUCCESS);
+    VkFramebufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
+                                    .renderPass = *pass,
+                                    .width = CONFORM_TARGET_SIZE,
+                                    .height = CONFORM_TARGET_SIZE,
+                                    .layers = 1};
+    assert_int_equal(h->CreateFramebuffer(h->device, &info, NULL, framebuffer), VK_SUCCESS);
 }
 
 VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,
-                                     VkShaderModule vertex, VkShaderModule fragment,
-                                     uint32_t attachment_count)
+                                     VkShaderModule fragment, uint32_t attachment_count)
 {
+    VkShaderModule vertex = conform_module(h, conform_vert, sizeof conform_vert);
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -162,12 +176,15 @@ void conform_init(struct conform *c, struct harness *h)
     harness_buffer_init(h, &c->table, CONFORM_CAPACITY * sizeof(struct SluiceTextureEntry), usage);
     harness_buffer_init(h, &c->feedback, CONFORM_WORDS * sizeof(uint32_t), usage);
     harness_buffer_init(h, &c->inputs, CONFORM_CAPACITY * sizeof(struct ConformInput), usage);
-    create_set(c);
-    create_compute(c);
-    create_target(c);
+    conform_create_set(h, BUFFERS, 0, sizeof(uint32_t), &c->set);
+    conform_write_buffers(
+        h, &c->set, BUFFERS,
+        (const struct harness_buffer *const[]){&c->table, &c->feedback, &c->inputs});
+    c->pipelines[CONFORM_STAGE_COMPUTE] = conform_compute_pipeline(
+        h, c->set.layout, conform_module(h, conform_comp, sizeof conform_comp));
+    conform_create_target(h, &c->pass, &c->framebuffer);
     c->pipelines[CONFORM_STAGE_FRAGMENT] = conform_graphics_pipeline(
-        h, c->layout, c->pass, module(h, picture_vert, sizeof picture_vert),
-        module(h, conform_frag, sizeof conform_frag), 0);
+        h, c->set.layout, c->pass, conform_module(h, conform_frag, sizeof conform_frag), 0);
     VkPhysicalDeviceProperties properties;
     h->GetPhysicalDeviceProperties(h->physical_device, &properties);
     c->subtexel = 0.5f / (float)(1u << properties.limits.subTexelPrecisionBits);
@@ -180,38 +197,27 @@ void conform_finish(struct conform *c)
         h->DestroyPipeline(h->device, c->pipelines[i], NULL);
     h->DestroyFramebuffer(h->device, c->framebuffer, NULL);
     h->DestroyRenderPass(h->device, c->pass, NULL);
-    h->DestroyDescriptorPool(h->device, c->pool, NULL);
-    h->DestroyPipelineLayout(h->device, c->layout, NULL);
-    h->DestroyDescriptorSetLayout(h->device, c->set_layout, NULL);
+    conform_destroy_set(h, &c->set);
     harness_buffer_finish(h, &c->table);
     harness_buffer_finish(h, &c->feedback);
     harness_buffer_finish(h, &c->inputs);
 }
 
-struct job {
-    struct conform *c;
-    enum conform_stage stage;
-    uint32_t count;
-};
-
-static void record(void *user, VkCommandBuffer commands)
+void conform_record(struct harness *h, VkCommandBuffer commands, const struct conform_job *job)
 {
-    struct job *job = user;
-    struct conform *c = job->c;
-    struct harness *h = c->h;
     bool draws = job->stage == CONFORM_STAGE_FRAGMENT;
     VkPipelineBindPoint point =
         draws ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
     VkRenderPassBeginInfo begin = {
         .sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-        .renderPass = c->pass,
-        .framebuffer = c->framebuffer,
+        .renderPass = job->pass,
+        .framebuffer = job->framebuffer,
         .renderArea = {{0, 0}, {CONFORM_TARGET_SIZE, CONFORM_TARGET_SIZE}}};
-    h->CmdBindPipeline(commands, point, c->pipelines[job->stage]);
-    h->CmdBindDescriptorSets(commands, point, c->layout, 0, 1, &c->set, 0, NULL);
-    h->CmdPushConstants(commands, c->layout,
+    h->CmdBindPipeline(commands, point, job->pipeline);
+    h->CmdBindDescriptorSets(commands, point, job->set->layout, 0, 1, &job->set->set, 0, NULL);
+    h->CmdPushConstants(commands, job->set->layout,
                         VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                        sizeof job->count, &job->count);
+                        job->push_size, job->push);
     if (draws) {
         h->CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
         h->CmdDraw(commands, 3, 1, 0, 0);
@@ -226,6 +232,23 @@ static void record(void *user, VkCommandBuffer commands)
                           draws ? VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT
                                 : VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                           VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, NULL, 0, NULL);
+}
+
+struct run {
+    struct harness *h;
+    const struct conform_job *job;
+};
+
+static void record(void *user, VkCommandBuffer commands)
+{
+    struct run *run = user;
+    conform_record(run->h, commands, run->job);
+}
+
+void conform_run_job(struct harness *h, const struct conform_job *job)
+{
+    struct run run = {h, job};
+    harness_run(h, record, &run);
 }
 
 /* Maps one behind the other, each cleared as the library clears them, guards between. */
@@ -270,8 +293,15 @@ uint32_t conform_run(
     void (*check)(void *user, const struct conform_sample *sample, const uint32_t *map), void *user)
 {
     uint32_t fitting = lay_out(c, samples, count);
-    struct job job = {c, stage, fitting};
-    harness_run(c->h, record, &job);
+    struct conform_job job = {.set = &c->set,
+                              .stage = stage,
+                              .pipeline = c->pipelines[stage],
+                              .pass = c->pass,
+                              .framebuffer = c->framebuffer,
+                              .count = fitting,
+                              .push = &fitting,
+                              .push_size = sizeof fitting};
+    conform_run_job(c->h, &job);
     check_guards(c, samples, fitting);
     for (uint32_t i = 0; i < fitting; i++)
         check(user, &samples[i],

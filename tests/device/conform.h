@@ -27,13 +27,30 @@ struct conform_sample {
     struct ConformInput in;          ///< and tableIndex
 };
 
-struct conform {
-    struct harness *h;
-    struct harness_buffer table, feedback, inputs;
+/** Storage buffers, then textures with samplers, for compute and fragment shaders. */
+struct conform_set {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkDescriptorPool pool;
     VkDescriptorSet set;
+};
+
+/** One dispatch of groups of 64, or one draw of a quad per sample. */
+struct conform_job {
+    const struct conform_set *set;
+    enum conform_stage stage;
+    VkPipeline pipeline;
+    VkRenderPass pass;
+    VkFramebuffer framebuffer;
+    uint32_t count;
+    const void *push;
+    uint32_t push_size;
+};
+
+struct conform {
+    struct harness *h;
+    struct harness_buffer table, feedback, inputs;
+    struct conform_set set;
     VkRenderPass pass;
     VkFramebuffer framebuffer;
     VkPipeline pipelines[CONFORM_STAGE_COUNT];
@@ -43,10 +60,24 @@ struct conform {
 void conform_init(struct conform *c, struct harness *h);
 void conform_finish(struct conform *c);
 
-/** For one triangle over a target of CONFORM_TARGET_SIZE; consumes the modules. */
+VkShaderModule conform_module(struct harness *h, const uint32_t *code, size_t size);
+void conform_create_set(struct harness *h, uint32_t buffer_count, uint32_t texture_count,
+                        uint32_t push_size, struct conform_set *set);
+void conform_destroy_set(struct harness *h, struct conform_set *set);
+void conform_write_buffers(struct harness *h, const struct conform_set *set, uint32_t count,
+                           const struct harness_buffer *const *buffers);
+/** Nothing is attached: fragments only write to buffers. */
+void conform_create_target(struct harness *h, VkRenderPass *pass, VkFramebuffer *framebuffer);
+void conform_record(struct harness *h, VkCommandBuffer commands, const struct conform_job *job);
+void conform_run_job(struct harness *h, const struct conform_job *job);
+
+/** Consumes the module, as the next. */
+VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
+                                    VkShaderModule compute);
+
+/** For one triangle over a target of CONFORM_TARGET_SIZE. */
 VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,
-                                     VkShaderModule vertex, VkShaderModule fragment,
-                                     uint32_t attachment_count);
+                                     VkShaderModule fragment, uint32_t attachment_count);
 
 /** A texture with all levels and none of them packed; `mode` in both directions. */
 struct SluiceTextureEntry conform_entry(uint32_t width, uint32_t height, uint32_t region_width,

@@ -39,8 +39,8 @@ void suite_add(struct suite *s, struct SluiceTextureEntry entry, struct ConformI
     s->samples[s->count++] = (struct conform_sample){entry, in};
 }
 
-static void describe(const struct conform_sample *sample, const char *what, uint32_t level,
-                     uint32_t x, uint32_t y)
+void suite_describe(const struct conform_sample *sample, const char *what, uint32_t level,
+                    uint32_t x, uint32_t y)
 {
     const struct SluiceTextureEntry *e = &sample->entry;
     const struct ConformInput *in = &sample->in;
@@ -64,9 +64,9 @@ static void check_allowed(struct suite *s, const struct conform_sample *sample, 
                 continue;
             s->marks++;
             if (mark < s->allowed.level || mark >= e->mipLevelCount)
-                describe(sample, "a level is marked that is not allowed", mark, x, y);
+                suite_describe(sample, "a level is marked that is not allowed", mark, x, y);
             if (!s->allowed.x[x] || !s->allowed.y[y])
-                describe(sample, "a region is marked that is not allowed", mark, x, y);
+                suite_describe(sample, "a region is marked that is not allowed", mark, x, y);
         }
 }
 
@@ -81,7 +81,7 @@ static void check_sample(void *user, const struct conform_sample *sample, const 
         for (uint32_t y = 0; y < s->required.height[l]; y++)
             for (uint32_t x = 0; x < s->required.width[l]; x++)
                 if (*oracle_tile(&s->required, l, x, y) && !*oracle_tile(&s->asked, l, x, y))
-                    describe(sample, "a tile is required and not asked for", l, x, y);
+                    suite_describe(sample, "a tile is required and not asked for", l, x, y);
     check_allowed(s, sample, map);
     oracle_close(&s->required);
     for (uint32_t i = 0; i < s->required.count; i++) {

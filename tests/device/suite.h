@@ -38,6 +38,10 @@ void suite_add(struct suite *s, struct SluiceTextureEntry entry, struct ConformI
  */
 void suite_end(struct suite *s, const char *name);
 
+/** Fails the test with all that is known of the sample. */
+void suite_describe(const struct conform_sample *sample, const char *what, uint32_t level,
+                    uint32_t x, uint32_t y);
+
 /** The sums over all suites. */
 void suite_print_total(void);
 
