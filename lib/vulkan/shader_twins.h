@@ -66,15 +66,14 @@ static inline float slc_twin_lod_margin(float max_anisotropy)
     return max_anisotropy > 1.0f ? 0.1875f : 0.125f;
 }
 
-static inline float slc_twin_clamp_lod_bias(float lod_bias)
-{
-    return lod_bias >= -SLC_TWIN_LOD_LIMIT ? fminf(lod_bias, SLC_TWIN_LOD_LIMIT)
-                                           : -SLC_TWIN_LOD_LIMIT;
-}
-
 static inline float slc_twin_clamp_lod(float lod)
 {
     return lod <= SLC_TWIN_LOD_LIMIT ? fmaxf(lod, -SLC_TWIN_LOD_LIMIT) : SLC_TWIN_LOD_LIMIT;
+}
+
+static inline float slc_twin_clamp_lod_bias(float lod_bias)
+{
+    return slc_twin_clamp_lod(lod_bias);
 }
 
 static inline bool slc_twin_is_finite(struct slc_twin_vec2 v)

@@ -38,14 +38,20 @@ bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y
     return &t->has[t->first[level] + y * t->width[level] + x];
 }
 
+/* Beyond it coordinates and derivatives count as infinite, as in texels they may be. */
+static bool is_finite(float x)
+{
+    return fabsf(x) <= 1e33f;
+}
+
 static bool is_finite_input(const struct ConformInput *in)
 {
-    if (!isfinite(in->uv[0]) || !isfinite(in->uv[1]))
+    if (!is_finite(in->uv[0]) || !is_finite(in->uv[1]))
         return false;
     if (in->mode == CONFORM_LOD)
         return !isnan(in->lod);
-    return isfinite(in->dx[0]) && isfinite(in->dx[1]) && isfinite(in->dy[0]) &&
-           isfinite(in->dy[1]) && !isnan(in->lodBias);
+    return is_finite(in->dx[0]) && is_finite(in->dx[1]) && is_finite(in->dy[0]) &&
+           is_finite(in->dy[1]) && !isnan(in->lodBias);
 }
 
 static double anisotropy_of(const struct ConformInput *in)
@@ -101,6 +107,17 @@ static int64_t address(double texel, uint32_t size, uint32_t mode)
     }
 }
 
+static bool repeats(uint32_t mode)
+{
+    return mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
+}
+
+/* The same place near 0, exactly, so that half a texel still counts beside it. */
+static double brought_near(double coordinate, uint32_t mode)
+{
+    return repeats(mode) ? fmod(coordinate, 2) : coordinate;
+}
+
 /* Tiles along one axis under one tap; at most four. */
 static uint32_t tap_tiles(double coordinate, uint32_t size, uint32_t tile, uint32_t mode,
                           struct oracle_filter filter, uint32_t out[4])
@@ -138,8 +155,10 @@ static void require_level(struct oracle_tiles *t, uint32_t level, const struct C
                           struct oracle_filter filter)
 {
     const struct SluiceTextureEntry *e = &t->entry;
+    double u = brought_near(in->uv[0], e->addressModeU);
+    double v = brought_near(in->uv[1], e->addressModeV);
     if (anisotropy_of(in) == 1) {
-        require_tap(t, level, in->uv[0], in->uv[1], filter);
+        require_tap(t, level, u, v, filter);
         return;
     }
     double a = hypot((double)in->dx[0] * e->width, (double)in->dx[1] * e->height);
@@ -147,8 +166,7 @@ static void require_level(struct oracle_tiles *t, uint32_t level, const struct C
     const float *axis = a >= b ? in->dx : in->dy;
     for (int i = 0; i < STEPS; i++) {
         double at = (double)i / (STEPS - 1) - 0.5;
-        require_tap(t, level, in->uv[0] + at * (double)axis[0], in->uv[1] + at * (double)axis[1],
-                    filter);
+        require_tap(t, level, u + at * (double)axis[0], v + at * (double)axis[1], filter);
     }
 }
 
@@ -219,11 +237,10 @@ static void allow_axis(bool *regions, double coordinate, double below, double ab
     memset(regions, 0, count * sizeof regions[0]);
     if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles at the other side */
         below = above = fmax(below, above);
-    bool repeats =
-        mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
+    coordinate = brought_near(coordinate, mode);
     double low = coordinate - below, high = coordinate + above;
-    low = repeats ? fmax(low, coordinate - 2) : clamp(low, -2, 2);
-    high = repeats ? fmin(high, coordinate + 2) : clamp(high, -2, 2);
+    low = repeats(mode) ? fmax(low, coordinate - 2) : clamp(low, -2, 2);
+    high = repeats(mode) ? fmin(high, coordinate + 2) : clamp(high, -2, 2);
     uint32_t steps = (uint32_t)((high - low) * regions_per_unit * 4) + 1;
     for (uint32_t i = 0; i <= steps; i++)
         regions[region_of(low + (high - low) * i / steps, mode, regions_per_unit, count)] = true;

@@ -19,22 +19,22 @@ float sluiceClampAnisotropy(float maxAnisotropy)
     return maxAnisotropy > 1.0 ? min(maxAnisotropy, 16.0) : 1.0;
 }
 
-/** The LOD bias that counts: -32 to 32, -32 for NaN. */
-float sluiceClampLodBias(float lodBias)
-{
-    return lodBias >= -SLUICE_LOD_LIMIT ? min(lodBias, SLUICE_LOD_LIMIT) : -SLUICE_LOD_LIMIT;
-}
-
 /** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
 bool sluiceIsFinite(vec2 v)
 {
     return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
 }
 
-/** An explicit LOD: -32 to 32, 32 for NaN. */
+/** The LOD that counts: -32 to 32, 32 for NaN. */
 float sluiceClampLod(float lod)
 {
     return lod <= SLUICE_LOD_LIMIT ? max(lod, -SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
+}
+
+/** The LOD bias that counts: -32 to 32, 32 for NaN. */
+float sluiceClampLodBias(float lodBias)
+{
+    return sluiceClampLod(lodBias);
 }
 
 /** How far the sampler's level may lie below the computed one. */
