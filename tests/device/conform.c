@@ -113,10 +113,15 @@ void conform_create_target(struct harness *h, VkRenderPass *pass, VkFramebuffer 
     assert_int_equal(h->CreateFramebuffer(h->device, &info, NULL, framebuffer), VK_SUCCESS);
 }
 
-VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,
-                                     VkShaderModule fragment, uint32_t attachment_count)
+VkShaderModule conform_vertex_module(struct harness *h)
 {
-    VkShaderModule vertex = conform_module(h, conform_vert, sizeof conform_vert);
+    return conform_module(h, conform_vert, sizeof conform_vert);
+}
+
+VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,
+                                     VkShaderModule vertex, VkShaderModule fragment,
+                                     uint32_t attachment_count)
+{
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -183,8 +188,9 @@ void conform_init(struct conform *c, struct harness *h)
     c->pipelines[CONFORM_STAGE_COMPUTE] = conform_compute_pipeline(
         h, c->set.layout, conform_module(h, conform_comp, sizeof conform_comp));
     conform_create_target(h, &c->pass, &c->framebuffer);
-    c->pipelines[CONFORM_STAGE_FRAGMENT] = conform_graphics_pipeline(
-        h, c->set.layout, c->pass, conform_module(h, conform_frag, sizeof conform_frag), 0);
+    c->pipelines[CONFORM_STAGE_FRAGMENT] =
+        conform_graphics_pipeline(h, c->set.layout, c->pass, conform_vertex_module(h),
+                                  conform_module(h, conform_frag, sizeof conform_frag), 0);
     VkPhysicalDeviceProperties properties;
     h->GetPhysicalDeviceProperties(h->physical_device, &properties);
     c->subtexel = 0.5f / (float)(1u << properties.limits.subTexelPrecisionBits);

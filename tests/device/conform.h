@@ -61,6 +61,8 @@ void conform_init(struct conform *c, struct harness *h);
 void conform_finish(struct conform *c);
 
 VkShaderModule conform_module(struct harness *h, const uint32_t *code, size_t size);
+/** One triangle over the whole target. */
+VkShaderModule conform_vertex_module(struct harness *h);
 void conform_create_set(struct harness *h, uint32_t buffer_count, uint32_t texture_count,
                         uint32_t push_size, struct conform_set *set);
 void conform_destroy_set(struct harness *h, struct conform_set *set);
@@ -75,9 +77,10 @@ void conform_run_job(struct harness *h, const struct conform_job *job);
 VkPipeline conform_compute_pipeline(struct harness *h, VkPipelineLayout layout,
                                     VkShaderModule compute);
 
-/** For one triangle over a target of CONFORM_TARGET_SIZE. */
+/** For a target of CONFORM_TARGET_SIZE. */
 VkPipeline conform_graphics_pipeline(struct harness *h, VkPipelineLayout layout, VkRenderPass pass,
-                                     VkShaderModule fragment, uint32_t attachment_count);
+                                     VkShaderModule vertex, VkShaderModule fragment,
+                                     uint32_t attachment_count);
 
 /** A texture with all levels and none of them packed; `mode` in both directions. */
 struct SluiceTextureEntry conform_entry(uint32_t width, uint32_t height, uint32_t region_width,
