@@ -180,6 +180,7 @@ static inline void slc_twin_region_range(float coordinate, float below, float ab
     }
     out[0] = slc_twin_region_index(middle - below, regions_per_unit, region_count);
     out[1] = slc_twin_region_index(middle + above, regions_per_unit, region_count);
+    out[1] = out[1] > out[0] ? out[1] : out[0]; /* NaN */
     out[2] = out[1];
 }
 

@@ -71,6 +71,7 @@ uvec3 sluiceRegionRange(float coordinate, float below, float above, uint address
     /* the ends are clamped, not the middle: a box outside touches no more than the edge */
     uint first = sluiceRegionIndex(middle - below, regionsPerUnit, regionCount);
     uint last = sluiceRegionIndex(middle + above, regionsPerUnit, regionCount);
+    last = max(first, last); /* NaN */
     return uvec3(first, last, last);
 }
 
