@@ -164,8 +164,9 @@ static void require_level(struct oracle_tiles *t, uint32_t level, const struct C
     double a = hypot((double)in->dx[0] * e->width, (double)in->dx[1] * e->height);
     double b = hypot((double)in->dy[0] * e->width, (double)in->dy[1] * e->height);
     const float *axis = a >= b ? in->dx : in->dy;
+    double scale = filter.bias_scales ? exp2(in->lodBias) : 1;
     for (int i = 0; i < STEPS; i++) {
-        double at = (double)i / (STEPS - 1) - 0.5;
+        double at = scale * ((double)i / (STEPS - 1) - 0.5);
         require_tap(t, level, u + at * (double)axis[0], v + at * (double)axis[1], filter);
     }
 }

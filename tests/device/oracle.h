@@ -42,6 +42,7 @@ struct oracle_filter {
     double subtexel;    ///< texel coordinates may be off by so much
     double lod_offset;  ///< added to the level of detail
     double lod_quantum; ///< a fraction below it shows no second level
+    bool bias_scales;   ///< a LOD bias makes an anisotropic footprint longer or shorter
 };
 
 /** Adds the tiles of the texels that a sample reads. */

@@ -28,19 +28,22 @@ static const double offsets[] = {-4,
                                  4};
 #define OFFSETS (sizeof offsets / sizeof offsets[0])
 
-/* Beside every border of every level, along both axes and in the corners. */
-static void add_borders(struct suite *s, struct SluiceTextureEntry e, bool anisotropic)
+/*
+ * Beside every border of every level, along both axes and in the corners; at this level alone, or,
+ * with a step of a half, at this one and the finer one.
+ */
+static void add_borders(struct suite *s, struct SluiceTextureEntry e, double step, bool anisotropic)
 {
     for (uint32_t l = 0; l < e.mipLevelCount; l++) {
         double w = e.width >> l ? e.width >> l : 1, h = e.height >> l ? e.height >> l : 1;
         for (uint32_t b = 0; b * e.regionWidth <= w; b++)
             for (uint32_t i = 0; i < OFFSETS; i++) {
-                struct ConformInput in = suite_level_input(&e, l);
+                struct ConformInput in = suite_level_input(&e, l - step);
                 double reach = 0;
                 if (anisotropic) {
                     in.maxAnisotropy = (float)(2u << (i + b + l) % 4);
                     in.dx[0] *= in.maxAnisotropy;
-                    reach = (i % 2 ? 0.5 : -0.5) * (double)in.maxAnisotropy;
+                    reach = (i % 2 ? 0.5 : -0.5) * (double)in.maxAnisotropy * exp2(-step);
                 }
                 double at = (b * e.regionWidth + offsets[i] + reach) / w;
                 double other = (b * e.regionHeight + offsets[(i * 7) % OFFSETS]) / h;
@@ -52,32 +55,50 @@ static void add_borders(struct suite *s, struct SluiceTextureEntry e, bool aniso
     }
 }
 
+static const double level_steps[] = {0, 0.5};
+
 static void point_footprints_find_their_tiles_at_borders(void **state)
 {
     struct suite *s = suite_begin(*state);
     s->filter = (struct oracle_filter){.nearest = true};
-    for (uint32_t m = 0; m < SUITE_MODES; m++)
-        add_borders(s, conform_entry(256, 256, 64, 64, suite_modes[m]), false);
+    for (uint32_t i = 0; i < 2 * SUITE_MODES; i++)
+        add_borders(s, conform_entry(256, 256, 64, 64, suite_modes[i / 2]), level_steps[i % 2],
+                    false);
     suite_end(s, "point_border");
 }
 
 static void linear_footprints_find_their_tiles_at_borders(void **state)
 {
     struct suite *s = suite_begin(*state);
-    for (uint32_t m = 0; m < SUITE_MODES; m++) {
-        add_borders(s, conform_entry(256, 256, 64, 64, suite_modes[m]), false);
-        add_borders(s, conform_entry(512, 256, 128, 64, suite_modes[m]), false);
-        add_borders(s, conform_entry(200, 300, 32, 64, suite_modes[m]), false);
+    for (uint32_t i = 0; i < 2 * SUITE_MODES; i++) {
+        uint32_t mode = suite_modes[i / 2];
+        add_borders(s, conform_entry(256, 256, 64, 64, mode), level_steps[i % 2], false);
+        add_borders(s, conform_entry(512, 256, 128, 64, mode), level_steps[i % 2], false);
+        add_borders(s, conform_entry(200, 300, 32, 64, mode), level_steps[i % 2], false);
     }
     suite_end(s, "linear_border");
+}
+
+/* Of sizes whose levels are rounded down again and again: tiles lie furthest from their regions. */
+static void linear_footprints_of_uneven_sizes_find_their_tiles_at_borders(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    for (uint32_t i = 0; i < 2 * SUITE_MODES; i++) {
+        uint32_t mode = suite_modes[i / 2];
+        add_borders(s, conform_entry(255, 127, 8, 8, mode), level_steps[i % 2], false);
+        add_borders(s, conform_entry(511, 1023, 32, 64, mode), level_steps[i % 2], false);
+    }
+    suite_end(s, "uneven_border");
 }
 
 static void anisotropic_footprints_find_their_tiles_at_borders(void **state)
 {
     struct suite *s = suite_begin(*state);
-    for (uint32_t m = 0; m < SUITE_MODES; m++) {
-        add_borders(s, conform_entry(512, 512, 64, 64, suite_modes[m]), true);
-        add_borders(s, conform_entry(600, 500, 128, 128, suite_modes[m]), true);
+    for (uint32_t i = 0; i < 2 * SUITE_MODES; i++) {
+        add_borders(s, conform_entry(512, 512, 64, 64, suite_modes[i / 2]), level_steps[i % 2],
+                    true);
+        add_borders(s, conform_entry(600, 500, 128, 128, suite_modes[i / 2]), level_steps[i % 2],
+                    true);
     }
     suite_end(s, "anisotropic_border");
 }
@@ -143,10 +164,8 @@ static void biases_at_both_ends_of_the_chain_are_clamped(void **state)
     suite_end(s, "bias");
 }
 
-/* The bias moves the level and, on some devices, not the length of the footprint. */
-static void anisotropic_footprints_with_a_bias_find_their_tiles(void **state)
+static void add_biased(struct suite *s)
 {
-    struct suite *s = suite_begin(*state);
     for (uint32_t m = 0; m < SUITE_MODES; m++) {
         struct SluiceTextureEntry e = conform_entry(2048, 1024, 64, 64, suite_modes[m]);
         for (int l = 0; l < 9; l++)
@@ -165,7 +184,22 @@ static void anisotropic_footprints_with_a_bias_find_their_tiles(void **state)
                     suite_add(s, e, in, 0.49 + 0.02 * b, 0.7);
                 }
     }
+}
+
+/* The bias moves the level; the length of the footprint stays as it is on some devices. */
+static void anisotropic_footprints_with_a_bias_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    add_biased(s);
     suite_end(s, "anisotropic_bias");
+}
+
+static void anisotropic_footprints_that_grow_with_a_bias_find_their_tiles(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    s->filter.bias_scales = true;
+    add_biased(s);
+    suite_end(s, "anisotropic_bias_scaled");
 }
 
 /* Derivatives that are nearly parallel: the ellipse is narrow, the lengths say it is wide. */
@@ -298,6 +332,34 @@ static void the_largest_textures_find_their_tiles(void **state)
     suite_end(s, "largest");
 }
 
+/* Places and levels as a picture has them, not those that are hard. */
+static void add_ordinary(struct suite *s, float anisotropy)
+{
+    srand(73);
+    for (uint32_t i = 0; i < 4000; i++) {
+        struct SluiceTextureEntry e = conform_entry(4096, 4096, 128, 128, 0);
+        double lod = 5.0 * rand() / RAND_MAX, angle = 6.2832 * rand() / RAND_MAX;
+        double ratio = anisotropy > 1 ? exp2(4.0 * rand() / RAND_MAX) : 1;
+        double minor = exp2(lod) / 4096, major = minor * ratio;
+        struct ConformInput in = {.dx = {(float)(cos(angle) * major), (float)(sin(angle) * major)},
+                                  .dy = {(float)(-sin(angle) * minor), (float)(cos(angle) * minor)},
+                                  .maxAnisotropy = anisotropy};
+        suite_add(s, e, in, (double)rand() / RAND_MAX, (double)rand() / RAND_MAX);
+    }
+}
+
+static void ordinary_samples_ask_for_little_more_than_they_need(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    add_ordinary(s, 1);
+    suite_end(s, "ordinary");
+    assert_true(s->excess < s->needed / 20);
+    s = suite_begin(*state);
+    add_ordinary(s, 8);
+    suite_end(s, "ordinary_anisotropic");
+    assert_true(s->excess < s->needed / 10);
+}
+
 int main(void)
 {
     struct harness h;
@@ -307,11 +369,13 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(point_footprints_find_their_tiles_at_borders),
         cmocka_unit_test(linear_footprints_find_their_tiles_at_borders),
+        cmocka_unit_test(linear_footprints_of_uneven_sizes_find_their_tiles_at_borders),
         cmocka_unit_test(anisotropic_footprints_find_their_tiles_at_borders),
         cmocka_unit_test(levels_at_a_fraction_find_their_tiles),
         cmocka_unit_test(samplers_a_little_finer_find_their_tiles),
         cmocka_unit_test(biases_at_both_ends_of_the_chain_are_clamped),
         cmocka_unit_test(anisotropic_footprints_with_a_bias_find_their_tiles),
+        cmocka_unit_test(anisotropic_footprints_that_grow_with_a_bias_find_their_tiles),
         cmocka_unit_test(skewed_footprints_find_their_tiles_by_either_rule),
         cmocka_unit_test(levels_beyond_the_chain_are_its_ends),
         cmocka_unit_test(sizes_that_do_not_halve_evenly_find_their_tiles),
@@ -319,6 +383,7 @@ int main(void)
         cmocka_unit_test(textures_one_texel_wide_find_their_tiles),
         cmocka_unit_test(tail_levels_are_marked_as_they_are),
         cmocka_unit_test(the_largest_textures_find_their_tiles),
+        cmocka_unit_test(ordinary_samples_ask_for_little_more_than_they_need),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
