@@ -39,8 +39,8 @@ void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint leve
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
  * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
- * (1: none). Not finite arguments mark at most the coarsest level. Never writes outside the
- * texture's own map. Helper invocations write nothing.
+ * (1: none). `uv` and derivatives that are not finite, and a bias that is NaN, mark the coarsest level
+ * alone. Never writes outside the texture's own map. Helper invocations write nothing.
  */
 void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
