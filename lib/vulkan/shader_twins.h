@@ -256,6 +256,8 @@ static inline uint32_t slc_twin_range_region(const uint32_t range[3], uint32_t l
 struct slc_twin_wants {
     uint32_t level;
     struct slc_twin_footprint regions;
+    uint32_t wide_level; /* of wide_regions, UINT32_MAX where nothing more is marked */
+    struct slc_twin_footprint wide_regions;
 };
 
 static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEntry *entry,
@@ -271,9 +273,19 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
     struct slc_twin_wants wants;
     wants.level =
         slc_twin_finest_level(lods.x, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    wants.regions =
-        slc_twin_compute_footprint(entry, uv, slc_twin_half_box(dx, dy, lod_bias, max_anisotropy),
-                                   slc_twin_coarsest_level(lods.y, entry->mipLevelCount));
+    uint32_t coarsest = slc_twin_coarsest_level(lods.y, entry->mipLevelCount);
+    struct slc_twin_vec2 half_box = slc_twin_half_box(dx, dy, lod_bias, max_anisotropy);
+    wants.regions = slc_twin_compute_footprint(entry, uv, half_box, coarsest);
+    wants.wide_level = UINT32_MAX;
+    wants.wide_regions = wants.regions;
+    if (!(max_anisotropy > 1.0f))
+        return wants;
+    uint32_t widest =
+        slc_twin_coarsest_level(slc_twin_compute_lod(tx, ty, lod_bias, 1.0f), entry->mipLevelCount);
+    if (widest > coarsest) {
+        wants.wide_level = coarsest + 1;
+        wants.wide_regions = slc_twin_compute_footprint(entry, uv, half_box, widest);
+    }
     return wants;
 }
 

@@ -69,15 +69,17 @@ static double lod_of(double major, double minor, double anisotropy, double bias)
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in)
 {
     if (!is_finite_input(in))
-        return (struct oracle_lod){NAN, NAN};
+        return (struct oracle_lod){NAN, NAN, NAN};
     if (in->mode == CONFORM_LOD)
-        return (struct oracle_lod){in->lod, in->lod};
+        return (struct oracle_lod){in->lod, in->lod, in->lod};
     double ax = (double)in->dx[0] * entry->width, ay = (double)in->dx[1] * entry->height;
     double bx = (double)in->dy[0] * entry->width, by = (double)in->dy[1] * entry->height;
     double a = hypot(ax, ay), b = hypot(bx, by), n = anisotropy_of(in), bias = in->lodBias;
+    double isotropic = lod_of(fmax(a, b), 0, 1, bias);
     if (n == 1)
-        return (struct oracle_lod){lod_of(fmax(a, b), 0, 1, bias), lod_of(fmax(a, b), 0, 1, bias)};
-    struct oracle_lod lod = {.lengths = lod_of(fmax(a, b), fmin(a, b), n, bias)};
+        return (struct oracle_lod){isotropic, isotropic, isotropic};
+    struct oracle_lod lod = {.lengths = lod_of(fmax(a, b), fmin(a, b), n, bias),
+                             .isotropic = isotropic};
     /* singular values: their squares sum up to a2 + b2, their product is the determinant */
     double sum = a * a + b * b, area = fabs(ax * by - ay * bx);
     double major = sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
@@ -258,12 +260,39 @@ static void allow_all(struct oracle_allowed *a, const struct SluiceTextureEntry 
     memset(a->y, true, e->regionCountY * sizeof a->y[0]);
 }
 
+bool oracle_allows(const struct oracle_allowed *a, uint32_t level, uint32_t x, uint32_t y)
+{
+    return (a->x[x] && a->y[y]) || (level >= a->wide_level && a->wide_x[x] && a->wide_y[y]);
+}
+
+/* Around `uv` for levels up to `coarsest`; a tile may begin a texel before the regions it is over.
+ */
+static void allow_box(bool *xs, bool *ys, const struct SluiceTextureEntry *e,
+                      const struct ConformInput *in, const double box[2], uint32_t coarsest)
+{
+    double above = 0.5 + TEXEL_MARGIN + FLOAT_ERROR;
+    double below = above + (e->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? 1 : 0);
+    double wide = 1.0 / level_size(e->width, coarsest),
+           high = 1.0 / level_size(e->height, coarsest);
+    allow_axis(xs, in->uv[0], below * wide + box[0], above * wide + box[0], e->addressModeU,
+               (double)e->width / e->regionWidth, e->regionCountX);
+    allow_axis(ys, in->uv[1], below * high + box[1], above * high + box[1], e->addressModeV,
+               (double)e->height / e->regionHeight, e->regionCountY);
+}
+
+/* The coarser of two levels that are read at this level of detail. */
+static uint32_t coarser_level(double lod, double last)
+{
+    return (uint32_t)clamp(floor(clamp(lod, 0, last)) + 1, 0, last);
+}
+
 void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
                   const struct ConformInput *in)
 {
     double last = e->mipLevelCount - 1;
     struct oracle_lod lod = oracle_lod(e, in);
     a->level = e->mipLevelCount - 1;
+    a->wide_level = UINT32_MAX;
     if (isnan(lod.lengths)) {
         allow_all(a, e);
         return;
@@ -272,19 +301,11 @@ void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
                     : anisotropy_of(in) > 1 ? LOD_MARGIN_ANISOTROPIC
                                             : LOD_MARGIN;
     a->level = (uint32_t)clamp(lod.finest - margin - FLOAT_ERROR, 0, last);
-    double rounded = floor(clamp(lod.lengths + FLOAT_ERROR, 0, last));
-    uint32_t coarsest = (uint32_t)clamp(rounded + 1, 0, last);
-    /* a tile may begin a texel before the regions that it is over */
-    double above = 0.5 + TEXEL_MARGIN + FLOAT_ERROR;
-    double below = above + (e->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? 1 : 0);
     double box[2] = {0, 0};
     if (anisotropy_of(in) > 1)
         for (int i = 0; i < 2; i++)
             box[i] = 0.5 * hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
-    double wide = 1.0 / level_size(e->width, coarsest),
-           high = 1.0 / level_size(e->height, coarsest);
-    allow_axis(a->x, in->uv[0], below * wide + box[0], above * wide + box[0], e->addressModeU,
-               (double)e->width / e->regionWidth, e->regionCountX);
-    allow_axis(a->y, in->uv[1], below * high + box[1], above * high + box[1], e->addressModeV,
-               (double)e->height / e->regionHeight, e->regionCountY);
+    allow_box(a->x, a->y, e, in, box, coarser_level(lod.lengths + FLOAT_ERROR, last));
+    allow_box(a->wide_x, a->wide_y, e, in, box, coarser_level(lod.isotropic + FLOAT_ERROR, last));
+    a->wide_level = coarser_level(lod.lengths - FLOAT_ERROR, last) + 1;
 }

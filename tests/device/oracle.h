@@ -33,6 +33,7 @@ bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y
  */
 struct oracle_lod {
     double lengths, finest;
+    double isotropic; ///< by the longer derivative, whatever the anisotropy: the coarsest
 };
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in);
 
@@ -55,11 +56,17 @@ void oracle_decode(struct oracle_tiles *t, const uint32_t *map);
 /** Adds all coarser tiles over those that are there: a streamer loads no tile without them. */
 void oracle_close(struct oracle_tiles *t);
 
-/** Where marks may be; a level below `level` or one that does not exist is wrong anywhere. */
+/**
+ * Where marks may be; a level below `level` or one that does not exist is wrong anywhere. Marks
+ * from `wide_level` on may also be where the coarser levels reach that some devices read with
+ * anisotropy.
+ */
 struct oracle_allowed {
-    uint32_t level;
+    uint32_t level, wide_level;
     bool x[ORACLE_REGIONS], y[ORACLE_REGIONS];
+    bool wide_x[ORACLE_REGIONS], wide_y[ORACLE_REGIONS];
 };
+bool oracle_allows(const struct oracle_allowed *a, uint32_t level, uint32_t x, uint32_t y);
 void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *entry,
                   const struct ConformInput *in);
 

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define SAMPLES 768u
+#define SAMPLES 1536u
 
 struct comparison {
     struct truth truth;
@@ -48,8 +48,8 @@ static struct ConformInput random_input(const struct SluiceTextureEntry *e, floa
                                         bool biased)
 {
     double texels = exp2(draw() * (e->mipLevelCount + 1) - 1), angle = draw() * 6.2832;
-    double ratio = rand() % 3 ? exp2(draw() * 5) : 1;
-    double turn = rand() % 3 ? 1.5708 : draw() * 1.5708;
+    double ratio = rand() % 2 ? exp2(draw() * 5) : 1;
+    double turn = rand() % 2 ? 1.5708 : draw() * draw() * 1.5708;
     double x = texels / e->width, y = texels / e->height;
     struct ConformInput in = {
         .dx = {rounded(cos(angle) * x * ratio), rounded(sin(angle) * y * ratio)},

@@ -51,9 +51,17 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
                                    : vec2(SLUICE_LOD_LIMIT);
     uint level = sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
     uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
-    SluiceFootprint at = sluiceComputeFootprint(
-        entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest);
+    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    SluiceFootprint at = sluiceComputeFootprint(entry, uv, halfBox, coarsest);
     sluiceMarkFootprint(entry, at, level);
+    if (!(maxAnisotropy > 1.0))
+        return;
+    /* Some devices read levels up to those without anisotropy, which reach further: see drivers.md. */
+    uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
+                                      entry.mipLevelCount);
+    if (widest > coarsest)
+        sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, widest),
+                            coarsest + 1u);
 }
 
 /** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */
