@@ -56,7 +56,7 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     sluiceMarkFootprint(entry, at, level);
     if (!(maxAnisotropy > 1.0))
         return;
-    /* Some devices read levels up to those without anisotropy, which reach further: see drivers.md. */
+    /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
     uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
                                       entry.mipLevelCount);
     if (widest > coarsest)
