@@ -66,34 +66,56 @@ static inline float slc_twin_lod_margin(float max_anisotropy)
     return max_anisotropy > 1.0f ? 0.1875f : 0.125f;
 }
 
+static inline float slc_twin_clamp_lod(float lod)
+{
+    return lod <= SLC_TWIN_LOD_LIMIT ? fmaxf(lod, -SLC_TWIN_LOD_LIMIT) : SLC_TWIN_LOD_LIMIT;
+}
+
 static inline float slc_twin_clamp_lod_bias(float lod_bias)
 {
-    return lod_bias >= -SLC_TWIN_LOD_LIMIT ? fminf(lod_bias, SLC_TWIN_LOD_LIMIT)
-                                           : -SLC_TWIN_LOD_LIMIT;
+    return slc_twin_clamp_lod(lod_bias);
+}
+
+static inline bool slc_twin_is_finite(struct slc_twin_vec2 v)
+{
+    return fabsf(v.x) <= 1.0e33f && fabsf(v.y) <= 1.0e33f;
+}
+
+static inline float slc_twin_lod_of_square(float minor2, float lod_bias)
+{
+    float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
+    return slc_twin_clamp(lod + slc_twin_clamp_lod_bias(lod_bias), -SLC_TWIN_LOD_LIMIT,
+                          SLC_TWIN_LOD_LIMIT);
+}
+
+/* x: the finest, y: the coarsest */
+static inline struct slc_twin_vec2 slc_twin_compute_lods(struct slc_twin_vec2 dx,
+                                                         struct slc_twin_vec2 dy, float lod_bias,
+                                                         float max_anisotropy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    if (!(x2 >= 0.0f && y2 >= 0.0f)) /* NaN */
+        return (struct slc_twin_vec2){SLC_TWIN_LOD_LIMIT, SLC_TWIN_LOD_LIMIT};
+    float n = slc_twin_clamp_anisotropy(max_anisotropy);
+    float major2 = fmaxf(x2, y2);
+    float fine2 = fminf(x2, y2), coarse2 = fine2;
+    float sum = x2 + y2;
+    if (n > 1.0f && sum > 1.0e-30f && sum < 1.0e30f) {
+        float area = (dx.x * dy.y - dx.y * dy.x) / sum;
+        fine2 = fminf(fine2, 2.0f * area * area * sum /
+                                 (1.0f + sqrtf(fmaxf(1.0f - 4.0f * area * area, 0.0f))));
+    }
+    fine2 = fmaxf(fine2, major2 / (n * n));
+    coarse2 = fmaxf(coarse2, major2 / (n * n));
+    return (struct slc_twin_vec2){slc_twin_lod_of_square(fine2, lod_bias),
+                                  slc_twin_lod_of_square(coarse2, lod_bias)};
 }
 
 static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
                                          float lod_bias, float max_anisotropy)
 {
-    float x2 = dx.x * dx.x + dx.y * dx.y;
-    float y2 = dy.x * dy.x + dy.y * dy.y;
-    if (!(x2 >= 0.0f && y2 >= 0.0f)) /* NaN */
-        return SLC_TWIN_LOD_LIMIT;
-    float n = slc_twin_clamp_anisotropy(max_anisotropy);
-    float major2 = fmaxf(x2, y2);
-    float minor2 = fminf(x2, y2);
-    float sum = x2 + y2;
-    if (n > 1.0f && sum > 1.0e-30f && sum < 1.0e30f) {
-        float area = (dx.x * dy.y - dx.y * dy.x) / sum;
-        minor2 = fminf(minor2, 2.0f * area * area * sum /
-                                   (1.0f + sqrtf(fmaxf(1.0f - 4.0f * area * area, 0.0f))));
-    }
-    minor2 = fmaxf(minor2, major2 / (n * n));
-    float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
-    lod += slc_twin_clamp_lod_bias(lod_bias);
-    if (!(lod >= -SLC_TWIN_LOD_LIMIT))
-        return -SLC_TWIN_LOD_LIMIT;
-    return fminf(lod, SLC_TWIN_LOD_LIMIT);
+    return slc_twin_compute_lods(dx, dy, lod_bias, max_anisotropy).x;
 }
 
 static inline uint32_t slc_twin_finest_level(float lod, float margin, uint32_t count)
@@ -112,6 +134,9 @@ static inline uint32_t slc_twin_coarsest_level(float lod, uint32_t count)
 #define SLC_TWIN_APRON 0.5625f
 #define SLC_TWIN_APRON_UNEVEN 1.5625f
 
+#define SLC_TWIN_FOOTPRINT_STEPS_LOG2 6
+
+/* From the first to the second; where the third is another, on from 0 to the third. */
 struct slc_twin_footprint {
     uint32_t x[3], y[3];
 };
@@ -128,18 +153,20 @@ static inline void slc_twin_region_range(float coordinate, float below, float ab
                                          uint32_t address_mode, float regions_per_unit,
                                          uint32_t region_count, uint32_t out[3])
 {
-    below = fminf(below, 0.5f);
-    above = fminf(above, 0.5f);
     if (address_mode == SLUICE_ADDRESS_MODE_REPEAT) {
+        below = below < 0.5f ? below : 0.5f;
+        above = above < 0.5f ? above : 0.5f;
         float middle = coordinate - floorf(coordinate);
         middle = middle >= 0.0f ? fminf(middle, 1.0f) : 0.0f;
         float low = middle - below, high = middle + above;
         bool wraps = low < 0.0f || high >= 1.0f;
         out[0] =
             slc_twin_region_index(low < 0.0f ? low + 1.0f : low, regions_per_unit, region_count);
-        out[1] = slc_twin_region_index(high >= 1.0f ? high - 1.0f : high, regions_per_unit,
+        out[2] = slc_twin_region_index(high >= 1.0f ? high - 1.0f : high, regions_per_unit,
                                        region_count);
-        out[2] = wraps ? region_count - 1 : out[1];
+        out[1] = wraps ? region_count - 1 : out[2];
+        if (wraps && out[2] == region_count - 1)
+            out[0] = 0;
         return;
     }
     float middle = coordinate;
@@ -151,9 +178,9 @@ static inline void slc_twin_region_range(float coordinate, float below, float ab
         middle = fabsf(coordinate);
         below = above = fmaxf(below, above);
     }
-    middle = middle > 0.0f ? fminf(middle, 1.0f) : 0.0f;
     out[0] = slc_twin_region_index(middle - below, regions_per_unit, region_count);
     out[1] = slc_twin_region_index(middle + above, regions_per_unit, region_count);
+    out[1] = out[1] > out[0] ? out[1] : out[0]; /* NaN */
     out[2] = out[1];
 }
 
@@ -187,11 +214,50 @@ static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
                                   0.5f * scale * sqrtf(dx.y * dx.y + dy.y * dy.y)};
 }
 
+static inline bool slc_twin_footprint_is_one_region(const struct slc_twin_footprint *f)
+{
+    return f->x[0] == f->x[1] && f->x[0] == f->x[2] && f->y[0] == f->y[1] && f->y[0] == f->y[2];
+}
+
+static inline uint32_t slc_twin_range_shift(const uint32_t range[3], uint32_t level)
+{
+    uint32_t distance = range[1] - range[0] + (range[2] == range[1] ? 0 : range[2]);
+    uint32_t bits = 0;
+    while (bits < 32 && distance >> bits)
+        bits++;
+    uint32_t shift =
+        bits > SLC_TWIN_FOOTPRINT_STEPS_LOG2 ? bits - SLC_TWIN_FOOTPRINT_STEPS_LOG2 : 0;
+    return level > shift ? level : shift;
+}
+
+static inline uint32_t slc_twin_count_steps(uint32_t distance, uint32_t shift)
+{
+    return ((distance + (1u << shift) - 1) >> shift) + 1;
+}
+
+static inline uint32_t slc_twin_range_steps(const uint32_t range[3], uint32_t level)
+{
+    uint32_t shift = slc_twin_range_shift(range, level);
+    uint32_t count = slc_twin_count_steps(range[1] - range[0], shift);
+    return range[2] == range[1] ? count : count + slc_twin_count_steps(range[2], shift);
+}
+
+static inline uint32_t slc_twin_range_region(const uint32_t range[3], uint32_t level, uint32_t i)
+{
+    uint32_t shift = slc_twin_range_shift(range, level);
+    uint32_t count = slc_twin_count_steps(range[1] - range[0], shift);
+    uint32_t at = i < count ? range[0] + (i << shift) : (i - count) << shift;
+    uint32_t end = i < count ? range[1] : range[2];
+    return at < end ? at : end;
+}
+
 /* feedback.glsl: what one sample marks */
 
 struct slc_twin_wants {
     uint32_t level;
     struct slc_twin_footprint regions;
+    uint32_t wide_level; /* of wide_regions, UINT32_MAX where nothing more is marked */
+    struct slc_twin_footprint wide_regions;
 };
 
 static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEntry *entry,
@@ -201,13 +267,25 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
 {
     float w = (float)entry->width, h = (float)entry->height;
     struct slc_twin_vec2 tx = {dx.x * w, dx.y * h}, ty = {dy.x * w, dy.y * h};
-    float lod = slc_twin_compute_lod(tx, ty, lod_bias, max_anisotropy);
+    struct slc_twin_vec2 lods = {SLC_TWIN_LOD_LIMIT, SLC_TWIN_LOD_LIMIT};
+    if (slc_twin_is_finite(uv))
+        lods = slc_twin_compute_lods(tx, ty, lod_bias, max_anisotropy);
     struct slc_twin_wants wants;
     wants.level =
-        slc_twin_finest_level(lod, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    wants.regions =
-        slc_twin_compute_footprint(entry, uv, slc_twin_half_box(dx, dy, lod_bias, max_anisotropy),
-                                   slc_twin_coarsest_level(lod, entry->mipLevelCount));
+        slc_twin_finest_level(lods.x, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
+    uint32_t coarsest = slc_twin_coarsest_level(lods.y, entry->mipLevelCount);
+    struct slc_twin_vec2 half_box = slc_twin_half_box(dx, dy, lod_bias, max_anisotropy);
+    wants.regions = slc_twin_compute_footprint(entry, uv, half_box, coarsest);
+    wants.wide_level = UINT32_MAX;
+    wants.wide_regions = wants.regions;
+    if (!(max_anisotropy > 1.0f))
+        return wants;
+    uint32_t widest =
+        slc_twin_coarsest_level(slc_twin_compute_lod(tx, ty, lod_bias, 1.0f), entry->mipLevelCount);
+    if (widest > coarsest) {
+        wants.wide_level = coarsest + 1;
+        wants.wide_regions = slc_twin_compute_footprint(entry, uv, half_box, widest);
+    }
     return wants;
 }
 

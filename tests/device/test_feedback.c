@@ -200,11 +200,13 @@ static void extremes_stay_inside_the_map(void **state)
 }
 
 static void paint(uint8_t *map, const struct SluiceTextureEntry *e,
-                  const struct slc_twin_wants *wants, uint32_t level)
+                  const struct slc_twin_footprint *regions, uint32_t level)
 {
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++) {
-            uint8_t *at = &map[wants->regions.y[y] * e->regionCountX + wants->regions.x[x]];
+    const uint32_t *xs = regions->x, *ys = regions->y;
+    for (uint32_t y = 0; y < slc_twin_range_steps(ys, level); y++)
+        for (uint32_t x = 0; x < slc_twin_range_steps(xs, level); x++) {
+            uint8_t *at = &map[slc_twin_range_region(ys, level, y) * e->regionCountX +
+                               slc_twin_range_region(xs, level, x)];
             if (level < *at)
                 *at = (uint8_t)level;
         }
@@ -284,9 +286,11 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
         wants.regions =
             slc_twin_compute_footprint(&e, (struct slc_twin_vec2){in->uv[0], in->uv[1]}, axis,
                                        slc_twin_coarsest_level(lod + 2e-3f, e.mipLevelCount));
-        paint(allowed, &e, &wants, wants.level);
+        paint(allowed, &e, &wants.regions, wants.level);
         wants = twin_of(&e, in, &lod);
-        paint(allowed, &e, &wants, slc_twin_finest_level(lod, margin, e.mipLevelCount));
+        paint(allowed, &e, &wants.regions, slc_twin_finest_level(lod, margin, e.mipLevelCount));
+        if (wants.wide_level != UINT32_MAX)
+            paint(allowed, &e, &wants.wide_regions, wants.wide_level);
     }
     run(scene, t, count, PROBE_FEEDBACK);
     run(scene, t, regions, PROBE_WORDS);

@@ -61,15 +61,35 @@ void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint leve
     sluiceMarkRegion(entry, at.x.x, at.y.x, level);
     if (sluiceFootprintIsOneRegion(at))
         return;
-    for (uint i = 1u; i < 9u; i++)
-        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+    uvec2 steps = sluiceFootprintSteps(at, level);
+    for (uint i = 1u; i < steps.x * steps.y; i++) {
+        uvec2 region = sluiceFootprintRegion(at, level, uvec2(i % steps.x, i / steps.x));
+        sluiceMarkRegion(entry, region.x, region.y, level);
+    }
+}
+
+/** What a sample touches if its finest and its coarsest level are these. */
+void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                      float maxAnisotropy, uint level, uint coarsest)
+{
+    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, coarsest), level);
+    if (!(maxAnisotropy > 1.0))
+        return;
+    /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
+    vec2 size = vec2(entry.width, entry.height);
+    uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
+                                      entry.mipLevelCount);
+    if (widest > coarsest)
+        sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, widest),
+                            coarsest + 1u);
 }
 
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
  * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
- * (1: none). Not finite arguments mark at most the coarsest level. Never writes outside the
- * texture's own map. Helper invocations write nothing.
+ * (1: none). `uv` and derivatives that are not finite, and a bias that is NaN, mark the coarsest level
+ * alone. Never writes outside the texture's own map. Helper invocations write nothing.
  */
 void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
@@ -78,13 +98,23 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
         return;
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);
-    float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
-    uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
-    uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
-    sluiceMarkFootprint(entry,
-                        sluiceComputeFootprint(
-                            entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest),
-                        level);
+    vec2 lods = sluiceIsFinite(uv) ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
+                                   : vec2(SLUICE_LOD_LIMIT);
+    uint level = sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
+    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
+    sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy, level, coarsest);
+}
+
+/** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */
+void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
+{
+    if (!sluiceTakesPart(tableIndex))
+        return;
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    lod = sluiceIsFinite(uv) ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
+    SluiceFootprint at = sluiceComputeFootprint(entry, uv, vec2(0.0),
+                                                sluiceCoarsestLevel(lod, entry.mipLevelCount));
+    sluiceMarkFootprint(entry, at, sluiceFinestLevel(lod, 0.0, entry.mipLevelCount));
 }
 
 #ifdef SLUICE_FEEDBACK_QUERY
@@ -108,21 +138,19 @@ void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lod
     vec2 dx = dFdx(uv), dy = dFdy(uv);
     if (!selected || !sluiceTakesPart(tableIndex))
         return;
-    lod = lod == lod ? clamp(lod, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
-    lod += sluiceClampLodBias(lodBias);
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    float finest = lod - SLUICE_QUERY_MARGIN;
-    if (maxAnisotropy > 1.0) {
-        vec2 size = vec2(entry.width, entry.height);
-        float computed = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
-        finest = min(finest, computed - sluiceLodMargin(maxAnisotropy));
+    vec2 size = vec2(entry.width, entry.height);
+    vec2 lods = sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
+    bool known = lod == lod && sluiceIsFinite(uv);
+    lod = known ? sluiceClampLod(lod + sluiceClampLodBias(lodBias)) : SLUICE_LOD_LIMIT;
+    float finest = lod - SLUICE_QUERY_MARGIN, widest = lod + SLUICE_QUERY_MARGIN;
+    if (known && maxAnisotropy > 1.0) {
+        finest = min(finest, lods.x - sluiceLodMargin(maxAnisotropy));
+        widest = max(widest, lods.y);
     }
-    uint level = sluiceFinestLevel(finest, 0.0, entry.mipLevelCount);
-    uint coarsest = sluiceCoarsestLevel(lod + SLUICE_QUERY_MARGIN, entry.mipLevelCount);
-    sluiceMarkFootprint(entry,
-                        sluiceComputeFootprint(
-                            entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest),
-                        level);
+    sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy,
+                     sluiceFinestLevel(finest, 0.0, entry.mipLevelCount),
+                     sluiceCoarsestLevel(widest, entry.mipLevelCount));
 }
 #endif
 

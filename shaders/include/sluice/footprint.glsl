@@ -5,9 +5,8 @@
  * are rounded down, so on textures that do not halve evenly a tile begins up to one texel of its
  * level before its regions: the box around a sample reaches that much further down.
  *
- * Along an axis it suffices to look at both ends of the box, and at the last region where the box
- * wraps around it: no box is as wide as a tile of the level that is sampled, so at that level the
- * ends see every tile that lies between. C twin: lib/vulkan/shader_twins.h.
+ * Along an axis it suffices to look at one region of each tile of the finest level that is sampled,
+ * and at the last region, which may be narrow. C twin: lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_FOOTPRINT_GLSL
 #define SLUICE_FOOTPRINT_GLSL
@@ -19,7 +18,14 @@
 #define SLUICE_APRON 0.5625
 #define SLUICE_APRON_UNEVEN 1.5625
 
-/** Columns x and rows y; entries repeat where fewer than three are touched. */
+/* More tiles than 64 along an axis are walked in longer steps, and some of them passed over: that
+ * takes a LOD bias below -6 and anisotropy. */
+#define SLUICE_FOOTPRINT_STEPS_LOG2 6
+
+/**
+ * Columns x and rows y, each from the first to the second region, and where the third is another,
+ * the box wraps: on from 0 to the third.
+ */
 struct SluiceFootprint {
     uvec3 x;
     uvec3 y;
@@ -38,9 +44,9 @@ uint sluiceRegionIndex(float coordinate, float regionsPerUnit, uint regionCount)
 uvec3 sluiceRegionRange(float coordinate, float below, float above, uint addressMode,
                         float regionsPerUnit, uint regionCount)
 {
-    below = min(below, 0.5);
-    above = min(above, 0.5);
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
+        below = below < 0.5 ? below : 0.5; /* all of the image, and NaN */
+        above = above < 0.5 ? above : 0.5;
         /* fract first: far from 0 the ends of the box would round to its middle */
         float middle = coordinate - floor(coordinate);
         middle = middle >= 0.0 ? min(middle, 1.0) : 0.0;
@@ -49,7 +55,9 @@ uvec3 sluiceRegionRange(float coordinate, float below, float above, uint address
         bool wraps = low < 0.0 || high >= 1.0;
         uint first = sluiceRegionIndex(low < 0.0 ? low + 1.0 : low, regionsPerUnit, regionCount);
         uint last = sluiceRegionIndex(high >= 1.0 ? high - 1.0 : high, regionsPerUnit, regionCount);
-        return uvec3(first, last, wraps ? regionCount - 1u : last);
+        if (!wraps)
+            return uvec3(first, last, last);
+        return uvec3(last == regionCount - 1u ? 0u : first, regionCount - 1u, last);
     }
     float middle = coordinate;
     if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
@@ -60,9 +68,10 @@ uvec3 sluiceRegionRange(float coordinate, float below, float above, uint address
         middle = abs(coordinate);
         below = above = max(below, above);
     }
-    middle = middle > 0.0 ? min(middle, 1.0) : 0.0;
+    /* the ends are clamped, not the middle: a box outside touches no more than the edge */
     uint first = sluiceRegionIndex(middle - below, regionsPerUnit, regionCount);
     uint last = sluiceRegionIndex(middle + above, regionsPerUnit, regionCount);
+    last = max(first, last); /* NaN */
     return uvec3(first, last, last);
 }
 
@@ -90,6 +99,48 @@ SluiceFootprint sluiceComputeFootprint(SluiceTextureEntry entry, vec2 uv, vec2 h
 bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
 {
     return all(equal(footprint.x.xx, footprint.x.yz)) && all(equal(footprint.y.xx, footprint.y.yz));
+}
+
+/** The step between regions of an axis that sees every tile of `level`, as a power of two. */
+uint sluiceRangeShift(uvec3 range, uint level)
+{
+    int bits = findMSB(range.y - range.x + (range.z == range.y ? 0u : range.z)) + 1;
+    return max(level, uint(max(bits - SLUICE_FOOTPRINT_STEPS_LOG2, 0)));
+}
+
+/* How many steps lead from one region to another, both included. */
+uint sluiceCountSteps(uint distance, uint shift)
+{
+    return ((distance + (1u << shift) - 1u) >> shift) + 1u;
+}
+
+uint sluiceRangeSteps(uvec3 range, uint level)
+{
+    uint shift = sluiceRangeShift(range, level);
+    uint count = sluiceCountSteps(range.y - range.x, shift);
+    return range.z == range.y ? count : count + sluiceCountSteps(range.z, shift);
+}
+
+uint sluiceRangeRegion(uvec3 range, uint level, uint i)
+{
+    uint shift = sluiceRangeShift(range, level);
+    uint count = sluiceCountSteps(range.y - range.x, shift);
+    return i < count ? min(range.x + (i << shift), range.y) : min((i - count) << shift, range.z);
+}
+
+/**
+ * How many columns and rows to look at so as to see every tile of `level`, the finest that is
+ * sampled, and of coarser levels; and which regions those are.
+ */
+uvec2 sluiceFootprintSteps(SluiceFootprint footprint, uint level)
+{
+    return uvec2(sluiceRangeSteps(footprint.x, level), sluiceRangeSteps(footprint.y, level));
+}
+
+uvec2 sluiceFootprintRegion(SluiceFootprint footprint, uint level, uvec2 step)
+{
+    return uvec2(sluiceRangeRegion(footprint.x, level, step.x),
+                 sluiceRangeRegion(footprint.y, level, step.y));
 }
 
 /**

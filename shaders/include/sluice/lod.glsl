@@ -19,10 +19,22 @@ float sluiceClampAnisotropy(float maxAnisotropy)
     return maxAnisotropy > 1.0 ? min(maxAnisotropy, 16.0) : 1.0;
 }
 
-/** The LOD bias that counts: -32 to 32, -32 for NaN. */
+/** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
+bool sluiceIsFinite(vec2 v)
+{
+    return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
+}
+
+/** The LOD that counts: -32 to 32, 32 for NaN. */
+float sluiceClampLod(float lod)
+{
+    return lod <= SLUICE_LOD_LIMIT ? max(lod, -SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
+}
+
+/** The LOD bias that counts: -32 to 32, 32 for NaN. */
 float sluiceClampLodBias(float lodBias)
 {
-    return lodBias >= -SLUICE_LOD_LIMIT ? min(lodBias, SLUICE_LOD_LIMIT) : -SLUICE_LOD_LIMIT;
+    return sluiceClampLod(lodBias);
 }
 
 /** How far the sampler's level may lie below the computed one. */
@@ -32,29 +44,35 @@ float sluiceLodMargin(float maxAnisotropy)
 }
 
 /**
- * `dx` and `dy` in texels of level 0 per pixel. The result is finite, -32 to 32, whatever the
- * arguments: no derivative gives -32, an infinite one or NaN gives 32.
+ * The LOD that a sampler will choose, the finest (x) and the coarsest (y) that devices come to.
+ * `dx` and `dy` in texels of level 0 per pixel. Both are finite, -32 to 32, whatever the arguments:
+ * no derivative gives -32, an infinite one or NaN gives 32.
  */
-float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     float x2 = dx.x * dx.x + dx.y * dx.y;
     float y2 = dy.x * dy.x + dy.y * dy.y;
     if (!(x2 >= 0.0 && y2 >= 0.0)) /* NaN */
-        return SLUICE_LOD_LIMIT;
+        return vec2(SLUICE_LOD_LIMIT);
     float n = sluiceClampAnisotropy(maxAnisotropy);
     float major2 = max(x2, y2);
-    float minor2 = min(x2, y2);
+    vec2 minor2 = vec2(min(x2, y2));
     float sum = x2 + y2;
     if (n > 1.0 && sum > 1.0e-30 && sum < 1.0e30) { /* beyond, the squares leave the range */
         float area = (dx.x * dy.y - dx.y * dy.x) / sum; /* -1/2 to 1/2 */
-        minor2 = min(minor2, 2.0 * area * area * sum / (1.0 + sqrt(max(1.0 - 4.0 * area * area, 0.0))));
+        minor2.x = min(minor2.x,
+                       2.0 * area * area * sum / (1.0 + sqrt(max(1.0 - 4.0 * area * area, 0.0))));
     }
-    minor2 = max(minor2, major2 / (n * n));
-    float lod = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
-    lod += sluiceClampLodBias(lodBias);
-    if (!(lod >= -SLUICE_LOD_LIMIT))
-        return -SLUICE_LOD_LIMIT;
-    return min(lod, SLUICE_LOD_LIMIT);
+    minor2 = max(minor2, vec2(major2 / (n * n)));
+    vec2 lods = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
+    lods += sluiceClampLodBias(lodBias);
+    return clamp(lods, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT);
+}
+
+/** The finest of them. */
+float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+{
+    return sluiceComputeLods(dx, dy, lodBias, maxAnisotropy).x;
 }
 
 /** The finest level of `count` that a sampler may touch at this LOD. */

@@ -45,14 +45,17 @@ uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
     return (SLUICE_MIN_MIP_WORD(at >> 2u) >> ((at & 3u) * 8u)) & 255u;
 }
 
-/** The coarsest of the MinMip values over a footprint. */
-uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at)
+/** The coarsest of the MinMip values over a footprint of samples of `finestLevel` and coarser. */
+uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at, uint finestLevel)
 {
     uint level = sluiceReadMinMip(entry, at.x.x, at.y.x);
     if (sluiceFootprintIsOneRegion(at))
         return level;
-    for (uint i = 1u; i < 9u; i++)
-        level = max(level, sluiceReadMinMip(entry, at.x[i % 3u], at.y[i / 3u]));
+    uvec2 steps = sluiceFootprintSteps(at, finestLevel);
+    for (uint i = 1u; i < steps.x * steps.y; i++) {
+        uvec2 region = sluiceFootprintRegion(at, finestLevel, uvec2(i % steps.x, i / steps.x));
+        level = max(level, sluiceReadMinMip(entry, region.x, region.y));
+    }
     return level;
 }
 
@@ -73,12 +76,6 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
     dy = vec2(-direction.y, direction.x) * width / size;
 }
 
-/** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
-bool sluiceIsFinite(vec2 v)
-{
-    return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
-}
-
 /**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
  * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
@@ -93,8 +90,9 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     SluiceSampling s;
     bool clamped = !(sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy));
     s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
-    s.lod = clamped ? SLUICE_LOD_LIMIT
-                    : sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    vec2 lods = clamped ? vec2(SLUICE_LOD_LIMIT)
+                        : sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
+    s.lod = lods.x;
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
     s.level = s.wantedLevel;
     float biasScale = exp2(sluiceClampLodBias(lodBias));
@@ -105,9 +103,10 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     float width = exp2(SLUICE_LOD_POINT);
 
     vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
-    uint coarsest = sluiceCoarsestLevel(s.lod, entry.mipLevelCount);
+    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
-        uint there = sluiceMaxMinMip(entry, sluiceComputeFootprint(entry, s.uv, halfBox, coarsest));
+        uint there = sluiceMaxMinMip(
+            entry, sluiceComputeFootprint(entry, s.uv, halfBox, coarsest), s.level);
         if (there == SLUICE_MIP_UNTOUCHED) {
             s.level = SLUICE_MIP_UNTOUCHED;
             s.plain = false;

@@ -1,0 +1,311 @@
+#include "device/oracle.h"
+
+#include "support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What docs/feedback.md promises not to exceed. */
+#define LOD_MARGIN 0.125
+#define LOD_MARGIN_ANISOTROPIC 0.1875
+#define TEXEL_MARGIN 0.0625
+#define FLOAT_ERROR 2e-3
+#define STEPS 33 /* along an anisotropic footprint */
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+void oracle_tiles_init(struct oracle_tiles *t, const struct SluiceTextureEntry *entry)
+{
+    t->entry = *entry;
+    t->count = 0;
+    for (uint32_t l = 0; l < entry->mipLevelCount; l++) {
+        t->first[l] = t->count;
+        t->width[l] = (level_size(entry->width, l) + entry->regionWidth - 1) / entry->regionWidth;
+        t->height[l] =
+            (level_size(entry->height, l) + entry->regionHeight - 1) / entry->regionHeight;
+        t->count += t->width[l] * t->height[l];
+    }
+    assert_true(entry->mipLevelCount <= ORACLE_LEVELS && t->count <= ORACLE_TILES);
+    memset(t->has, 0, t->count * sizeof t->has[0]);
+}
+
+bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y)
+{
+    assert_true(level < t->entry.mipLevelCount && x < t->width[level] && y < t->height[level]);
+    return &t->has[t->first[level] + y * t->width[level] + x];
+}
+
+/* Beyond it coordinates and derivatives count as infinite, as in texels they may be. */
+static bool is_finite(float x)
+{
+    return fabsf(x) <= 1e33f;
+}
+
+static bool is_finite_input(const struct ConformInput *in)
+{
+    if (!is_finite(in->uv[0]) || !is_finite(in->uv[1]))
+        return false;
+    if (in->mode == CONFORM_LOD)
+        return !isnan(in->lod);
+    return is_finite(in->dx[0]) && is_finite(in->dx[1]) && is_finite(in->dy[0]) &&
+           is_finite(in->dy[1]) && !isnan(in->lodBias);
+}
+
+static double anisotropy_of(const struct ConformInput *in)
+{
+    return in->mode != CONFORM_LOD && in->maxAnisotropy > 1 ? fmin(in->maxAnisotropy, 16) : 1;
+}
+
+static double lod_of(double major, double minor, double anisotropy, double bias)
+{
+    if (major == 0)
+        return -INFINITY;
+    return log2(fmax(minor, major / anisotropy)) + bias;
+}
+
+struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in)
+{
+    if (!is_finite_input(in))
+        return (struct oracle_lod){NAN, NAN, NAN};
+    if (in->mode == CONFORM_LOD)
+        return (struct oracle_lod){in->lod, in->lod, in->lod};
+    double ax = (double)in->dx[0] * entry->width, ay = (double)in->dx[1] * entry->height;
+    double bx = (double)in->dy[0] * entry->width, by = (double)in->dy[1] * entry->height;
+    double a = hypot(ax, ay), b = hypot(bx, by), n = anisotropy_of(in), bias = in->lodBias;
+    double isotropic = lod_of(fmax(a, b), 0, 1, bias);
+    if (n == 1)
+        return (struct oracle_lod){isotropic, isotropic, isotropic};
+    struct oracle_lod lod = {.lengths = lod_of(fmax(a, b), fmin(a, b), n, bias),
+                             .isotropic = isotropic};
+    /* singular values: their squares sum up to a2 + b2, their product is the determinant */
+    double sum = a * a + b * b, area = fabs(ax * by - ay * bx);
+    double major = sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
+    lod.finest = lod_of(fmax(a, b), major > 0 ? area / major : 0, n, bias);
+    return lod;
+}
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* -1: the border, which is no texel. */
+static int64_t address(double texel, uint32_t size, uint32_t mode)
+{
+    double n = size;
+    switch (mode) {
+    case SLUICE_ADDRESS_MODE_REPEAT: return (int64_t)(texel - n * floor(texel / n));
+    case SLUICE_ADDRESS_MODE_MIRRORED_REPEAT:
+        texel -= 2 * n * floor(texel / (2 * n));
+        return (int64_t)(texel < n ? texel : 2 * n - 1 - texel);
+    case SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER: return texel < 0 || texel >= n ? -1 : (int64_t)texel;
+    case SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE:
+        texel = texel < 0 ? -1 - texel : texel;
+        return (int64_t)clamp(texel, 0, n - 1);
+    default: return (int64_t)clamp(texel, 0, n - 1);
+    }
+}
+
+static bool repeats(uint32_t mode)
+{
+    return mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
+}
+
+/* The same place near 0, exactly, so that half a texel still counts beside it. */
+static double brought_near(double coordinate, uint32_t mode)
+{
+    return repeats(mode) ? fmod(coordinate, 2) : coordinate;
+}
+
+/* Tiles along one axis under one tap; at most four. */
+static uint32_t tap_tiles(double coordinate, uint32_t size, uint32_t tile, uint32_t mode,
+                          struct oracle_filter filter, uint32_t out[4])
+{
+    double at = coordinate * size, half = filter.nearest ? 0 : 0.5;
+    double low = floor(at - half - filter.subtexel);
+    double high =
+        filter.nearest ? floor(at + filter.subtexel) : ceil(at + half + filter.subtexel) - 1;
+    uint32_t count = 0;
+    for (double texel = low; texel <= high && count < 4; texel++) {
+        int64_t t = address(texel, size, mode);
+        if (t >= 0)
+            out[count++] = (uint32_t)t / tile;
+        if (texel + 1 == texel) /* beyond 2^53 there are no neighbours */
+            break;
+    }
+    return count;
+}
+
+static void require_tap(struct oracle_tiles *t, uint32_t level, double u, double v,
+                        struct oracle_filter filter)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    uint32_t xs[4], ys[4];
+    uint32_t nx =
+        tap_tiles(u, level_size(e->width, level), e->regionWidth, e->addressModeU, filter, xs);
+    uint32_t ny =
+        tap_tiles(v, level_size(e->height, level), e->regionHeight, e->addressModeV, filter, ys);
+    for (uint32_t y = 0; y < ny; y++)
+        for (uint32_t x = 0; x < nx; x++)
+            *oracle_tile(t, level, xs[x], ys[y]) = true;
+}
+
+static void require_level(struct oracle_tiles *t, uint32_t level, const struct ConformInput *in,
+                          struct oracle_filter filter)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    double u = brought_near(in->uv[0], e->addressModeU);
+    double v = brought_near(in->uv[1], e->addressModeV);
+    if (anisotropy_of(in) == 1) {
+        require_tap(t, level, u, v, filter);
+        return;
+    }
+    double a = hypot((double)in->dx[0] * e->width, (double)in->dx[1] * e->height);
+    double b = hypot((double)in->dy[0] * e->width, (double)in->dy[1] * e->height);
+    const float *axis = a >= b ? in->dx : in->dy;
+    double scale = filter.bias_scales ? exp2(in->lodBias) : 1;
+    for (int i = 0; i < STEPS; i++) {
+        double at = scale * ((double)i / (STEPS - 1) - 0.5);
+        require_tap(t, level, u + at * (double)axis[0], v + at * (double)axis[1], filter);
+    }
+}
+
+void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
+                    struct oracle_filter filter)
+{
+    double last = t->entry.mipLevelCount - 1;
+    double lod = oracle_lod(&t->entry, in).lengths;
+    if (isnan(lod))
+        return; /* a sample of nothing known needs nothing */
+    lod = clamp(lod + filter.lod_offset, 0, last);
+    uint32_t level = (uint32_t)lod;
+    require_level(t, level, in, filter);
+    if (lod - level >= filter.lod_quantum && lod > level)
+        require_level(t, level + 1, in, filter);
+}
+
+/* Of the tile of level 0 that a region is, the one of the next level, and so on. */
+static uint32_t parent(uint32_t tile, uint32_t coarser_count)
+{
+    return tile / 2 < coarser_count ? tile / 2 : coarser_count - 1;
+}
+
+void oracle_decode(struct oracle_tiles *t, const uint32_t *map)
+{
+    const struct SluiceTextureEntry *e = &t->entry;
+    for (uint32_t y = 0; y < e->regionCountY; y++)
+        for (uint32_t x = 0; x < e->regionCountX; x++) {
+            uint32_t mark = map[y * e->regionCountX + x], tx = x, ty = y;
+            if (mark == SLUICE_MIP_UNTOUCHED)
+                continue;
+            for (uint32_t l = 0; l < e->mipLevelCount; l++) {
+                if (l) {
+                    tx = parent(tx, t->width[l]);
+                    ty = parent(ty, t->height[l]);
+                }
+                if (l >= mark)
+                    *oracle_tile(t, l, tx, ty) = true;
+            }
+        }
+}
+
+void oracle_close(struct oracle_tiles *t)
+{
+    for (uint32_t l = 1; l < t->entry.mipLevelCount; l++)
+        for (uint32_t y = 0; y < t->height[l - 1]; y++)
+            for (uint32_t x = 0; x < t->width[l - 1]; x++)
+                if (*oracle_tile(t, l - 1, x, y))
+                    *oracle_tile(t, l, parent(x, t->width[l]), parent(y, t->height[l])) = true;
+}
+
+static uint32_t region_of(double at, uint32_t mode, double regions_per_unit, uint32_t count)
+{
+    if (mode == SLUICE_ADDRESS_MODE_REPEAT)
+        at -= floor(at);
+    else if (mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
+        at = fabs(at - 2 * floor(at / 2 + 0.5));
+    else if (mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+        at = fabs(at);
+    return (uint32_t)clamp(floor(clamp(at, 0, 1) * regions_per_unit), 0, count - 1);
+}
+
+/* Regions within `below` before and `above` behind a coordinate, walked in small steps. */
+static void allow_axis(bool *regions, double coordinate, double below, double above, uint32_t mode,
+                       double regions_per_unit, uint32_t count)
+{
+    assert_true(count <= ORACLE_REGIONS);
+    memset(regions, 0, count * sizeof regions[0]);
+    if (mode != SLUICE_ADDRESS_MODE_REPEAT) /* a mirrored image has its tiles at the other side */
+        below = above = fmax(below, above);
+    coordinate = brought_near(coordinate, mode);
+    double low = coordinate - below, high = coordinate + above;
+    low = repeats(mode) ? fmax(low, coordinate - 2) : clamp(low, -2, 2);
+    high = repeats(mode) ? fmin(high, coordinate + 2) : clamp(high, -2, 2);
+    uint32_t steps = (uint32_t)((high - low) * regions_per_unit * 4) + 1;
+    for (uint32_t i = 0; i <= steps; i++)
+        regions[region_of(low + (high - low) * i / steps, mode, regions_per_unit, count)] = true;
+    /* the last region may be narrow: it lies before each edge of the image */
+    for (double edge = ceil(low); edge <= high && edge + 1 > edge; edge++) {
+        regions[region_of(edge - 1e-9, mode, regions_per_unit, count)] = true;
+        regions[region_of(edge, mode, regions_per_unit, count)] = true;
+    }
+}
+
+static void allow_all(struct oracle_allowed *a, const struct SluiceTextureEntry *e)
+{
+    memset(a->x, true, e->regionCountX * sizeof a->x[0]);
+    memset(a->y, true, e->regionCountY * sizeof a->y[0]);
+}
+
+bool oracle_allows(const struct oracle_allowed *a, uint32_t level, uint32_t x, uint32_t y)
+{
+    return (a->x[x] && a->y[y]) || (level >= a->wide_level && a->wide_x[x] && a->wide_y[y]);
+}
+
+/* Around `uv` for levels up to `coarsest`; a tile may begin a texel before the regions it is over.
+ */
+static void allow_box(bool *xs, bool *ys, const struct SluiceTextureEntry *e,
+                      const struct ConformInput *in, const double box[2], uint32_t coarsest)
+{
+    double above = 0.5 + TEXEL_MARGIN + FLOAT_ERROR;
+    double below = above + (e->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? 1 : 0);
+    double wide = 1.0 / level_size(e->width, coarsest),
+           high = 1.0 / level_size(e->height, coarsest);
+    allow_axis(xs, in->uv[0], below * wide + box[0], above * wide + box[0], e->addressModeU,
+               (double)e->width / e->regionWidth, e->regionCountX);
+    allow_axis(ys, in->uv[1], below * high + box[1], above * high + box[1], e->addressModeV,
+               (double)e->height / e->regionHeight, e->regionCountY);
+}
+
+/* The coarser of two levels that are read at this level of detail. */
+static uint32_t coarser_level(double lod, double last)
+{
+    return (uint32_t)clamp(floor(clamp(lod, 0, last)) + 1, 0, last);
+}
+
+void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
+                  const struct ConformInput *in)
+{
+    double last = e->mipLevelCount - 1;
+    struct oracle_lod lod = oracle_lod(e, in);
+    a->level = e->mipLevelCount - 1;
+    a->wide_level = UINT32_MAX;
+    if (isnan(lod.lengths)) {
+        allow_all(a, e);
+        return;
+    }
+    double margin = in->mode == CONFORM_LOD ? 0
+                    : anisotropy_of(in) > 1 ? LOD_MARGIN_ANISOTROPIC
+                                            : LOD_MARGIN;
+    a->level = (uint32_t)clamp(lod.finest - margin - FLOAT_ERROR, 0, last);
+    double box[2] = {0, 0};
+    if (anisotropy_of(in) > 1)
+        for (int i = 0; i < 2; i++)
+            box[i] = 0.5 * hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
+    allow_box(a->x, a->y, e, in, box, coarser_level(lod.lengths + FLOAT_ERROR, last));
+    allow_box(a->wide_x, a->wide_y, e, in, box, coarser_level(lod.isotropic + FLOAT_ERROR, last));
+    a->wide_level = coarser_level(lod.lengths - FLOAT_ERROR, last) + 1;
+}
