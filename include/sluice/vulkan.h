@@ -35,8 +35,10 @@ extern "C" {
 typedef struct SluiceVulkanStreamer SluiceVulkanStreamer;
 
 typedef enum SluiceResidencyMode {
-    SLUICE_RESIDENCY_MODE_AUTO = 0,  ///< what the device does best of those below
-    SLUICE_RESIDENCY_MODE_SPARSE = 1 ///< sparse residency images
+    SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< sparse where the device has it, else dense
+    SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< sparse residency images
+    /** Ordinary images that have all their memory from the start: what streams is the texels. */
+    SLUICE_RESIDENCY_MODE_DENSE = 3
 } SluiceResidencyMode;
 
 /** What a device can do for Sluice, and what is known to be odd about it. */
@@ -58,15 +60,20 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
                                   SluiceVulkanDeviceCapabilities *pCapabilities);
 
 /**
- * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
+ * Sets in `*pFeatures`, `*pVulkan12` what a streamer of that mode needs of the device: pass both to
  * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
  * and for what else he needs, which stays set. No extension is needed. `pLog` may be NULL.
- * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
+ *
+ * All modes need timelineSemaphore and fragmentStoresAndAtomics; sparse also sparseBinding,
+ * sparseResidencyImage2D and a queue family with SPARSE_BINDING.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown mode; UNSUPPORTED if the device lacks a
+ *         feature; the log callback says which.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
     VkInstance instance, VkPhysicalDevice physicalDevice,
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, const SluiceLogCallback *pLog,
-    VkPhysicalDeviceFeatures *pFeatures, VkPhysicalDeviceVulkan12Features *pVulkan12);
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceResidencyMode mode,
+    const SluiceLogCallback *pLog, VkPhysicalDeviceFeatures *pFeatures,
+    VkPhysicalDeviceVulkan12Features *pVulkan12);
 
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceVulkanStreamerCreateInfo {
@@ -74,7 +81,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     VkPhysicalDevice physicalDevice;
     VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
     PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
-    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue
+    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue; required in
+                         ///< sparse mode alone
     uint32_t sparseQueueFamilyIndex;
     uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to: it must compute
     SluiceResidencyMode residencyMode;
@@ -212,11 +220,14 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bindCalls, bindRuns;
     uint64_t feedbackMaps;     ///< read back and given to the manager
     uint32_t loadsInFlight;    ///< reads not collected, and uploads not recorded
-    uint64_t deviceMemorySize; ///< bytes of heaps
+    uint64_t deviceMemorySize; ///< bytes of heaps; in dense mode of images
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
                                                   SluiceVulkanStreamerStatistics *pStatistics);
+
+/** What AUTO turned out to be, or the mode that was asked for; AUTO if `streamer` is NULL. */
+SLUICE_API SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer);
 
 /** The manager, to read from; to record it, begin before the first texture is added. */
 SLUICE_API SluiceStreamedTextureManager *

@@ -65,6 +65,32 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
     return UINT32_MAX;
 }
 
+uint64_t slc_device_memory_size(const struct slc_caps *caps)
+{
+    uint64_t size = 0;
+    for (uint32_t i = 0; i < caps->memory.memoryHeapCount; i++)
+        if (caps->memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT &&
+            caps->memory.memoryHeaps[i].size > size)
+            size = caps->memory.memoryHeaps[i].size;
+    return size;
+}
+
+SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
+{
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
+        return mode;
+    return caps->public.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_DENSE;
+}
+
+const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
+{
+    if (!caps->timeline_semaphore)
+        return "timeline semaphores (Vulkan 1.2)";
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE && !caps->public.sparse)
+        return "sparse residency of 2D images";
+    return NULL;
+}
+
 SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
                                                PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                                SluiceVulkanDeviceCapabilities *pCapabilities)
@@ -84,12 +110,14 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
 
 SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,
                                          PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
-                                         const SluiceLogCallback *pLog,
+                                         SluiceResidencyMode mode, const SluiceLogCallback *pLog,
                                          VkPhysicalDeviceFeatures *pFeatures,
                                          VkPhysicalDeviceVulkan12Features *pVulkan12)
 {
     if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pFeatures || !pVulkan12)
         return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_mode_is_known(mode))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_vk vk;
     SluiceResult result =
         slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
@@ -97,18 +125,20 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         return result;
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
+    mode = slc_choose_mode(&caps, mode);
     VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
-    const char *missing = !caps.timeline_semaphore ? "timeline semaphores (Vulkan 1.2)"
-                          : !caps.public.sparse    ? "sparse residency of 2D images"
-                          : !there.features.fragmentStoresAndAtomics ? "fragmentStoresAndAtomics"
-                                                                     : NULL;
+    const char *missing = slc_missing_for_mode(&caps, mode);
+    if (!missing && !there.features.fragmentStoresAndAtomics)
+        missing = "fragmentStoresAndAtomics";
     if (missing) {
         slc_log(pLog, SLUICE_LOG_ERROR, "%s has no %s", caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    pFeatures->sparseBinding = VK_TRUE;
-    pFeatures->sparseResidencyImage2D = VK_TRUE;
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE) {
+        pFeatures->sparseBinding = VK_TRUE;
+        pFeatures->sparseResidencyImage2D = VK_TRUE;
+    }
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     pVulkan12->timelineSemaphore = VK_TRUE;
     return SLUICE_SUCCESS;

@@ -1,7 +1,7 @@
 /**
  * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
- * sparse binding). The streamer decides nothing about memory and an implementation nothing about
- * tiles.
+ * sparse binding; residency_dense.c: fully backed images). The streamer decides nothing about
+ * memory and an implementation nothing about tiles.
  *
  * The protocol of a frame:
  *
@@ -88,5 +88,7 @@ struct slc_residency_create_info {
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
                                          struct slc_residency **residency);
+SluiceResult slc_create_dense_residency(const struct slc_residency_create_info *info,
+                                        struct slc_residency **residency);
 
 #endif /* SLC_VULKAN_RESIDENCY_H */

@@ -47,11 +47,14 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
 
 static SluiceResult create_residency(SluiceVulkanStreamer *s)
 {
-    if (!s->caps.public.sparse || !s->caps.timeline_semaphore) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName,
-                s->caps.public.sparse ? "timeline semaphores" : "sparse residency of 2D images");
+    s->info.residencyMode = slc_choose_mode(&s->caps, s->info.residencyMode);
+    const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
+    if (missing) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
+    if (s->info.residencyMode == SLUICE_RESIDENCY_MODE_SPARSE && !s->info.sparseQueue)
+        return SLUICE_ERROR_NULL_POINTER;
     struct slc_residency_create_info info = {
         .vk = &s->vk,
         .caps = &s->caps,
@@ -60,7 +63,10 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
     };
-    return slc_create_sparse_residency(&info, &s->residency);
+    switch (s->info.residencyMode) {
+    case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
+    default: return slc_create_sparse_residency(&info, &s->residency);
+    }
 }
 
 static SluiceResult create_manager(SluiceVulkanStreamer *s)
@@ -194,13 +200,12 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
         return SLUICE_ERROR_NULL_POINTER;
     *pStreamer = NULL;
     if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
-        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr || !pCreateInfo->sparseQueue)
+        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
     SluiceResult result = fill_in(&info);
     if (result != SLUICE_SUCCESS || !slc_allocator_is_valid(info.pAllocator) ||
-        (info.residencyMode != SLUICE_RESIDENCY_MODE_AUTO &&
-         info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE))
+        !slc_mode_is_known(info.residencyMode))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceVulkanStreamer *s = slc_calloc(&cb, 1, sizeof *s);
@@ -298,6 +303,11 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
         uploaded++;
     pStatistics->loadsInFlight =
         streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
+}
+
+SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer)
+{
+    return streamer ? streamer->info.residencyMode : SLUICE_RESIDENCY_MODE_AUTO;
 }
 
 SluiceStreamedTextureManager *sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer)

@@ -34,7 +34,7 @@ static SluiceResult create_view(SluiceVulkanStreamer *s, struct slc_texture *tex
         .image = texture->image.image,
         .viewType = VK_IMAGE_VIEW_TYPE_2D,
         .format = slc_vk_format(texture->info.format),
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, texture->info.mipLevelCount, 0, 1}};
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1}};
     return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, &texture->view),
                          "vkCreateImageView");
 }

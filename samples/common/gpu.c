@@ -117,12 +117,16 @@ static const char *device_type_string(VkPhysicalDeviceType type)
     }
 }
 
-static bool can_stream(VkInstance instance, VkPhysicalDevice device,
+static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResidencyMode mode,
                        SluiceVulkanDeviceCapabilities *capabilities)
 {
+    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
                                              capabilities) == SLUICE_SUCCESS &&
-           capabilities->sparse;
+           sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr, mode, NULL,
+                                       &features, &vulkan12) == SLUICE_SUCCESS;
 }
 
 uint32_t gpu_list_devices(void)
@@ -141,8 +145,9 @@ uint32_t gpu_list_devices(void)
                device_type_string(properties.deviceType),
                VK_API_VERSION_MAJOR(properties.apiVersion),
                VK_API_VERSION_MINOR(properties.apiVersion),
-               can_stream(gpu.instance, devices[i], &capabilities) ? "sparse residency"
-                                                                   : "no sparse residency");
+               can_stream(gpu.instance, devices[i], SLUICE_RESIDENCY_MODE_SPARSE, &capabilities)
+                   ? "sparse residency"
+                   : "no sparse residency");
     }
     gpu_destroy(&gpu);
     return count;
@@ -195,7 +200,7 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
             continue;
         SluiceVulkanDeviceCapabilities capabilities;
-        if (!can_stream(gpu->instance, devices[i], &capabilities))
+        if (!can_stream(gpu->instance, devices[i], gpu->residency_mode, &capabilities))
             continue;
         if (device_rank(properties.deviceType) <= best_rank)
             continue;
@@ -206,8 +211,7 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
     }
     if (best_rank < 0)
         fprintf(stderr,
-                "no Vulkan device%s%s can stream: it needs sparse residency images (for "
-                "Mesa's lavapipe: version 25 or later); see --list-devices\n",
+                "no Vulkan device%s%s can stream in this residency mode; see --list-devices\n",
                 wanted ? " like " : "", wanted ? wanted : "");
     return best_rank >= 0;
 }
@@ -221,7 +225,8 @@ static bool choose_queue_family(struct gpu *gpu)
     for (uint32_t i = 0; i < count; i++)
         if ((families[i].queueFlags & needed) == needed) {
             gpu->family = i;
-            gpu->sparse_family = gpu->capabilities.sparseQueueFamilyIndex;
+            gpu->sparse_family =
+                gpu->capabilities.sparse ? gpu->capabilities.sparseQueueFamilyIndex : gpu->family;
             return true;
         }
     fprintf(stderr, "%s has no graphics queue\n", gpu->properties.deviceName);
@@ -249,7 +254,8 @@ static bool create_device(struct gpu *gpu)
 
     SluiceLogCallback log = {.pfnLog = print_log};
     if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
-                                    &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
+                                    gpu->residency_mode, &log, &features.features,
+                                    &vulkan12) != SLUICE_SUCCESS)
         return false;
 
     static const float priority = 1.0f;
@@ -269,7 +275,8 @@ static bool create_device(struct gpu *gpu)
                    "vkCreateDevice"))
         return false;
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
-    vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
+    if (gpu->capabilities.sparse)
+        vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
 
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -282,6 +289,7 @@ static bool create_device(struct gpu *gpu)
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported)
 {
     memset(gpu, 0, sizeof *gpu);
+    gpu->residency_mode = request->residency_mode;
     if (create_instance(request->validation, gpu, unsupported)) {
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         if (!*unsupported && create_device(gpu))

@@ -23,9 +23,13 @@ static bool open_surroundings(struct gallery *gallery)
 static bool counts_residency(const struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
-    bool able = gallery->gpu.capabilities.shaderResourceResidency;
+    SluiceResidencyMode mode = settings_residency_mode(settings);
+    /* Only sparse images have codes that mean something; a driver crashes with others. */
+    bool able = gallery->gpu.capabilities.shaderResourceResidency &&
+                gallery->gpu.capabilities.sparse &&
+                (mode == SLUICE_RESIDENCY_MODE_SPARSE || mode == SLUICE_RESIDENCY_MODE_AUTO);
     if (settings->check_residency == THREE_WAY_ON && !able)
-        fprintf(stderr, "%s has no residency codes: nothing is checked with them\n",
+        fprintf(stderr, "%s has no residency codes in this mode: nothing is checked with them\n",
                 gallery->gpu.properties.deviceName);
     return able && (settings->check_residency == THREE_WAY_ON ||
                     (settings->check_residency == THREE_WAY_AUTO && settings->compare));
@@ -84,12 +88,15 @@ static bool open_views(struct gallery *gallery)
 enum gallery_outcome gallery_open(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
-    struct gpu_request device = {settings->device, settings->validation};
+    struct gpu_request device = {settings->device, settings->validation,
+                                 settings_residency_mode(settings)};
     bool unsupported;
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
     struct picture_limits limits = {gallery->gpu.properties.limits.maxImageDimension2D,
-                                    gallery->gpu.capabilities.sparseAddressSpaceSize};
+                                    gallery->gpu.capabilities.sparse
+                                        ? gallery->gpu.capabilities.sparseAddressSpaceSize
+                                        : UINT64_MAX};
     return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
                    open_views(gallery)
                ? GALLERY_READY

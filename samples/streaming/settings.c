@@ -55,6 +55,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_UINT, "seed", "N", &s->seed, "of the random choice of pixels", 0, 4294967295.0},
 
         {OPTION_SECTION, .help = "Streaming"},
+        {OPTION_CHOICE, "residency", "auto|sparse|dense", &s->residency,
+         "what makes texels resident; auto: sparse where the device\nhas it"},
         {OPTION_REAL, "probability", "P", &s->probability,
          "that a pixel quad writes feedback; 1/16 is understood", 0, 1},
         {OPTION_FLAG, "lattice", NULL, &s->lattice,
@@ -101,4 +103,14 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
         s->rest_frames = s->frames - 1;
     return outcome;
+}
+
+SluiceResidencyMode settings_residency_mode(const struct settings *settings)
+{
+    switch ((enum residency)settings->residency) {
+    case RESIDENCY_AUTO: return SLUICE_RESIDENCY_MODE_AUTO;
+    case RESIDENCY_SPARSE: return SLUICE_RESIDENCY_MODE_SPARSE;
+    case RESIDENCY_DENSE: return SLUICE_RESIDENCY_MODE_DENSE;
+    }
+    return SLUICE_RESIDENCY_MODE_AUTO;
 }

@@ -36,6 +36,7 @@ static bool create_streamer(struct view *view)
         .sparseQueue = gpu->sparse_queue,
         .sparseQueueFamilyIndex = gpu->sparse_family,
         .queueFamilyIndex = gpu->family,
+        .residencyMode = gpu->residency_mode,
         .log = {NULL, print_log},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
         .maxTextureCount = 2 + 2 * view->request.pictures->count,

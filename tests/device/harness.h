@@ -2,8 +2,9 @@
  * A headless Vulkan device for tests, with the validation layer where it is installed: any message
  * of warning or error severity fails the test.
  *
- * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. Without one that has
- * Vulkan 1.2 and sparse residency a test program exits with status 77 and says why.
+ * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. SLUICE_RESIDENCY is
+ * the mode that is tested: sparse, dense or auto, which is the default. Without a device that has
+ * Vulkan 1.2 and that mode a test program exits with status 77 and says why.
  */
 #ifndef TESTS_DEVICE_HARNESS_H
 #define TESTS_DEVICE_HARNESS_H
@@ -54,8 +55,12 @@ struct harness {
     VkPhysicalDeviceMemoryProperties memory;
     VkDevice device;
     uint32_t family;
-    VkQueue queue, sparse_queue;
+    VkQueue queue, sparse_queue; ///< the latter VK_NULL_HANDLE without sparse residency
     SluiceVulkanDeviceCapabilities caps;
+    SluiceResidencyMode mode; ///< never AUTO
+    const char *mode_name;
+    /** Residency codes can be asked for: of sparse images alone, a driver crashes with others. */
+    bool codes;
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
@@ -76,7 +81,7 @@ int harness_init(struct harness *h);
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);
 
-/** Fills in handles, queues and the log; the rest stays. */
+/** Fills in handles, queues, mode and the log; the rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,

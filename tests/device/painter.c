@@ -36,7 +36,7 @@ static void create_target(struct painter *p)
 static void create_pipeline(struct painter *p)
 {
     struct harness *h = p->prober->h;
-    bool codes = h->caps.shaderResourceResidency;
+    bool codes = h->codes;
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,

@@ -47,7 +47,7 @@ static void create_layouts(struct prober *p)
 static void create_pipeline(struct prober *p)
 {
     struct harness *h = p->h;
-    bool codes = h->caps.shaderResourceResidency;
+    bool codes = h->codes;
     VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                             .codeSize =
                                                 codes ? sizeof probe_codes_comp : sizeof probe_comp,

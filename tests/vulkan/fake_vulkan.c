@@ -245,6 +245,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buff
     return VK_SUCCESS;
 }
 
+static VKAPI_ATTR VkResult VKAPI_CALL bind_image(VkDevice device, VkImage image,
+                                                 VkDeviceMemory memory, VkDeviceSize offset)
+{
+    MAY_FAIL(device);
+    (void)device, (void)image, (void)memory, (void)offset;
+    return VK_SUCCESS;
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory,
                                                  VkDeviceSize offset, VkDeviceSize size,
                                                  VkMemoryMapFlags flags, void **data)
@@ -493,6 +501,7 @@ static const struct {
     ENTRY(AllocateDescriptorSets, allocate_sets),
     ENTRY(AllocateMemory, allocate),
     ENTRY(BindBufferMemory, bind_buffer),
+    ENTRY(BindImageMemory, bind_image),
     ENTRY(CmdBindDescriptorSets, bind_sets),
     ENTRY(CmdBindPipeline, bind_pipeline),
     ENTRY(CmdCopyBuffer, copy_buffer),
