@@ -44,6 +44,9 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     out->shaderResourceMinLod = features.features.shaderResourceMinLod;
     out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
     out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
+    out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
+    caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
+    caps->max_image_array_layers = p->limits.maxImageArrayLayers;
     caps->max_storage_buffer_range = p->limits.maxStorageBufferRange;
     memcpy(out->deviceName, p->deviceName, sizeof out->deviceName);
     bool vulkan12 = p->apiVersion >= VK_API_VERSION_1_2;
@@ -67,11 +70,12 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
 
 uint64_t slc_device_memory_size(const struct slc_caps *caps)
 {
+    const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
     uint64_t size = 0;
-    for (uint32_t i = 0; i < caps->memory.memoryHeapCount; i++)
-        if (caps->memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT &&
-            caps->memory.memoryHeaps[i].size > size)
-            size = caps->memory.memoryHeaps[i].size;
+    for (uint32_t i = 0; i < memory->memoryTypeCount; i++)
+        if (memory->memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT &&
+            memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size > size)
+            size = memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size;
     return size;
 }
 
@@ -79,7 +83,7 @@ SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidency
 {
     if (mode != SLUICE_RESIDENCY_MODE_AUTO)
         return mode;
-    return caps->public.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_DENSE;
+    return caps->public.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
 }
 
 const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
@@ -88,6 +92,8 @@ const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMod
         return "timeline semaphores (Vulkan 1.2)";
     if (mode == SLUICE_RESIDENCY_MODE_SPARSE && !caps->public.sparse)
         return "sparse residency of 2D images";
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED && !caps->array_dynamic_indexing)
+        return "shaderSampledImageArrayDynamicIndexing";
     return NULL;
 }
 
@@ -138,6 +144,11 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
     if (mode == SLUICE_RESIDENCY_MODE_SPARSE) {
         pFeatures->sparseBinding = VK_TRUE;
         pFeatures->sparseResidencyImage2D = VK_TRUE;
+    }
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED) {
+        pFeatures->shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+        if (caps.public.nonUniformIndexing)
+            pVulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     }
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     pVulkan12->timelineSemaphore = VK_TRUE;

@@ -8,6 +8,8 @@ struct slc_caps {
     SluiceVulkanDeviceCapabilities public;
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t max_storage_buffer_range; ///< bytes
+    uint32_t max_image_array_layers;
+    bool array_dynamic_indexing; ///< shaderSampledImageArrayDynamicIndexing
     bool timeline_semaphore;
 };
 
@@ -27,7 +29,7 @@ uint64_t slc_device_memory_size(const struct slc_caps *caps);
 static inline bool slc_mode_is_known(SluiceResidencyMode mode)
 {
     return mode == SLUICE_RESIDENCY_MODE_AUTO || mode == SLUICE_RESIDENCY_MODE_SPARSE ||
-           mode == SLUICE_RESIDENCY_MODE_DENSE;
+           mode == SLUICE_RESIDENCY_MODE_PAGED || mode == SLUICE_RESIDENCY_MODE_DENSE;
 }
 
 /** What AUTO is on this device; other modes are themselves. */

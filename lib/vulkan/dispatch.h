@@ -16,9 +16,10 @@
     X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch) X(CmdFillBuffer)    \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
     X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
-    X(CreateImageView) X(CreatePipelineLayout) X(CreateSemaphore) X(CreateShaderModule)            \
+    X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \
+    X(CreateShaderModule)                                                                         \
     X(DestroyBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
-    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySemaphore)            \
+    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySampler) X(DestroySemaphore)             \
     X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
     X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
     X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \

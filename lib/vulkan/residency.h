@@ -1,6 +1,7 @@
 /**
  * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
- * sparse binding; residency_dense.c: fully backed images). The streamer decides nothing about
+ * sparse binding; residency_paged.c: a page table for shaders; residency_dense.c: fully backed
+ * images). The streamer decides nothing about
  * memory and an implementation nothing about tiles.
  *
  * The protocol of a frame:
@@ -8,20 +9,24 @@
  *     update            polls; from here on completed_value and retire_limit are of this frame
  *     unmap, map        collect changes
  *     submit            makes all of them happen; they are over once completed_value reaches *value
+ *     record_begin      before everything else
  *     record_uploads    into images whose maps are over
+ *     record_publish    behind the uploads, before the MinMip maps that show them
  */
 #ifndef SLC_VULKAN_RESIDENCY_H
 #define SLC_VULKAN_RESIDENCY_H
 
 #include "vulkan/caps.h"
 
+struct slc_page_views;
 struct slc_residency;
 
 /** The image of one streamed texture. */
 struct slc_residency_image {
     VkImage image;
     SluiceStreamedTextureDesc desc;
-    bool uneven; ///< some level's size is not twice the next one's
+    bool uneven;                ///< some level's size is not twice the next one's
+    uint32_t page_table_offset; ///< of SluiceTextureEntry
 };
 
 struct slc_residency_interface {
@@ -64,6 +69,14 @@ struct slc_residency_interface {
     void (*record_uploads)(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
                            const VkBufferImageCopy *regions);
+
+    /* What follows may be NULL: there is nothing to do. */
+
+    /** Of the frame being begun, behind a barrier over all that earlier ones do. */
+    void (*record_begin)(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands);
+    void (*record_publish)(struct slc_residency *residency, VkCommandBuffer commands);
+    /** The same for its whole life. */
+    VkBuffer (*page_table)(const struct slc_residency *residency);
 };
 
 /** What is counted for the public statistics. */
@@ -84,10 +97,14 @@ struct slc_residency_create_info {
     VkQueue sparse_queue;
     uint32_t max_image_count;
     uint32_t max_changes; ///< maps and unmaps per frame
+    uint32_t max_region_count;
+    struct slc_page_views *page_views; ///< where pages are shown
 };
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
                                          struct slc_residency **residency);
+SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *info,
+                                        struct slc_residency **residency);
 SluiceResult slc_create_dense_residency(const struct slc_residency_create_info *info,
                                         struct slc_residency **residency);
 

@@ -37,9 +37,11 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     set_default(&info->maxLoadsInFlight, slc_max_u32(64, 4 * info->tilesPerFrame));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
+    set_default(&info->maxPageChunkCount, 64);
     if (info->framesInFlight > 16 || info->maxTextureCount > 1u << 20 ||
         info->maxLoadsInFlight > 1u << 16 || info->maxRegionCount > 1u << 28 ||
-        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->heapTileCapacity > 1u << 20)
+        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->maxPageChunkCount > 1u << 10 ||
+        info->heapTileCapacity > 1u << 20)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     return SLUICE_SUCCESS;
@@ -62,8 +64,15 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .sparse_queue = s->info.sparseQueue,
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
+        .max_region_count = s->info.maxRegionCount,
+        .page_views = &s->page_views,
     };
+    SluiceResult result =
+        slc_page_views_init(&s->page_views, &s->vk, &s->caps, &s->cb, s->info.maxPageChunkCount);
+    if (result != SLUICE_SUCCESS)
+        return result;
     switch (s->info.residencyMode) {
+    case SLUICE_RESIDENCY_MODE_PAGED: return slc_create_paged_residency(&info, &s->residency);
     case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
     default: return slc_create_sparse_residency(&info, &s->residency);
     }
@@ -260,6 +269,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
     if (s->residency)
         s->residency->interface->destroy(s->residency);
+    slc_page_views_finish(&s->page_views, &s->vk, &s->cb);
 }
 
 void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
@@ -284,8 +294,24 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
 
 void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBuffers *pBuffers)
 {
-    *pBuffers = (SluiceVulkanBuffers){streamer->texture_table.buffer, streamer->feedback.buffer,
-                                      streamer->min_mip.buffer};
+    const struct slc_residency *residency = streamer->residency;
+    VkBuffer table = streamer->texture_table.buffer;
+    *pBuffers = (SluiceVulkanBuffers){.textureTable = table,
+                                      .feedback = streamer->feedback.buffer,
+                                      .minMip = streamer->min_mip.buffer,
+                                      /* any buffer will do where it is not read */
+                                      .pageTable = residency->interface->page_table
+                                                       ? residency->interface->page_table(residency)
+                                                       : table};
+}
+
+void sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVulkanPages *pPages)
+{
+    const struct slc_page_views *views = &streamer->page_views;
+    *pPages = (SluiceVulkanPages){.sampler = views->sampler,
+                                  .viewCount = views->count,
+                                  .pViews = views->views,
+                                  .generation = views->generation};
 }
 
 void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

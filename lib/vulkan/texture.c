@@ -250,6 +250,14 @@ void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index)
         destroy_parts(s, index);
 }
 
+static uint32_t log2_of(uint32_t power)
+{
+    uint32_t log = 0;
+    while (power >>= 1)
+        log++;
+    return log;
+}
+
 static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -266,6 +274,8 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .minMipOffset = texture->region_first,
         .addressModeU = (uint)texture->address_modes[0],
         .addressModeV = (uint)texture->address_modes[1],
+        .pageTableOffset = texture->image.page_table_offset,
+        .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .flags = texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u,
     };
 }

@@ -104,6 +104,7 @@ static bool pick_mode(struct harness *h)
         SluiceResidencyMode mode;
     } modes[] = {{"auto", SLUICE_RESIDENCY_MODE_AUTO},
                  {"sparse", SLUICE_RESIDENCY_MODE_SPARSE},
+                 {"paged", SLUICE_RESIDENCY_MODE_PAGED},
                  {"dense", SLUICE_RESIDENCY_MODE_DENSE}};
     const char *wanted = getenv("SLUICE_RESIDENCY");
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
@@ -139,7 +140,7 @@ static bool pick_device(struct harness *h)
             SLUICE_SUCCESS)
             continue;
         bool named = wanted && (strcmp(wanted, number) == 0 || strstr(caps.deviceName, wanted));
-        if ((wanted && !named) || !can_run(h, devices[i]))
+        if ((wanted && !named) || !caps.nonUniformIndexing || !can_run(h, devices[i]))
             continue;
         h->physical_device = devices[i];
         h->caps = caps;
@@ -172,6 +173,9 @@ static bool create_device(struct harness *h)
                                        .pNext = &there12};
     h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
     features.features.shaderResourceResidency = there.features.shaderResourceResidency;
+    /* The test shaders sample pages in no other way, and are the same in all modes. */
+    features.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+    vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     features.features.samplerAnisotropy = there.features.samplerAnisotropy;
     vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
     h->anisotropy = there.features.samplerAnisotropy;
@@ -180,7 +184,7 @@ static bool create_device(struct harness *h)
                                     &features.features, &vulkan12) != SLUICE_SUCCESS)
         return false;
     if (h->mode == SLUICE_RESIDENCY_MODE_AUTO)
-        h->mode = h->caps.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_DENSE;
+        h->mode = h->caps.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
     h->codes = h->caps.shaderResourceResidency && h->mode == SLUICE_RESIDENCY_MODE_SPARSE;
     h->family = drawing_family(h);
     bool own_sparse_family = h->caps.sparse && h->caps.sparseQueueFamilyIndex != h->family;
@@ -235,7 +239,7 @@ int harness_init(struct harness *h)
     if (!h->get || !create_instance(h))
         return no_device(h, "no Vulkan 1.2 instance can be created");
     if (!pick_mode(h)) {
-        fprintf(stderr, "SLUICE_RESIDENCY is none of sparse, dense and auto\n");
+        fprintf(stderr, "SLUICE_RESIDENCY is none of sparse, paged, dense and auto\n");
         harness_finish(h, 1);
         return 1;
     }

@@ -3,8 +3,8 @@
  * of warning or error severity fails the test.
  *
  * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. SLUICE_RESIDENCY is
- * the mode that is tested: sparse, dense or auto, which is the default. Without a device that has
- * Vulkan 1.2 and that mode a test program exits with status 77 and says why.
+ * the mode that is tested: sparse, paged, dense or auto, which is the default. Without a device
+ * that has Vulkan 1.2 and that mode a test program exits with status 77 and says why.
  */
 #ifndef TESTS_DEVICE_HARNESS_H
 #define TESTS_DEVICE_HARNESS_H

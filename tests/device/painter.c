@@ -37,6 +37,8 @@ static void create_pipeline(struct painter *p)
 {
     struct harness *h = p->prober->h;
     bool codes = h->codes;
+    struct prober_specialization specialization;
+    const VkSpecializationInfo *constants = prober_specialize(p->prober, &specialization);
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -46,7 +48,8 @@ static void create_pipeline(struct painter *p)
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
          .module = codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
                          : module(h, picture_frag, sizeof picture_frag),
-         .pName = "main"}};
+         .pName = "main",
+         .pSpecializationInfo = constants}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
@@ -124,6 +127,7 @@ void painter_record(void *user, VkCommandBuffer commands)
     h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->pipeline);
     h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->prober->layout, 0, 1,
                              &p->texture.set, 0, NULL);
+    prober_bind_pages(p->prober, commands, VK_PIPELINE_BIND_POINT_GRAPHICS);
     h->CmdPushConstants(commands, p->prober->layout,
                         VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                         sizeof params, &params);

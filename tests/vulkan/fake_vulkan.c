@@ -71,6 +71,7 @@ static void drop(struct fake_vulkan *fake, void *object)
 PLAIN_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
 PLAIN_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
 PLAIN_OBJECT(ImageView, VkImageViewCreateInfo)
+PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
 
@@ -125,8 +126,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkForm
                                                  VkImageFormatProperties *properties)
 {
     (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
-    *properties = (VkImageFormatProperties){
-        .maxExtent = {16384, 16384, 1}, .maxMipLevels = 15, .maxResourceSize = 1ull << 40};
+    *properties = (VkImageFormatProperties){.maxExtent = {16384, 16384, 1},
+                                            .maxMipLevels = 15,
+                                            .maxArrayLayers = 256,
+                                            .maxResourceSize = 1ull << 40};
     return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
 }
 
@@ -518,6 +521,7 @@ static const struct {
     ENTRY(CreateImage, create_image),
     ENTRY(CreateImageView, create_ImageView),
     ENTRY(CreatePipelineLayout, create_PipelineLayout),
+    ENTRY(CreateSampler, create_Sampler),
     ENTRY(CreateSemaphore, create_semaphore),
     ENTRY(CreateShaderModule, create_ShaderModule),
     ENTRY(DestroyBuffer, destroy_buffer),
@@ -527,6 +531,7 @@ static const struct {
     ENTRY(DestroyImageView, destroy_ImageView),
     ENTRY(DestroyPipeline, destroy_pipeline),
     ENTRY(DestroyPipelineLayout, destroy_PipelineLayout),
+    ENTRY(DestroySampler, destroy_Sampler),
     ENTRY(DestroySemaphore, destroy_semaphore),
     ENTRY(DestroyShaderModule, destroy_ShaderModule),
     ENTRY(DeviceWaitIdle, wait_idle),
