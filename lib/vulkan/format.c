@@ -16,3 +16,15 @@ VkFormat slc_vk_format(SluiceFormat format)
     }
     return VK_FORMAT_UNDEFINED;
 }
+
+uint32_t slc_format_components(SluiceFormat format)
+{
+    switch (format) {
+    case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R16_SFLOAT:
+    case SLUICE_FORMAT_R32_SFLOAT: return 1;
+    case SLUICE_FORMAT_R16G16_SFLOAT:
+    case SLUICE_FORMAT_R32G32_SFLOAT: return 2;
+    default: return 4;
+    }
+}

@@ -276,7 +276,8 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .addressModeV = (uint)texture->address_modes[1],
         .pageTableOffset = texture->image.page_table_offset,
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
-        .flags = texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u,
+        .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
+                 slc_format_components(texture->info.format) << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }
 

@@ -117,6 +117,16 @@ static const char *device_type_string(VkPhysicalDeviceType type)
     }
 }
 
+/** AUTO in words that both streamers and this program understand. */
+static SluiceResidencyMode choose_mode(const SluiceVulkanDeviceCapabilities *capabilities,
+                                       SluiceResidencyMode mode)
+{
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
+        return mode;
+    return capabilities->sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
+}
+
+/** The shaders of samples find pages by non-uniform indices. */
 static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResidencyMode mode,
                        SluiceVulkanDeviceCapabilities *capabilities)
 {
@@ -125,6 +135,8 @@ static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResid
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
                                              capabilities) == SLUICE_SUCCESS &&
+           (choose_mode(capabilities, mode) != SLUICE_RESIDENCY_MODE_PAGED ||
+            capabilities->nonUniformIndexing) &&
            sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr, mode, NULL,
                                        &features, &vulkan12) == SLUICE_SUCCESS;
 }
@@ -200,7 +212,8 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
             continue;
         SluiceVulkanDeviceCapabilities capabilities;
-        if (!can_stream(gpu->instance, devices[i], gpu->residency_mode, &capabilities))
+        if (!can_stream(gpu->instance, devices[i], gpu->modes[0], &capabilities) ||
+            !can_stream(gpu->instance, devices[i], gpu->modes[1], &capabilities))
             continue;
         if (device_rank(properties.deviceType) <= best_rank)
             continue;
@@ -209,6 +222,10 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         gpu->properties = properties;
         gpu->capabilities = capabilities;
     }
+    gpu->modes[0] = choose_mode(&gpu->capabilities, gpu->modes[0]);
+    if (gpu->modes[1] == SLUICE_RESIDENCY_MODE_AUTO)
+        gpu->modes[1] = gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? SLUICE_RESIDENCY_MODE_SPARSE
+                                                                      : SLUICE_RESIDENCY_MODE_DENSE;
     if (best_rank < 0)
         fprintf(stderr,
                 "no Vulkan device%s%s can stream in this residency mode; see --list-devices\n",
@@ -253,10 +270,11 @@ static bool create_device(struct gpu *gpu)
     features.features.fragmentStoresAndAtomics = VK_TRUE;
 
     SluiceLogCallback log = {.pfnLog = print_log};
-    if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
-                                    gpu->residency_mode, &log, &features.features,
-                                    &vulkan12) != SLUICE_SUCCESS)
-        return false;
+    for (int i = 0; i < 2; i++)
+        if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                        gpu->modes[i], &log, &features.features,
+                                        &vulkan12) != SLUICE_SUCCESS)
+            return false;
 
     static const float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2];
@@ -289,7 +307,7 @@ static bool create_device(struct gpu *gpu)
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported)
 {
     memset(gpu, 0, sizeof *gpu);
-    gpu->residency_mode = request->residency_mode;
+    memcpy(gpu->modes, request->modes, sizeof gpu->modes);
     if (create_instance(request->validation, gpu, unsupported)) {
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         if (!*unsupported && create_device(gpu))

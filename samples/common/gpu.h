@@ -11,7 +11,8 @@
 struct gpu_request {
     const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
     bool validation;    ///< with synchronization validation
-    SluiceResidencyMode residency_mode;
+    /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
+    SluiceResidencyMode modes[2];
 };
 
 struct gpu {
@@ -25,7 +26,7 @@ struct gpu {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     SluiceVulkanDeviceCapabilities capabilities;
-    SluiceResidencyMode residency_mode; ///< as asked for
+    SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };

@@ -185,7 +185,6 @@ static bool create_device(struct harness *h)
         return false;
     if (h->mode == SLUICE_RESIDENCY_MODE_AUTO)
         h->mode = h->caps.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
-    h->codes = h->caps.shaderResourceResidency && h->mode == SLUICE_RESIDENCY_MODE_SPARSE;
     h->family = drawing_family(h);
     bool own_sparse_family = h->caps.sparse && h->caps.sparseQueueFamilyIndex != h->family;
     float priority = 1.0f;
@@ -283,7 +282,8 @@ void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
     info->sparseQueue = h->sparse_queue;
     info->sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex;
     info->queueFamilyIndex = h->family;
-    info->residencyMode = h->mode;
+    if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
+        info->residencyMode = h->mode;
     info->log = (SluiceLogCallback){h, on_log};
     info->framesInFlight = HARNESS_FRAMES;
 }

@@ -59,8 +59,6 @@ struct harness {
     SluiceVulkanDeviceCapabilities caps;
     SluiceResidencyMode mode; ///< never AUTO
     const char *mode_name;
-    /** Residency codes can be asked for: of sparse images alone, a driver crashes with others. */
-    bool codes;
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
@@ -81,7 +79,7 @@ int harness_init(struct harness *h);
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);
 
-/** Fills in handles, queues, mode and the log; the rest stays. */
+/** Fills in handles, queues, the log, and the mode if that is AUTO; the rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,

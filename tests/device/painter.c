@@ -36,7 +36,7 @@ static void create_target(struct painter *p)
 static void create_pipeline(struct painter *p)
 {
     struct harness *h = p->prober->h;
-    bool codes = h->codes;
+    bool codes = p->prober->codes;
     struct prober_specialization specialization;
     const VkSpecializationInfo *constants = prober_specialize(p->prober, &specialization);
     VkPipelineShaderStageCreateInfo stages[2] = {

@@ -104,7 +104,7 @@ void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBin
 const VkSpecializationInfo *prober_specialize(const struct prober *p,
                                               struct prober_specialization *s)
 {
-    s->paged = p->h->mode == SLUICE_RESIDENCY_MODE_PAGED;
+    s->paged = p->paged;
     s->entry = (VkSpecializationMapEntry){0, 0, sizeof s->paged};
     s->info = (VkSpecializationInfo){1, &s->entry, sizeof s->paged, &s->paged};
     return &s->info;
@@ -114,7 +114,7 @@ static void create_pipeline(struct prober *p)
 {
     struct prober_specialization specialization;
     struct harness *h = p->h;
-    bool codes = h->codes;
+    bool codes = p->codes;
     VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                             .codeSize =
                                                 codes ? sizeof probe_codes_comp : sizeof probe_comp,
@@ -137,7 +137,12 @@ static void create_pipeline(struct prober *p)
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
 {
-    *p = (struct prober){.h = h, .streamer = streamer};
+    SluiceResidencyMode mode = sluiceGetVulkanResidencyMode(streamer);
+    *p = (struct prober){.h = h,
+                         .streamer = streamer,
+                         .paged = mode == SLUICE_RESIDENCY_MODE_PAGED,
+                         .codes = mode == SLUICE_RESIDENCY_MODE_SPARSE &&
+                                  h->caps.shaderResourceResidency};
     harness_buffer_init(h, &p->inputs, PROBE_CAPACITY * sizeof(struct ProbeInput),
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     harness_buffer_init(h, &p->outputs, PROBE_CAPACITY * sizeof(struct ProbeOutput),

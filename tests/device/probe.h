@@ -23,6 +23,9 @@ struct probe_texture {
 struct prober {
     struct harness *h;
     SluiceVulkanStreamer *streamer;
+    bool paged;
+    /** Residency codes are asked for: of sparse images alone, a driver crashes with others. */
+    bool codes;
     struct harness_buffer inputs, outputs;
     VkDescriptorSetLayout set_layout, page_layout;
     struct {

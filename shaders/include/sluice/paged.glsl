@@ -111,9 +111,18 @@ vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
     return color;
 }
 
+/** Of a border only the components count that the format has. */
+vec4 sluiceBorder(SluiceTextureEntry entry)
+{
+    uint count = (entry.flags >> SLUICE_TEXTURE_COMPONENTS_SHIFT) & 7u;
+    vec4 color = SLUICE_BORDER_COLOR;
+    return vec4(color.r, count > 1u ? color.g : 0.0, count > 2u ? color.b : 0.0,
+                count > 3u ? color.a : 1.0);
+}
+
 vec4 sluiceFetchOrBorder(SluiceTextureEntry entry, uint level, int x, int y)
 {
-    return min(x, y) < 0 ? SLUICE_BORDER_COLOR : sluiceFetchPaged(entry, level, ivec2(x, y));
+    return min(x, y) < 0 ? sluiceBorder(entry) : sluiceFetchPaged(entry, level, ivec2(x, y));
 }
 
 /** Across borders of pages. A texel of no weight is not looked at: it may be infinite. */

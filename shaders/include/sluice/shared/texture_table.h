@@ -23,6 +23,8 @@
 
 /* A level's size is not the next finer one's halved, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
+/* Among the flags: how many components the format has, in three bits. */
+#define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 
 /*
  * The page table, in paged residency: at a texture's offset one word per regular level, the index
