@@ -79,9 +79,11 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *features)
 {
     (void)device;
-    features->features = (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
-                                                    .sparseResidencyImage2D = VK_TRUE,
-                                                    .fragmentStoresAndAtomics = VK_TRUE};
+    features->features =
+        (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
+                                   .sparseResidencyImage2D = VK_TRUE,
+                                   .shaderSampledImageArrayDynamicIndexing = VK_TRUE,
+                                   .fragmentStoresAndAtomics = VK_TRUE};
     for (VkBaseOutStructure *next = features->pNext; next; next = next->pNext)
         if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
             ((VkPhysicalDeviceVulkan12Features *)next)->timelineSemaphore = VK_TRUE;
@@ -91,10 +93,12 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties2 *properties)
 {
     (void)device;
-    properties->properties = (VkPhysicalDeviceProperties){
-        .apiVersion = VK_API_VERSION_1_2,
-        .deviceName = "fake",
-        .limits = {.sparseAddressSpaceSize = 1ull << 40, .maxStorageBufferRange = 1u << 27}};
+    properties->properties =
+        (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
+                                     .deviceName = "fake",
+                                     .limits = {.sparseAddressSpaceSize = 1ull << 40,
+                                                .maxStorageBufferRange = 1u << 27,
+                                                .maxImageArrayLayers = 256}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
