@@ -112,7 +112,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     bool mapEverything;      ///< every tile is wanted always: the fully resident truth
     uint32_t maxRegionCount; ///< feedback regions (tiles of level 0), at most 2^28; 0: 2^20
     /** Paged: array images that hold pages, at most 2^10, of up to 2048 tiles (128 MiB) and one
-     *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount. */
+     *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount: mind the device's limits on
+     *  samplers and sampled images per stage. */
     uint32_t maxPageChunkCount;
 } SluiceVulkanStreamerCreateInfo;
 
