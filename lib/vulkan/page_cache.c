@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "vulkan/format.h"
 
 #include <sluice/shared/texture_table.h>
@@ -77,10 +78,15 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
     uint32_t at = 0;
     while (at < cache->views->count && cache->chunks[at].state != SLC_CHUNK_FREE)
         at++;
-    if (at == cache->views->count || slc_page_cache_is_refused(cache))
+    if (slc_page_cache_is_refused(cache))
         return false;
+    if (at == cache->views->count)
+        slc_log(&cache->vk->log, SLUICE_LOG_WARNING,
+                "no tiles of %s beyond %u: there are maxPageChunkCount %u images of pages",
+                sluiceFormatString(format), cache->page_count[format], cache->views->count);
     uint32_t layers = slc_max_u32(MIN_LAYERS, cache->page_count[format]);
-    for (layers = slc_min_u32(layers, cache->max_layer_count); layers > 0; layers /= 2) {
+    layers = at == cache->views->count ? 0 : slc_min_u32(layers, cache->max_layer_count);
+    for (; layers > 0; layers /= 2) {
         struct slc_page_chunk *chunk = &cache->chunks[at];
         if (create_chunk(cache, chunk, format, layers) == SLUICE_SUCCESS) {
             chunk->state = SLC_CHUNK_LIVE;

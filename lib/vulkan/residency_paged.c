@@ -192,7 +192,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     assert(*page == SLUICE_PAGE_NONE);
     *page = slc_page_cache_take(&p->cache, image->format);
     count_memory(p);
-    return *page == SLUICE_PAGE_NONE ? SLUICE_NOT_READY : SLUICE_SUCCESS;
+    return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
 }
 
 static void store(struct paged_residency *p, uint32_t word, uint32_t value)

@@ -4,6 +4,7 @@
 
 #include "probe_codes_comp.h"
 #include "probe_comp.h"
+#include "probe_loop_comp.h"
 
 #define BUFFERS 5u
 #define BINDINGS 7u
@@ -83,12 +84,12 @@ void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBin
     uint32_t at = (h->frame_count + HARNESS_FRAMES - 1) % HARNESS_FRAMES; /* of this frame */
     SluiceVulkanPages pages;
     sluiceGetVulkanPages(p->streamer, &pages);
-    assert_int_equal(pages.viewCount, PROBE_PAGE_CHUNKS);
+    assert_in_range(pages.viewCount, 1, PROBE_PAGE_CHUNKS);
     if (p->pages[at].generation != pages.generation) {
         VkDescriptorImageInfo infos[PROBE_PAGE_CHUNKS];
         for (uint32_t i = 0; i < PROBE_PAGE_CHUNKS; i++)
-            infos[i] =
-                (VkDescriptorImageInfo){pages.sampler, pages.pViews[i], VK_IMAGE_LAYOUT_GENERAL};
+            infos[i] = (VkDescriptorImageInfo){pages.sampler, pages.pViews[i % pages.viewCount],
+                                               VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                       .dstSet = p->pages[at].set,
                                       .dstBinding = 1,
@@ -119,6 +120,10 @@ static void create_pipeline(struct prober *p)
                                             .codeSize =
                                                 codes ? sizeof probe_codes_comp : sizeof probe_comp,
                                             .pCode = codes ? probe_codes_comp : probe_comp};
+    if (h->page_loop) {
+        module_info.codeSize = sizeof probe_loop_comp;
+        module_info.pCode = probe_loop_comp;
+    }
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
     VkComputePipelineCreateInfo info = {

@@ -1,6 +1,8 @@
 /* Samples, writes feedback and checks residency at given places. Built with and without PROBE_CODES. */
 #version 450
+#ifndef PROBE_PAGE_LOOP
 #extension GL_EXT_nonuniform_qualifier : require
+#endif
 #extension GL_GOOGLE_include_directive : require
 
 #include "sluice/shared/texture_table.h"
@@ -24,7 +26,12 @@ layout(push_constant) uniform Push { ProbeParams params; };
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
 #define SLUICE_PAGED paged
 #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
+#ifdef PROBE_PAGE_LOOP
+#define SLUICE_PAGE_TEXTURE(i) pages[i]
+#define SLUICE_PAGE_LOOP PROBE_PAGE_CHUNKS
+#else
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#endif
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/stochastic.glsl"
