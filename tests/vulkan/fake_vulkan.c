@@ -11,6 +11,7 @@ struct fake_object {
     uint32_t level_count;
     uint64_t size;
     void *memory;
+    VkImage image; ///< of a view
 };
 
 /* All dispatchable handles are the device itself. */
@@ -70,10 +71,29 @@ static void drop(struct fake_vulkan *fake, void *object)
 
 PLAIN_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
 PLAIN_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
-PLAIN_OBJECT(ImageView, VkImageViewCreateInfo)
 PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_ImageView(VkDevice device,
+                                                       const VkImageViewCreateInfo *info,
+                                                       const VkAllocationCallbacks *cb,
+                                                       VkImageView *view)
+{
+    (void)cb;
+    MAY_FAIL(device);
+    struct fake_object *object = make(fake_of(device), 0);
+    object->image = info->image;
+    *view = (VkImageView)object;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_ImageView(VkDevice device, VkImageView view,
+                                                    const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), view);
+}
 
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *features)
@@ -364,15 +384,20 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
                                                 VkImage image, VkImageLayout layout, uint32_t count,
                                                 const VkBufferImageCopy *regions)
 {
-    (void)buffer, (void)layout;
+    (void)layout;
     struct fake_vulkan *fake = fake_of(commands);
     assert_false(fake->published);
     for (uint32_t i = 0; i < count; i++) {
         assert_true(fake->copy_count < FAKE_EVENTS);
-        fake->copies[fake->copy_count++] =
-            (struct fake_copy){image, regions[i].imageSubresource.mipLevel,
-                               (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
-                               (uint32_t)regions[i].imageOffset.y / FAKE_TILE};
+        struct fake_copy *copy = &fake->copies[fake->copy_count++];
+        *copy = (struct fake_copy){image,
+                                   regions[i].imageSubresource.mipLevel,
+                                   regions[i].imageSubresource.baseArrayLayer,
+                                   (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
+                                   (uint32_t)regions[i].imageOffset.y / FAKE_TILE,
+                                   0};
+        const uint8_t *texels = OBJECT(OBJECT(buffer)->memory)->memory;
+        memcpy(&copy->texel, texels + regions[i].bufferOffset, sizeof copy->texel);
     }
 }
 
@@ -463,17 +488,36 @@ static VKAPI_ATTR void VKAPI_CALL bind_pipeline(VkCommandBuffer commands, VkPipe
     (void)commands, (void)point, (void)pipeline;
 }
 
+/* What is written there comes before the MinMip maps. */
+static struct fake_watch *find_watch(struct fake_vulkan *fake, VkBuffer buffer)
+{
+    for (int i = 0; i < 2; i++)
+        if (fake->watches[i].buffer == buffer) {
+            assert_false(fake->published);
+            return &fake->watches[i];
+        }
+    return NULL;
+}
+
 static VKAPI_ATTR void VKAPI_CALL fill_buffer(VkCommandBuffer commands, VkBuffer buffer,
                                               VkDeviceSize offset, VkDeviceSize size, uint32_t data)
 {
-    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+    struct fake_watch *watch = find_watch(fake_of(commands), buffer);
+    if (size == VK_WHOLE_SIZE)
+        size = OBJECT(buffer)->size - offset;
+    for (VkDeviceSize i = offset / 4; watch && i < (offset + size) / 4 && i < FAKE_WORDS; i++)
+        watch->words[i] = data;
 }
 
 static VKAPI_ATTR void VKAPI_CALL update_buffer(VkCommandBuffer commands, VkBuffer buffer,
                                                 VkDeviceSize offset, VkDeviceSize size,
                                                 const void *data)
 {
-    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+    struct fake_watch *watch = find_watch(fake_of(commands), buffer);
+    if (!watch)
+        return;
+    assert_true(offset + size <= sizeof watch->words);
+    memcpy((uint8_t *)watch->words + offset, data, size);
 }
 
 static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, VkPipelineStageFlags from,
@@ -570,6 +614,11 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance
 {
     (void)instance;
     return find(name);
+}
+
+VkImage fake_vulkan_image_of(VkImageView view)
+{
+    return OBJECT(view)->image;
 }
 
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info)
