@@ -79,7 +79,8 @@ static bool choose_device(struct app *app, VkPhysicalDeviceFeatures *features,
     for (uint32_t i = 0; i < count; i++) {
         app->physical_device = devices[i];
         if (sluiceRequireVulkanFeatures(app->instance, devices[i], vkGetInstanceProcAddr,
-                                        &log_callback, features, vulkan12) == SLUICE_SUCCESS &&
+                                        SLUICE_RESIDENCY_MODE_SPARSE, &log_callback, features,
+                                        vulkan12) == SLUICE_SUCCESS &&
             choose_family(app))
             return true;
     }
@@ -122,6 +123,7 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
                                            .sparseQueue = app->queue,
                                            .sparseQueueFamilyIndex = app->family,
                                            .queueFamilyIndex = app->family,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .log = log_callback,
                                            .feedbackTimeout = 20}; /* frames: see draw_frame */
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));

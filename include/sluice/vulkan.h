@@ -35,8 +35,13 @@ extern "C" {
 typedef struct SluiceVulkanStreamer SluiceVulkanStreamer;
 
 typedef enum SluiceResidencyMode {
-    SLUICE_RESIDENCY_MODE_AUTO = 0,  ///< what the device does best of those below
-    SLUICE_RESIDENCY_MODE_SPARSE = 1 ///< sparse residency images
+    SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< sparse where the device has it, else paged
+    SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< sparse residency images
+    /** A page table that shaders read and tiles as layers of array images: see SluiceVulkanPages.
+     */
+    SLUICE_RESIDENCY_MODE_PAGED = 2,
+    /** Ordinary images that have all their memory from the start: what streams is the texels. */
+    SLUICE_RESIDENCY_MODE_DENSE = 3
 } SluiceResidencyMode;
 
 /** What shaders write for each feedback region; their SLUICE_FEEDBACK_ENCODING must be the same. */
@@ -51,6 +56,7 @@ typedef struct SluiceVulkanDeviceCapabilities {
     bool shaderResourceResidency;    ///< residency codes exist
     bool shaderResourceMinLod;       ///< the LOD clamp operand exists
     bool residencyNonResidentStrict; ///< reads of unbound texels are 0
+    bool nonUniformIndexing;         ///< of arrays of images; else shaders define SLUICE_PAGE_LOOP
     /** The best that binds: without graphics if possible, perhaps useless for anything else. */
     uint32_t sparseQueueFamilyIndex;
     uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
@@ -130,16 +136,23 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
     const SluiceImageInfo *pImage, SluiceVulkanSparseImageLayout *pLayout);
 
 /**
- * Sets in `*pFeatures`, `*pVulkan12` what a streamer needs of the device: pass both to
+ * Sets in `*pFeatures`, `*pVulkan12` what a streamer of that mode needs of the device: pass both to
  * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
  * and for what else he needs, which stays set. No extension is needed. textureCompressionBC is set
  * where the device has it, for the BC formats. `pLog` may be NULL.
- * Errors: UNSUPPORTED if the device lacks one; the log callback says which.
+ *
+ * All modes need timelineSemaphore and fragmentStoresAndAtomics; sparse also sparseBinding,
+ * sparseResidencyImage2D and a queue family with SPARSE_BINDING; paged also
+ * shaderSampledImageArrayDynamicIndexing, and it takes shaderSampledImageArrayNonUniformIndexing
+ * where that is there. AUTO needs what the mode needs that it stands for.
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown mode; UNSUPPORTED if the device lacks a
+ *         feature; the log callback says which.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
     VkInstance instance, VkPhysicalDevice physicalDevice,
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, const SluiceLogCallback *pLog,
-    VkPhysicalDeviceFeatures *pFeatures, VkPhysicalDeviceVulkan12Features *pVulkan12);
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceResidencyMode mode,
+    const SluiceLogCallback *pLog, VkPhysicalDeviceFeatures *pFeatures,
+    VkPhysicalDeviceVulkan12Features *pVulkan12);
 
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceVulkanStreamerCreateInfo {
@@ -147,7 +160,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     VkPhysicalDevice physicalDevice;
     VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
     PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
-    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue
+    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue; required in
+                         ///< sparse mode alone
     uint32_t sparseQueueFamilyIndex;
     uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to: it must compute
     SluiceResidencyMode residencyMode;
@@ -193,15 +207,19 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      *  streamers of a process share what the device bears. Finer tiles beyond it are not loaded.
      *  0: maxTouchedTiles of the device. */
     uint32_t maxTouchedTiles;
+    /** Paged: array images that hold pages, at most 2^10, of up to 2048 tiles (128 MiB) and one
+     *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount: mind the device's limits on
+     *  samplers and sampled images per stage. */
+    uint32_t maxPageChunkCount;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
  * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
- *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20 or
- *         maxRegionCount 2^28; UNSUPPORTED if the device has no mode that was asked for;
- *         LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
+ *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20,
+ *         maxRegionCount 2^28 or maxPageChunkCount 2^10; UNSUPPORTED if the device has no mode that
+ *         was asked for; LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
  *         feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange;
- * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -234,8 +252,8 @@ typedef struct SluiceVulkanTexture {
     SluiceTextureId textureId;
     /** In VK_IMAGE_LAYOUT_GENERAL once a frame was begun after adding it, and for good: one part is
      *  copied to while another is sampled. Validation layers may call that slow. */
-    VkImage image;
-    VkImageView imageView; ///< 2D, all levels
+    VkImage image; ///< paged: of the packed levels alone, so textureSize() is not the texture's
+    VkImageView imageView; ///< 2D, all levels of the image
     VkFormat format;
     uint32_t width, height, mipLevelCount;
     uint32_t tableIndex;   ///< place in the texture table, for the shader functions
@@ -281,10 +299,31 @@ typedef struct SluiceVulkanBuffers {
     VkBuffer feedback;      ///< uint[], read and written
     VkBuffer minMip;        ///< uint[], read
     VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
+    VkBuffer pageTable;     ///< uint[], read in paged mode alone; in others any valid buffer
 } SluiceVulkanBuffers;
 
 SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
                                        SluiceVulkanBuffers *pBuffers);
+
+/**
+ * Where shaders find pages: an array of combined image samplers, all with the same sampler, of
+ * sampler2DArray in GLSL. Only paged mode samples them, but the views are valid in every mode, so
+ * one pipeline layout and one shader source do for all (SLUICE_PAGED in buffers.glsl).
+ *
+ * The array changes inside sluiceBeginStreamingFrame alone, and seldom: `generation` tells. Keep a
+ * descriptor set per frame in flight, and where it holds another generation write it anew after
+ * that call, before it is bound: no frame uses it any more then. A view that left the array lives
+ * until the frames begun before are over.
+ */
+typedef struct SluiceVulkanPages {
+    VkSampler sampler;         ///< the same for the streamer's whole life
+    uint32_t viewCount;        ///< maxPageChunkCount; the same, too
+    const VkImageView *pViews; ///< 2D array, VK_IMAGE_LAYOUT_GENERAL; until the next begin
+    uint64_t generation;       ///< from 1 on
+} SluiceVulkanPages;
+
+SLUICE_API void sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer,
+                                     SluiceVulkanPages *pPages);
 
 typedef struct SluiceStreamingFrame {
     uint64_t frameIndex;   ///< from 1 on
@@ -322,17 +361,21 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
-    uint64_t unbinds;           ///< tiles whose page was taken away
-    uint64_t unbindsSaved;      ///< unmapped tiles that were bound again, or gone, before that
-    uint64_t feedbackMaps;      ///< resolved and given to the manager
-    uint32_t loadsInFlight;     ///< reads not collected, and uploads not recorded
-    uint64_t deviceMemorySize;  ///< bytes of heaps
+    uint64_t unbinds;       ///< tiles whose page was taken away
+    uint64_t unbindsSaved;  ///< unmapped tiles that were bound again, or gone, before that
+    uint64_t feedbackMaps;  ///< resolved and given to the manager
+    uint32_t loadsInFlight; ///< reads not collected, and uploads not recorded
+    /** Bytes of heaps; dense: of images; paged: of pages, packed levels and the page table. */
+    uint64_t deviceMemorySize;
     uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
     uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
                                                   SluiceVulkanStreamerStatistics *pStatistics);
+
+/** What AUTO turned out to be, or the mode that was asked for; AUTO if `streamer` is NULL. */
+SLUICE_API SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer);
 
 /** The manager, to read from; to record it, begin before the first texture is added. */
 SLUICE_API SluiceStreamedTextureManager *

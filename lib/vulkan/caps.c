@@ -103,6 +103,9 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     memcpy(out->driverName, driver.driverName, sizeof out->driverName);
     memcpy(out->driverInfo, driver.driverInfo, sizeof out->driverInfo);
     out->deviceLocalMemorySize = largest_local_heap(&caps->memory);
+    out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
+    caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
+    caps->max_image_array_layers = out->maxImageArrayLayers;
     caps->max_storage_buffer_range = out->maxStorageBufferRange;
     bool vulkan12 = out->apiVersion >= VK_API_VERSION_1_2;
     out->timelineSemaphore = vulkan12 && features12.timelineSemaphore;
@@ -124,6 +127,35 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
     return UINT32_MAX;
 }
 
+uint64_t slc_device_memory_size(const struct slc_caps *caps)
+{
+    const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
+    uint64_t size = 0;
+    for (uint32_t i = 0; i < memory->memoryTypeCount; i++)
+        if (memory->memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT &&
+            memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size > size)
+            size = memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size;
+    return size;
+}
+
+SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
+{
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
+        return mode;
+    return caps->public.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
+}
+
+const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
+{
+    if (!caps->timeline_semaphore)
+        return "timeline semaphores (Vulkan 1.2)";
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE && !caps->public.sparse)
+        return "sparse residency of 2D images";
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED && !caps->array_dynamic_indexing)
+        return "shaderSampledImageArrayDynamicIndexing";
+    return NULL;
+}
+
 SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
                                                PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                                SluiceVulkanDeviceCapabilities *pCapabilities)
@@ -143,12 +175,14 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
 
 SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,
                                          PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
-                                         const SluiceLogCallback *pLog,
+                                         SluiceResidencyMode mode, const SluiceLogCallback *pLog,
                                          VkPhysicalDeviceFeatures *pFeatures,
                                          VkPhysicalDeviceVulkan12Features *pVulkan12)
 {
     if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pFeatures || !pVulkan12)
         return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_mode_is_known(mode))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_vk vk;
     SluiceResult result =
         slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
@@ -156,18 +190,25 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         return result;
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
+    mode = slc_choose_mode(&caps, mode);
     VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
-    const char *missing = !caps.timeline_semaphore ? "timeline semaphores (Vulkan 1.2)"
-                          : !caps.public.sparse    ? "sparse residency of 2D images"
-                          : !there.features.fragmentStoresAndAtomics ? "fragmentStoresAndAtomics"
-                                                                     : NULL;
+    const char *missing = slc_missing_for_mode(&caps, mode);
+    if (!missing && !there.features.fragmentStoresAndAtomics)
+        missing = "fragmentStoresAndAtomics";
     if (missing) {
         slc_log(pLog, SLUICE_LOG_ERROR, "%s has no %s", caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    pFeatures->sparseBinding = VK_TRUE;
-    pFeatures->sparseResidencyImage2D = VK_TRUE;
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE) {
+        pFeatures->sparseBinding = VK_TRUE;
+        pFeatures->sparseResidencyImage2D = VK_TRUE;
+    }
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED) {
+        pFeatures->shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+        if (caps.public.nonUniformIndexing)
+            pVulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
+    }
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     if (there.features.textureCompressionBC)
         pFeatures->textureCompressionBC = VK_TRUE;

@@ -8,6 +8,8 @@ struct slc_caps {
     SluiceVulkanDeviceCapabilities public;
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t max_storage_buffer_range; ///< bytes
+    uint32_t max_image_array_layers;
+    bool array_dynamic_indexing; ///< shaderSampledImageArrayDynamicIndexing
     bool timeline_semaphore;
 };
 
@@ -20,5 +22,20 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk);
  */
 uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,
                               VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred);
+
+/** Bytes of the largest device-local heap: more may not even be asked for. */
+uint64_t slc_device_memory_size(const struct slc_caps *caps);
+
+static inline bool slc_mode_is_known(SluiceResidencyMode mode)
+{
+    return mode == SLUICE_RESIDENCY_MODE_AUTO || mode == SLUICE_RESIDENCY_MODE_SPARSE ||
+           mode == SLUICE_RESIDENCY_MODE_PAGED || mode == SLUICE_RESIDENCY_MODE_DENSE;
+}
+
+/** What AUTO is on this device; other modes are themselves. */
+SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode);
+
+/** What a mode other than AUTO needs and the device lacks; NULL: nothing. */
+const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode);
 
 #endif /* SLC_VULKAN_CAPS_H */

@@ -12,13 +12,15 @@
     X(GetPhysicalDeviceQueueFamilyProperties) X(GetPhysicalDeviceSparseImageFormatProperties)
 
 #define SLC_VK_DEVICE_FUNCTIONS(X)                                                                 \
-    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(CmdBindDescriptorSets)       \
+    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
+    X(CmdBindDescriptorSets)                                                                       \
     X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch) X(CmdFillBuffer)    \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
     X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
-    X(CreateImageView) X(CreatePipelineLayout) X(CreateSemaphore) X(CreateShaderModule)            \
+    X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \
+    X(CreateShaderModule)                                                                         \
     X(DestroyBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
-    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySemaphore)            \
+    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySampler) X(DestroySemaphore)             \
     X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
     X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
     X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \

@@ -126,6 +126,7 @@ static void barrier_after(SluiceVulkanStreamer *s, VkCommandBuffer commands,
 
 static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
+    slc_page_views_record(&s->page_views, &s->vk, commands);
     s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE,
                         slc_feedback_clear_value(s));
     s->vk.CmdFillBuffer(commands, s->min_mip.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
@@ -135,13 +136,18 @@ static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 
 static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
+    const struct slc_residency_interface *residency = s->residency->interface;
     barrier_before(s, commands);
     if (!s->buffers_cleared)
         clear_buffers(s, commands);
+    if (residency->record_begin)
+        residency->record_begin(s->residency, s->frame, commands);
     slc_textures_record_new(s, commands);
     slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
     SluiceResult result = slc_tile_uploads_record(s, commands);
+    if (result >= 0 && residency->record_publish)
+        residency->record_publish(s->residency, commands);
     if (result >= 0)
         result = slc_min_mip_record(s, commands); /* after the texels that it shows */
     barrier_after(s, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,

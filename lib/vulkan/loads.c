@@ -410,6 +410,16 @@ static void bind_packed(SluiceVulkanStreamer *s)
     }
 }
 
+/* There is no memory for it. Later it is read again, and its staging slot serves others till then.
+ */
+static void refuse_unit(SluiceVulkanStreamer *s, uint32_t index)
+{
+    const struct slc_unit *unit = &s->units[index];
+    refuse_tile(s, unit->texture, &unit->tile);
+    forget_tile(s, unit);
+    slc_unit_free(s, index);
+}
+
 void slc_loads_bind(SluiceVulkanStreamer *s)
 {
     bind_packed(s);
@@ -417,12 +427,15 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
     struct slc_unit_list bound = {SLC_NONE, SLC_NONE};
     for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->arrived)) != SLC_NONE;) {
         struct slc_unit *u = &s->units[unit];
-        if (s->textures[u->texture].state == SLC_TEXTURE_REMOVED)
+        if (s->textures[u->texture].state == SLC_TEXTURE_REMOVED) {
             slc_unit_free(s, unit);
-        else if (s->residency->interface->map(s->residency, u->texture, &u->tile) == SLUICE_SUCCESS)
-            slc_unit_list_append(s, &bound, unit);
+            continue;
+        }
+        SluiceResult result = s->residency->interface->map(s->residency, u->texture, &u->tile);
+        if (result < 0)
+            refuse_unit(s, unit);
         else
-            slc_unit_list_append(s, &later, unit);
+            slc_unit_list_append(s, result == SLUICE_SUCCESS ? &bound : &later, unit);
     }
     s->arrived = later;
     for (uint32_t unit; (unit = slc_unit_list_pop(s, &bound)) != SLC_NONE;) {

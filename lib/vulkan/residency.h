@@ -1,27 +1,32 @@
 /**
  * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
- * sparse binding). The streamer decides nothing about memory and an implementation nothing about
- * tiles.
+ * sparse binding; residency_paged.c: a page table for shaders; residency_dense.c: fully backed
+ * images). The streamer decides nothing about
+ * memory and an implementation nothing about tiles.
  *
  * The protocol of a frame:
  *
  *     update            polls; from here on completed_value and retire_limit are of this frame
  *     unmap, map        collect changes
  *     submit            makes all of them happen; they are over once completed_value reaches *value
+ *     record_begin      before everything else
  *     record_uploads    into images whose maps are over
+ *     record_publish    behind the uploads, before the MinMip maps that show them
  */
 #ifndef SLC_VULKAN_RESIDENCY_H
 #define SLC_VULKAN_RESIDENCY_H
 
 #include "vulkan/caps.h"
 
+struct slc_page_views;
 struct slc_residency;
 
 /** The image of one streamed texture. */
 struct slc_residency_image {
     VkImage image;
     SluiceStreamedTextureDesc desc;
-    bool uneven; ///< some level's size is not twice the next one's
+    bool uneven;                ///< some level's size is not twice the next one's
+    uint32_t page_table_offset; ///< of SluiceTextureEntry
 };
 
 struct slc_residency_interface {
@@ -49,7 +54,8 @@ struct slc_residency_interface {
     /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
     SluiceResult (*update)(struct slc_residency *residency, uint64_t completed_frame);
     /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
-     *  place is not over. Ask again in the next frame. */
+     *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular tiles
+     * alone: not even soon. */
     SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
     /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
      * times. */
@@ -69,6 +75,14 @@ struct slc_residency_interface {
     void (*record_uploads)(struct slc_residency *residency, uint32_t index,
                            VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
                            const VkBufferImageCopy *regions);
+
+    /* What follows may be NULL: there is nothing to do. */
+
+    /** Of the frame being begun, behind a barrier over all that earlier ones do. */
+    void (*record_begin)(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands);
+    void (*record_publish)(struct slc_residency *residency, VkCommandBuffer commands);
+    /** The same for its whole life. */
+    VkBuffer (*page_table)(const struct slc_residency *residency);
 };
 
 /** What is counted for the public statistics. */
@@ -91,9 +105,15 @@ struct slc_residency_create_info {
     uint32_t max_image_count;
     uint32_t max_changes;       ///< maps and unmaps per frame
     uint32_t max_touched_tiles; ///< 0: no limit
+    uint32_t max_region_count;
+    struct slc_page_views *page_views; ///< where pages are shown
 };
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
                                          struct slc_residency **residency);
+SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *info,
+                                        struct slc_residency **residency);
+SluiceResult slc_create_dense_residency(const struct slc_residency_create_info *info,
+                                        struct slc_residency **residency);
 
 #endif /* SLC_VULKAN_RESIDENCY_H */

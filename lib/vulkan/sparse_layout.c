@@ -47,6 +47,13 @@ VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D gra
     return granularity;
 }
 
+static void set_own_packed_levels(SluiceStreamedTextureDesc *desc, const SluiceImageInfo *info,
+                                  VkExtent3D tile)
+{
+    desc->regularMipCount = slc_min_u32(own_packed_level(info, tile), info->mipLevelCount);
+    desc->packedTileCount = info->mipLevelCount - desc->regularMipCount;
+}
+
 SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
                                     const VkMemoryRequirements *memory,
                                     const VkSparseImageMemoryRequirements *color,
@@ -84,10 +91,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         layout->tail_size = color->imageMipTailSize;
         layout->tail_stride = color->imageMipTailStride;
     } else {
-        desc->regularMipCount = own_packed_level(info, tile);
-        if (desc->regularMipCount > info->mipLevelCount)
-            desc->regularMipCount = info->mipLevelCount;
-        desc->packedTileCount = info->mipLevelCount - desc->regularMipCount;
+        set_own_packed_levels(desc, info, tile);
     }
     if (metadata) {
         layout->metadata_offset = metadata->imageMipTailOffset;
@@ -95,6 +99,24 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         layout->metadata_stride = metadata->imageMipTailStride;
     }
     set_regions(desc);
+    layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||
+                     !halves_evenly(info->height, info->mipLevelCount);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info)
+{
+    VkExtent3D tile = {.depth = 1};
+    SluiceResult result = sluiceGetStandardTileShape(info->format, &tile.width, &tile.height);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *layout = (struct slc_sparse_layout){.desc = {.width = info->width,
+                                                  .height = info->height,
+                                                  .mipLevelCount = info->mipLevelCount,
+                                                  .tileWidth = tile.width,
+                                                  .tileHeight = tile.height}};
+    set_own_packed_levels(&layout->desc, info, tile);
+    set_regions(&layout->desc);
     layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||
                      !halves_evenly(info->height, info->mipLevelCount);
     return SLUICE_SUCCESS;

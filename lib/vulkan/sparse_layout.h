@@ -33,6 +33,13 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
                                     const VkSparseImageMemoryRequirements *metadata,
                                     uint64_t address_space_size);
 
+/**
+ * Of images that no driver cuts into tiles: the standard shapes, and the levels packed that fit
+ * into one tile. Errors: UNSUPPORTED if the format has no standard shape.
+ */
+SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout,
+                                      const SluiceImageInfo *info);
+
 /** Where a tile lies: level and tile coordinates, or SLC_TAIL_LEVEL and page number in `x`. */
 struct slc_tile_place {
     uint32_t level, x, y;

@@ -37,11 +37,13 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     set_default(&info->maxLoadsInFlight, slc_max_u32(64, 4 * info->tilesPerFrame));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
+    set_default(&info->maxPageChunkCount, 64);
     if (info->framesInFlight > 16 || info->maxTextureCount > 1u << 20 ||
         info->maxLoadsInFlight > 1u << 16 || info->maxRegionCount > 1u << 28 ||
         (info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_LEVELS &&
          info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_MASKS) ||
-        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->heapTileCapacity > 1u << 20)
+        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->maxPageChunkCount > 1u << 10 ||
+        info->heapTileCapacity > 1u << 20)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
@@ -50,11 +52,14 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
 
 static SluiceResult create_residency(SluiceVulkanStreamer *s)
 {
-    if (!s->caps.public.sparse || !s->caps.timeline_semaphore) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName,
-                s->caps.public.sparse ? "timeline semaphores" : "sparse residency of 2D images");
+    s->info.residencyMode = slc_choose_mode(&s->caps, s->info.residencyMode);
+    const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
+    if (missing) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
+    if (s->info.residencyMode == SLUICE_RESIDENCY_MODE_SPARSE && !s->info.sparseQueue)
+        return SLUICE_ERROR_NULL_POINTER;
     struct slc_residency_create_info info = {
         .vk = &s->vk,
         .caps = &s->caps,
@@ -64,8 +69,18 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
         .max_touched_tiles =
             s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
+        .max_region_count = s->info.maxRegionCount,
+        .page_views = &s->page_views,
     };
-    return slc_create_sparse_residency(&info, &s->residency);
+    SluiceResult result =
+        slc_page_views_init(&s->page_views, &s->vk, &s->caps, &s->cb, s->info.maxPageChunkCount);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    switch (s->info.residencyMode) {
+    case SLUICE_RESIDENCY_MODE_PAGED: return slc_create_paged_residency(&info, &s->residency);
+    case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
+    default: return slc_create_sparse_residency(&info, &s->residency);
+    }
 }
 
 static SluiceResult create_manager(SluiceVulkanStreamer *s)
@@ -221,13 +236,12 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
         return SLUICE_ERROR_NULL_POINTER;
     *pStreamer = NULL;
     if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
-        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr || !pCreateInfo->sparseQueue)
+        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
     SluiceResult result = fill_in(&info);
     if (result != SLUICE_SUCCESS || !slc_allocator_is_valid(info.pAllocator) ||
-        (info.residencyMode != SLUICE_RESIDENCY_MODE_AUTO &&
-         info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE))
+        !slc_mode_is_known(info.residencyMode))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceVulkanStreamer *s = slc_calloc(&cb, 1, sizeof *s);
@@ -285,6 +299,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
     if (s->residency)
         s->residency->interface->destroy(s->residency);
+    slc_page_views_finish(&s->page_views, &s->vk, &s->cb);
 }
 
 void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
@@ -309,8 +324,25 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
 
 void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBuffers *pBuffers)
 {
-    *pBuffers = (SluiceVulkanBuffers){streamer->texture_table.buffer, streamer->feedback.buffer,
-                                      streamer->min_mip.buffer, streamer->feedback_turns.buffer};
+    const struct slc_residency *residency = streamer->residency;
+    VkBuffer table = streamer->texture_table.buffer;
+    *pBuffers = (SluiceVulkanBuffers){.textureTable = table,
+                                      .feedback = streamer->feedback.buffer,
+                                      .minMip = streamer->min_mip.buffer,
+                                      .feedbackTurns = streamer->feedback_turns.buffer,
+                                      /* any buffer will do where it is not read */
+                                      .pageTable = residency->interface->page_table
+                                                       ? residency->interface->page_table(residency)
+                                                       : table};
+}
+
+void sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVulkanPages *pPages)
+{
+    const struct slc_page_views *views = &streamer->page_views;
+    *pPages = (SluiceVulkanPages){.sampler = views->sampler,
+                                  .viewCount = views->count,
+                                  .pViews = views->views,
+                                  .generation = views->generation};
 }
 
 void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
@@ -330,6 +362,11 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
         uploaded++;
     pStatistics->loadsInFlight =
         streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
+}
+
+SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer)
+{
+    return streamer ? streamer->info.residencyMode : SLUICE_RESIDENCY_MODE_AUTO;
 }
 
 SluiceStreamedTextureManager *sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer)

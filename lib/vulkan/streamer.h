@@ -7,6 +7,7 @@
 #include "vulkan/buffer.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
+#include "vulkan/page_views.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/residency.h"
@@ -90,6 +91,7 @@ struct SluiceVulkanStreamer {
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
     struct slc_vk vk;
     struct slc_caps caps;
+    struct slc_page_views page_views;
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;
     SluiceTileLoader *loader;

@@ -36,7 +36,7 @@ static SluiceResult create_view(SluiceVulkanStreamer *s, const struct slc_textur
                                   .viewType = type,
                                   .format = slc_vk_format(texture->info.format),
                                   .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0,
-                                                       texture->info.mipLevelCount, texture->layer,
+                                                       VK_REMAINING_MIP_LEVELS, texture->layer,
                                                        layer_count}};
     return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, view),
                          "vkCreateImageView");
@@ -339,6 +339,14 @@ void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index)
         destroy_parts(s, index);
 }
 
+static uint32_t log2_of(uint32_t power)
+{
+    uint32_t log = 0;
+    while (power >>= 1)
+        log++;
+    return log;
+}
+
 static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -355,7 +363,10 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .minMipOffset = texture->region_first,
         .addressModeU = (uint)texture->address_modes[0],
         .addressModeV = (uint)texture->address_modes[1],
-        .flags = texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u,
+        .pageTableOffset = texture->image.page_table_offset,
+        .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
+        .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
+                 slc_format_components(texture->info.format) << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }
 

@@ -117,12 +117,28 @@ static const char *device_type_string(VkPhysicalDeviceType type)
     }
 }
 
-static bool can_stream(VkInstance instance, VkPhysicalDevice device,
+/** AUTO in words that both streamers and this program understand. */
+static SluiceResidencyMode choose_mode(const SluiceVulkanDeviceCapabilities *capabilities,
+                                       SluiceResidencyMode mode)
+{
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
+        return mode;
+    return capabilities->sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
+}
+
+/** The shaders of samples find pages by non-uniform indices. */
+static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResidencyMode mode,
                        SluiceVulkanDeviceCapabilities *capabilities)
 {
+    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
                                              capabilities) == SLUICE_SUCCESS &&
-           capabilities->sparse;
+           (choose_mode(capabilities, mode) != SLUICE_RESIDENCY_MODE_PAGED ||
+            capabilities->nonUniformIndexing) &&
+           sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr, mode, NULL,
+                                       &features, &vulkan12) == SLUICE_SUCCESS;
 }
 
 uint32_t gpu_list_devices(void)
@@ -141,8 +157,9 @@ uint32_t gpu_list_devices(void)
                device_type_string(properties.deviceType),
                VK_API_VERSION_MAJOR(properties.apiVersion),
                VK_API_VERSION_MINOR(properties.apiVersion),
-               can_stream(gpu.instance, devices[i], &capabilities) ? "sparse residency"
-                                                                   : "no sparse residency");
+               can_stream(gpu.instance, devices[i], SLUICE_RESIDENCY_MODE_SPARSE, &capabilities)
+                   ? "sparse residency"
+                   : "no sparse residency");
     }
     gpu_destroy(&gpu);
     return count;
@@ -195,7 +212,8 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
             continue;
         SluiceVulkanDeviceCapabilities capabilities;
-        if (!can_stream(gpu->instance, devices[i], &capabilities))
+        if (!can_stream(gpu->instance, devices[i], gpu->modes[0], &capabilities) ||
+            !can_stream(gpu->instance, devices[i], gpu->modes[1], &capabilities))
             continue;
         if (device_rank(properties.deviceType) <= best_rank)
             continue;
@@ -204,10 +222,13 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         gpu->properties = properties;
         gpu->capabilities = capabilities;
     }
+    gpu->modes[0] = choose_mode(&gpu->capabilities, gpu->modes[0]);
+    if (gpu->modes[1] == SLUICE_RESIDENCY_MODE_AUTO)
+        gpu->modes[1] = gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? SLUICE_RESIDENCY_MODE_SPARSE
+                                                                      : SLUICE_RESIDENCY_MODE_DENSE;
     if (best_rank < 0)
         fprintf(stderr,
-                "no Vulkan device%s%s can stream: it needs sparse residency images (for "
-                "Mesa's lavapipe: version 25 or later); see --list-devices\n",
+                "no Vulkan device%s%s can stream in this residency mode; see --list-devices\n",
                 wanted ? " like " : "", wanted ? wanted : "");
     return best_rank >= 0;
 }
@@ -221,7 +242,8 @@ static bool choose_queue_family(struct gpu *gpu)
     for (uint32_t i = 0; i < count; i++)
         if ((families[i].queueFlags & needed) == needed) {
             gpu->family = i;
-            gpu->sparse_family = gpu->capabilities.sparseQueueFamilyIndex;
+            gpu->sparse_family =
+                gpu->capabilities.sparse ? gpu->capabilities.sparseQueueFamilyIndex : gpu->family;
             return true;
         }
     fprintf(stderr, "%s has no graphics queue\n", gpu->properties.deviceName);
@@ -248,9 +270,11 @@ static bool create_device(struct gpu *gpu)
     features.features.fragmentStoresAndAtomics = VK_TRUE;
 
     SluiceLogCallback log = {.pfnLog = print_log};
-    if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
-                                    &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
-        return false;
+    for (int i = 0; i < 2; i++)
+        if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
+                                        gpu->modes[i], &log, &features.features,
+                                        &vulkan12) != SLUICE_SUCCESS)
+            return false;
 
     static const float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2];
@@ -269,7 +293,8 @@ static bool create_device(struct gpu *gpu)
                    "vkCreateDevice"))
         return false;
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
-    vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
+    if (gpu->capabilities.sparse)
+        vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
 
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -282,6 +307,7 @@ static bool create_device(struct gpu *gpu)
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported)
 {
     memset(gpu, 0, sizeof *gpu);
+    memcpy(gpu->modes, request->modes, sizeof gpu->modes);
     if (create_instance(request->validation, gpu, unsupported)) {
         *unsupported = !choose_device(request->device, gpu) || !choose_queue_family(gpu);
         if (!*unsupported && create_device(gpu))

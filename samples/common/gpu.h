@@ -11,18 +11,22 @@
 struct gpu_request {
     const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
     bool validation;    ///< with synchronization validation
+    /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
+    SluiceResidencyMode modes[2];
 };
 
 struct gpu {
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
-    VkQueue queue, sparse_queue; ///< may be the same
+    VkQueue queue, sparse_queue; ///< may be the same; the latter VK_NULL_HANDLE without sparse
+                                 ///< residency
     uint32_t family, sparse_family;
     VkCommandPool command_pool; ///< buffers can be reset one by one
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     SluiceVulkanDeviceCapabilities capabilities;
+    SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };

@@ -23,9 +23,13 @@ static bool open_surroundings(struct gallery *gallery)
 static bool counts_residency(const struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
-    bool able = gallery->gpu.capabilities.shaderResourceResidency;
+    SluiceResidencyMode mode = gallery->gpu.modes[0];
+    /* Sparse images have codes, and pages a table; everything is there in dense mode. */
+    bool able =
+        mode == SLUICE_RESIDENCY_MODE_PAGED ||
+        (mode == SLUICE_RESIDENCY_MODE_SPARSE && gallery->gpu.capabilities.shaderResourceResidency);
     if (settings->check_residency == THREE_WAY_ON && !able)
-        fprintf(stderr, "%s has no residency codes: nothing is checked with them\n",
+        fprintf(stderr, "%s cannot tell in this mode what is not resident: nothing is checked\n",
                 gallery->gpu.properties.deviceName);
     return able && (settings->check_residency == THREE_WAY_ON ||
                     (settings->check_residency == THREE_WAY_AUTO && settings->compare));
@@ -66,30 +70,45 @@ static bool open_views(struct gallery *gallery)
         .pictures = &gallery->pictures,
         .floor = gallery->floor,
         .wall = gallery->wall,
+        .mode = gallery->gpu.modes[0],
         .counting = counts_residency(gallery),
     };
     if (!target_create(&gallery->gpu, settings->size[0], settings->size[1], settings->samples,
                        &gallery->target) ||
         !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
-                         request.counting, &gallery->renderer) ||
+                         request.counting, request.mode == SLUICE_RESIDENCY_MODE_PAGED,
+                         &gallery->renderer) ||
         !view_create(&request, settings->record, &gallery->streamed))
         return false;
     if (!settings->compare)
         return true;
     request.everything = true;
     request.counting = false;
+    request.mode = gallery->gpu.modes[1];
+    bool paged = request.mode == SLUICE_RESIDENCY_MODE_PAGED;
+    if (paged != gallery->renderer.paged) {
+        request.renderer = &gallery->truth_renderer;
+        if (!renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
+                             false, paged, &gallery->truth_renderer))
+            return false;
+    }
     return view_create(&request, NULL, &gallery->truth) && fill_truth(gallery);
 }
 
 enum gallery_outcome gallery_open(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
-    struct gpu_request device = {settings->device, settings->validation};
+    struct gpu_request device = {settings->device,
+                                 settings->validation,
+                                 {settings_residency_mode(settings->residency),
+                                  settings_residency_mode(settings->compare_with)}};
     bool unsupported;
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
     struct picture_limits limits = {gallery->gpu.properties.limits.maxImageDimension2D,
-                                    gallery->gpu.capabilities.sparseAddressSpaceSize};
+                                    gallery->gpu.capabilities.sparse
+                                        ? gallery->gpu.capabilities.sparseAddressSpaceSize
+                                        : UINT64_MAX};
     return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
                    open_views(gallery)
                ? GALLERY_READY
@@ -102,6 +121,7 @@ bool gallery_close(struct gallery *gallery)
     view_destroy(&gallery->truth);
     if (gallery->gpu.device) {
         renderer_destroy(&gallery->renderer);
+        renderer_destroy(&gallery->truth_renderer);
         target_destroy(&gallery->gpu, &gallery->target);
     }
     room_finish(&gallery->room);

@@ -2,6 +2,10 @@
 #ifndef GALLERY_GLSL
 #define GALLERY_GLSL
 
+#ifdef SLUICE_PAGED
+#extension GL_EXT_nonuniform_qualifier : require
+#endif
+
 #include "gallery_shared.h"
 #include "sluice/shared/texture_table.h"
 
@@ -11,6 +15,14 @@ layout(set = 0, binding = 2, std430) readonly buffer TextureTable { SluiceTextur
 layout(set = 0, binding = 3, std430) buffer Feedback { uint words[]; } feedback;
 layout(set = 0, binding = 4, std430) readonly buffer MinMip { uint words[]; } minMip;
 layout(set = 0, binding = 5, std430) buffer Counts { GalleryCounts counts; };
+
+/* Defined where these are compiled for paged residency. */
+#ifdef SLUICE_PAGED
+layout(set = 0, binding = 6, std430) readonly buffer PageTable { uint words[]; } pageTable;
+layout(set = 0, binding = 7) uniform sampler2DArray pages[GALLERY_PAGE_CHUNKS];
+#define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
+#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#endif
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]

@@ -12,7 +12,7 @@ struct gallery {
     struct pattern_image floor_pattern, wall_pattern;
     SluiceImageSource *floor, *wall;
     struct target target;
-    struct renderer renderer;
+    struct renderer renderer, truth_renderer; ///< the latter where the truth needs its own
     struct view streamed;
     struct view truth; ///< only with --compare
 };

@@ -7,6 +7,8 @@
 #define GALLERY_NO_TEXTURE 0xffffffffu
 #define GALLERY_LIGHTS_PER_DRAW 3
 
+#define GALLERY_PAGE_CHUNKS 64 /* descriptors of page images */
+
 /* Draw flags. */
 #define GALLERY_GREY 1u    /* one channel, shown as grey */
 #define GALLERY_PAINTED 2u /* has a relief, and varnish that shines */

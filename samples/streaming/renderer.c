@@ -4,24 +4,29 @@
 #include <string.h>
 
 #include "gallery_vert.h"
+#include "count_frag.h"
+#include "count_paged_frag.h"
 #include "plain_frag.h"
 #include "surface_frag.h"
-#include "count_frag.h"
+#include "surface_paged_frag.h"
 
 static bool create_layouts(struct renderer *renderer)
 {
     VkDevice device = renderer->gpu->device;
-    VkDescriptorSetLayoutBinding frame_bindings[6], texture_bindings[4];
-    for (uint32_t i = 0; i < 6; i++) /* alike, so that one write fills all */
+    VkDescriptorSetLayoutBinding frame_bindings[8], texture_bindings[4];
+    for (uint32_t i = 0; i < 7; i++) /* alike, so that one write fills all */
         frame_bindings[i] = (VkDescriptorSetLayoutBinding){
             i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
             VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
+    frame_bindings[7] =
+        (VkDescriptorSetLayoutBinding){7, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                       GALLERY_PAGE_CHUNKS, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     for (uint32_t i = 0; i < 4; i++)
         texture_bindings[i] = (VkDescriptorSetLayoutBinding){
             i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
     VkDescriptorSetLayoutCreateInfo frame = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 6,
+        .bindingCount = 8,
         .pBindings = frame_bindings};
     VkDescriptorSetLayoutCreateInfo texture = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -173,17 +178,26 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
     const struct {
         const uint32_t *words;
         size_t size;
-    } fragments[RENDERER_PASS_COUNT] = {
-        [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
-        [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
-        [RENDERER_COUNT] = {count_frag, sizeof count_frag},
-    };
+    } fragments[RENDERER_PASS_COUNT] =
+        {
+            [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
+            [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
+            [RENDERER_COUNT] = {count_frag, sizeof count_frag},
+        },
+      paged_fragments[RENDERER_PASS_COUNT] = {
+          [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
+          [RENDERER_SURFACE] = {surface_paged_frag, sizeof surface_paged_frag},
+          [RENDERER_COUNT] = {count_paged_frag, sizeof count_paged_frag},
+      };
     VkShaderModule vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
     bool created = vertex != VK_NULL_HANDLE;
     for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
         if (i == RENDERER_COUNT && !counting)
             continue;
-        VkShaderModule fragment = gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
+        VkShaderModule fragment =
+            renderer->paged
+                ? gpu_create_shader(gpu, paged_fragments[i].words, paged_fragments[i].size)
+                : gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
         created = fragment != VK_NULL_HANDLE &&
                   create_pipeline(renderer, target, vertex, fragment, i != RENDERER_COUNT,
                                   &renderer->pipelines[i]);
@@ -194,9 +208,9 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
 }
 
 bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, struct renderer *renderer)
+                     uint32_t anisotropy, bool counting, bool paged, struct renderer *renderer)
 {
-    *renderer = (struct renderer){.gpu = gpu, .room = room};
+    *renderer = (struct renderer){.gpu = gpu, .room = room, .paged = paged};
     if (create_layouts(renderer) && create_samplers(renderer, anisotropy) &&
         create_buffers(renderer) && create_pipelines(renderer, target, counting))
         return true;
@@ -226,19 +240,36 @@ void renderer_destroy(struct renderer *renderer)
 void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
                               VkBuffer counts, const SluiceVulkanBuffers *buffers)
 {
-    const VkDescriptorBufferInfo infos[6] = {
+    const VkDescriptorBufferInfo infos[7] = {
         {frame, 0, VK_WHOLE_SIZE},
         {renderer->lights.buffer, 0, VK_WHOLE_SIZE},
         {buffers->textureTable, 0, VK_WHOLE_SIZE},
         {buffers->feedback, 0, VK_WHOLE_SIZE},
         {buffers->minMip, 0, VK_WHOLE_SIZE},
         {counts, 0, VK_WHOLE_SIZE},
+        {buffers->pageTable, 0, VK_WHOLE_SIZE},
     };
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = set,
-                                  .descriptorCount = 6,
+                                  .descriptorCount = 7,
                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                   .pBufferInfo = infos};
+    vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
+}
+
+void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
+                          const SluiceVulkanPages *pages)
+{
+    VkDescriptorImageInfo infos[GALLERY_PAGE_CHUNKS];
+    for (uint32_t i = 0; i < GALLERY_PAGE_CHUNKS; i++)
+        infos[i] =
+            (VkDescriptorImageInfo){pages->sampler, pages->pViews[i], VK_IMAGE_LAYOUT_GENERAL};
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = set,
+                                  .dstBinding = 7,
+                                  .descriptorCount = GALLERY_PAGE_CHUNKS,
+                                  .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                  .pImageInfo = infos};
     vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
 }
 

@@ -12,6 +12,7 @@ enum renderer_pass { RENDERER_PLAIN, RENDERER_SURFACE, RENDERER_COUNT, RENDERER_
 struct renderer {
     const struct gpu *gpu;   ///< borrowed
     const struct room *room; ///< borrowed
+    bool paged;              ///< its shaders are for paged residency
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
     VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the counting one only where it was asked for
@@ -31,13 +32,16 @@ struct renderer_surface {
 
 /** `pass` of a target that is compatible with those drawn to. */
 bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, struct renderer *renderer);
+                     uint32_t anisotropy, bool counting, bool paged, struct renderer *renderer);
 /** A zeroed struct is fine. */
 void renderer_destroy(struct renderer *renderer);
 
 /** Descriptors of set 0. */
 void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet set, VkBuffer frame,
                               VkBuffer counts, const SluiceVulkanBuffers *buffers);
+/** The pages in set 0, as they are now. */
+void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
+                          const SluiceVulkanPages *pages);
 /** Descriptors of set 1; without a relief, pass the colour's view twice. */
 void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
                                 VkImageView color, VkImageView relief, bool repeat);

@@ -55,6 +55,10 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_UINT, "seed", "N", &s->seed, "of the random choice of pixels", 0, 4294967295.0},
 
         {OPTION_SECTION, .help = "Streaming"},
+        {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", &s->residency,
+         "what makes texels resident: sparse images, a page table, or\nmemory for everything; "
+         "auto: "
+         "sparse where the device has it,\nelse paged"},
         {OPTION_REAL, "probability", "P", &s->probability,
          "that a pixel quad writes feedback; 1/16 is understood", 0, 1},
         {OPTION_FLAG, "lattice", NULL, &s->lattice,
@@ -82,6 +86,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_SECTION, .help = "Checks"},
         {OPTION_FLAG, "compare", NULL, &s->compare,
          "draw each frame a second time with everything resident and\nreport the difference"},
+        {OPTION_CHOICE, "compare-with", "auto|sparse|paged|dense", &s->compare_with,
+         "residency of what is compared to; auto: sparse if that is what\nstreams, else dense"},
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
          "count samples of texels that are not there; auto: with\n--compare, where the device can"},
         {OPTION_FLAG, "validation", NULL, &s->validation,
@@ -101,4 +107,15 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
         s->rest_frames = s->frames - 1;
     return outcome;
+}
+
+SluiceResidencyMode settings_residency_mode(int residency)
+{
+    switch ((enum residency)residency) {
+    case RESIDENCY_AUTO: return SLUICE_RESIDENCY_MODE_AUTO;
+    case RESIDENCY_SPARSE: return SLUICE_RESIDENCY_MODE_SPARSE;
+    case RESIDENCY_PAGED: return SLUICE_RESIDENCY_MODE_PAGED;
+    case RESIDENCY_DENSE: return SLUICE_RESIDENCY_MODE_DENSE;
+    }
+    return SLUICE_RESIDENCY_MODE_AUTO;
 }

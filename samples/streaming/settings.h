@@ -2,13 +2,14 @@
 #ifndef SAMPLES_STREAMING_SETTINGS_H
 #define SAMPLES_STREAMING_SETTINGS_H
 
-#include <sluice/base.h>
+#include <sluice/vulkan.h>
 
 #include "../common/options.h"
 
 enum write_frames { WRITE_FRAMES_SOME, WRITE_FRAMES_ALL, WRITE_FRAMES_NONE };
 enum pixel_format { PIXEL_FORMAT_AUTO, PIXEL_FORMAT_RGBA16F, PIXEL_FORMAT_RGBA8 };
 enum three_way { THREE_WAY_AUTO, THREE_WAY_ON, THREE_WAY_OFF };
+enum residency { RESIDENCY_AUTO, RESIDENCY_SPARSE, RESIDENCY_PAGED, RESIDENCY_DENSE };
 enum on_off { SETTING_ON, SETTING_OFF };
 
 struct settings {
@@ -28,6 +29,7 @@ struct settings {
     bool deterministic;
     uint32_t seed;
     /* streaming */
+    int residency; ///< enum residency
     double probability;
     bool lattice;
     uint32_t textures_per_frame, tiles_per_frame;
@@ -41,6 +43,7 @@ struct settings {
     bool highlight;
     /* checks */
     bool compare, validation, json;
+    int compare_with;    ///< enum residency
     int check_residency; ///< enum three_way
     /* device */
     const char *device;
@@ -48,5 +51,7 @@ struct settings {
 };
 
 enum option_outcome settings_parse(int argc, char *const *argv, struct settings *settings);
+
+SluiceResidencyMode settings_residency_mode(int residency);
 
 #endif /* SAMPLES_STREAMING_SETTINGS_H */

@@ -62,6 +62,28 @@ fi
 grep -q '</svg>' "$folder/compared/report.html" || { echo "the report has no plots" >&2; failed=1; }
 "$replay" "$folder/compared.trace" >/dev/null || failed=1
 
+# In paged residency and against another mode the same picture, but for the last bit of the filters.
+walk paged --residency paged --frames 60 --rest-frames 30 --compare --validation
+if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/paged.log"; then
+    walk paged --residency paged --frames 60 --rest-frames 30 --compare
+fi
+if [ "$status" -ne 77 ]; then
+    [ "$status" -eq 0 ] || { cat "$folder/paged.log" >&2; failed=1; }
+    check paged psnr_final_db 'v >= 45'
+    check paged tiles_failed 'v == 0'
+    check paged bind_calls 'v == 0'
+    check paged nonresident_reads 'v == 0'
+    check paged checked_pixels 'v > 100000'
+fi
+walk dense --residency dense --frames 40 --rest-frames 30 --compare
+[ "$status" -eq 0 ] || { cat "$folder/dense.log" >&2; failed=1; }
+check dense psnr_final_db 'v >= 60'
+walk sparse --residency sparse --frames 40 --rest-frames 30 --compare --compare-with dense
+if [ "$status" -ne 77 ]; then
+    [ "$status" -eq 0 ] || { cat "$folder/sparse.log" >&2; failed=1; }
+    check sparse psnr_final_db 'v >= 45'
+fi
+
 # The lattice, followers that write their own feedback, few tiles in memory, standby not allowed.
 walk pressed --frames 40 --rest-frames 5 --lattice --texture-sets off --heap-tiles 16 --max-heaps 9 \
     --standby 0 --timeout 0.2 --samples 1 --format rgba8 --highlight --check-residency on

@@ -36,6 +36,8 @@ static bool create_streamer(struct view *view)
         .sparseQueue = gpu->sparse_queue,
         .sparseQueueFamilyIndex = gpu->sparse_family,
         .queueFamilyIndex = gpu->family,
+        .residencyMode = view->request.mode,
+        .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
         .log = {NULL, print_log},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
         .maxTextureCount = 2 + 2 * view->request.pictures->count,
@@ -91,8 +93,9 @@ static bool create_descriptor_pool(struct view *view)
 {
     uint32_t surface_count = 2 + view->request.pictures->count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 6 * VIEW_FRAMES_IN_FLIGHT},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 4 * surface_count},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         4 * surface_count + GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
     };
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = VIEW_FRAMES_IN_FLIGHT + surface_count,
@@ -302,6 +305,13 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
     if (!check(sluiceBeginStreamingFrame(view->streamer, commands, time_stamp, frame),
                "sluiceBeginStreamingFrame"))
         return false;
+
+    /* Images that hold pages come and go in there; this slot's set is in no frame under way. */
+    SluiceVulkanPages pages;
+    sluiceGetVulkanPages(view->streamer, &pages);
+    if (slot->page_generation != pages.generation)
+        renderer_write_pages(request->renderer, slot->frame_set, &pages);
+    slot->page_generation = pages.generation;
 
     if (request->counting)
         record_counting(view, slot);

@@ -18,6 +18,7 @@ struct view_request {
     const struct settings *settings;
     const struct picture_list *pictures;
     SluiceImageSource *floor, *wall;
+    SluiceResidencyMode mode;
     bool everything; ///< resident: the truth to compare with
     bool counting;   ///< count samples of what is not there
 };
@@ -26,6 +27,7 @@ struct view_request {
 struct view_slot {
     VkCommandBuffer commands;
     VkDescriptorSet frame_set;
+    uint64_t page_generation; ///< of the pages in it
     struct gpu_buffer frame, counts, pixels;
     VkSemaphore semaphore; ///< of the streamer
     uint64_t signal_value; ///< 0: never submitted

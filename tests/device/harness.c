@@ -96,6 +96,35 @@ static bool create_instance(struct harness *h)
            create_messenger(h->instance, &messenger, NULL, &h->messenger) == VK_SUCCESS;
 }
 
+/* From SLUICE_RESIDENCY; false if that is no mode. */
+static bool pick_mode(struct harness *h)
+{
+    static const struct {
+        const char *name;
+        SluiceResidencyMode mode;
+    } modes[] = {{"auto", SLUICE_RESIDENCY_MODE_AUTO},
+                 {"sparse", SLUICE_RESIDENCY_MODE_SPARSE},
+                 {"paged", SLUICE_RESIDENCY_MODE_PAGED},
+                 {"dense", SLUICE_RESIDENCY_MODE_DENSE}};
+    const char *wanted = getenv("SLUICE_RESIDENCY");
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
+        if (strcmp(wanted && *wanted ? wanted : "auto", modes[i].name) == 0) {
+            h->mode = modes[i].mode;
+            h->mode_name = modes[i].name;
+            return true;
+        }
+    return false;
+}
+
+static bool can_run(struct harness *h, VkPhysicalDevice device)
+{
+    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDeviceVulkan12Features vulkan12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    return sluiceRequireVulkanFeatures(h->instance, device, h->get, h->mode, NULL, &features,
+                                       &vulkan12) == SLUICE_SUCCESS;
+}
+
 static bool pick_device(struct harness *h)
 {
     VkPhysicalDevice devices[MAX_DEVICES];
@@ -111,11 +140,11 @@ static bool pick_device(struct harness *h)
             SLUICE_SUCCESS)
             continue;
         bool named = wanted && (strcmp(wanted, number) == 0 || strstr(caps.deviceName, wanted));
-        if (wanted ? !named : !caps.sparse)
+        if ((wanted && !named) || !caps.nonUniformIndexing || !can_run(h, devices[i]))
             continue;
         h->physical_device = devices[i];
         h->caps = caps;
-        return caps.sparse;
+        return true;
     }
     return false;
 }
@@ -163,16 +192,22 @@ static bool create_device(struct harness *h, const struct extras *extras)
                                        .pNext = &there12};
     h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
     features.features.shaderResourceResidency = there.features.shaderResourceResidency;
+    /* The test shaders sample pages in no other way, and are the same in all modes. */
+    features.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+    vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     features.features.samplerAnisotropy = there.features.samplerAnisotropy;
     vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
     vulkan12.pNext = extras->features;
     vulkan12.bufferDeviceAddress = extras->extension_count > 0 && there12.bufferDeviceAddress;
     h->anisotropy = there.features.samplerAnisotropy;
     h->mirror_clamp = there12.samplerMirrorClampToEdge;
-    if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, &log,
+    if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, h->mode, &log,
                                     &features.features, &vulkan12) != SLUICE_SUCCESS)
         return false;
+    if (h->mode == SLUICE_RESIDENCY_MODE_AUTO)
+        h->mode = h->caps.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
     h->family = drawing_family(h);
+    bool own_sparse_family = h->caps.sparse && h->caps.sparseQueueFamilyIndex != h->family;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queues[2];
     for (uint32_t i = 0; i < 2; i++)
@@ -183,8 +218,7 @@ static bool create_device(struct harness *h, const struct extras *extras)
                                               .pQueuePriorities = &priority};
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &features,
-                               .queueCreateInfoCount =
-                                   h->caps.sparseQueueFamilyIndex == h->family ? 1 : 2,
+                               .queueCreateInfoCount = own_sparse_family ? 2 : 1,
                                .pQueueCreateInfos = queues,
                                .enabledExtensionCount = extras->extension_count,
                                .ppEnabledExtensionNames = extras->extensions};
@@ -194,7 +228,8 @@ static bool create_device(struct harness *h, const struct extras *extras)
     HARNESS_DEVICE_FUNCTIONS(LOAD)
 #undef LOAD
     h->GetDeviceQueue(h->device, h->family, 0, &h->queue);
-    h->GetDeviceQueue(h->device, h->caps.sparseQueueFamilyIndex, 0, &h->sparse_queue);
+    if (h->caps.sparse)
+        h->GetDeviceQueue(h->device, h->caps.sparseQueueFamilyIndex, 0, &h->sparse_queue);
     h->GetPhysicalDeviceMemoryProperties(h->physical_device, &h->memory);
     VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
@@ -232,16 +267,21 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
     *(void **)&h->get = dlsym(h->library, "vkGetInstanceProcAddr"); /* as dlopen(3) writes it */
     if (!h->get || !create_instance(h))
         return no_device(h, "no Vulkan 1.2 instance can be created");
+    if (!pick_mode(h)) {
+        fprintf(stderr, "SLUICE_RESIDENCY is none of sparse, paged, dense and auto\n");
+        harness_finish(h, 1);
+        return 1;
+    }
     if (!pick_device(h))
-        return no_device(
-            h, getenv("SLUICE_DEVICE")
-                   ? "the device that SLUICE_DEVICE names is absent or has no sparse residency"
-                   : "no device has Vulkan 1.2 and sparse residency of 2D images");
+        return no_device(h, getenv("SLUICE_DEVICE")
+                                ? "the device that SLUICE_DEVICE names is absent or lacks the mode"
+                                : "no device has Vulkan 1.2 and what the residency mode needs");
     if (extension_count && !has_extensions(h, &extras))
         return no_device(h, "the device lacks an extension that this test is about");
     if (!create_device(h, &extras))
         return 1;
-    fprintf(stderr, "# %s, validation %s\n", h->caps.deviceName, h->validates ? "on" : "absent");
+    fprintf(stderr, "# %s, residency %s, validation %s\n", h->caps.deviceName, h->mode_name,
+            h->validates ? "on" : "absent");
     return 0;
 }
 
@@ -274,6 +314,8 @@ void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
     info->sparseQueue = h->sparse_queue;
     info->sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex;
     info->queueFamilyIndex = h->family;
+    if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
+        info->residencyMode = h->mode;
     info->log = (SluiceLogCallback){h, on_log};
     info->framesInFlight = HARNESS_FRAMES;
 }

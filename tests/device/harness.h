@@ -2,8 +2,9 @@
  * A headless Vulkan device for tests, with the validation layer where it is installed: any message
  * of warning or error severity fails the test.
  *
- * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. Without one that has
- * Vulkan 1.2 and sparse residency a test program exits with status 77 and says why.
+ * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. SLUICE_RESIDENCY is
+ * the mode that is tested: sparse, paged, dense or auto, which is the default. Without a device
+ * that has Vulkan 1.2 and that mode a test program exits with status 77 and says why.
  */
 #ifndef TESTS_DEVICE_HARNESS_H
 #define TESTS_DEVICE_HARNESS_H
@@ -54,8 +55,11 @@ struct harness {
     VkPhysicalDeviceMemoryProperties memory;
     VkDevice device;
     uint32_t family;
-    VkQueue queue, sparse_queue;
+    VkQueue queue, sparse_queue; ///< the latter VK_NULL_HANDLE without sparse residency
     SluiceVulkanDeviceCapabilities caps;
+    SluiceResidencyMode mode; ///< never AUTO
+    const char *mode_name;
+    bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
@@ -80,7 +84,7 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);
 
-/** Fills in handles, queues and the log; the rest stays. */
+/** Fills in handles, queues, the log, and the mode if that is AUTO; the rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,

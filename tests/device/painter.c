@@ -37,7 +37,9 @@ static void create_target(struct painter *p)
 static void create_pipeline(struct painter *p, bool query)
 {
     struct harness *h = p->prober->h;
-    bool codes = h->caps.shaderResourceResidency;
+    bool codes = p->prober->codes;
+    struct prober_specialization specialization;
+    const VkSpecializationInfo *constants = prober_specialize(p->prober, &specialization);
     VkPipelineShaderStageCreateInfo stages[2] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -48,7 +50,8 @@ static void create_pipeline(struct painter *p, bool query)
          .module = query   ? module(h, picture_query_frag, sizeof picture_query_frag)
                    : codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
                            : module(h, picture_frag, sizeof picture_frag),
-         .pName = "main"}};
+         .pName = "main",
+         .pSpecializationInfo = constants}};
     VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
@@ -136,6 +139,7 @@ void painter_record(void *user, VkCommandBuffer commands)
     h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->pipeline);
     h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p->prober->layout, 0, 1,
                              &p->texture.set, 0, NULL);
+    prober_bind_pages(p->prober, commands, VK_PIPELINE_BIND_POINT_GRAPHICS);
     h->CmdPushConstants(commands, p->prober->layout,
                         VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                         sizeof params, &params);

@@ -2,6 +2,8 @@
 
 #include "support/test.h"
 
+#include <math.h>
+
 static uint32_t mix(uint32_t level, uint32_t x, uint32_t y, uint32_t channel)
 {
     uint32_t h = x * 0x9E3779B1u ^ y * 0x85EBCA77u ^ level * 0xC2B2AE3Du ^ channel * 0x27D4EB2Fu;
@@ -25,15 +27,26 @@ void pattern_texel(enum pattern_kind kind, uint32_t level, uint32_t x, uint32_t 
     }
 }
 
+/* Sixteen waves across, flatter where a level has too few texels for them. */
+static void waves(double u, double v, double texels, float rgba[4])
+{
+    double height = fmin(texels / 128, 1) * 0.5;
+    for (int channel = 0; channel < 4; channel++)
+        rgba[channel] =
+            (float)(0.5 + height * sin(6.283185307 * (16 * u + (channel + 3) * v) + channel));
+}
+
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
 {
-    (void)width;
-    (void)height;
-    pattern_texel(*(enum pattern_kind *)user, level, x, y, rgba);
+    if (*(enum pattern_kind *)user == PATTERN_WAVES)
+        waves((x + 0.5) / width, (y + 0.5) / height, fmin(width, 3.0 * height), rgba);
+    else
+        pattern_texel(*(enum pattern_kind *)user, level, x, y, rgba);
 }
 
-static enum pattern_kind kinds[] = {PATTERN_LEVEL, PATTERN_HASH}; /* never written to */
+static enum pattern_kind kinds[] = {PATTERN_LEVEL, PATTERN_WAVES,
+                                    PATTERN_HASH}; /* never written to */
 
 struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width, uint32_t height,
                                          SluiceFormat format)

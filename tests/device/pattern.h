@@ -7,13 +7,15 @@
 enum pattern_kind {
     PATTERN_LEVEL, ///< red: (level + 1) / 16, so that 0 is not resident; green and blue: hash of
                    ///< the 64-texel block; alpha 1
+    PATTERN_WAVES, ///< smooth, and about the same picture in every level
     PATTERN_HASH,  ///< all channels: hashes of level and texel, k / 255
 };
 
 struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width, uint32_t height,
                                          SluiceFormat format);
 
-/** What the source gives for a texel, before it is converted to the format. */
+/** What the source gives for a texel, but for PATTERN_WAVES, before it is converted to the format.
+ */
 void pattern_texel(enum pattern_kind kind, uint32_t level, uint32_t x, uint32_t y, float rgba[4]);
 
 /** The level that a sample of PATTERN_LEVEL shows; -1 where it is not resident. */

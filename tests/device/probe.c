@@ -4,6 +4,7 @@
 
 #include "probe_codes_comp.h"
 #include "probe_comp.h"
+#include "probe_loop_comp.h"
 
 #define BUFFERS 5u
 #define BINDINGS 7u
@@ -25,33 +26,104 @@ static void create_layouts(struct prober *p)
                                            .pBindings = bindings};
     assert_int_equal(h->CreateDescriptorSetLayout(h->device, &set, NULL, &p->set_layout),
                      VK_SUCCESS);
+    VkDescriptorSetLayoutBinding page_bindings[2] = {
+        {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, bindings[0].stageFlags, NULL},
+        {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, PROBE_PAGE_CHUNKS, bindings[0].stageFlags,
+         NULL}};
+    set.bindingCount = 2;
+    set.pBindings = page_bindings;
+    assert_int_equal(h->CreateDescriptorSetLayout(h->device, &set, NULL, &p->page_layout),
+                     VK_SUCCESS);
+    VkDescriptorSetLayout sets[2] = {p->set_layout, p->page_layout};
     VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                 sizeof(struct ProbeParams)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 1,
-                                         .pSetLayouts = &p->set_layout,
+                                         .setLayoutCount = 2,
+                                         .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &push};
     assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &p->layout), VK_SUCCESS);
     VkDescriptorPoolSize sizes[2] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS * PROBE_MAX_TEXTURES},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, (BINDINGS - BUFFERS) * PROBE_MAX_TEXTURES}};
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS * PROBE_MAX_TEXTURES + HARNESS_FRAMES},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         (BINDINGS - BUFFERS) * PROBE_MAX_TEXTURES + PROBE_PAGE_CHUNKS * HARNESS_FRAMES}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
-                                       .maxSets = PROBE_MAX_TEXTURES,
+                                       .maxSets = PROBE_MAX_TEXTURES + HARNESS_FRAMES,
                                        .poolSizeCount = 2,
                                        .pPoolSizes = sizes};
     assert_int_equal(h->CreateDescriptorPool(h->device, &pool, NULL, &p->pool), VK_SUCCESS);
 }
 
-static void create_pipeline(struct prober *p)
+static void create_page_sets(struct prober *p)
 {
     struct harness *h = p->h;
-    bool codes = h->caps.shaderResourceResidency;
+    SluiceVulkanBuffers buffers;
+    sluiceGetVulkanBuffers(p->streamer, &buffers);
+    for (uint32_t i = 0; i < HARNESS_FRAMES; i++) {
+        VkDescriptorSetAllocateInfo allocate = {.sType =
+                                                    VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                                .descriptorPool = p->pool,
+                                                .descriptorSetCount = 1,
+                                                .pSetLayouts = &p->page_layout};
+        assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &p->pages[i].set),
+                         VK_SUCCESS);
+        VkDescriptorBufferInfo table = {buffers.pageTable, 0, VK_WHOLE_SIZE};
+        VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                      .dstSet = p->pages[i].set,
+                                      .descriptorCount = 1,
+                                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                      .pBufferInfo = &table};
+        h->UpdateDescriptorSets(h->device, 1, &write, 0, NULL);
+    }
+}
+
+void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point)
+{
+    struct harness *h = p->h;
+    uint32_t at = (h->frame_count + HARNESS_FRAMES - 1) % HARNESS_FRAMES; /* of this frame */
+    SluiceVulkanPages pages;
+    sluiceGetVulkanPages(p->streamer, &pages);
+    assert_in_range(pages.viewCount, 1, PROBE_PAGE_CHUNKS);
+    if (p->pages[at].generation != pages.generation) {
+        VkDescriptorImageInfo infos[PROBE_PAGE_CHUNKS];
+        for (uint32_t i = 0; i < PROBE_PAGE_CHUNKS; i++)
+            infos[i] = (VkDescriptorImageInfo){pages.sampler, pages.pViews[i % pages.viewCount],
+                                               VK_IMAGE_LAYOUT_GENERAL};
+        VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                      .dstSet = p->pages[at].set,
+                                      .dstBinding = 1,
+                                      .descriptorCount = PROBE_PAGE_CHUNKS,
+                                      .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                      .pImageInfo = infos};
+        h->UpdateDescriptorSets(h->device, 1, &write, 0, NULL);
+        p->pages[at].generation = pages.generation;
+    }
+    h->CmdBindDescriptorSets(commands, point, p->layout, 1, 1, &p->pages[at].set, 0, NULL);
+}
+
+const VkSpecializationInfo *prober_specialize(const struct prober *p,
+                                              struct prober_specialization *s)
+{
+    s->paged = p->paged;
+    s->entry = (VkSpecializationMapEntry){0, 0, sizeof s->paged};
+    s->info = (VkSpecializationInfo){1, &s->entry, sizeof s->paged, &s->paged};
+    return &s->info;
+}
+
+static void create_pipeline(struct prober *p)
+{
+    struct prober_specialization specialization;
+    struct harness *h = p->h;
+    bool codes = p->codes;
     VkShaderModuleCreateInfo module_info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                             .codeSize =
                                                 codes ? sizeof probe_codes_comp : sizeof probe_comp,
                                             .pCode = codes ? probe_codes_comp : probe_comp};
+    if (h->page_loop) {
+        module_info.codeSize = sizeof probe_loop_comp;
+        module_info.pCode = probe_loop_comp;
+    }
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
     VkComputePipelineCreateInfo info = {
@@ -59,7 +131,8 @@ static void create_pipeline(struct prober *p)
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
-                  .pName = "main"},
+                  .pName = "main",
+                  .pSpecializationInfo = prober_specialize(p, &specialization)},
         .layout = p->layout};
     assert_int_equal(
         h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
@@ -69,12 +142,18 @@ static void create_pipeline(struct prober *p)
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
 {
-    *p = (struct prober){.h = h, .streamer = streamer};
+    SluiceResidencyMode mode = sluiceGetVulkanResidencyMode(streamer);
+    *p = (struct prober){.h = h,
+                         .streamer = streamer,
+                         .paged = mode == SLUICE_RESIDENCY_MODE_PAGED,
+                         .codes = mode == SLUICE_RESIDENCY_MODE_SPARSE &&
+                                  h->caps.shaderResourceResidency};
     harness_buffer_init(h, &p->inputs, PROBE_CAPACITY * sizeof(struct ProbeInput),
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     harness_buffer_init(h, &p->outputs, PROBE_CAPACITY * sizeof(struct ProbeOutput),
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     create_layouts(p);
+    create_page_sets(p);
     create_pipeline(p);
 }
 
@@ -87,6 +166,7 @@ void prober_finish(struct prober *p)
     h->DestroyPipeline(h->device, p->pipeline, NULL);
     h->DestroyPipelineLayout(h->device, p->layout, NULL);
     h->DestroyDescriptorSetLayout(h->device, p->set_layout, NULL);
+    h->DestroyDescriptorSetLayout(h->device, p->page_layout, NULL);
     harness_buffer_finish(h, &p->inputs);
     harness_buffer_finish(h, &p->outputs);
 }
@@ -186,6 +266,7 @@ void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_text
     h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, p->pipeline);
     h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, p->layout, 0, 1,
                              &texture.set, 0, NULL);
+    prober_bind_pages(p, commands, VK_PIPELINE_BIND_POINT_COMPUTE);
     h->CmdPushConstants(commands, p->layout,
                         VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                         sizeof params, &params);

@@ -23,8 +23,15 @@ struct probe_texture {
 struct prober {
     struct harness *h;
     SluiceVulkanStreamer *streamer;
+    bool paged;
+    /** Residency codes are asked for: of sparse images alone, a driver crashes with others. */
+    bool codes;
     struct harness_buffer inputs, outputs;
-    VkDescriptorSetLayout set_layout;
+    VkDescriptorSetLayout set_layout, page_layout;
+    struct {
+        VkDescriptorSet set;
+        uint64_t generation; ///< of the page views in it
+    } pages[HARNESS_FRAMES];
     VkPipelineLayout layout;
     VkPipeline pipeline;
     VkDescriptorPool pool;
@@ -56,5 +63,17 @@ const struct ProbeOutput *prober_outputs(const struct prober *p);
 /** Records inputs [first, first + count) for one texture; for use inside a frame. */
 void prober_record(struct prober *p, VkCommandBuffer commands, struct probe_texture texture,
                    uint32_t first, uint32_t count, uint32_t flags);
+
+/** Set 1, with the pages as they are now. */
+void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBindPoint point);
+
+/** What makes one shader serve every mode: the constant `paged`. */
+struct prober_specialization {
+    VkBool32 paged;
+    VkSpecializationMapEntry entry;
+    VkSpecializationInfo info;
+};
+const VkSpecializationInfo *prober_specialize(const struct prober *p,
+                                              struct prober_specialization *specialization);
 
 #endif /* TESTS_DEVICE_PROBE_H */

@@ -14,6 +14,7 @@ struct fake_object {
     uint32_t level_count;
     uint64_t size;
     void *memory;
+    VkImage image; ///< of a view
 };
 
 /* All dispatchable handles are the device itself. */
@@ -73,17 +74,39 @@ static void drop(struct fake_vulkan *fake, void *object)
 
 PLAIN_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
 PLAIN_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
-PLAIN_OBJECT(ImageView, VkImageViewCreateInfo)
+PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_ImageView(VkDevice device,
+                                                       const VkImageViewCreateInfo *info,
+                                                       const VkAllocationCallbacks *cb,
+                                                       VkImageView *view)
+{
+    (void)cb;
+    MAY_FAIL(device);
+    struct fake_object *object = make(fake_of(device), 0);
+    object->image = info->image;
+    *view = (VkImageView)object;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_ImageView(VkDevice device, VkImageView view,
+                                                    const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), view);
+}
 
 static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
                                                VkPhysicalDeviceFeatures2 *features)
 {
     (void)device;
-    features->features = (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
-                                                    .sparseResidencyImage2D = VK_TRUE,
-                                                    .fragmentStoresAndAtomics = VK_TRUE};
+    features->features =
+        (VkPhysicalDeviceFeatures){.sparseBinding = VK_TRUE,
+                                   .sparseResidencyImage2D = VK_TRUE,
+                                   .shaderSampledImageArrayDynamicIndexing = VK_TRUE,
+                                   .fragmentStoresAndAtomics = VK_TRUE};
     for (VkBaseOutStructure *next = features->pNext; next; next = next->pNext)
         if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
             ((VkPhysicalDeviceVulkan12Features *)next)->timelineSemaphore = VK_TRUE;
@@ -93,10 +116,12 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties2 *properties)
 {
     (void)device;
-    properties->properties = (VkPhysicalDeviceProperties){
-        .apiVersion = VK_API_VERSION_1_2,
-        .deviceName = "fake",
-        .limits = {.sparseAddressSpaceSize = 1ull << 40, .maxStorageBufferRange = 1u << 27}};
+    properties->properties =
+        (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
+                                     .deviceName = "fake",
+                                     .limits = {.sparseAddressSpaceSize = 1ull << 40,
+                                                .maxStorageBufferRange = 1u << 27,
+                                                .maxImageArrayLayers = 256}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
@@ -137,7 +162,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkForm
     (void)device, (void)type, (void)tiling, (void)usage, (void)flags;
     *properties = (VkImageFormatProperties){.maxExtent = {16384, 16384, 1},
                                             .maxMipLevels = 15,
-                                            .maxArrayLayers = 64,
+                                            .maxArrayLayers = 256,
                                             .maxResourceSize = 1ull << 40};
     return format == VK_FORMAT_R8G8B8A8_UNORM ? VK_SUCCESS : VK_ERROR_FORMAT_NOT_SUPPORTED;
 }
@@ -268,6 +293,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_buffer(VkDevice device, VkBuffer buff
     return VK_SUCCESS;
 }
 
+static VKAPI_ATTR VkResult VKAPI_CALL bind_image(VkDevice device, VkImage image,
+                                                 VkDeviceMemory memory, VkDeviceSize offset)
+{
+    MAY_FAIL(device);
+    (void)device, (void)image, (void)memory, (void)offset;
+    return VK_SUCCESS;
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory,
                                                  VkDeviceSize offset, VkDeviceSize size,
                                                  VkMemoryMapFlags flags, void **data)
@@ -382,15 +415,20 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
                                                 VkImage image, VkImageLayout layout, uint32_t count,
                                                 const VkBufferImageCopy *regions)
 {
-    (void)buffer, (void)layout;
+    (void)layout;
     struct fake_vulkan *fake = fake_of(commands);
     assert_false(fake->published);
     for (uint32_t i = 0; i < count; i++) {
         assert_true(fake->copy_count < FAKE_EVENTS);
-        fake->copies[fake->copy_count++] =
-            (struct fake_copy){image, regions[i].imageSubresource.mipLevel,
-                               (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
-                               (uint32_t)regions[i].imageOffset.y / FAKE_TILE};
+        struct fake_copy *copy = &fake->copies[fake->copy_count++];
+        *copy = (struct fake_copy){image,
+                                   regions[i].imageSubresource.mipLevel,
+                                   regions[i].imageSubresource.baseArrayLayer,
+                                   (uint32_t)regions[i].imageOffset.x / FAKE_TILE,
+                                   (uint32_t)regions[i].imageOffset.y / FAKE_TILE,
+                                   0};
+        const uint8_t *texels = OBJECT(OBJECT(buffer)->memory)->memory;
+        memcpy(&copy->texel, texels + regions[i].bufferOffset, sizeof copy->texel);
     }
 }
 
@@ -513,17 +551,36 @@ static VKAPI_ATTR void VKAPI_CALL bind_pipeline(VkCommandBuffer commands, VkPipe
     (void)commands, (void)point, (void)pipeline;
 }
 
+/* What is written there comes before the MinMip maps. */
+static struct fake_watch *find_watch(struct fake_vulkan *fake, VkBuffer buffer)
+{
+    for (int i = 0; i < 2; i++)
+        if (fake->watches[i].buffer == buffer) {
+            assert_false(fake->published);
+            return &fake->watches[i];
+        }
+    return NULL;
+}
+
 static VKAPI_ATTR void VKAPI_CALL fill_buffer(VkCommandBuffer commands, VkBuffer buffer,
                                               VkDeviceSize offset, VkDeviceSize size, uint32_t data)
 {
-    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+    struct fake_watch *watch = find_watch(fake_of(commands), buffer);
+    if (size == VK_WHOLE_SIZE)
+        size = OBJECT(buffer)->size - offset;
+    for (VkDeviceSize i = offset / 4; watch && i < (offset + size) / 4 && i < FAKE_WORDS; i++)
+        watch->words[i] = data;
 }
 
 static VKAPI_ATTR void VKAPI_CALL update_buffer(VkCommandBuffer commands, VkBuffer buffer,
                                                 VkDeviceSize offset, VkDeviceSize size,
                                                 const void *data)
 {
-    (void)commands, (void)buffer, (void)offset, (void)size, (void)data;
+    struct fake_watch *watch = find_watch(fake_of(commands), buffer);
+    if (!watch)
+        return;
+    assert_true(offset + size <= sizeof watch->words);
+    memcpy((uint8_t *)watch->words + offset, data, size);
 }
 
 static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, VkPipelineStageFlags from,
@@ -559,6 +616,7 @@ static const struct {
     ENTRY(AllocateDescriptorSets, allocate_sets),
     ENTRY(AllocateMemory, allocate),
     ENTRY(BindBufferMemory, bind_buffer),
+    ENTRY(BindImageMemory, bind_image),
     ENTRY(CmdBindDescriptorSets, bind_sets),
     ENTRY(CmdBindPipeline, bind_pipeline),
     ENTRY(CmdCopyBuffer, copy_buffer),
@@ -575,6 +633,7 @@ static const struct {
     ENTRY(CreateImage, create_image),
     ENTRY(CreateImageView, create_ImageView),
     ENTRY(CreatePipelineLayout, create_PipelineLayout),
+    ENTRY(CreateSampler, create_Sampler),
     ENTRY(CreateSemaphore, create_semaphore),
     ENTRY(CreateShaderModule, create_ShaderModule),
     ENTRY(DestroyBuffer, destroy_buffer),
@@ -584,6 +643,7 @@ static const struct {
     ENTRY(DestroyImageView, destroy_ImageView),
     ENTRY(DestroyPipeline, destroy_pipeline),
     ENTRY(DestroyPipelineLayout, destroy_PipelineLayout),
+    ENTRY(DestroySampler, destroy_Sampler),
     ENTRY(DestroySemaphore, destroy_semaphore),
     ENTRY(DestroyShaderModule, destroy_ShaderModule),
     ENTRY(DeviceWaitIdle, wait_idle),
@@ -618,6 +678,11 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance
 {
     (void)instance;
     return find(name);
+}
+
+VkImage fake_vulkan_image_of(VkImageView view)
+{
+    return OBJECT(view)->image;
 }
 
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info)

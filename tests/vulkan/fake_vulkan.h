@@ -14,6 +14,7 @@
 #define FAKE_TAIL UINT32_MAX
 #define FAKE_TAIL_STRIDE (1ull << 24) ///< from layer to layer
 #define FAKE_EVENTS 4096u
+#define FAKE_WORDS 65536u
 
 /** One page; merged runs are taken apart. */
 struct fake_bind {
@@ -25,7 +26,8 @@ struct fake_bind {
 
 struct fake_copy {
     VkImage image;
-    uint32_t level, x, y; ///< in tiles
+    uint32_t level, layer, x, y; ///< in tiles
+    uint32_t texel;              ///< the first four bytes
 };
 
 struct fake_vulkan {
@@ -51,6 +53,12 @@ struct fake_vulkan {
     uint64_t calls, failing_call;
     VkResult failure;
 
+    /** Buffers that the test set, and what was filled in and updated there. */
+    struct fake_watch {
+        VkBuffer buffer;
+        uint32_t words[FAKE_WORDS];
+    } watches[2];
+
     uint64_t live_objects; ///< created and not destroyed
     uint64_t live_memory;  ///< bytes
 
@@ -66,6 +74,7 @@ struct fake_vulkan {
 };
 
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);
+VkImage fake_vulkan_image_of(VkImageView view);
 VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake);
 
 #endif /* TESTS_VULKAN_FAKE_VULKAN_H */

@@ -75,8 +75,8 @@ static VkDevice create_device(const struct devices *d, struct device_report *rep
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                           .pNext = &vulkan12};
-    if (sluiceRequireVulkanFeatures(d->instance, physical, d->get, &log, &features.features,
-                                    &vulkan12) != SLUICE_SUCCESS)
+    if (sluiceRequireVulkanFeatures(d->instance, physical, d->get, SLUICE_RESIDENCY_MODE_SPARSE,
+                                    &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
         return VK_NULL_HANDLE;
     float priority = 1.0f;
     VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

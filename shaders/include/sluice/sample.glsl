@@ -5,7 +5,8 @@
  * The sampler must have no LOD bias of its own, minLod 0 and maxLod VK_LOD_CLAMP_NONE, and the
  * address modes that the texture was added with.
  *
- * Where nothing has to be clamped the texture is sampled as if it were not streamed, so the settled
+ * In paged residency the sampler sees the packed levels alone, and the rest is paged.glsl. Elsewhere,
+ * where nothing has to be clamped the texture is sampled as if it were not streamed, so the settled
  * picture is that of a fully resident texture.
  */
 #ifndef SLUICE_SAMPLE_GLSL
@@ -14,6 +15,9 @@
 #include "buffers.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
+#ifdef SLUICE_PAGED
+#include "paged.glsl"
+#endif
 
 /* What a sample is where not even the packed levels are resident. Define it before to change it. */
 #ifndef SLUICE_FALLBACK_COLOR
@@ -79,7 +83,7 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
 /**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
  * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
- * s.level is SLUICE_MIP_UNTOUCHED. `dx` and `dy` are the derivatives of `uv` per pixel.
+ * s.level is SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of `uv` per pixel.
  */
 SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                      float maxAnisotropy)
@@ -149,7 +153,26 @@ vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     missingLevels = sluiceMissingLevels(s);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+                                 maxAnisotropy);
+#endif
     return textureGrad(tex, s.uv, s.dx, s.dy);
+}
+
+/** One texel, which must be resident: sluiceResolveSampling says what is. */
+vec4 sluiceTexelFetch(sampler2D tex, uint tableIndex, ivec2 texel, uint level)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+        if (level < entry.regularMipCount)
+            return sluiceFetchPaged(entry, level, texel);
+        return texelFetch(tex, texel, int(level - entry.regularMipCount));
+    }
+#endif
+    return texelFetch(tex, texel, int(level));
 }
 
 #ifdef GL_FRAGMENT_SHADER
@@ -171,6 +194,14 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
     vec2 dy = dFdy(uv);
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        if (s.level == SLUICE_MIP_UNTOUCHED)
+            return SLUICE_FALLBACK_COLOR;
+        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+                                 maxAnisotropy);
+    }
+#endif
     /* The quad decides as one, because implicit derivatives need all of it. */
     if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
         return texture(tex, uv, lodBias);

@@ -3,6 +3,7 @@
  * checks go to a buffer, so that no rounding hides a difference.
  */
 #version 450
+#extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "sluice/shared/texture_table.h"
@@ -15,17 +16,24 @@ layout(std430, binding = 3) readonly buffer Inputs { ProbeInput inputs[]; };
 layout(std430, binding = 4) buffer Outputs { ProbeOutput outputs[]; };
 layout(binding = 5) uniform sampler2D tex;
 layout(binding = 6) uniform sampler2D nearestMipTex;
+layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
+layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
+layout(constant_id = 0) const bool paged = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+#define SLUICE_PAGED paged
+#define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
+#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/stochastic.glsl"
-#ifdef PROBE_CODES
-#include "sluice/residency.glsl"
+#ifndef PROBE_CODES
+#define SLUICE_NO_RESIDENCY_CODES
 #endif
+#include "sluice/residency.glsl"
 
 void main()
 {
@@ -51,10 +59,8 @@ void main()
     outputs[at].footprint[1] = floatBitsToUint(s.dx.y);
     outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
     outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
-#ifdef PROBE_CODES
     outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                       bias, anisotropy);
-#endif
     bool selected = (params.flags & PICTURE_LATTICE) != 0u
                         ? sluiceSelectLattice(pixel, params.first)
                         : sluiceSelectRandomQuad(pixel, params.first, 1.0 / 16.0);

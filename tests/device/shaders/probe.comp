@@ -1,5 +1,8 @@
 /* Samples, writes feedback and checks residency at given places. Built with and without PROBE_CODES. */
 #version 450
+#ifndef PROBE_PAGE_LOOP
+#extension GL_EXT_nonuniform_qualifier : require
+#endif
 #extension GL_GOOGLE_include_directive : require
 
 #include "sluice/shared/texture_table.h"
@@ -13,17 +16,29 @@ layout(std430, binding = 3) readonly buffer Inputs { ProbeInput inputs[]; };
 layout(std430, binding = 4) buffer Outputs { ProbeOutput outputs[]; };
 layout(binding = 5) uniform sampler2D tex;
 layout(binding = 6) uniform sampler2D nearestMipTex;
+layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
+layout(set = 1, binding = 1) uniform sampler2DArray pages[PROBE_PAGE_CHUNKS];
+layout(constant_id = 0) const bool paged = false;
 layout(push_constant) uniform Push { ProbeParams params; };
 
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
 #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+#define SLUICE_PAGED paged
+#define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]
+#ifdef PROBE_PAGE_LOOP
+#define SLUICE_PAGE_TEXTURE(i) pages[i]
+#define SLUICE_PAGE_LOOP PROBE_PAGE_CHUNKS
+#else
+#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#endif
 #include "sluice/feedback.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/stochastic.glsl"
-#ifdef PROBE_CODES
-#include "sluice/residency.glsl"
+#ifndef PROBE_CODES
+#define SLUICE_NO_RESIDENCY_CODES
 #endif
+#include "sluice/residency.glsl"
 
 void writeColor(uint at, vec4 color)
 {
@@ -74,7 +89,7 @@ void main()
         return;
     }
     if ((params.flags & PROBE_FETCH) != 0u)
-        writeColor(at, texelFetch(tex, ivec2(uv), int(bias)));
+        writeColor(at, sluiceTexelFetch(tex, params.tableIndex, ivec2(uv), uint(bias)));
     if ((params.flags & PROBE_SAMPLE) != 0u) {
         uint missing;
         writeColor(at, sluiceSampleGrad(tex, params.tableIndex, uv, dx, dy, bias, anisotropy, missing));
@@ -88,11 +103,9 @@ void main()
         outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
         outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
     }
-#ifdef PROBE_CODES
     if ((params.flags & PROBE_RESIDENCY) != 0u)
         outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                          bias, anisotropy);
-#endif
     if ((params.flags & PROBE_FEEDBACK) != 0u)
         sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);
 }

@@ -15,6 +15,8 @@
 #define PROBE_WORDS 16u /* copies feedback words instead */
 #define PROBE_TWINS 32u /* evaluates the functions that have C twins */
 
+#define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
+
 /* The picture shader's; `first` is the frame there. */
 #define PICTURE_SIZE 128u
 #define PICTURE_LATTICE 1u

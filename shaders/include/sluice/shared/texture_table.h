@@ -23,6 +23,14 @@
 
 /* A level's size is not the next finer one's halved, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
+/* Among the flags: how many components the format has, in three bits. */
+#define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
+
+/*
+ * The page table, in paged residency: at a texture's offset one word per regular level, the index
+ * of its first tile's word; and one word per tile: chunk << 16 | layer, or this.
+ */
+#define SLUICE_PAGE_NONE 0xFFFFFFFFu
 
 struct SluiceTextureEntry {
     uint width; /* texels of level 0; level l has max(1, size >> l) */
@@ -38,7 +46,9 @@ struct SluiceTextureEntry {
     uint addressModeU;   /* of the samplers that it is sampled with */
     uint addressModeV;
     uint flags;
-    uint reserved[3];
+    uint pageTableOffset; /* paged: first word in the page table */
+    uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
+    uint reserved[1];
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 64)
 

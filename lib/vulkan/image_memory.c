@@ -1,0 +1,140 @@
+#include "vulkan/image_memory.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+#define UNIT 1024u
+#define BLOCK_UNITS 8192u /* 8 MiB */
+#define SMALL_UNITS 2048u
+#define BLOCK_IMAGES 2048u /* each takes at least SLC_REGION_ALIGNMENT units */
+
+static SluiceResult allocate(const struct slc_vk *vk, uint64_t size, uint32_t type,
+                             VkDeviceMemory *memory)
+{
+    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                 .allocationSize = size,
+                                 .memoryTypeIndex = type};
+    return slc_vk_result(vk, vk->AllocateMemory(vk->device, &info, NULL, memory),
+                         "vkAllocateMemory for an image");
+}
+
+static SluiceResult grow(struct slc_image_memory *pool, const SluiceAllocationCallbacks *cb)
+{
+    uint32_t capacity = pool->block_capacity ? 2 * pool->block_capacity : 8;
+    struct slc_image_block *blocks = slc_calloc(cb, capacity, sizeof *blocks);
+    if (!blocks)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (pool->block_capacity)
+        memcpy(blocks, pool->blocks, pool->block_capacity * sizeof *blocks);
+    slc_free(cb, pool->blocks, pool->block_capacity, sizeof *blocks);
+    pool->blocks = blocks;
+    pool->block_capacity = capacity;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk *vk,
+                              const SluiceAllocationCallbacks *cb, uint32_t type, uint32_t *index)
+{
+    uint32_t at = 0;
+    while (at < pool->block_capacity && pool->blocks[at].memory)
+        at++;
+    SluiceResult result = at == pool->block_capacity ? grow(pool, cb) : SLUICE_SUCCESS;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_image_block *block = &pool->blocks[at];
+    result = slc_region_arena_init(&block->arena, cb, BLOCK_UNITS, BLOCK_IMAGES);
+    if (result == SLUICE_SUCCESS)
+        result = allocate(vk, (uint64_t)BLOCK_UNITS * UNIT, type, &block->memory);
+    if (result != SLUICE_SUCCESS) {
+        slc_region_arena_finish(&block->arena, cb);
+        block->memory = VK_NULL_HANDLE;
+        return result;
+    }
+    block->type = type;
+    pool->total_size += (uint64_t)BLOCK_UNITS * UNIT;
+    *index = at;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult take(struct slc_image_memory *pool, const struct slc_vk *vk,
+                         const SluiceAllocationCallbacks *cb, uint32_t type,
+                         struct slc_image_place *place)
+{
+    for (uint32_t i = 0; i < pool->block_capacity; i++)
+        if (pool->blocks[i].memory && pool->blocks[i].type == type &&
+            slc_region_arena_take(&pool->blocks[i].arena, place->count, &place->first)) {
+            place->block = i;
+            return SLUICE_SUCCESS;
+        }
+    SluiceResult result = add_block(pool, vk, cb, type, &place->block);
+    if (result == SLUICE_SUCCESS)
+        slc_region_arena_take(&pool->blocks[place->block].arena, place->count, &place->first);
+    return result;
+}
+
+SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct slc_vk *vk,
+                                   const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                   VkImage image, struct slc_image_place *place)
+{
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image, &memory);
+    uint32_t type = slc_find_memory_type(&caps->memory, memory.memoryTypeBits, 0,
+                                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    if (type == UINT32_MAX || memory.size > slc_device_memory_size(caps))
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    /* Room to round the offset up: ranges begin at multiples of 4 KiB only. */
+    uint64_t size = memory.size + memory.alignment;
+    *place = (struct slc_image_place){0};
+    SluiceResult result;
+    VkDeviceSize offset = 0;
+    if (size > (uint64_t)SMALL_UNITS * UNIT) {
+        result = allocate(vk, memory.size, type, &place->own);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        place->own_size = memory.size;
+        pool->total_size += memory.size;
+    } else {
+        place->count = (uint32_t)((size + UNIT - 1) / UNIT);
+        result = take(pool, vk, cb, type, place);
+        if (result != SLUICE_SUCCESS) {
+            place->count = 0;
+            return result;
+        }
+        pool->blocks[place->block].used++;
+        offset = ((VkDeviceSize)place->first * UNIT + memory.alignment - 1) / memory.alignment *
+                 memory.alignment;
+    }
+    VkDeviceMemory from = place->own ? place->own : pool->blocks[place->block].memory;
+    result = slc_vk_result(vk, vk->BindImageMemory(vk->device, image, from, offset),
+                           "vkBindImageMemory");
+    if (result != SLUICE_SUCCESS)
+        slc_image_memory_release(pool, vk, cb, place);
+    return result;
+}
+
+void slc_image_memory_release(struct slc_image_memory *pool, const struct slc_vk *vk,
+                              const SluiceAllocationCallbacks *cb, struct slc_image_place *place)
+{
+    if (place->own) {
+        vk->FreeMemory(vk->device, place->own, NULL);
+        pool->total_size -= place->own_size;
+    }
+    if (place->count) {
+        struct slc_image_block *block = &pool->blocks[place->block];
+        slc_region_arena_give(&block->arena, place->first, place->count);
+        if (--block->used == 0) {
+            vk->FreeMemory(vk->device, block->memory, NULL);
+            slc_region_arena_finish(&block->arena, cb);
+            *block = (struct slc_image_block){0};
+            pool->total_size -= (uint64_t)BLOCK_UNITS * UNIT;
+        }
+    }
+    *place = (struct slc_image_place){0};
+}
+
+void slc_image_memory_finish(struct slc_image_memory *pool, const SluiceAllocationCallbacks *cb)
+{
+    slc_free(cb, pool->blocks, pool->block_capacity, sizeof *pool->blocks);
+    *pool = (struct slc_image_memory){0};
+}

@@ -1,0 +1,168 @@
+#include "vulkan/page_cache.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "vulkan/format.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include <assert.h>
+
+#define MIN_LAYERS 64u     /* 4 MiB */
+#define MAX_LAYERS 2048u   /* 128 MiB */
+#define IDLE_FRAMES 60u    /* that an empty chunk is kept */
+#define REFUSED_FRAMES 60u /* until the device is asked for memory again */
+
+SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_vk *vk,
+                                 const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                 struct slc_page_views *views)
+{
+    *cache = (struct slc_page_cache){.vk = vk, .caps = caps, .cb = cb, .views = views};
+    cache->max_layer_count = slc_min_u32(MAX_LAYERS, caps->max_image_array_layers);
+    cache->chunks = slc_calloc(cb, views->count, sizeof *cache->chunks);
+    return cache->chunks ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+static void destroy_chunk(struct slc_page_cache *cache, struct slc_page_chunk *chunk)
+{
+    if (chunk->view)
+        cache->vk->DestroyImageView(cache->vk->device, chunk->view, NULL);
+    slc_plain_image_destroy(&chunk->image, &cache->memory, cache->vk, cache->cb);
+    slc_free(cache->cb, chunk->free_layers, chunk->layer_count, sizeof *chunk->free_layers);
+    *chunk = (struct slc_page_chunk){0};
+}
+
+void slc_page_cache_finish(struct slc_page_cache *cache)
+{
+    if (!cache->chunks)
+        return;
+    for (uint32_t i = 0; i < cache->views->count; i++)
+        destroy_chunk(cache, &cache->chunks[i]);
+    slc_image_memory_finish(&cache->memory, cache->cb);
+    slc_free(cache->cb, cache->chunks, cache->views->count, sizeof *cache->chunks);
+    *cache = (struct slc_page_cache){0};
+}
+
+static SluiceResult create_chunk(struct slc_page_cache *cache, struct slc_page_chunk *chunk,
+                                 SluiceFormat format, uint32_t layer_count)
+{
+    SluiceImageInfo info = {.mipLevelCount = 1, .format = format, .pName = "pages"};
+    SluiceResult result = sluiceGetStandardTileShape(format, &info.width, &info.height);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *chunk = (struct slc_page_chunk){.format = format, .layer_count = layer_count, .fresh = true};
+    chunk->free_layers = slc_alloc(cache->cb, layer_count, sizeof *chunk->free_layers);
+    if (!chunk->free_layers)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = slc_plain_image_create(&chunk->image, &cache->memory, cache->vk, cache->caps,
+                                    cache->cb, &info, 0, layer_count);
+    if (result == SLUICE_SUCCESS)
+        result = slc_create_array_view(cache->vk, chunk->image.image, slc_vk_format(format),
+                                       &chunk->view);
+    /* Descending, so that layer 0 is on top. */
+    for (uint32_t i = 0; i < layer_count; i++)
+        chunk->free_layers[i] = (uint16_t)(layer_count - 1 - i);
+    chunk->free_count = layer_count;
+    return result;
+}
+
+bool slc_page_cache_is_refused(const struct slc_page_cache *cache)
+{
+    return cache->refused_frame && cache->frame < cache->refused_frame + REFUSED_FRAMES;
+}
+
+/* As many pages again as the format has; fewer where the device has no memory for them. */
+static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
+{
+    uint32_t at = 0;
+    while (at < cache->views->count && cache->chunks[at].state != SLC_CHUNK_FREE)
+        at++;
+    if (slc_page_cache_is_refused(cache))
+        return false;
+    if (at == cache->views->count)
+        slc_log(&cache->vk->log, SLUICE_LOG_WARNING,
+                "no tiles of %s beyond %u: there are maxPageChunkCount %u images of pages",
+                sluiceFormatString(format), cache->page_count[format], cache->views->count);
+    uint32_t layers = slc_max_u32(MIN_LAYERS, cache->page_count[format]);
+    layers = at == cache->views->count ? 0 : slc_min_u32(layers, cache->max_layer_count);
+    for (; layers > 0; layers /= 2) {
+        struct slc_page_chunk *chunk = &cache->chunks[at];
+        if (create_chunk(cache, chunk, format, layers) == SLUICE_SUCCESS) {
+            chunk->state = SLC_CHUNK_LIVE;
+            cache->page_count[format] += layers;
+            cache->last_chunk[format] = at;
+            slc_page_views_set(cache->views, at, chunk->view);
+            return true;
+        }
+        destroy_chunk(cache, chunk);
+    }
+    cache->refused_frame = cache->frame + 1;
+    return false;
+}
+
+/* The fullest with a free page, so that others run empty. */
+static bool find_chunk(struct slc_page_cache *cache, SluiceFormat format)
+{
+    uint32_t best = UINT32_MAX;
+    for (uint32_t i = 0; i < cache->views->count; i++) {
+        const struct slc_page_chunk *chunk = &cache->chunks[i];
+        if (chunk->state == SLC_CHUNK_LIVE && chunk->format == format && chunk->free_count &&
+            (best == UINT32_MAX || chunk->free_count < cache->chunks[best].free_count))
+            best = i;
+    }
+    if (best == UINT32_MAX)
+        return false;
+    cache->last_chunk[format] = best;
+    return true;
+}
+
+uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format)
+{
+    assert((uint32_t)format < SLC_PAGE_FORMATS);
+    const struct slc_page_chunk *last = &cache->chunks[cache->last_chunk[format]];
+    bool there = last->state == SLC_CHUNK_LIVE && last->format == format && last->free_count;
+    if (!there && !find_chunk(cache, format) && !add_chunk(cache, format))
+        return SLUICE_PAGE_NONE;
+    uint32_t index = cache->last_chunk[format];
+    struct slc_page_chunk *chunk = &cache->chunks[index];
+    return index << 16 | chunk->free_layers[--chunk->free_count];
+}
+
+void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page)
+{
+    struct slc_page_chunk *chunk = &cache->chunks[page >> 16];
+    assert(chunk->state == SLC_CHUNK_LIVE && chunk->free_count < chunk->layer_count);
+    chunk->free_layers[chunk->free_count++] = (uint16_t)(page & 0xFFFFu);
+}
+
+static void retire(struct slc_page_cache *cache, uint32_t index)
+{
+    struct slc_page_chunk *chunk = &cache->chunks[index];
+    if (chunk->free_count < chunk->layer_count)
+        chunk->frame = cache->frame;
+    if (chunk->frame == 0)
+        chunk->frame = cache->frame; /* new, and empty after all */
+    if (cache->frame - chunk->frame < IDLE_FRAMES)
+        return;
+    chunk->state = SLC_CHUNK_RETIRING;
+    chunk->frame = cache->frame;
+    cache->page_count[chunk->format] -= chunk->layer_count;
+    slc_page_views_set(cache->views, index, VK_NULL_HANDLE);
+}
+
+void slc_page_cache_record(struct slc_page_cache *cache, uint64_t frame, uint64_t completed_frame,
+                           VkCommandBuffer commands)
+{
+    cache->frame = frame;
+    for (uint32_t i = 0; i < cache->views->count; i++) {
+        struct slc_page_chunk *chunk = &cache->chunks[i];
+        if (chunk->state == SLC_CHUNK_LIVE)
+            retire(cache, i);
+        else if (chunk->state == SLC_CHUNK_RETIRING && chunk->frame <= completed_frame + 1)
+            destroy_chunk(cache, chunk);
+        if (chunk->state == SLC_CHUNK_LIVE && chunk->fresh)
+            slc_record_general_layout(cache->vk, commands, chunk->image.image);
+        chunk->fresh = false;
+    }
+}

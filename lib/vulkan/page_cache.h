@@ -1,0 +1,65 @@
+/**
+ * The physical pages of paged residency: layers of array images, each as large as a tile. Images
+ * ("chunks") are made when pages of a format run out and go when they have been empty for a while.
+ */
+#ifndef SLC_VULKAN_PAGE_CACHE_H
+#define SLC_VULKAN_PAGE_CACHE_H
+
+#include "vulkan/page_views.h"
+
+#define SLC_PAGE_FORMATS 64u
+
+enum slc_page_chunk_state {
+    SLC_CHUNK_FREE = 0,
+    SLC_CHUNK_LIVE,
+    SLC_CHUNK_RETIRING, ///< no shader of new frames sees it; waits for the others
+};
+
+struct slc_page_chunk {
+    enum slc_page_chunk_state state;
+    SluiceFormat format;
+    struct slc_plain_image image;
+    VkImageView view;
+    uint16_t *free_layers; ///< owned stack
+    uint32_t free_count, layer_count;
+    bool fresh;     ///< not yet in the layout in which it stays
+    uint64_t frame; ///< LIVE: the last in which it was not empty; RETIRING: the first without it
+};
+
+struct slc_page_cache {
+    const struct slc_vk *vk;
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    struct slc_page_views *views;  ///< borrowed; one per chunk
+    struct slc_page_chunk *chunks; ///< owned; views->count
+    struct slc_image_memory memory;
+    uint32_t last_chunk[SLC_PAGE_FORMATS]; ///< that a page was taken from
+    uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
+    uint64_t frame;                        ///< the last one recorded
+    uint64_t refused_frame;                ///< the last in which the device had no memory
+    uint32_t max_layer_count;
+};
+
+SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_vk *vk,
+                                 const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                 struct slc_page_views *views);
+/** Nothing of it is in use on the GPU. */
+void slc_page_cache_finish(struct slc_page_cache *cache);
+
+/** The device had no memory for a chunk a short while ago. */
+bool slc_page_cache_is_refused(const struct slc_page_cache *cache);
+
+/** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
+uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format);
+void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page);
+
+static inline VkImage slc_page_image(const struct slc_page_cache *cache, uint32_t page)
+{
+    return cache->chunks[page >> 16].image.image;
+}
+
+/** New chunks into their layout; drops chunks. Before anything that `frame` copies or draws. */
+void slc_page_cache_record(struct slc_page_cache *cache, uint64_t frame, uint64_t completed_frame,
+                           VkCommandBuffer commands);
+
+#endif /* SLC_VULKAN_PAGE_CACHE_H */

@@ -1,0 +1,100 @@
+#include "vulkan/page_views.h"
+
+#include "base/alloc.h"
+
+SluiceResult slc_create_array_view(const struct slc_vk *vk, VkImage image, VkFormat format,
+                                   VkImageView *view)
+{
+    VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = image,
+        .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
+        .format = format,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}};
+    SluiceResult result =
+        slc_vk_result(vk, vk->CreateImageView(vk->device, &info, NULL, view), "vkCreateImageView");
+    if (result != SLUICE_SUCCESS)
+        *view = VK_NULL_HANDLE;
+    return result;
+}
+
+static SluiceResult create_sampler(struct slc_page_views *views, const struct slc_vk *vk)
+{
+    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                .magFilter = VK_FILTER_LINEAR,
+                                .minFilter = VK_FILTER_LINEAR,
+                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    SluiceResult result = slc_vk_result(
+        vk, vk->CreateSampler(vk->device, &info, NULL, &views->sampler), "vkCreateSampler");
+    if (result != SLUICE_SUCCESS)
+        views->sampler = VK_NULL_HANDLE;
+    return result;
+}
+
+SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_vk *vk,
+                                 const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                 uint32_t count)
+{
+    *views = (struct slc_page_views){.count = count, .generation = 1};
+    views->views = slc_calloc(cb, count, sizeof *views->views);
+    if (!views->views)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    const SluiceImageInfo info = {.width = 1,
+                                  .height = 1,
+                                  .mipLevelCount = 1,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "empty page"};
+    SluiceResult result =
+        slc_plain_image_create(&views->image, &views->memory, vk, caps, cb, &info, 0, 1);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_create_array_view(vk, views->image.image, VK_FORMAT_R8G8B8A8_UNORM, &views->empty);
+    if (result == SLUICE_SUCCESS)
+        result = create_sampler(views, vk);
+    for (uint32_t i = 0; i < count; i++)
+        views->views[i] = views->empty;
+    return result;
+}
+
+void slc_page_views_finish(struct slc_page_views *views, const struct slc_vk *vk,
+                           const SluiceAllocationCallbacks *cb)
+{
+    if (views->sampler)
+        vk->DestroySampler(vk->device, views->sampler, NULL);
+    if (views->empty)
+        vk->DestroyImageView(vk->device, views->empty, NULL);
+    slc_plain_image_destroy(&views->image, &views->memory, vk, cb);
+    slc_image_memory_finish(&views->memory, cb);
+    slc_free(cb, views->views, views->count, sizeof *views->views);
+    *views = (struct slc_page_views){0};
+}
+
+void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view)
+{
+    views->views[index] = view ? view : views->empty;
+    views->generation++;
+}
+
+void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands, VkImage image)
+{
+    VkImageMemoryBarrier barrier = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+        .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_READ_BIT,
+        .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+        .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}};
+    vk->CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
+}
+
+void slc_page_views_record(const struct slc_page_views *views, const struct slc_vk *vk,
+                           VkCommandBuffer commands)
+{
+    slc_record_general_layout(vk, commands, views->image.image);
+}

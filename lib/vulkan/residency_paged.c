@@ -1,0 +1,450 @@
+/*
+ * Residency by a page table that shaders read: tiles are layers of array images (page_cache.h), and
+ * a table in a storage buffer says which. The packed levels are an ordinary image of their own.
+ *
+ * Nothing has to be waited for: copies and stores to the table are recorded behind a barrier on the
+ * queue that draws, so earlier frames have read a page before it is overwritten, and a frame that
+ * no longer shows a tile may give its page away (docs/decisions/0021-paged-residency.md).
+ */
+#include "vulkan/residency.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "vulkan/buffer.h"
+#include "vulkan/page_cache.h"
+#include "vulkan/sparse_layout.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COPY_BATCH 64u
+#define STORE_BATCH 256u /* words */
+
+struct paged_image {
+    struct slc_plain_image tail; ///< the packed levels
+    SluiceStreamedTextureDesc desc;
+    SluiceFormat format;
+    uint32_t first_word, word_count; ///< in the table; 0: all levels are packed
+};
+
+/* A word of the table that changes with this frame. */
+struct store {
+    uint32_t word, value;
+};
+
+struct paged_residency {
+    struct slc_residency base; ///< must be first
+    const struct slc_vk *vk;
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    struct slc_image_memory memory; ///< of tails
+    struct slc_page_cache cache;
+    struct paged_image *images; ///< owned
+    uint32_t *new_images;       ///< owned; whose part of the table is not written yet
+    uint32_t new_image_count, max_image_count;
+
+    struct slc_buffer table;
+    struct slc_region_arena arena; ///< its words
+    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not
+    struct store *stores;          ///< owned
+    uint32_t store_count, store_capacity, upload_reserve;
+    uint64_t completed_frame;
+    uint32_t next_heap;
+};
+
+static struct paged_residency *paged(struct slc_residency *residency)
+{
+    return (struct paged_residency *)residency;
+}
+
+static void count_memory(struct paged_residency *p)
+{
+    p->base.counters.device_memory_size =
+        p->memory.total_size + p->cache.memory.total_size + p->table.size;
+}
+
+static uint32_t level_width(const SluiceStreamedTextureDesc *desc, uint32_t level)
+{
+    return slc_div_up_u32(slc_mip_size(desc->width, level), desc->tileWidth);
+}
+
+/* The first word of a level's tiles, from the beginning of the texture's part of the table: before
+ * them stands one word per level that says this to shaders. */
+static uint32_t level_word(const SluiceStreamedTextureDesc *desc, uint32_t level)
+{
+    uint32_t word = desc->regularMipCount;
+    for (uint32_t i = 0; i < level; i++)
+        word +=
+            level_width(desc, i) * slc_div_up_u32(slc_mip_size(desc->height, i), desc->tileHeight);
+    return word;
+}
+
+static uint32_t tile_word(const struct paged_image *image, uint32_t level, uint32_t x, uint32_t y)
+{
+    return image->first_word + level_word(&image->desc, level) +
+           y * level_width(&image->desc, level) + x;
+}
+
+static SluiceResult take_words(struct paged_residency *p, struct paged_image *image)
+{
+    const SluiceStreamedTextureDesc *desc = &image->desc;
+    if (desc->regularMipCount == 0)
+        return SLUICE_SUCCESS;
+    uint32_t count = level_word(desc, desc->regularMipCount);
+    if (!slc_region_arena_take(&p->arena, count, &image->first_word))
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    image->word_count = count;
+    memset(p->pages + image->first_word, 0xFF, (size_t)count * sizeof *p->pages);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
+                                 const SluiceImageInfo *info, struct slc_residency_image *out)
+{
+    struct paged_residency *p = paged(residency);
+    struct paged_image *image = &p->images[index];
+    struct slc_sparse_layout layout;
+    SluiceResult result = slc_standard_layout_init(&layout, info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *image = (struct paged_image){.desc = layout.desc, .format = info->format};
+    result = take_words(p, image);
+    if (result == SLUICE_SUCCESS)
+        result = slc_plain_image_create(&image->tail, &p->memory, p->vk, p->caps, p->cb, info,
+                                        layout.desc.regularMipCount, 1);
+    if (result != SLUICE_SUCCESS) {
+        if (image->word_count)
+            slc_region_arena_give(&p->arena, image->first_word, image->word_count);
+        *image = (struct paged_image){0};
+        return result;
+    }
+    if (image->word_count)
+        p->new_images[p->new_image_count++] = index;
+    count_memory(p);
+    *out = (struct slc_residency_image){.image = image->tail.image,
+                                        .desc = layout.desc,
+                                        .uneven = layout.uneven,
+                                        .page_table_offset = image->first_word};
+    return SLUICE_SUCCESS;
+}
+
+static void forget_new(struct paged_residency *p, uint32_t index)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < p->new_image_count; i++)
+        if (p->new_images[i] != index)
+            p->new_images[kept++] = p->new_images[i];
+    p->new_image_count = kept;
+}
+
+static void destroy_image(struct slc_residency *residency, uint32_t index)
+{
+    struct paged_residency *p = paged(residency);
+    struct paged_image *image = &p->images[index];
+    forget_new(p, index);
+    for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
+        if (p->pages[image->first_word + i] != SLUICE_PAGE_NONE)
+            slc_page_cache_give(&p->cache, p->pages[image->first_word + i]);
+    if (image->word_count)
+        slc_region_arena_give(&p->arena, image->first_word, image->word_count);
+    slc_plain_image_destroy(&image->tail, &p->memory, p->vk, p->cb);
+    *image = (struct paged_image){0};
+    count_memory(p);
+}
+
+static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
+{
+    (void)residency, (void)index;
+    return true;
+}
+
+/* A heap is a share of the budget; memory comes with the pages. */
+static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
+{
+    struct paged_residency *p = paged(residency);
+    if (slc_page_cache_is_refused(&p->cache) || size > slc_device_memory_size(p->caps))
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    *heap_id = p->next_heap++;
+    return SLUICE_SUCCESS;
+}
+
+static void release_heap(struct slc_residency *residency, uint32_t heap_id)
+{
+    (void)residency, (void)heap_id;
+}
+
+static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
+{
+    paged(residency)->completed_frame = completed_frame;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult map(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    const struct paged_image *image = &p->images[index];
+    if (tile->mipLevel >= image->desc.regularMipCount)
+        return SLUICE_SUCCESS; /* the packed levels have their own image */
+    uint32_t *page = &p->pages[tile_word(image, tile->mipLevel, tile->x, tile->y)];
+    assert(*page == SLUICE_PAGE_NONE);
+    *page = slc_page_cache_take(&p->cache, image->format);
+    count_memory(p);
+    return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
+}
+
+static void store(struct paged_residency *p, uint32_t word, uint32_t value)
+{
+    assert(p->store_count < p->store_capacity);
+    p->stores[p->store_count++] = (struct store){word, value};
+}
+
+/* This frame's maps no longer show it, and earlier frames come before what this frame copies. */
+static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
+                  uint64_t frame)
+{
+    struct paged_residency *p = paged(residency);
+    const struct paged_image *image = &p->images[index];
+    (void)frame;
+    if (tile->mipLevel >= image->desc.regularMipCount)
+        return;
+    uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
+    assert(p->pages[word] != SLUICE_PAGE_NONE);
+    slc_page_cache_give(&p->cache, p->pages[word]);
+    p->pages[word] = SLUICE_PAGE_NONE;
+    store(p, word, SLUICE_PAGE_NONE);
+}
+
+static uint32_t room_to_unmap(const struct slc_residency *residency)
+{
+    const struct paged_residency *p = (const struct paged_residency *)residency;
+    return p->store_capacity - p->upload_reserve - p->store_count;
+}
+
+static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
+{
+    (void)residency;
+    *value = 0;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult wait(struct slc_residency *residency)
+{
+    (void)residency;
+    return SLUICE_SUCCESS;
+}
+
+static uint64_t completed_value(const struct slc_residency *residency)
+{
+    (void)residency;
+    return 0;
+}
+
+static uint64_t retire_limit(const struct slc_residency *residency, uint64_t completed_frame)
+{
+    (void)residency;
+    return completed_frame;
+}
+
+/* Before the tiles of a level stands where they begin; no tile has a page yet. */
+static void record_new_image(struct paged_residency *p, const struct paged_image *image,
+                             VkCommandBuffer commands)
+{
+    uint32_t levels = image->desc.regularMipCount, header[SLUICE_MAX_MIP_LEVELS];
+    for (uint32_t level = 0; level < levels; level++)
+        header[level] = image->first_word + level_word(&image->desc, level);
+    VkDeviceSize first = (VkDeviceSize)image->first_word * 4;
+    p->vk->CmdUpdateBuffer(commands, p->table.buffer, first, levels * 4, header);
+    p->vk->CmdFillBuffer(commands, p->table.buffer, first + levels * 4,
+                         (VkDeviceSize)(image->word_count - levels) * 4, SLUICE_PAGE_NONE);
+}
+
+static void record_begin(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands)
+{
+    struct paged_residency *p = paged(residency);
+    slc_page_cache_record(&p->cache, frame, p->completed_frame, commands);
+    for (uint32_t i = 0; i < p->new_image_count; i++)
+        record_new_image(p, &p->images[p->new_images[i]], commands);
+    p->new_image_count = 0;
+    count_memory(p);
+}
+
+/* The copy into the image that holds the texels; which one that is. */
+static VkImage place_copy(struct paged_residency *p, const struct paged_image *image,
+                          VkBufferImageCopy *copy)
+{
+    const SluiceStreamedTextureDesc *desc = &image->desc;
+    uint32_t level = copy->imageSubresource.mipLevel;
+    if (level >= desc->regularMipCount) {
+        copy->imageSubresource.mipLevel = level - desc->regularMipCount;
+        return image->tail.image;
+    }
+    uint32_t word = tile_word(image, level, (uint32_t)copy->imageOffset.x / desc->tileWidth,
+                              (uint32_t)copy->imageOffset.y / desc->tileHeight);
+    uint32_t page = p->pages[word];
+    assert(page != SLUICE_PAGE_NONE);
+    copy->imageSubresource.mipLevel = 0;
+    copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
+    copy->imageOffset.x %= (int32_t)desc->tileWidth;
+    copy->imageOffset.y %= (int32_t)desc->tileHeight;
+    store(p, word, page);
+    return slc_page_image(&p->cache, page);
+}
+
+static void record_uploads(struct slc_residency *residency, uint32_t index,
+                           VkCommandBuffer commands, VkBuffer buffer, uint32_t count,
+                           const VkBufferImageCopy *regions)
+{
+    struct paged_residency *p = paged(residency);
+    VkBufferImageCopy copies[COPY_BATCH];
+    VkImage target = VK_NULL_HANDLE;
+    uint32_t copy_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        VkBufferImageCopy copy = regions[i];
+        VkImage image = place_copy(p, &p->images[index], &copy);
+        if (copy_count && (image != target || copy_count == COPY_BATCH)) {
+            p->vk->CmdCopyBufferToImage(commands, buffer, target, VK_IMAGE_LAYOUT_GENERAL,
+                                        copy_count, copies);
+            copy_count = 0;
+        }
+        target = image;
+        copies[copy_count++] = copy;
+    }
+    if (copy_count)
+        p->vk->CmdCopyBufferToImage(commands, buffer, target, VK_IMAGE_LAYOUT_GENERAL, copy_count,
+                                    copies);
+}
+
+/* By word; of a tile that went and came in one frame, that it went first. */
+static int compare_stores(const void *a, const void *b)
+{
+    const struct store *x = a, *y = b;
+    if (x->word != y->word)
+        return x->word < y->word ? -1 : 1;
+    return (x->value < y->value) - (x->value > y->value);
+}
+
+static void record_publish(struct slc_residency *residency, VkCommandBuffer commands)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t run[STORE_BATCH], run_count = 0, first = 0;
+    if (p->store_count > 1)
+        qsort(p->stores, p->store_count, sizeof *p->stores, compare_stores);
+    for (uint32_t i = 0; i < p->store_count; i++) {
+        const struct store *s = &p->stores[i];
+        if (i + 1 < p->store_count && s[1].word == s->word)
+            continue;
+        if (run_count && (s->word != first + run_count || run_count == STORE_BATCH)) {
+            p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4,
+                                   run_count * 4, run);
+            run_count = 0;
+        }
+        if (run_count == 0)
+            first = s->word;
+        run[run_count++] = s->value;
+    }
+    if (run_count)
+        p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4, run_count * 4,
+                               run);
+    p->store_count = 0;
+}
+
+static VkBuffer page_table(const struct slc_residency *residency)
+{
+    return ((const struct paged_residency *)residency)->table.buffer;
+}
+
+static void destroy(struct slc_residency *residency)
+{
+    struct paged_residency *p = paged(residency);
+    const SluiceAllocationCallbacks *cb = p->cb;
+    if (p->images)
+        for (uint32_t i = 0; i < p->max_image_count; i++)
+            slc_plain_image_destroy(&p->images[i].tail, &p->memory, p->vk, cb);
+    slc_image_memory_finish(&p->memory, cb);
+    slc_page_cache_finish(&p->cache);
+    slc_buffer_finish(&p->table, p->vk);
+    slc_free(cb, p->stores, p->store_capacity, sizeof *p->stores);
+    slc_free(cb, p->pages, p->arena.size, sizeof *p->pages);
+    slc_free(cb, p->new_images, p->max_image_count, sizeof *p->new_images);
+    slc_free(cb, p->images, p->max_image_count, sizeof *p->images);
+    slc_region_arena_finish(&p->arena, cb);
+    slc_free(cb, p, 1, sizeof *p);
+}
+
+static const struct slc_residency_interface paged_interface = {
+    .destroy = destroy,
+    .create_image = create_image,
+    .destroy_image = destroy_image,
+    .image_is_idle = image_is_idle,
+    .allocate_heap = allocate_heap,
+    .release_heap = release_heap,
+    .update = update,
+    .map = map,
+    .unmap = unmap,
+    .room_to_unmap = room_to_unmap,
+    .submit = submit,
+    .wait = wait,
+    .completed_value = completed_value,
+    .retire_limit = retire_limit,
+    .record_begin = record_begin,
+    .record_uploads = record_uploads,
+    .record_publish = record_publish,
+    .page_table = page_table,
+};
+
+/* A chain has less than twice the tiles of level 0, but for rounding up at the edges. */
+static uint32_t table_size(const struct slc_residency_create_info *info)
+{
+    uint64_t words = 2ull * info->max_region_count + 64ull * info->max_image_count;
+    uint64_t limit = info->caps->max_storage_buffer_range / 4;
+    return (uint32_t)(words < limit ? words : limit);
+}
+
+static SluiceResult create_arrays(struct paged_residency *p,
+                                  const struct slc_residency_create_info *info)
+{
+    SluiceResult result =
+        slc_region_arena_init(&p->arena, p->cb, table_size(info), info->max_image_count);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    p->max_image_count = info->max_image_count;
+    p->upload_reserve = info->max_changes;
+    p->store_capacity = 5 * info->max_changes;
+    p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
+    p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
+    p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);
+    p->stores = slc_alloc(p->cb, p->store_capacity, sizeof *p->stores);
+    if (!p->images || !p->new_images || !p->pages || !p->stores)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *info,
+                                        struct slc_residency **residency)
+{
+    struct paged_residency *p = slc_calloc(info->cb, 1, sizeof *p);
+    if (!p)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    p->base.interface = &paged_interface;
+    p->vk = info->vk;
+    p->caps = info->caps;
+    p->cb = info->cb;
+    SluiceResult result = create_arrays(p, info);
+    if (result == SLUICE_SUCCESS)
+        result = slc_page_cache_init(&p->cache, p->vk, p->caps, p->cb, info->page_views);
+    if (result == SLUICE_SUCCESS)
+        result =
+            slc_buffer_init(&p->table, p->vk, p->caps, (uint64_t)p->arena.size * 4,
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            SLC_BUFFER_DEVICE);
+    if (result != SLUICE_SUCCESS) {
+        destroy(&p->base);
+        return result;
+    }
+    count_memory(p);
+    *residency = &p->base;
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,135 @@
+/* What only paged residency has: images of pages that come and go, and what finds pages in them. */
+#include "device/scene.h"
+
+#include "support/test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct scene_aim everything_fine = {0.01, 0.01, 0.98, 0.98, 0.2, 0.3, 0, 0};
+
+static uint64_t device_memory(const struct scene *scene)
+{
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene->streamer, &stats);
+    return stats.deviceMemorySize;
+}
+
+static uint64_t generation(const struct scene *scene)
+{
+    SluiceVulkanPages pages;
+    sluiceGetVulkanPages(scene->streamer, &pages);
+    return pages.generation;
+}
+
+/* While another texture is drawn in frames that nobody waits for. */
+static void memory_comes_back_when_no_tile_needs_it(void **state)
+{
+    struct scene scene;
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    uint32_t stays =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    scene_aim(&scene, stays, 200, &everything_fine);
+    scene_settle(&scene, 10);
+    uint64_t before = device_memory(&scene);
+    for (int round = 0; round < 2; round++) {
+        uint32_t goes =
+            scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R32_SFLOAT));
+        scene_aim(&scene, goes, SCENE_SAMPLES, &everything_fine);
+        scene_settle(&scene, 12);
+        assert_int_equal(scene_missing(&scene), 0);
+        assert_true(device_memory(&scene) > before + (12 << 20)); /* 200 pages at least */
+        uint64_t changes = generation(&scene);
+        scene_remove(&scene, goes);
+        for (int frame = 0; frame < 80; frame++)
+            harness_frame(scene.h, scene.streamer, frame % 8 == 0, scene_record, &scene);
+        assert_int_equal(device_memory(&scene), before);
+        assert_true(generation(&scene) > changes);
+        assert_int_equal(scene_missing(&scene), 0);
+        scene_check_levels(&scene);
+    }
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+}
+
+/* 64 pages where 256 are wanted, and none at all of a second format. */
+static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(void **state)
+{
+    struct harness *h = *state;
+    struct scene scene;
+    h->quiet = true;
+    scene_init(&scene, h,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000,
+                                                .maxPageChunkCount = 1,
+                                                .tilesPerFrame = 16,
+                                                .maxLoadsInFlight = 64,
+                                                .retryDelay = 3});
+    uint32_t first =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    scene_aim(&scene, first, SCENE_SAMPLES, &everything_fine);
+    scene_settle(&scene, 20);
+    uint32_t second = scene_add(
+        &scene, pattern_source(PATTERN_LEVEL, 1000, 1000, SLUICE_FORMAT_R16G16B16A16_SFLOAT));
+    scene_aim(&scene, second, 100, &everything_fine);
+    for (int i = 0; i < 20; i++) {
+        scene_settle(&scene, 1);
+        scene_check_levels(&scene);
+    }
+    assert_true(h->log_count[SLUICE_LOG_WARNING] > 0);
+    assert_true(scene_missing(&scene) > 100);
+    for (uint32_t i = 0; i < 100; i++)
+        assert_in_range(scene_outputs(&scene, second)[i].level, 1, 6); /* packed from 4 on */
+    uint32_t sharp = 0;
+    for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+        sharp += scene_outputs(&scene, first)[i].level < 2;
+    assert_true(sharp > 0);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+    h->quiet = false;
+}
+
+static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
+{
+    static struct ProbeOutput outputs[2][PROBE_CAPACITY];
+    struct harness *h = *state;
+    for (int loop = 0; loop < 2; loop++) {
+        h->page_loop = loop;
+        struct scene scene;
+        scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+        srand(41);
+        for (uint32_t i = 0; i < 4; i++) {
+            const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8_UNORM,
+                                            SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT};
+            uint32_t t = scene_add(&scene, pattern_source(PATTERN_HASH, 1000, 1100, formats[i]));
+            const struct scene_aim aim = {-0.5, -0.5, 2, 2, -1, 4, 0, 0};
+            scene_aim(&scene, t, SCENE_SAMPLES, &aim);
+        }
+        scene_settle(&scene, 12);
+        assert_int_equal(scene_missing(&scene), 0);
+        memcpy(outputs[loop], prober_outputs(&scene.prober), sizeof outputs[loop]);
+        scene_finish(&scene);
+    }
+    h->page_loop = false;
+    assert_memory_equal(outputs[0], outputs[1], sizeof outputs[0]);
+}
+
+int main(void)
+{
+    struct harness h;
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    if (h.mode != SLUICE_RESIDENCY_MODE_PAGED) {
+        printf("1..0 # SKIP only paged residency has pages\n");
+        return harness_finish(&h, 77);
+    }
+    struct CMUnitTest tests[] = {
+        cmocka_unit_test(memory_comes_back_when_no_tile_needs_it),
+        cmocka_unit_test(pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels),
+        cmocka_unit_test(pages_found_by_a_loop_are_those_found_by_an_index),
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
+        tests[i].initial_state = &h;
+    return harness_finish(&h, RUN_TESTS(tests));
+}

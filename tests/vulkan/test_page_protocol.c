@@ -1,0 +1,285 @@
+/*
+ * The promises of paged residency, with frames that finish when they like:
+ * - what a MinMip map shows has a page in the table, and that page holds its texels,
+ * - no page belongs to two tiles that are shown,
+ * - no image of pages goes while a frame that may have it bound is incomplete.
+ *
+ * Commands run in the order in which they were recorded, as on one queue behind barriers.
+ */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXTURES = 6, CHUNKS = 8, LAYERS = 256, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
+
+struct texture {
+    uint32_t number; ///< 0: not used; in its texels
+    SluiceVulkanTexture texture;
+    SluiceImageSource *source;
+    SluiceStreamedTextureLayout layout;
+    uint32_t first_word;
+};
+
+struct model {
+    struct fake_vulkan fake;
+    SluiceVulkanStreamer *streamer;
+    struct texture textures[TEXTURES];
+    SluiceImageSource *old_sources[256];
+    uint32_t numbers[256], old_count; ///< numbers: what sources paint
+    uint32_t next_number;
+    uint64_t frame;
+    uint32_t window;
+    VkImage shown[HISTORY][CHUNKS]; ///< by frame
+    struct {
+        VkImage image;
+        uint32_t texels[LAYERS];
+    } chunks[CHUNKS];
+};
+
+/* Which texture, level and tile: what is copied tells where it belongs. */
+static uint32_t name_of(uint32_t number, uint32_t level, uint32_t x, uint32_t y)
+{
+    return number | level << 8 | x << 16 | y << 24;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)width, (void)height;
+    uint32_t name = name_of(*(const uint32_t *)user, level, x / FAKE_TILE, y / FAKE_TILE);
+    for (int i = 0; i < 4; i++)
+        rgba[i] = (float)(name >> 8 * i & 255) / 255.0f;
+}
+
+static uint8_t want(void *user, uint32_t region)
+{
+    const struct model *m = user;
+    uint32_t h = (region / 6 + m->window) * 0x9E3779B1u;
+    h ^= h >> 15;
+    return h % 4 == 0 ? (uint8_t)(h >> 8 & 3) : SLUICE_MIP_UNTOUCHED;
+}
+
+/* Where a texture's tiles begin: what its entry and the words per level say. */
+static uint32_t find_first_word(const struct model *m, const struct texture *t)
+{
+    struct SluiceTextureEntry entry;
+    memcpy(&entry, (const uint8_t *)m->fake.watches[1].words + t->texture.tableIndex * sizeof entry,
+           sizeof entry);
+    assert_int_equal(entry.tileShift, 7 | 7 << 8);
+    uint32_t first = entry.pageTableOffset + t->layout.desc.regularMipCount;
+    for (uint32_t l = 0; l < t->layout.desc.regularMipCount; l++)
+        assert_int_equal(m->fake.watches[0].words[entry.pageTableOffset + l],
+                         first + t->layout.levelFirstTile[l]);
+    return first;
+}
+
+static void model_add(struct model *m)
+{
+    const uint32_t sizes[][2] = {{1024, 1024}, {1500, 700}, {2048, 256}, {512, 1000}};
+    struct texture *t = m->textures;
+    while (t < m->textures + TEXTURES && t->number)
+        t++;
+    if (t == m->textures + TEXTURES || m->next_number == 255)
+        return;
+    const uint32_t *size = sizes[rand() % 4];
+    *t = (struct texture){.number = ++m->next_number, .first_word = UINT32_MAX};
+    m->numbers[t->number] = t->number;
+    SluiceProceduralImage image = {&m->numbers[t->number], texel};
+    SluiceImageInfo info = {
+        .width = size[0], .height = size[1], .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
+    SluiceVulkanTextureCreateInfo create = {.source = t->source};
+    CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
+    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
+                                    t->texture.textureId, &t->layout));
+}
+
+static void model_remove(struct model *m, struct texture *t)
+{
+    if (!t->number)
+        return;
+    CHECK_OK(sluiceRemoveVulkanTexture(m->streamer, t->texture.textureId));
+    m->old_sources[m->old_count++] = t->source;
+    *t = (struct texture){0};
+}
+
+static void take_destroyed(struct model *m)
+{
+    for (uint32_t d = 0; d < m->fake.destroyed_count; d++)
+        for (uint64_t f = m->fake.frame_value + 1; f < m->frame; f++)
+            for (uint32_t c = 0; c < CHUNKS; c++)
+                assert_ptr_not_equal(m->fake.destroyed_images[d], m->shown[f % HISTORY][c]);
+}
+
+static void take_views(struct model *m)
+{
+    SluiceVulkanPages pages;
+    sluiceGetVulkanPages(m->streamer, &pages);
+    assert_int_equal(pages.viewCount, CHUNKS);
+    for (uint32_t c = 0; c < CHUNKS; c++) {
+        VkImage image = fake_vulkan_image_of(pages.pViews[c]);
+        if (m->chunks[c].image != image) {
+            m->chunks[c].image = image;
+            memset(m->chunks[c].texels, 0, sizeof m->chunks[c].texels);
+        }
+        m->shown[m->frame % HISTORY][c] = image;
+    }
+}
+
+static void take_copies(struct model *m)
+{
+    for (uint32_t i = 0; i < m->fake.copy_count; i++) {
+        const struct fake_copy *copy = &m->fake.copies[i];
+        for (uint32_t c = 0; c < CHUNKS; c++)
+            if (m->chunks[c].image == copy->image) {
+                assert_true(copy->level == 0 && copy->layer < LAYERS);
+                m->chunks[c].texels[copy->layer] = copy->texel;
+            }
+    }
+}
+
+/* The page of a tile holds what the tile is called. */
+static void check_tile(const struct model *m, const struct texture *t, uint32_t tile)
+{
+    const SluiceStreamedTextureLayout *l = &t->layout;
+    uint32_t level = 0;
+    while (level + 1 < l->desc.regularMipCount && tile >= l->levelFirstTile[level + 1])
+        level++;
+    uint32_t at = tile - l->levelFirstTile[level], width = l->levelWidthInTiles[level];
+    uint32_t page = m->fake.watches[0].words[t->first_word + tile];
+    assert_true(page != SLUICE_PAGE_NONE);
+    assert_true(page >> 16 < CHUNKS && (page & 0xFFFF) < LAYERS);
+    assert_int_equal(m->chunks[page >> 16].texels[page & 0xFFFF],
+                     name_of(t->number, level, at % width, at / width));
+}
+
+static uint32_t check_shown(struct model *m)
+{
+    uint32_t count = 0;
+    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    for (uint32_t i = 0; i < TEXTURES; i++) {
+        struct texture *t = &m->textures[i];
+        if (t->number && t->first_word == UINT32_MAX)
+            t->first_word = find_first_word(m, t);
+        for (uint32_t j = 0; t->number && j < t->layout.regularTileCount; j++) {
+            SluiceTileState state;
+            CHECK_OK(sluiceGetTileState(manager, t->texture.textureId, j, &state, NULL));
+            if (state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY) {
+                check_tile(m, t, j);
+                count++;
+            } else {
+                assert_int_equal(m->fake.watches[0].words[t->first_word + j], SLUICE_PAGE_NONE);
+            }
+        }
+    }
+    return count;
+}
+
+static uint32_t model_frame(struct model *m, uint64_t time)
+{
+    struct fake_vulkan *fake = &m->fake;
+    fake->copy_count = fake->destroyed_count = 0;
+    fake->published = false;
+    fake->frame_value += (uint64_t)rand() % (m->frame - fake->frame_value + 1);
+    if (rand() % 2)
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
+    SluiceStreamingFrame frame;
+    SluiceResult result =
+        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, &frame);
+    if (result == SLUICE_NOT_READY)
+        return 0;
+    CHECK_OK(result);
+    fake->frame_semaphore = frame.semaphore;
+    m->frame = frame.frameIndex;
+    take_destroyed(m);
+    take_views(m);
+    take_copies(m);
+    uint32_t shown = check_shown(m);
+    CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(fake)));
+    return shown;
+}
+
+/* From time to time all textures go, so that images of pages do. */
+static void model_step(struct model *m, uint64_t step)
+{
+    if (step % 3 == 0)
+        m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
+    if (step % 40 == 0)
+        model_remove(m, &m->textures[rand() % TEXTURES]);
+    if (step % 600 == 0)
+        for (uint32_t i = 0; i < TEXTURES; i++)
+            model_remove(m, &m->textures[i]);
+    if (step % 600 > 100 && step % 20 == 0)
+        model_add(m);
+}
+
+static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
+{
+    static struct model model; /* large */
+    struct model *m = &model;
+    *m = (struct model){.fake = {.want = want, .user = m}};
+    SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
+                                           .framesInFlight = FRAMES_IN_FLIGHT,
+                                           .tilesPerFrame = 24,
+                                           .maxTextureCount = 3 * TEXTURES,
+                                           .loaderThreadCount = 1,
+                                           .heapTileCapacity = heap_capacity,
+                                           .maxHeapCount = heaps,
+                                           .feedbackTimeout = 2,
+                                           .maxRegionCount = 1 << 14,
+                                           .maxPageChunkCount = CHUNKS};
+    fake_vulkan_fill(&m->fake, &info);
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    SluiceVulkanBuffers buffers;
+    sluiceGetVulkanBuffers(m->streamer, &buffers);
+    m->fake.watches[0].buffer = buffers.pageTable;
+    m->fake.watches[1].buffer = buffers.textureTable;
+    srand(seed);
+    uint64_t shown = 0, generation;
+    for (uint64_t step = 1; step <= 2000; step++) {
+        model_step(m, step);
+        shown += model_frame(m, step);
+    }
+    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanPages pages;
+    sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
+    sluiceGetVulkanPages(m->streamer, &pages);
+    generation = pages.generation;
+    assert_true(shown > 10000);
+    assert_true(stats.tilesUnmapped > 50);
+    assert_true(generation >= 6); /* images came, went, and came again */
+    m->fake.destroyed_count = 0;
+    sluiceDestroyVulkanStreamer(m->streamer);
+    assert_int_equal(m->fake.live_objects, 0);
+    assert_int_equal(m->fake.live_memory, 0);
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        sluiceDestroyImageSource(m->textures[i].source);
+    for (uint32_t i = 0; i < m->old_count; i++)
+        sluiceDestroyImageSource(m->old_sources[i]);
+}
+
+static void promises_hold_with_little_memory(void **state)
+{
+    (void)state;
+    run(32, 3, 51);
+}
+
+static void promises_hold_with_room_for_everything(void **state)
+{
+    (void)state;
+    run(256, 0, 52);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(promises_hold_with_little_memory),
+        cmocka_unit_test(promises_hold_with_room_for_everything),
+    };
+    return RUN_TESTS(tests);
+}
