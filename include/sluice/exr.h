@@ -41,7 +41,8 @@ typedef struct SluiceExrImageSourceCreateInfo {
  * image, at most 2^20 texels in either direction; where it starts does not matter. Of levels that
  * were rounded up, the last row and column beyond Vulkan's size are dropped.
  *
- * Errors: NULL_POINTER, FILE_NOT_FOUND, IO, CORRUPT_DATA; UNSUPPORTED for deep data, multi-part
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for unknown, compressed and PACK32 formats;
+ *         FILE_NOT_FOUND, IO, CORRUPT_DATA; UNSUPPORTED for deep data, multi-part
  *         files whose first part is not such an image, luminance-chroma, layers or other channel
  *         names, subsampling; OUT_OF_HOST_MEMORY. The log callback gets file, value and what to do.
  * Thread safety: any thread.

@@ -15,7 +15,11 @@
 extern "C" {
 #endif
 
-/** Texel formats; channels in memory order. sRGB ones hold encoded colour and linear alpha. */
+/**
+ * Texel formats, named as Vulkan's. Without a suffix, channels in memory order; PACK32 ones are
+ * little words of 32 bits, the last channel named in the lowest bits. sRGB ones hold encoded colour
+ * and linear alpha. BLOCK ones are compressed: 4x4 texels in 8 bytes (BC1, BC4) or 16 (others).
+ */
 typedef enum SluiceFormat {
     SLUICE_FORMAT_UNDEFINED = 0,
     SLUICE_FORMAT_R8_UNORM = 1,
@@ -26,11 +30,47 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_R16G16B16A16_SFLOAT = 6,
     SLUICE_FORMAT_R32_SFLOAT = 7,
     SLUICE_FORMAT_R32G32_SFLOAT = 8,
-    SLUICE_FORMAT_R32G32B32A32_SFLOAT = 9
+    SLUICE_FORMAT_R32G32B32A32_SFLOAT = 9,
+    SLUICE_FORMAT_R8G8_UNORM = 10,
+    SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 = 11,
+    SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32 = 12, ///< no sign; 6, 6 and 5 bits of mantissa
+    SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32 = 13,  ///< no sign; one exponent for three channels
+    SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK = 14,
+    SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK = 15,
+    SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK = 16, ///< alpha 0 or 1
+    SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK = 17,
+    SLUICE_FORMAT_BC2_UNORM_BLOCK = 18,
+    SLUICE_FORMAT_BC2_SRGB_BLOCK = 19,
+    SLUICE_FORMAT_BC3_UNORM_BLOCK = 20,
+    SLUICE_FORMAT_BC3_SRGB_BLOCK = 21,
+    SLUICE_FORMAT_BC4_UNORM_BLOCK = 22, ///< R
+    SLUICE_FORMAT_BC4_SNORM_BLOCK = 23,
+    SLUICE_FORMAT_BC5_UNORM_BLOCK = 24, ///< R and G
+    SLUICE_FORMAT_BC5_SNORM_BLOCK = 25,
+    SLUICE_FORMAT_BC6H_UFLOAT_BLOCK = 26, ///< RGB
+    SLUICE_FORMAT_BC6H_SFLOAT_BLOCK = 27,
+    SLUICE_FORMAT_BC7_UNORM_BLOCK = 28,
+    SLUICE_FORMAT_BC7_SRGB_BLOCK = 29
 } SluiceFormat;
 
-/** Bytes per texel, 0 for UNDEFINED and unknown values. Any thread. */
+/** The number of enumerators: formats are below it. */
+#define SLUICE_FORMAT_COUNT 30
+
+/** How texels lie in memory: in blocks, of one texel each where the format is not compressed. */
+typedef struct SluiceFormatInfo {
+    uint32_t blockSize;               ///< bytes
+    uint32_t blockWidth, blockHeight; ///< texels
+    uint32_t channelCount;            ///< 1 to 4; missing G and B read as 0, missing A as 1
+} SluiceFormatInfo;
+
+/** Errors: NULL_POINTER; UNSUPPORTED for UNDEFINED and unknown values. Any thread. */
+SLUICE_API SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo);
+/** Bytes per texel; 0 for UNDEFINED, unknown values and compressed formats. Any thread. */
 SLUICE_API uint32_t sluiceFormatTexelSize(SluiceFormat format);
+/** Bytes of `width` x `height` texels, cut blocks counting as whole ones, rows tightly packed;
+ *  UINT64_MAX beyond 64 bits, 0 for UNDEFINED and unknown values. With a height of 1: a row. Any
+ *  thread. */
+SLUICE_API uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height);
 /** "R8_UNORM" and so on, "UNDEFINED" for others. Any thread. */
 SLUICE_API const char *sluiceFormatString(SluiceFormat format);
 /** Width and height in texels of the standard 64 KiB tile. Errors: UNSUPPORTED. Any thread. */
@@ -41,13 +81,19 @@ typedef struct SluiceImageInfo {
     uint32_t width, height; ///< texels of level 0; level l has max(1, size >> l)
     uint32_t mipLevelCount; ///< the full chain: floor(log2(max(width, height))) + 1
     SluiceFormat format;
-    const char *pName; ///< for messages; lives as long as the source
+    const char *pName;        ///< for messages; lives as long as the source
+    uint32_t arrayLayerCount; ///< images of the same size and format in one; 0: 1
 } SluiceImageInfo;
 
-/** Texels of one level; inside it and not empty. */
+/**
+ * Texels of one level; inside it and not empty. In compressed formats it consists of whole blocks:
+ * x and y are multiples of the block's extent, and so are width and height, unless the region
+ * reaches the right or lower edge of the level, where the last block may be cut.
+ */
 typedef struct SluiceImageRegion {
     uint32_t mipLevel;
     uint32_t x, y, width, height;
+    uint32_t arrayLayer;
 } SluiceImageRegion;
 
 typedef struct SluiceImageSource SluiceImageSource;
@@ -57,9 +103,10 @@ typedef struct SluiceImageSourceInterface {
     /** Opens the image if need be. Any thread. */
     SluiceResult (*pfnGetInfo)(SluiceImageSource *source, SluiceImageInfo *pInfo);
     /**
-     * Fills `pTexels`: region.height rows of region.width texels, `rowPitch` bytes apart. The
-     * region has been checked. May answer SLUICE_NOT_READY or any error; then the contents of
-     * `pTexels` are undefined. Any thread, several at once.
+     * Fills `pTexels`: region.height rows of region.width texels, `rowPitch` bytes apart; in
+     * compressed formats rows of blocks, cut ones given whole. The region has been checked. May
+     * answer SLUICE_NOT_READY or any error; then the contents of `pTexels` are undefined. Any
+     * thread, several at once.
      */
     SluiceResult (*pfnReadRegion)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
                                   void *pTexels, size_t rowPitch);
@@ -76,8 +123,10 @@ struct SluiceImageSource {
 SLUICE_API SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo);
 
 /**
- * Reads a rectangle. Errors: NULL_POINTER; INVALID_ARGUMENT if the region leaves its level or is
- * empty or rowPitch is below a row's size; and what the implementation says. Any thread.
+ * Reads a rectangle. `rowPitch`: bytes from one row of texels to the next, in compressed formats
+ * from one row of blocks. Errors: NULL_POINTER; INVALID_ARGUMENT if the region leaves its level, is
+ * empty or cuts a block, or rowPitch is below a row's size; and what the implementation says. Any
+ * thread.
  */
 SLUICE_API SluiceResult sluiceReadImageRegion(SluiceImageSource *source,
                                               const SluiceImageRegion *pRegion, void *pTexels,
@@ -96,9 +145,13 @@ typedef struct SluiceProceduralImage {
 
 /**
  * An image that is computed where it is read. `pInfo->pName` is copied, mipLevelCount may be 0 for
- * the full chain. Colours are converted as exr.h says of files: half saturates, 8 bits clamp and
- * round, sRGB encodes, NaN becomes 0 but in float formats. Errors: NULL_POINTER, INVALID_ARGUMENT,
- * OUT_OF_HOST_MEMORY. Any thread.
+ * the full chain. Colours are converted as exr.h says of files: half saturates, 8 and 10 bits clamp
+ * and round, sRGB encodes, NaN becomes 0 but in 32-bit float formats. Formats without a sign round
+ * to the nearest value that they have, ties to even (E5B9G9R9: up, as its specification says),
+ * saturate, and make 0 of what is negative. Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED for
+ * compressed formats: bring an own source, and for
+ * arrays; OUT_OF_HOST_MEMORY. Any thread.
+ * Source of E5B9G9R9: Vulkan specification, "RGB to Shared Exponent Conversion".
  */
 SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
     const SluiceProceduralImage *pImage, const SluiceImageInfo *pInfo,
@@ -108,12 +161,22 @@ SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
  * Texels in memory, level 0 given, the other levels made by a box filter once (in linear light for
  * sRGB), each texel the mean of the area it covers in the level above, NaN counting as 0. `pTexels`
  * is [height][width] of pInfo->format, tightly packed, and is copied. Errors: NULL_POINTER,
- * INVALID_ARGUMENT, OUT_OF_HOST_MEMORY. Any thread.
+ * INVALID_ARGUMENT; UNSUPPORTED for compressed formats and arrays; OUT_OF_HOST_MEMORY. Any thread.
  */
 SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       const SluiceImageInfo *pInfo,
                                                       const SluiceAllocationCallbacks *pAllocator,
                                                       SluiceImageSource **pSource);
+
+/**
+ * An array whose layers are `layerCount` sources of one size and format. They must outlive it and
+ * have one layer each. Errors: NULL_POINTER; INVALID_ARGUMENT for no layers or layers that differ;
+ * what the sources say; OUT_OF_HOST_MEMORY. Any thread.
+ */
+SLUICE_API SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers,
+                                                     uint32_t layerCount,
+                                                     const SluiceAllocationCallbacks *pAllocator,
+                                                     SluiceImageSource **pSource);
 
 #ifdef __cplusplus
 } /* extern "C" */

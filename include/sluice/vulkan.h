@@ -44,6 +44,12 @@ typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_DENSE = 3
 } SluiceResidencyMode;
 
+/** What shaders write for each feedback region; their SLUICE_FEEDBACK_ENCODING must be the same. */
+typedef enum SluiceFeedbackEncoding {
+    SLUICE_FEEDBACK_ENCODING_LEVELS = 0, ///< a word with the finest level
+    SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< half a word with a bit per level; half the memory
+} SluiceFeedbackEncoding;
+
 /** What a device can do for Sluice, and what is known to be odd about it. */
 typedef struct SluiceVulkanDeviceCapabilities {
     bool sparse;                     ///< sparse residency 2D images and a queue that binds them
@@ -55,6 +61,28 @@ typedef struct SluiceVulkanDeviceCapabilities {
     uint32_t sparseQueueFamilyIndex;
     uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
     char deviceName[256];
+    char driverName[256], driverInfo[256];
+    VkPhysicalDeviceType deviceType;
+    uint32_t apiVersion;           ///< as VK_MAKE_API_VERSION
+    bool timelineSemaphore;        ///< required
+    bool fragmentStoresAndAtomics; ///< required
+    bool textureCompressionBC;     ///< BC formats can be streamed
+    bool samplerAnisotropy;
+    bool sparseResidencyAliased; ///< a page may lie at several places
+    bool standardTiles;          ///< sparse tiles have the shapes of sluiceGetStandardTileShape
+    /** Residency codes exist and can be believed: not on software devices, whose codes are wrong
+     *  for filters between levels. Sluice itself samples by MinMip maps alone. */
+    bool residencyCodesExact;
+    bool dedicatedSparseQueue; ///< of a family that neither draws nor computes
+    uint32_t sparseQueueCount; ///< of sparseQueueFamilyIndex
+    /** Different tiles that a process may bind in the life of their images; 0: as many as it likes.
+     *  Software devices keep a memory map for each. */
+    uint32_t maxTouchedTiles;
+    uint32_t maxImageExtent, maxImageArrayLayers;
+    uint32_t maxStorageBufferRange; ///< bytes
+    float maxSamplerAnisotropy;
+    float timestampPeriod;          ///< nanoseconds per tick; 0: no time stamps
+    uint64_t deviceLocalMemorySize; ///< bytes of the largest such heap
 } SluiceVulkanDeviceCapabilities;
 
 /** Errors: NULL_POINTER, UNSUPPORTED if pfnGetInstanceProcAddr lacks a function. */
@@ -63,10 +91,55 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
                                   PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                   SluiceVulkanDeviceCapabilities *pCapabilities);
 
+/** What a device makes of one format, as a 2D image that is sampled and copied to. */
+typedef struct SluiceVulkanFormatCapabilities {
+    bool sampled;      ///< at all
+    bool linearFilter; ///< by samplers that interpolate
+    bool sparse;       ///< as a sparse residency image of 64 KiB tiles: what can be streamed
+    /** Texels as the driver says it; 0 if it is not sparse at all. */
+    uint32_t granularityWidth, granularityHeight;
+    uint32_t tileWidth, tileHeight; ///< texels of a tile, where the driver counts blocks corrected
+    /** Of sparse images, or of others where it is not sparse. */
+    uint32_t maxWidth, maxHeight, maxMipLevelCount, maxArrayLayerCount;
+    uint64_t maxImageSize; ///< bytes
+} SluiceVulkanFormatCapabilities;
+
+/** Errors: NULL_POINTER; UNSUPPORTED for unknown formats or if a function is missing. */
+SLUICE_API SluiceResult sluiceGetVulkanFormatCapabilities(
+    VkInstance instance, VkPhysicalDevice physicalDevice,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceFormat format,
+    SluiceVulkanFormatCapabilities *pCapabilities);
+
+/** How a device lays out one sparse image; found out by making it. */
+typedef struct SluiceVulkanSparseImageLayout {
+    uint32_t mipLevelCount;
+    uint32_t tileWidth, tileHeight; ///< texels
+    uint32_t regularMipCount;       ///< levels whose tiles come and go one by one
+    uint32_t packedTileCount;       ///< pages of the others, together
+    bool driverTail;                ///< the driver packs those; else each is a tile of its own
+    uint64_t tailSize;              ///< bytes, 0 without driverTail
+    uint64_t metadataSize;          ///< bytes, bound apart; 0: none
+    uint64_t imageSize;             ///< bytes of address space
+    uint64_t alignment;             ///< bytes
+    uint32_t memoryTypeBits;
+} SluiceVulkanSparseImageLayout;
+
+/**
+ * `device` was created with the features of sluiceRequireVulkanFeatures. Of `pImage` size and
+ * format matter, mipLevelCount may be 0. Errors: NULL_POINTER; UNSUPPORTED, with a message to
+ * `pLog` (may be NULL), if the image cannot be streamed; INVALID_ARGUMENT for a size of 0;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
+    VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, const SluiceLogCallback *pLog,
+    const SluiceImageInfo *pImage, SluiceVulkanSparseImageLayout *pLayout);
+
 /**
  * Sets in `*pFeatures`, `*pVulkan12` what a streamer of that mode needs of the device: pass both to
  * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
- * and for what else he needs, which stays set. No extension is needed. `pLog` may be NULL.
+ * and for what else he needs, which stays set. No extension is needed. textureCompressionBC is set
+ * where the device has it, for the BC formats. `pLog` may be NULL.
  *
  * All modes need timelineSemaphore and fragmentStoresAndAtomics; sparse also sparseBinding,
  * sparseResidencyImage2D and a queue family with SPARSE_BINDING; paged also
@@ -115,14 +188,38 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount: mind the device's limits on
      *  samplers and sampled images per stage. */
     uint32_t maxPageChunkCount;
+    /**
+     * Bytes of resolved feedback that a frame can bring to the host: 4 per region that changed
+     * since its texture's turn before, at most 1 per region of a texture. Textures for which there
+     * is no room keep their marks and come first in a later frame. Must hold the map of any one
+     * texture. 0: maxRegionCount, with which there always is room, at most 2^22.
+     */
+    uint32_t feedbackReadbackSize;
+    /** Bring all of each map to the host instead of what changed. The decisions are the same; to
+     *  measure and to test with. */
+    bool wholeFeedbackMaps;
+    SluiceFeedbackEncoding feedbackEncoding;
+    /**
+     * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for the textures that are
+     * resolved at the end of the same frame: for the others that is one load and no arithmetic.
+     * What it costs: with N textures not in a set a texture collects marks in one frame of
+     * N / texturesPerFrame, not in all, so what few pixels see is noticed that many times later,
+     * and feedbackTimeout must be as much longer. Best where every visible pixel writes.
+     */
+    bool feedbackInTurns;
+    /** Different tiles bound in the life of their images, see SluiceVulkanDeviceCapabilities; the
+     *  streamers of a process share what the device bears. Finer tiles beyond it are not loaded.
+     *  0: maxTouchedTiles of the device. */
+    uint32_t maxTouchedTiles;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
  * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
  *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20,
  *         maxRegionCount 2^28 or maxPageChunkCount 2^10; UNSUPPORTED if the device has no mode that
- * was asked for; LIMIT_EXCEEDED if maxTextureCount or maxRegionCount need a storage buffer beyond
- * the device's maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * was asked for; LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
+ * feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -159,7 +256,9 @@ typedef struct SluiceVulkanTexture {
     VkImageView imageView; ///< 2D, all levels of the image
     VkFormat format;
     uint32_t width, height, mipLevelCount;
-    uint32_t tableIndex; ///< place in the texture table, for the shader functions
+    uint32_t tableIndex;   ///< place in the texture table, for the shader functions
+    uint32_t arrayLayer;   ///< of `image`; `imageView` shows this layer alone
+    VkImageView arrayView; ///< 2D_ARRAY, all layers and levels; VK_NULL_HANDLE if not of an array
 } SluiceVulkanTexture;
 
 /**
@@ -167,12 +266,24 @@ typedef struct SluiceVulkanTexture {
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
  *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device
- * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount or maxRegionCount; what
- * the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount, maxRegionCount or
+ * feedbackReadbackSize; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
+
+/**
+ * As sluiceAddVulkanTexture, of a source with `layerCount` array layers. Each is a streamed texture
+ * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
+ * each other, and all are layers of one image. They are removed together, with any of their ids.
+ *
+ * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
+ * device or the residency mode cannot stream arrays.
+ */
+SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
+    SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,
+    uint32_t layerCount, SluiceVulkanTexture *pLayers);
 
 /**
  * The image is destroyed when the frames begun so far have completed; do not draw with it again.
@@ -184,10 +295,11 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 
 /** The buffers that shaders need, as storage buffers; the same for the streamer's whole life. */
 typedef struct SluiceVulkanBuffers {
-    VkBuffer textureTable; ///< SluiceTextureEntry[maxTextureCount], read
-    VkBuffer feedback;     ///< uint[], read and written
-    VkBuffer minMip;       ///< uint[], read
-    VkBuffer pageTable;    ///< uint[], read in paged mode alone; in others any valid buffer
+    VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
+    VkBuffer feedback;      ///< uint[], read and written
+    VkBuffer minMip;        ///< uint[], read
+    VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
+    VkBuffer pageTable;     ///< uint[], read in paged mode alone; in others any valid buffer
 } SluiceVulkanBuffers;
 
 SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
@@ -249,10 +361,14 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesUploaded; ///< texels copied to images
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
     uint64_t bindCalls, bindRuns;
-    uint64_t feedbackMaps;  ///< read back and given to the manager
+    uint64_t unbinds;       ///< tiles whose page was taken away
+    uint64_t unbindsSaved;  ///< unmapped tiles that were bound again, or gone, before that
+    uint64_t feedbackMaps;  ///< resolved and given to the manager
     uint32_t loadsInFlight; ///< reads not collected, and uploads not recorded
     /** Bytes of heaps; dense: of images; paged: of pages, packed levels and the page table. */
     uint64_t deviceMemorySize;
+    uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
+    uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

@@ -106,10 +106,15 @@ static inline uint32_t slc_count_bits(uint32_t bits)
 /** Sum of the bytes. */
 static inline uint32_t slc_block_sum(slc_block b)
 {
+#if defined(__SSE2__)
+    __m128i halves = _mm_sad_epu8((__m128i)b, _mm_setzero_si128());
+    return (uint32_t)_mm_cvtsi128_si32(halves) + (uint32_t)_mm_extract_epi16(halves, 4);
+#else
     uint32_t sum = 0;
     for (uint32_t i = 0; i < SLC_BLOCK; i++)
         sum += b[i];
     return sum;
+#endif
 }
 
 /** out[i] = min(in[2 i], in[2 i + 1]), i < count. Both are written and read in whole blocks. */

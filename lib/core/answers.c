@@ -7,42 +7,57 @@
 /** Marks a node while an answer is checked, so that a tile that stands twice is seen. */
 #define NODE_SEEN 128
 
-typedef void (*answer_function)(slc_manager *m, uint32_t node, uint64_t value);
+/** Tiles in a call from which on it pays to fetch memory for all of them before the first one. */
+#define MANY 4
 
 static bool is_in_flight(const struct slc_node *n)
 {
     return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELLED;
 }
 
-static SluiceResult check_tile(slc_manager *m, const struct slc_texture *t, uint32_t tile)
+/** Marks a tile that was handed out, and was not marked before. */
+static SluiceResult mark_tile(slc_manager *m, const struct slc_texture *t, uint32_t tile)
 {
-    if (tile >= t->tile_count)
+    if (tile >= t->shape->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tile);
-    if (!node || !is_in_flight(slc_node_at(m, node)) || slc_node_at(m, node)->flags & NODE_SEEN)
+    if (!node)
         return SLUICE_ERROR_INVALID_TILE_STATE;
-    slc_node_at(m, node)->flags |= NODE_SEEN;
+    struct slc_node *n = slc_node_at(m, node);
+    if (!is_in_flight(n) || n->flags & NODE_SEEN)
+        return SLUICE_ERROR_INVALID_TILE_STATE;
+    n->flags |= NODE_SEEN;
     return SLUICE_SUCCESS;
 }
 
-/** All tiles are handed out and stand in the list once, or nothing happens. */
+static void unmark_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
+                         const uint32_t *tiles)
+{
+    for (uint32_t i = 0; i < count; i++)
+        slc_node_at(m, slc_find_node(t, tiles[i]))->flags &= (uint8_t)~NODE_SEEN;
+}
+
+/**
+ * All tiles are handed out and stand in the list once, or nothing happens. Then they are marked,
+ * which ends when their states change.
+ */
 static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
                                 const uint32_t *tiles)
 {
-    SluiceResult result = SLUICE_SUCCESS;
-    uint32_t checked = 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (tiles[i] < t->tile_count) {
+    bool many = count >= MANY;
+    for (uint32_t i = 0; many && i < count; i++)
+        if (tiles[i] < t->shape->tile_count)
             __builtin_prefetch(slc_node_at(m, slc_find_node(t, tiles[i])));
-            slc_min_mip_prefetch(t, tiles[i]);
-        }
-    while (checked < count && result == SLUICE_SUCCESS)
-        result = check_tile(m, t, tiles[checked++]);
-    if (result != SLUICE_SUCCESS)
-        checked--;
-    for (uint32_t i = 0; i < checked; i++)
-        slc_node_at(m, slc_find_node(t, tiles[i]))->flags &= (uint8_t)~NODE_SEEN;
-    return result;
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceResult result = mark_tile(m, t, tiles[i]);
+        if (many && result == SLUICE_SUCCESS)
+            slc_min_mip_prefetch(t, slc_node_at(m, slc_find_node(t, tiles[i])));
+        if (result == SLUICE_SUCCESS)
+            continue;
+        unmark_tiles(m, t, i, tiles);
+        return result;
+    }
+    return SLUICE_SUCCESS;
 }
 
 static SluiceResult check_answer(slc_manager *m, SluiceTextureId id, uint32_t count,
@@ -59,12 +74,15 @@ static bool is_wanted(const struct slc_node *n)
     return n->state == SLUICE_TILE_STATE_ALLOCATED || n->flags & SLC_NODE_WANTED;
 }
 
-static void answer_mapped(slc_manager *m, uint32_t node)
+static void answer_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
 {
     struct slc_node *n = slc_node_at(m, node);
     n->failures = 0;
-    slc_node_set_state(m, node,
-                       is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
+    if (n->state == SLUICE_TILE_STATE_ALLOCATED)
+        slc_tile_mapped(m, t, node);
+    else
+        slc_node_set_state(m, node,
+                           is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
     m->mapped_total++;
 }
 
@@ -126,7 +144,7 @@ static SluiceResult update_mapping(slc_manager *m, SluiceTextureId id, uint32_t 
     struct slc_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < count; i++)
-        answer_mapped(m, slc_find_node(t, tiles[i]));
+        answer_mapped(m, t, slc_find_node(t, tiles[i]));
     return result;
 }
 
@@ -138,9 +156,13 @@ static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t c
     if (result != SLUICE_SUCCESS)
         return result;
     if (slc_time_is_backwards(m, time))
-        return SLUICE_ERROR_TIME_BACKWARDS;
-    if (!reserve_reports(m, count))
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        result = SLUICE_ERROR_TIME_BACKWARDS;
+    else if (!reserve_reports(m, count))
+        result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result != SLUICE_SUCCESS) {
+        unmark_tiles(m, t, count, tiles);
+        return result;
+    }
     slc_advance_time(m, time);
     for (uint32_t i = 0; i < count; i++)
         answer_failed(m, slc_find_node(t, tiles[i]), time);
@@ -156,9 +178,13 @@ static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_
     if (result != SLUICE_SUCCESS)
         return result;
     if (slc_retire_is_backwards(m, retire_value))
-        return SLUICE_ERROR_TIME_BACKWARDS;
-    if (!slc_reserve_nodes(m, count))
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        result = SLUICE_ERROR_TIME_BACKWARDS;
+    else if (!slc_reserve_nodes(m, count))
+        result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result != SLUICE_SUCCESS) {
+        unmark_tiles(m, t, count, tiles);
+        return result;
+    }
     if (retire_value)
         m->last_retire = retire_value;
     for (uint32_t i = 0; i < count; i++)

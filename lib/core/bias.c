@@ -13,7 +13,7 @@
  * texture has had a map.
  */
 
-enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT = 3 };
+enum { STEPS = 16, BLOCK = 8, MAX_BIAS = 20 * STEPS, OVERCOMMIT_HALVES = 7 };
 
 static uint8_t dither(uint32_t texture, uint32_t x, uint32_t y)
 {
@@ -28,11 +28,11 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
     memset(map, whole, slc_padded(slc_region_count(t)));
     if (part == 0)
         return;
-    for (uint32_t y = 0; y < t->feedback_height; y++) {
-        uint8_t *row = map + (size_t)y * t->feedback_width;
-        for (uint32_t x = 0; x < t->feedback_width; x += BLOCK)
+    for (uint32_t y = 0; y < t->shape->feedback_height; y++) {
+        uint8_t *row = map + (size_t)y * t->shape->feedback_width;
+        for (uint32_t x = 0; x < t->shape->feedback_width; x += BLOCK)
             if (dither(t->index, x / BLOCK, y / BLOCK) < part)
-                memset(row + x, whole + 1, slc_min_u32(BLOCK, t->feedback_width - x));
+                memset(row + x, whole + 1, slc_min_u32(BLOCK, t->shape->feedback_width - x));
     }
 }
 
@@ -42,7 +42,7 @@ uint64_t slc_slot_limit(const slc_manager *m)
     /* no heap at all says nothing yet */
     if (m->refused && m->heaps.live_count > 0 && m->heaps.live_count < heaps)
         heaps = m->heaps.live_count;
-    return heaps * m->heaps.capacity * OVERCOMMIT;
+    return heaps * m->heaps.capacity * OVERCOMMIT_HALVES / 2;
 }
 
 static void raise_bias(slc_manager *m, uint64_t wanted, uint64_t limit)

@@ -84,11 +84,16 @@ static const char *check_lists(const slc_manager *m)
     return check_requests(m);
 }
 
+static uint8_t level_under(const struct slc_texture *t, uint32_t tile)
+{
+    return t->history ? t->history->under[tile] : SLUICE_MIP_UNTOUCHED;
+}
+
 static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     REQUIRE(n->texture == t->index);
-    REQUIRE(n->tile < t->tile_count);
+    REQUIRE(n->tile < t->shape->tile_count);
     REQUIRE(slc_find_node(t, n->tile) == node);
     REQUIRE(n->level == slc_tile_place(t, n->tile).level);
     REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
@@ -98,17 +103,49 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
     if (n->flags & SLC_NODE_WANTED)
         wanted = true;
-    if (n->tile < t->regular_tile_count)
-        REQUIRE(wanted == (t->state->under[n->tile] <= n->level));
+    if (n->tile < t->shape->regular_tile_count)
+        REQUIRE(wanted == (level_under(t, n->tile) <= n->level));
     else
         REQUIRE(wanted == (m->info.alwaysMapPackedTiles || t->held_regions > 0));
+    return NULL;
+}
+
+static bool is_resident(const struct slc_texture *t, struct slc_place p)
+{
+    return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
+}
+
+/** Whether a coarser tile over a regular one, or a packed one, is not resident. */
+static bool is_hidden(const struct slc_texture *t, uint32_t tile)
+{
+    struct slc_place p = slc_tile_place(t, tile);
+    bool hidden = t->packed_resident < t->shape->desc.packedTileCount;
+    while (++p.level < t->shape->desc.regularMipCount) {
+        const struct slc_level *grid = &t->shape->levels[p.level];
+        p.x = p.x / 2 < grid->width ? p.x / 2 : grid->width - 1;
+        p.y = p.y / 2 < grid->height ? p.y / 2 : grid->height - 1;
+        hidden = hidden || !is_resident(t, p);
+    }
+    return hidden;
+}
+
+static const char *check_resident(const struct slc_texture *t)
+{
+    uint32_t resident = 0, hidden = 0;
+    for (uint32_t i = 0; t->nodes && i < t->shape->regular_tile_count; i++) {
+        if (!(t->nodes[i] & SLC_RESIDENT))
+            continue;
+        resident++;
+        hidden += is_hidden(t, i);
+    }
+    REQUIRE(resident == t->resident_tiles && hidden == t->hidden_tiles);
     return NULL;
 }
 
 static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
-    for (uint32_t tile = 0; tile < t->tile_count; tile++) {
+    for (uint32_t tile = 0; tile < t->shape->tile_count; tile++) {
         uint32_t node = slc_find_node(t, tile);
         if (!node)
             continue;
@@ -117,7 +154,7 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
             return wrong;
         uint8_t state = slc_node_at(m, node)->state;
         requested += state == SLUICE_TILE_STATE_REQUESTED;
-        if (slc_node_at(m, node)->tile >= t->regular_tile_count)
+        if (slc_node_at(m, node)->tile >= t->shape->regular_tile_count)
             resident_packed +=
                 state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
         count++;
@@ -126,21 +163,21 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     REQUIRE(resident_packed == t->packed_resident);
     *nodes += count;
     REQUIRE(t->visited == (t->held_regions > 0));
-    if (!t->state) {
+    if (!t->nodes) {
         REQUIRE(t->held_regions == 0 && t->regular_nodes == 0);
         return NULL;
     }
     REQUIRE(t->held_regions > 0 || t->regular_nodes > 0);
     uint32_t with_node = 0;
-    for (uint32_t i = 0; i < t->regular_tile_count; i++) {
-        with_node += t->state->nodes[i] != 0;
-        if (t->state->under[i] <= slc_tile_place(t, i).level)
-            REQUIRE(t->state->nodes[i] != 0);
+    for (uint32_t i = 0; i < t->shape->regular_tile_count; i++) {
+        with_node += t->nodes[i] != 0;
+        if (level_under(t, i) <= slc_tile_place(t, i).level)
+            REQUIRE(t->nodes[i] != 0);
     }
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         with_node += t->packed_nodes[i] != 0;
     REQUIRE(with_node == count);
-    return NULL;
+    return check_resident(t);
 }
 
 static const char *check_visited(const slc_manager *m)
@@ -199,7 +236,7 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!t->live)
             continue;
         wrong = check_texture(m, t, &nodes);
-        tiles += t->tile_count;
+        tiles += t->shape->tile_count;
         textures++;
     }
     if (wrong)

@@ -12,38 +12,90 @@ static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
     SluiceResult result = slc_find_texture(m, id, t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (f->width != (*t)->feedback_width || f->height != (*t)->feedback_height)
+    if (f->width != (*t)->shape->feedback_width || f->height != (*t)->shape->feedback_height)
         return SLUICE_ERROR_SIZE_MISMATCH;
     return slc_time_is_backwards(m, time) ? SLUICE_ERROR_TIME_BACKWARDS : SLUICE_SUCCESS;
 }
 
-/** Scratch for the maps of a texture and of those that follow it. */
+/** Textures of more tiles have a history of their own: a log of moves is kept for the others. */
+enum { MAX_SHARED_TILES = 65536 };
+
+static size_t log_size(const struct slc_texture *t)
+{
+    if (t->first_follower == SLC_NONE || t->shape->regular_tile_count > MAX_SHARED_TILES)
+        return 0;
+    return slc_padded(t->shape->regular_tile_count * sizeof(struct slc_move));
+}
+
+/** Scratch for the maps of a texture and of those that follow it, and for the log before them. */
 static SluiceResult reserve_scratch(slc_manager *m, const struct slc_texture *t, bool followers)
 {
-    size_t work = slc_wants_work_size(t);
-    uint64_t bytes = slc_padded(slc_region_count(t));
-    for (uint32_t f = followers ? t->first_follower : SLC_NONE; f != SLC_NONE;
-         f = slc_texture_at(m, f)->next_follower) {
-        size_t own = slc_wants_work_size(slc_texture_at(m, f));
-        bytes += slc_padded(slc_region_count(slc_texture_at(m, f)));
-        work = own > work ? own : work;
+    size_t work = t->shape->work_size;
+    uint64_t bytes = slc_padded(t->shape->region_count) + log_size(t);
+    for (uint32_t i = followers ? t->first_follower : SLC_NONE; i != SLC_NONE;) {
+        const struct slc_texture *f = slc_texture_at(m, i);
+        bytes += slc_padded(f->shape->region_count);
+        work = f->shape->work_size > work ? f->shape->work_size : work;
+        i = f->next_follower;
     }
     return slc_wants_reserve_scratch(m, bytes, work);
+}
+
+/** How many textures have the texture's history and will get its map: itself and followers. */
+static uint32_t users_of_history(const slc_manager *m, const struct slc_texture *t)
+{
+    const struct slc_history *h = t->history;
+    /* a bias is dithered differently in each texture */
+    if (!h || h->users == 1 || m->bias.value || h->bias)
+        return 1;
+    uint32_t users = 1;
+    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
+        users += slc_texture_at(m, f)->history == h;
+    return users;
+}
+
+/** Whether the follower, which has no history, will never differ from its primary's new one. */
+static bool may_share(const slc_manager *m, const struct slc_texture *t,
+                      const struct slc_texture *follower)
+{
+    return t->history && !follower->history && m->bias.value == 0 && t->hits == follower->hits &&
+           t->returns == follower->returns && t->shape->regular_tile_count <= MAX_SHARED_TILES &&
+           slc_have_same_shape(t, follower);
+}
+
+static SluiceResult prepare_followers(slc_manager *m, struct slc_texture *t, bool is_new,
+                                      struct slc_wants_need *need)
+{
+    const struct slc_history *h = t->history;
+    const uint8_t *asked = !h ? NULL : h->next ? h->next : h->asked;
+    uint64_t nodes = need->nodes;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = t->first_follower; i != SLC_NONE && result == SLUICE_SUCCESS;) {
+        struct slc_texture *f = slc_texture_at(m, i);
+        if (is_new && may_share(m, t, f)) {
+            result = slc_state_make(m, f);
+            if (result == SLUICE_SUCCESS)
+                slc_history_share(f, t->history);
+        }
+        if (h && f->history == h)
+            need->nodes += nodes;
+        else if (result == SLUICE_SUCCESS)
+            result = slc_wants_prepare_follower(m, t, asked, f, need);
+        i = f->next_follower;
+    }
+    return result;
 }
 
 static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
                             const SluiceFeedbackDesc *feedback)
 {
-    struct slc_wants_need need = {0};
+    struct slc_wants_need need = {.scratch = log_size(t)};
+    bool is_new = !t->history;
     SluiceResult result = reserve_scratch(m, t, true);
     if (result == SLUICE_SUCCESS)
-        result = slc_wants_prepare(m, t, feedback, &need);
-    for (uint32_t f = t->first_follower; f != SLC_NONE && result == SLUICE_SUCCESS;
-         f = slc_texture_at(m, f)->next_follower) {
-        const struct slc_texture_state *s = t->state;
-        const uint8_t *asked = !s ? NULL : s->next ? s->next : s->asked;
-        result = slc_wants_prepare_follower(m, t, asked, slc_texture_at(m, f), &need);
-    }
+        result = slc_wants_prepare(m, t, feedback, users_of_history(m, t), &need);
+    if (result == SLUICE_SUCCESS)
+        result = prepare_followers(m, t, is_new, &need);
     if (result == SLUICE_SUCCESS)
         result =
             slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -55,19 +107,45 @@ static SluiceResult prepare(slc_manager *m, struct slc_texture *t,
     return result;
 }
 
+static void commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+{
+    const struct slc_history *h = t->history; /* followers keep it if the texture ends its own */
+    struct slc_move_log log = {(struct slc_move *)(void *)m->scratch, 0};
+    bool shared = h && h->users > 1;
+    slc_wants_commit(m, t, time, timeout, shared ? &log : NULL);
+    for (uint32_t i = t->first_follower; i != SLC_NONE;) {
+        struct slc_texture *f = slc_texture_at(m, i);
+        if (shared && f->history == h)
+            slc_wants_repeat(m, t, f, time, timeout, &log);
+        else
+            slc_wants_commit(m, f, time, timeout, NULL);
+        i = f->next_follower;
+    }
+}
+
+/** Nothing was asked for before and nothing is now. */
+static bool changes_nothing(const slc_manager *m, const struct slc_texture *t,
+                            const SluiceFeedbackDesc *feedback)
+{
+    if (t->nodes || !slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+        return false;
+    for (uint32_t i = t->first_follower; i != SLC_NONE; i = slc_texture_at(m, i)->next_follower)
+        if (slc_texture_at(m, i)->nodes)
+            return false;
+    return true;
+}
+
 static SluiceResult update(slc_manager *m, SluiceTextureId id, const SluiceFeedbackDesc *feedback,
                            uint64_t time, uint64_t timeout)
 {
     struct slc_texture *t;
     SluiceResult result = check_feedback(m, id, feedback, time, &t);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS && !changes_nothing(m, t, feedback))
         result = prepare(m, t, feedback);
     if (result != SLUICE_SUCCESS)
         return result;
     slc_advance_time(m, time);
-    slc_wants_commit(m, t, time, timeout);
-    for (uint32_t f = t->first_follower; f != SLC_NONE; f = slc_texture_at(m, f)->next_follower)
-        slc_wants_commit(m, slc_texture_at(m, f), time, timeout);
+    commit(m, t, time, timeout);
     return SLUICE_SUCCESS;
 }
 
@@ -101,11 +179,12 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (slc_time_is_backwards(m, time))
         return SLUICE_ERROR_TIME_BACKWARDS;
-    if (p->has_map && (p->state || t->state)) {
+    if (p->has_map && (p->nodes || t->nodes)) {
         struct slc_wants_need need = {0};
         result = reserve_scratch(m, t, false);
+        const struct slc_history *h = p->history;
         if (result == SLUICE_SUCCESS)
-            result = slc_wants_prepare_follower(m, p, p->state ? p->state->asked : NULL, t, &need);
+            result = slc_wants_prepare_follower(m, p, h ? h->asked : NULL, t, &need);
         if (result == SLUICE_SUCCESS)
             result =
                 slc_reserve_nodes(m, need.nodes) ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -116,7 +195,7 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
     }
     slc_advance_time(m, time);
     if (p->has_map)
-        slc_wants_commit(m, t, time, timeout);
+        slc_wants_commit(m, t, time, timeout, NULL);
     return SLUICE_SUCCESS;
 }
 

@@ -27,36 +27,44 @@ static int level_offset(const SluiceStreamedTextureDesc *primary,
 
 static struct slc_grid region_grid(const struct slc_texture *t)
 {
-    return (struct slc_grid){t->desc.width,
-                             t->desc.height,
-                             t->desc.feedbackRegionWidth,
-                             t->desc.feedbackRegionHeight,
-                             t->feedback_width,
-                             t->feedback_height};
+    return (struct slc_grid){t->shape->desc.width,
+                             t->shape->desc.height,
+                             t->shape->desc.feedbackRegionWidth,
+                             t->shape->desc.feedbackRegionHeight,
+                             t->shape->feedback_width,
+                             t->shape->feedback_height};
 }
 
 /** Regions lie on regions. */
 static bool has_same_regions(const struct slc_texture *p, const struct slc_texture *f)
 {
-    const SluiceStreamedTextureDesc *a = &p->desc, *b = &f->desc;
+    const SluiceStreamedTextureDesc *a = &p->shape->desc, *b = &f->shape->desc;
     return a->width == b->width && a->height == b->height &&
            a->feedbackRegionWidth == b->feedbackRegionWidth &&
            a->feedbackRegionHeight == b->feedbackRegionHeight;
+}
+
+bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *b)
+{
+    const SluiceStreamedTextureDesc *c = &a->shape->desc, *d = &b->shape->desc;
+    return has_same_regions(a, b) && c->tileWidth == d->tileWidth &&
+           c->tileHeight == d->tileHeight && c->mipLevelCount == d->mipLevelCount &&
+           c->regularMipCount == d->regularMipCount && c->packedTileCount == d->packedTileCount;
 }
 
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need)
 {
-    if (!follower->state &&
+    if (!follower->nodes &&
         (!asked || slc_bytes_are(asked, slc_region_count(primary), SLUICE_MIP_UNTOUCHED)))
         return SLUICE_SUCCESS; /* an empty map onto nothing */
-    SluiceResult result = slc_state_make(m, follower);
+    SluiceResult result = slc_history_make(m, follower, 1);
     if (result != SLUICE_SUCCESS)
         return result;
     uint8_t *map = slc_wants_take_map(m, follower, need);
-    struct slc_levels levels = {.coarsest = (uint8_t)(primary->desc.mipLevelCount - 1),
-                                .last = (uint8_t)(follower->desc.mipLevelCount - 1)};
+    struct slc_levels levels = {.coarsest = (uint8_t)(primary->shape->desc.mipLevelCount - 1),
+                                .last = (uint8_t)(follower->shape->desc.mipLevelCount - 1)};
     const uint8_t *values = map;
     if (!asked) {
         memset(map, SLUICE_MIP_UNTOUCHED, slc_region_count(follower));
@@ -65,7 +73,7 @@ SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture
     } else {
         struct slc_grid from = region_grid(primary), to = region_grid(follower);
         slc_least_overlapped(&from, asked, &to, map);
-        int offset = level_offset(&primary->desc, &follower->desc);
+        int offset = level_offset(&primary->shape->desc, &follower->shape->desc);
         levels.up = (uint8_t)(offset > 0 ? offset : 0);
         levels.down = (uint8_t)(offset < 0 ? -offset : 0);
     }

@@ -13,58 +13,137 @@
 
 /* Memory ------------------------------------------------------------------------------------ */
 
+static size_t under_size(const struct slc_texture *t)
+{
+    return (size_t)t->shape->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
+}
+
+static size_t texel_count(const struct slc_texture *t)
+{
+    return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
+}
+
 SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
 {
-    size_t padded = slc_padded(slc_region_count(t));
-    size_t texels = (size_t)t->min_mip_width * t->min_mip_height;
-    struct slc_texture_state *s = t->state;
-    if (!s) {
-        /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
-        if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
-            t->regular_tile_count + (uint64_t)padded > SIZE_MAX / 32)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        size_t nodes = t->regular_tile_count * sizeof *s->nodes;
-        size_t under = (size_t)t->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
-        size_t size = sizeof *s + nodes + under + 3 * padded + texels;
-        s = slc_alloc(&m->cb, size, 1);
-        if (!s)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        *s = (struct slc_texture_state){
-            .size = size, .bias = m->bias.value, .asked_least = SLUICE_MIP_UNTOUCHED};
-        s->nodes = (uint32_t *)(s + 1);
-        s->asked = (uint8_t *)(s->nodes + t->regular_tile_count);
-        s->known = s->asked + padded;
-        s->least = s->known + padded;
-        s->under = s->least + padded;
-        s->min_mip = s->under + under;
-        memset(s->nodes, 0, nodes);
-        memset(s->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
-        memset(s->min_mip, slc_min_mip_floor(t), texels);
-        t->state = s;
-    }
-    if (s->span_count < SLC_MAX_SPANS && !s->spans[s->span_count].map) {
-        s->spans[s->span_count].map = slc_alloc(&m->cb, padded, 1);
-        if (!s->spans[s->span_count].map)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    }
+    if (t->nodes)
+        return SLUICE_SUCCESS;
+    /* 2^30 tiles of 6 bytes and regions of 3: more than 32 bits can address */
+    if (9 * (uint64_t)SLUICE_MAX_TILES_PER_TEXTURE > SIZE_MAX / 2 &&
+        t->shape->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    size_t nodes = t->shape->regular_tile_count * sizeof *t->nodes;
+    t->nodes = slc_alloc(&m->cb, nodes + texel_count(t), 1);
+    if (!t->nodes)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    t->min_mip = (uint8_t *)(t->nodes + t->shape->regular_tile_count);
+    memset(t->nodes, 0, nodes);
+    memset(t->min_mip, slc_min_mip_floor(t), texel_count(t));
     return SLUICE_SUCCESS;
+}
+
+static struct slc_history *create_history(slc_manager *m, const struct slc_texture *t)
+{
+    size_t padded = slc_padded(slc_region_count(t)), under = under_size(t);
+    size_t size = sizeof(struct slc_history) + under + 3 * padded;
+    struct slc_history *h = slc_alloc(&m->cb, size, 1);
+    if (!h)
+        return NULL;
+    *h = (struct slc_history){
+        .size = size, .users = 1, .bias = m->bias.value, .asked_least = SLUICE_MIP_UNTOUCHED};
+    h->asked = (uint8_t *)(h + 1);
+    h->known = h->asked + padded;
+    h->least = h->known + padded;
+    h->under = h->least + padded;
+    memset(h->asked, SLUICE_MIP_UNTOUCHED, 3 * padded + under);
+    return h;
+}
+
+static bool add_span_map(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+{
+    if (h->span_count == SLC_MAX_SPANS || h->spans[h->span_count].map)
+        return true;
+    h->spans[h->span_count].map = slc_alloc(&m->cb, slc_padded(slc_region_count(t)), 1);
+    return h->spans[h->span_count].map != NULL;
+}
+
+static void destroy_history(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+{
+    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
+        slc_free(&m->cb, h->spans[i].map, slc_padded(slc_region_count(t)), 1);
+    slc_free(&m->cb, h, h->size, 1);
+}
+
+/** The texture's own from now on. */
+static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_history *from = t->history, *h = create_history(m, t);
+    size_t padded = slc_padded(slc_region_count(t));
+    for (uint32_t i = 0; h && i < from->span_count; i++) {
+        h->spans[i] = from->spans[i];
+        h->spans[i].map = slc_alloc(&m->cb, padded, 1);
+        if (!h->spans[i].map) {
+            destroy_history(m, t, h);
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        }
+        memcpy(h->spans[i].map, from->spans[i].map, padded);
+    }
+    if (!h)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    h->span_count = from->span_count;
+    h->bias = from->bias;
+    h->absence = from->absence;
+    h->asked_least = from->asked_least;
+    h->has_same_hits = from->has_same_hits;
+    h->same_hits = from->same_hits;
+    memcpy(h->asked, from->asked, 3 * padded + under_size(t));
+    from->users--;
+    t->history = h;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t users)
+{
+    SluiceResult result = slc_state_make(m, t);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!t->history)
+        t->history = create_history(m, t);
+    else if (t->history->users != users)
+        result = copy_history(m, t);
+    if (!t->history || result != SLUICE_SUCCESS || !add_span_map(m, t, t->history))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    return SLUICE_SUCCESS;
+}
+
+void slc_history_share(struct slc_texture *t, struct slc_history *history)
+{
+    assert(t->nodes && !t->history);
+    t->history = history;
+    history->users++;
+}
+
+void slc_history_drop(slc_manager *m, struct slc_texture *t)
+{
+    struct slc_history *h = t->history;
+    t->history = NULL;
+    if (h && --h->users == 0)
+        destroy_history(m, t, h);
 }
 
 void slc_state_destroy(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
-    if (!s)
+    if (!t->nodes)
         return;
-    for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
-        slc_free(&m->cb, s->spans[i].map, slc_padded(slc_region_count(t)), 1);
-    slc_free(&m->cb, s, s->size, 1);
-    t->state = NULL;
+    slc_history_drop(m, t);
+    slc_free(&m->cb, t->nodes, t->shape->regular_tile_count * sizeof *t->nodes + texel_count(t), 1);
+    t->nodes = NULL;
+    t->min_mip = NULL;
 }
 
 void slc_state_release(slc_manager *m, struct slc_texture *t)
 {
     /* Nothing held and nothing left: the last map was empty, which is what no state means. */
-    if (t->state && t->held_regions == 0 && t->regular_nodes == 0)
+    if (t->nodes && t->held_regions == 0 && t->regular_nodes == 0)
         slc_state_destroy(m, t);
 }
 
@@ -94,27 +173,27 @@ static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns
     if (t->hits + t->returns >= (regions < 2048 ? 4096 : 2 * (uint64_t)regions)) {
         t->hits /= 2;
         t->returns /= 2;
-        memcpy(t->state->known, t->state->least, slc_padded(regions));
-        t->state->has_same_hits = false;
+        memcpy(t->history->known, t->history->least, slc_padded(regions));
+        t->history->has_same_hits = false;
     }
 }
 
 /** The hits of a map like the last one. */
 static uint32_t same_hits(const struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
-    if (s->has_same_hits)
-        return s->same_hits;
-    s->has_same_hits = true;
-    s->same_hits = 0;
+    if (h->has_same_hits)
+        return h->same_hits;
+    h->has_same_hits = true;
+    h->same_hits = 0;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
-        slc_block asked = slc_load_block(s->asked + i);
-        uint32_t other = slc_block_difference(asked, slc_load_block(s->known + i));
-        s->same_hits += slc_count_bits(slc_block_difference(asked, untouched) & ~other);
+        slc_block asked = slc_load_block(h->asked + i);
+        uint32_t other = slc_block_difference(asked, slc_load_block(h->known + i));
+        h->same_hits += slc_count_bits(slc_block_difference(asked, untouched) & ~other);
     }
-    return s->same_hits;
+    return h->same_hits;
 }
 
 static uint32_t add_weights(uint32_t a, uint32_t b)
@@ -130,7 +209,14 @@ static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
 {
     if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return 0;
-    return add_weights(t->state->absence, slc_max_u32(t->held_regions, 1));
+    return add_weights(t->history->absence, slc_max_u32(t->held_regions, 1));
+}
+
+/** log2 of the regions along the side of a tile of level 0; 0 where they do not fit. */
+static uint32_t region_shift(const struct slc_texture *t)
+{
+    uint8_t x = t->shape->region_shift_x, y = t->shape->region_shift_y;
+    return x == SLC_UNALIGNED || y == SLC_UNALIGNED ? 0 : slc_min_u32(slc_min_u32(x, y), 8);
 }
 
 /** The least level that a span no longer keeps: a tile of level w is seen by 4^(w + s) regions. */
@@ -143,11 +229,11 @@ static uint8_t first_unbelieved(uint32_t newer, uint32_t needed, uint32_t region
 }
 
 /** The least of a block over all spans. */
-static slc_block least_of_spans(const struct slc_texture_state *s, size_t i)
+static slc_block least_of_spans(const struct slc_history *h, size_t i)
 {
-    slc_block least = slc_load_block(s->spans[0].map + i);
-    for (uint32_t k = 1; k < s->span_count; k++)
-        least = slc_min_block(least, slc_load_block(s->spans[k].map + i));
+    slc_block least = slc_load_block(h->spans[0].map + i);
+    for (uint32_t k = 1; k < h->span_count; k++)
+        least = slc_min_block(least, slc_load_block(h->spans[k].map + i));
     return least;
 }
 
@@ -158,7 +244,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     if (!slc_block_difference(before, least))
         return;
-    slc_store_block(t->state->least + i, least);
+    slc_store_block(t->history->least + i, least);
     slc_range_add(changed, (uint32_t)i, (uint32_t)i + SLC_BLOCK);
     t->held_regions += slc_count_bits(slc_block_difference(least, untouched));
     t->held_regions -= slc_count_bits(slc_block_difference(before, untouched));
@@ -168,7 +254,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
 static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t below,
                       struct slc_range *changed)
 {
-    const struct slc_texture_state *s = t->state;
+    const struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block limit = slc_block_of(below), untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     slc_block rest = untouched;
@@ -180,22 +266,22 @@ static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t belo
         slc_store_block(span->map + i, left);
         rest &= left;
         /* most of it stands in other spans too, and then nothing is to be searched */
-        slc_block before = slc_load_block(s->least + i);
+        slc_block before = slc_load_block(h->least + i);
         slc_block lost = gone & slc_equal_block(v, before) & ~slc_equal_block(v, untouched);
         if (slc_block_difference(lost, slc_block_of(0)))
-            set_least(t, i, before, least_of_spans(s, i), changed);
+            set_least(t, i, before, least_of_spans(h, i), changed);
     }
     span->below = below;
     span->empty = slc_block_difference(rest, untouched) == 0;
 }
 
-static void drop_spans(struct slc_texture_state *s, uint32_t count)
+static void drop_spans(struct slc_history *h, uint32_t count)
 {
     struct slc_span old[SLC_MAX_SPANS];
-    memcpy(old, s->spans, sizeof old);
+    memcpy(old, h->spans, sizeof old);
     for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
-        s->spans[i] = old[(i + count) % SLC_MAX_SPANS];
-    s->span_count -= count;
+        h->spans[i] = old[(i + count) % SLC_MAX_SPANS];
+    h->span_count -= count;
 }
 
 /** What a call knows when it decides about older maps. */
@@ -203,46 +289,31 @@ struct now {
     uint64_t time, timeout;
     uint32_t absence; ///< misses that the last maps, all of them empty, stand for
     uint32_t needed;  ///< maps to believe
-    bool starved;     ///< slots are short: what two maps missed has to make room sooner
 };
 
-static bool is_over(const struct slc_span *span, const struct now *now, uint32_t newer)
+/** Lets go of what is too old and believed to be gone. */
+static void lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
 {
-    uint64_t age = now->time - span->end;
-    uint64_t patience = now->timeout - now->timeout / 4;
-    return age >= now->timeout || (now->starved && newer >= 2 && age >= patience);
-}
-
-/** Lets go of what is too old and believed to be gone. Returns whether there was anything. */
-static bool lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
-{
-    struct slc_texture_state *s = t->state;
-    uint32_t shift = slc_min_u32(t->region_shift_x, t->region_shift_y);
-    if (t->region_shift_x == SLC_UNALIGNED || t->region_shift_y == SLC_UNALIGNED)
-        shift = 0;
-    uint32_t newer = 1, dropped = 0;
-    bool thinned = false;
-    for (uint32_t i = s->span_count; i-- > 0;) {
-        struct slc_span *span = &s->spans[i];
+    struct slc_history *h = t->history;
+    uint32_t shift = region_shift(t), newer = 1, dropped = 0;
+    for (uint32_t i = h->span_count; i-- > 0;) {
+        struct slc_span *span = &h->spans[i];
         uint32_t misses = slc_max_u32(newer, now->absence);
-        bool over = is_over(span, now, misses);
-        uint8_t below = first_unbelieved(misses, now->needed, slc_min_u32(shift, 8));
-        if (over && below < span->below) {
+        bool over = now->time - span->end >= now->timeout;
+        uint8_t below = first_unbelieved(misses, now->needed, shift);
+        if (over && below < span->below)
             thin_span(t, span, below, changed);
-            thinned = true;
-        }
         dropped = over && span->empty ? dropped + 1 : 0;
         newer = add_weights(newer, span->weight);
     }
-    drop_spans(s, dropped); /* the oldest ones */
-    return thinned;
+    drop_spans(h, dropped); /* the oldest ones */
 }
 
 /** Takes the map into the newest span or a new one. Returns whether it is new. */
-static bool join_span(struct slc_texture_state *s, const struct now *now)
+static bool join_span(struct slc_history *h, const struct now *now)
 {
-    struct slc_span *newest = s->span_count ? &s->spans[s->span_count - 1] : NULL;
-    if (newest && (s->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
+    struct slc_span *newest = h->span_count ? &h->spans[h->span_count - 1] : NULL;
+    if (newest && (h->span_count == SLC_MAX_SPANS || now->time - newest->begin < now->timeout / 4 ||
                    slc_max_u32(newest->weight, now->absence) < now->needed / 4)) {
         newest->end = now->time;
         newest->weight = add_weights(newest->weight, 1);
@@ -250,7 +321,7 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
         newest->empty = false;
         return false;
     }
-    newest = &s->spans[s->span_count++];
+    newest = &h->spans[h->span_count++];
     newest->begin = newest->end = now->time;
     newest->weight = 1;
     newest->below = SLUICE_MIP_UNTOUCHED;
@@ -262,10 +333,10 @@ static bool join_span(struct slc_texture_state *s, const struct now *now)
 
 static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
-    uint8_t *asked = s->asked, *kept = s->least, *span = s->spans[s->span_count - 1].map;
-    s->has_same_hits = false;
+    uint8_t *asked = h->asked, *kept = h->least, *span = h->spans[h->span_count - 1].map;
+    h->has_same_hits = false;
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED), finest = untouched;
     for (size_t i = 0; i < padded; i += SLC_BLOCK) {
         slc_block next = slc_load_block(map + i);
@@ -277,38 +348,37 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
             continue;
         }
         slc_store_block(span + i, fresh ? next : slc_min_block(slc_load_block(span + i), next));
-        slc_store_block(s->known + i, slc_min_block(slc_load_block(s->known + i), next));
+        slc_store_block(h->known + i, slc_min_block(slc_load_block(h->known + i), next));
         slc_block before = slc_load_block(kept + i);
         set_least(t, i, before, slc_min_block(before, next), changed);
     }
-    s->asked_least = SLUICE_MIP_UNTOUCHED;
+    h->asked_least = SLUICE_MIP_UNTOUCHED;
     for (uint32_t i = 0; i < SLC_BLOCK; i++)
-        s->asked_least = finest[i] < s->asked_least ? finest[i] : s->asked_least;
+        h->asked_least = finest[i] < h->asked_least ? finest[i] : h->asked_least;
 }
 
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
                                    uint64_t timeout)
 {
-    struct slc_texture_state *s = t->state;
-    const uint8_t *map = s->next ? s->next : s->asked;
-    if (s->next)
-        count_returns(t, s->hits, s->returns);
+    struct slc_history *h = t->history;
+    const uint8_t *map = h->next ? h->next : h->asked;
+    if (h->next)
+        count_returns(t, h->hits, h->returns);
     else
         count_returns(t, same_hits(t), 0);
-    s->absence = absence(t, map);
-    struct now now = {.time = time,
-                      .timeout = timeout,
-                      .absence = s->absence,
-                      .needed = maps_to_believe(m, t),
-                      .starved = m->starved};
+    h->absence = absence(t, map);
+    struct now now = {
+        .time = time, .timeout = timeout, .absence = h->absence, .needed = maps_to_believe(m, t)};
     struct slc_range changed = {0, 0};
-    bool thinned = lapse(t, &now, &changed);
-    bool fresh = join_span(s, &now);
-    /* a span that was thinned may have lost what a map like the last one asks for again */
-    if (!s->next && fresh && !thinned && s->has_same_hits)
-        memcpy(s->spans[s->span_count - 1].map, map, slc_padded(slc_region_count(t)));
-    else if (s->next || fresh || thinned)
+    lapse(t, &now, &changed);
+    /* a map like the last one is in the newest span, unless that has just lost it */
+    bool has_map =
+        !h->next && h->span_count > 0 && h->spans[h->span_count - 1].below == SLUICE_MIP_UNTOUCHED;
+    bool fresh = join_span(h, &now);
+    if (!has_map)
         merge(t, map, fresh, &changed);
+    else if (fresh)
+        memcpy(h->spans[h->span_count - 1].map, map, slc_padded(slc_region_count(t)));
     return changed;
 }
 
@@ -340,24 +410,53 @@ static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
     return false;
 }
 
+/** Whether the last map asks for a level in a region under tiles of it; `r` is inclusive. */
+static bool is_asked_in(const struct slc_texture *t, uint32_t level, struct slc_tile_range r)
+{
+    const struct slc_shape *s = t->shape;
+    const struct slc_level *grid = &s->levels[level];
+    const SluiceStreamedTextureDesc *d = &s->desc;
+    uint32_t x0, x1, y0, y1, inside;
+    if (!t->history || t->history->asked_least > level)
+        return false; /* as where the camera has left, and the area under a tile can be large */
+    regions_under(r.x0, level, r.x0 + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
+                  s->feedback_width, &x0, &x1);
+    regions_under(r.y0, level, r.y0 + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
+                  s->feedback_height, &y0, &y1);
+    if (r.x1 > r.x0)
+        regions_under(r.x1, level, r.x1 + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
+                      s->feedback_width, &inside, &x1);
+    if (r.y1 > r.y0)
+        regions_under(r.y1, level, r.y1 + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
+                      s->feedback_height, &inside, &y1);
+    for (uint32_t y = y0; y < y1; y++)
+        if (any_at_most(t->history->asked + (size_t)y * s->feedback_width + x0, x1 - x0, level))
+            return true;
+    return false;
+}
+
 bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
-    if (n->tile >= t->regular_tile_count)
+    if (n->tile >= t->shape->regular_tile_count)
         return true;
-    const SluiceStreamedTextureDesc *d = &t->desc;
     struct slc_place p = slc_node_place(t, n);
-    if (t->state->asked_least > p.level)
-        return false; /* as where the camera has left, and the area under a tile can be large */
-    const struct slc_level *grid = &t->levels[p.level];
-    uint32_t x0, x1, y0, y1;
-    regions_under(p.x, p.level, p.x + 1 == grid->width, d->tileWidth, d->feedbackRegionWidth,
-                  t->feedback_width, &x0, &x1);
-    regions_under(p.y, p.level, p.y + 1 == grid->height, d->tileHeight, d->feedbackRegionHeight,
-                  t->feedback_height, &y0, &y1);
-    for (uint32_t y = y0; y < y1; y++)
-        if (any_at_most(t->state->asked + (size_t)y * t->feedback_width + x0, x1 - x0, p.level))
-            return true;
-    return false;
+    return is_asked_in(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+}
+
+bool slc_is_seen(const slc_manager *m, uint32_t node)
+{
+    const struct slc_node *n = slc_node_at(m, node);
+    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    struct slc_place p = slc_node_place(t, n);
+    /* one map misses nine tiles by chance as rarely as nine maps miss one; half of what is needed
+     * to forget for good will do */
+    if (first_unbelieved(18, maps_to_believe(m, t), region_shift(t)) > p.level)
+        return true;
+    const struct slc_level *grid = &t->shape->levels[p.level];
+    return is_asked_in(t, p.level,
+                       (struct slc_tile_range){p.x > 0 ? p.x - 1 : 0, p.y > 0 ? p.y - 1 : 0,
+                                               slc_min_u32(p.x + 1, grid->width - 1),
+                                               slc_min_u32(p.y + 1, grid->height - 1)});
 }

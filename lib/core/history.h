@@ -6,11 +6,20 @@
 
 static inline size_t slc_region_count(const struct slc_texture *t)
 {
-    return (size_t)t->feedback_width * t->feedback_height;
+    return t->shape->region_count;
 }
 
-/** Makes the per-tile and per-region memory if it is not there yet, and room for one more span. */
+/** Makes the per-tile memory if it is not there yet. */
 SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t);
+/**
+ * Makes state and history if they are not there yet, and room for one more span; a history that has
+ * not just so many users becomes a copy of the texture's own.
+ */
+SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t users);
+/** The texture has a state without history, and the other one's shape. */
+void slc_history_share(struct slc_texture *t, struct slc_history *history);
+/** Leaves the texture with an empty one. */
+void slc_history_drop(slc_manager *m, struct slc_texture *t);
 
 /** Of something counted from 0. */
 struct slc_range {
@@ -28,8 +37,8 @@ static inline void slc_range_add(struct slc_range *r, uint32_t first, uint32_t e
 }
 
 /**
- * Merges state->next into the history and counts the regions that hold something. Returns the
- * range of regions, whole blocks, in which state->least has changed.
+ * Merges history->next into the history and counts the regions that hold something. Returns the
+ * range of regions, whole blocks, in which history->least has changed.
  */
 struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
                                    uint64_t timeout);

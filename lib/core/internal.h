@@ -70,20 +70,22 @@ struct slc_span {
     uint8_t *map;        ///< [padded regions], owned; stays for reuse when the span is dropped
 };
 
-/** Per-tile and per-region memory, made when a texture is first sampled. One allocation. */
-struct slc_texture_state {
+/**
+ * What the maps of a texture asked for. One allocation, but for the spans' maps. Textures of a set
+ * that have the same shape and have always got the same maps have one together.
+ */
+struct slc_history {
     size_t size;                          ///< bytes of the allocation
+    uint32_t users;                       ///< textures
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
     uint32_t bias;       ///< of the manager when `under` was computed
     uint32_t absence;    ///< misses that the last maps stand for, as none saw anything
     uint8_t asked_least; ///< of `asked`
-    uint32_t *nodes;     ///< [regular tiles]: node index, 0: FREE
     uint8_t *under; ///< [regular tiles + a block]: the least level held in a region under the tile
     uint8_t *asked; ///< [padded regions]: what the last map asked for (a, not w)
     uint8_t *known; ///< [padded regions]: the least of many maps, lapsed ones too; for learning
     uint8_t *least; ///< [padded regions]: the least over all spans
-    uint8_t *min_mip; ///< [minMipHeight][minMipWidth]
     bool has_same_hits;
     uint32_t same_hits; ///< of a map like the last one, if they were counted
     /* The map being merged: */
@@ -91,38 +93,53 @@ struct slc_texture_state {
     uint32_t hits, returns; ///< what slc_texture's will grow by
 };
 
+/** What textures of one description have in common; counted references. See shape.c. */
+struct slc_shape {
+    uint32_t users;
+    uint32_t hash;
+    struct slc_shape *next; ///< in its bucket
+    SluiceStreamedTextureDesc desc;
+    uint32_t regular_tile_count, tile_count;
+    uint32_t feedback_width, feedback_height, region_count;
+    uint32_t min_mip_width, min_mip_height;
+    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
+    size_t work_size;                       ///< see wants.h
+    struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
+};
+
 struct slc_texture {
-    /* What every answer and every map touches comes first. */
-    struct slc_texture_state *state; ///< owned, NULL until sampled
+    /* What every answer and every map touches comes first: it is one cache line. */
+    uint32_t *nodes;  ///< [regular tiles]: node index, 0: FREE; owned, NULL until sampled
+    uint8_t *min_mip; ///< [minMipHeight][minMipWidth], behind the nodes
+    struct slc_history *history; ///< may be shared; NULL: empty
+    struct slc_shape *shape;
     uint32_t generation;
     uint32_t index;
-    uint32_t regular_tile_count, tile_count;
     bool live;
-    bool has_map;                           ///< a map was merged; without a state it was empty
-    bool dirty;                             ///< in the manager's list of MinMip updates
-    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
-    uint32_t packed_resident;               ///< packed tiles MAPPED or STANDBY
-    uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1; ///< exclusive ends
-    uint32_t dirty_prev, dirty_next;                 ///< indices, SLC_NONE
-    uint32_t regular_nodes;                          ///< nodes of regular tiles
+    bool has_map;             ///< a map was merged; without a history it was empty
+    bool dirty;               ///< in the manager's list of MinMip updates
+    bool visited;             ///< in the list of those that hold something
+    uint32_t packed_resident; ///< packed tiles MAPPED or STANDBY
+    uint32_t regular_nodes;   ///< nodes of regular tiles
     uint32_t requested_count;
-    uint32_t min_mip_width, min_mip_height;
-    uint32_t feedback_width, feedback_height;
-    uint32_t held_regions;           ///< that hold anything
-    uint64_t map_time;               ///< of the last map
-    uint64_t interval, timeout;      ///< between the last two maps; of the last one
-    uint32_t hits, returns;          ///< how reliable maps are; see history.c
-    bool visited;                    ///< in the list of those that hold something:
-    uint32_t visit_prev, visit_next; ///< indices, SLC_NONE
-    uint32_t primary;                ///< index, SLC_NONE
-    uint32_t first_follower, last_follower, next_follower; ///< indices, SLC_NONE
-    uint32_t *packed_nodes; ///< owned, [packedTileCount], NULL if there are none
-    SluiceStreamedTextureDesc desc;
-    struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
+    uint32_t held_regions;   ///< that hold anything
+    uint32_t first_follower; ///< index, SLC_NONE, as those below
+
+    uint32_t resident_tiles; ///< regular ones, MAPPED or STANDBY
+    uint32_t hidden_tiles;   ///< of these: some coarser tile over it is not resident
+    uint32_t dirty_x0, dirty_y0, dirty_x1, dirty_y1; ///< exclusive ends
+    uint32_t dirty_prev, dirty_next;
+    uint32_t visit_prev, visit_next;
+    uint32_t last_follower, next_follower, primary;
+    uint32_t hits, returns;     ///< how reliable maps are; see history.c
+    uint32_t *packed_nodes;     ///< owned, [packedTileCount], NULL if there are none
+    uint64_t map_time;          ///< of the last map
+    uint64_t interval, timeout; ///< between the last two maps; of the last one
 };
 
 #define SLC_TEXTURES_PER_CHUNK 64
 #define SLC_NODES_PER_CHUNK 1024
+#define SLC_SHAPE_BUCKETS 256
 
 struct slc_given_up {
     SluiceTextureId texture_id;
@@ -143,6 +160,8 @@ struct slc_round {
     uint32_t maps;   ///< merged in it
     uint64_t began;  ///< the next sequence when it began
     uint64_t waited; ///< requests before this one have waited for a whole round
+    uint32_t count;
+    uint64_t began_long, waited_long; ///< the same, for some rounds
 };
 
 struct SluiceStreamedTextureManager {
@@ -154,7 +173,8 @@ struct SluiceStreamedTextureManager {
     struct slc_observer observer;
     bool used; ///< a call was made that changed something
 
-    struct slc_texture **chunks; ///< owned, [chunk_count], owned chunks
+    struct slc_shape *shapes[SLC_SHAPE_BUCKETS]; ///< by hash, owned lists
+    struct slc_texture **chunks;                 ///< owned, [chunk_count], owned chunks
     uint32_t chunk_count, chunk_room;
     uint32_t texture_end;   ///< indices ever used
     uint32_t texture_count; ///< live
@@ -238,6 +258,8 @@ uint32_t slc_reserved_slots(const slc_manager *m);
 /* history.c */
 /** Whether the texture's last map asks for the tile; packed tiles always are. */
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
+/** The same for a regular tile or one of its neighbours: chance hides one, not all of them. */
+bool slc_is_seen(const slc_manager *m, uint32_t node);
 
 /* bias.c */
 /** How many tiles may be wanted: a multiple of the slots that there can be, as far as is known. */
@@ -250,9 +272,14 @@ void slc_update_bias(slc_manager *m, uint64_t limit);
 /** Writes what the global bias adds in each region. */
 void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *map);
 
+/* shape.c */
+SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *desc,
+                            struct slc_shape **shape);
+void slc_shape_give(slc_manager *m, struct slc_shape *shape);
+
 /* layout.c */
-SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_texture *t);
-void slc_write_layout(const struct slc_texture *t, SluiceStreamedTextureLayout *layout);
+SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);
+void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *layout);
 struct slc_place {
     uint32_t level, x, y;
 };
@@ -260,15 +287,16 @@ struct slc_place {
 struct slc_place slc_tile_place(const struct slc_texture *t, uint32_t tile);
 static inline uint32_t slc_tile_index(const struct slc_texture *t, struct slc_place p)
 {
-    return t->levels[p.level].first_tile + p.y * t->levels[p.level].width + p.x;
+    return t->shape->levels[p.level].first_tile + p.y * t->shape->levels[p.level].width + p.x;
 }
 /** The place of a tile whose level is known; regularMipCount for packed ones. */
 static inline struct slc_place slc_place_at(const struct slc_texture *t, uint32_t tile,
                                             uint32_t level)
 {
-    if (tile >= t->regular_tile_count)
-        return (struct slc_place){t->desc.regularMipCount, tile - t->regular_tile_count, 0};
-    const struct slc_level *grid = &t->levels[level];
+    if (tile >= t->shape->regular_tile_count)
+        return (struct slc_place){t->shape->desc.regularMipCount,
+                                  tile - t->shape->regular_tile_count, 0};
+    const struct slc_level *grid = &t->shape->levels[level];
     uint32_t i = tile - grid->first_tile;
     return (struct slc_place){level, i % grid->width, i / grid->width};
 }
@@ -283,9 +311,9 @@ struct slc_tile_range {
 /** Where a tile keeps its node; NULL for a regular one without a state. */
 static inline uint32_t *slc_node_cell(const struct slc_texture *t, uint32_t tile)
 {
-    if (tile >= t->regular_tile_count)
-        return &t->packed_nodes[tile - t->regular_tile_count];
-    return t->state ? &t->state->nodes[tile] : NULL;
+    if (tile >= t->shape->regular_tile_count)
+        return &t->packed_nodes[tile - t->shape->regular_tile_count];
+    return t->nodes ? &t->nodes[tile] : NULL;
 }
 static inline uint32_t slc_find_node(const struct slc_texture *t, uint32_t tile)
 {
@@ -303,6 +331,20 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                         uint32_t level, uint32_t need);
 void slc_tile_unwanted(slc_manager *m, uint32_t node);
+/** A REQUESTED tile, which has got a slot, becomes ALLOCATED. */
+void slc_tile_handed_out(slc_manager *m, uint32_t node);
+/** An ALLOCATED tile becomes MAPPED. */
+void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node);
+/** Regular tiles of one level on their way between MAPPED and STANDBY. */
+struct slc_run {
+    uint32_t first, last, next; ///< nodes; `next` followed the last one
+    uint32_t count, level;
+    bool wanted;
+};
+/** The tile's move joins the run or begins the next one; false, and nothing, if it is another. */
+bool slc_run_add(slc_manager *m, struct slc_run *run, uint32_t node, uint32_t level, bool wanted);
+/** The moves of the run are made. */
+void slc_run_end(slc_manager *m, struct slc_run *run);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level);
 /** Changes the state and moves the node to the end of that state's list. */
@@ -342,7 +384,7 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
 /** The tiles of level 0 under a tile, which are the texels of the map. */
 struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p);
 /** That is going to be called for a tile. */
-void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile);
+void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n);
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t);
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t);
 /** What the map is where no regular tile is resident. */

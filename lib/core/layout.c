@@ -27,55 +27,56 @@ static uint8_t region_shift(uint32_t region, uint32_t tile)
     return (uint64_t)region << shift == tile ? shift : SLC_UNALIGNED;
 }
 
-SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_texture *t)
+SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s)
 {
     SluiceResult result = check_desc(desc);
     if (result != SLUICE_SUCCESS)
         return result;
-    t->desc = *desc;
-    if (t->desc.feedbackRegionWidth == 0)
-        t->desc.feedbackRegionWidth = desc->tileWidth;
-    if (t->desc.feedbackRegionHeight == 0)
-        t->desc.feedbackRegionHeight = desc->tileHeight;
-    t->feedback_width = slc_div_up_u32(desc->width, t->desc.feedbackRegionWidth);
-    t->feedback_height = slc_div_up_u32(desc->height, t->desc.feedbackRegionHeight);
+    s->desc = *desc;
+    if (s->desc.feedbackRegionWidth == 0)
+        s->desc.feedbackRegionWidth = desc->tileWidth;
+    if (s->desc.feedbackRegionHeight == 0)
+        s->desc.feedbackRegionHeight = desc->tileHeight;
+    s->feedback_width = slc_div_up_u32(desc->width, s->desc.feedbackRegionWidth);
+    s->feedback_height = slc_div_up_u32(desc->height, s->desc.feedbackRegionHeight);
 
-    t->region_shift_x = region_shift(t->desc.feedbackRegionWidth, desc->tileWidth);
-    t->region_shift_y = region_shift(t->desc.feedbackRegionHeight, desc->tileHeight);
+    s->region_shift_x = region_shift(s->desc.feedbackRegionWidth, desc->tileWidth);
+    s->region_shift_y = region_shift(s->desc.feedbackRegionHeight, desc->tileHeight);
 
     uint64_t tiles = 0; /* at most 2 * 2^40 regular ones, so it fits */
     for (uint32_t l = 0; l < desc->regularMipCount; l++) {
         uint64_t width = slc_div_up_u32(slc_mip_size(desc->width, l), desc->tileWidth);
         uint64_t height = slc_div_up_u32(slc_mip_size(desc->height, l), desc->tileHeight);
-        t->levels[l] = (struct slc_level){(uint32_t)width, (uint32_t)height, (uint32_t)tiles};
+        s->levels[l] = (struct slc_level){(uint32_t)width, (uint32_t)height, (uint32_t)tiles};
         tiles += width * height;
     }
     uint64_t all = tiles + desc->packedTileCount;
     if (all > SLUICE_MAX_TILES_PER_TEXTURE ||
-        (uint64_t)t->feedback_width * t->feedback_height > SLUICE_MAX_TILES_PER_TEXTURE)
+        (uint64_t)s->feedback_width * s->feedback_height > SLUICE_MAX_TILES_PER_TEXTURE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
-    t->regular_tile_count = (uint32_t)tiles;
-    t->tile_count = (uint32_t)all;
-    t->min_mip_width = desc->regularMipCount ? t->levels[0].width : 1;
-    t->min_mip_height = desc->regularMipCount ? t->levels[0].height : 1;
+    s->region_count = s->feedback_width * s->feedback_height;
+    s->regular_tile_count = (uint32_t)tiles;
+    s->tile_count = (uint32_t)all;
+    s->min_mip_width = desc->regularMipCount ? s->levels[0].width : 1;
+    s->min_mip_height = desc->regularMipCount ? s->levels[0].height : 1;
     return SLUICE_SUCCESS;
 }
 
-void slc_write_layout(const struct slc_texture *t, SluiceStreamedTextureLayout *layout)
+void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *layout)
 {
     *layout = (SluiceStreamedTextureLayout){
-        .desc = t->desc,
-        .regularTileCount = t->regular_tile_count,
-        .tileCount = t->tile_count,
-        .feedbackWidth = t->feedback_width,
-        .feedbackHeight = t->feedback_height,
-        .minMipWidth = t->min_mip_width,
-        .minMipHeight = t->min_mip_height,
+        .desc = s->desc,
+        .regularTileCount = s->regular_tile_count,
+        .tileCount = s->tile_count,
+        .feedbackWidth = s->feedback_width,
+        .feedbackHeight = s->feedback_height,
+        .minMipWidth = s->min_mip_width,
+        .minMipHeight = s->min_mip_height,
     };
-    for (uint32_t l = 0; l < t->desc.regularMipCount; l++) {
-        layout->levelWidthInTiles[l] = t->levels[l].width;
-        layout->levelHeightInTiles[l] = t->levels[l].height;
-        layout->levelFirstTile[l] = t->levels[l].first_tile;
+    for (uint32_t l = 0; l < s->desc.regularMipCount; l++) {
+        layout->levelWidthInTiles[l] = s->levels[l].width;
+        layout->levelHeightInTiles[l] = s->levels[l].height;
+        layout->levelFirstTile[l] = s->levels[l].first_tile;
     }
 }
 
@@ -84,20 +85,22 @@ SluiceResult sluiceGetStreamedTextureLayout(const SluiceStreamedTextureDesc *pDe
 {
     if (!pDesc || !pLayout)
         return SLUICE_ERROR_NULL_POINTER;
-    struct slc_texture t = {0};
-    SluiceResult result = slc_layout_texture(pDesc, &t);
+    struct slc_shape shape = {0};
+    SluiceResult result = slc_layout_texture(pDesc, &shape);
     if (result == SLUICE_SUCCESS)
-        slc_write_layout(&t, pLayout);
+        slc_write_layout(&shape, pLayout);
     return result;
 }
 
 struct slc_place slc_tile_place(const struct slc_texture *t, uint32_t tile)
 {
-    if (tile >= t->regular_tile_count)
-        return (struct slc_place){t->desc.regularMipCount, tile - t->regular_tile_count, 0};
+    if (tile >= t->shape->regular_tile_count)
+        return (struct slc_place){t->shape->desc.regularMipCount,
+                                  tile - t->shape->regular_tile_count, 0};
     uint32_t l = 0;
-    while (l + 1 < t->desc.regularMipCount && tile >= t->levels[l + 1].first_tile)
+    while (l + 1 < t->shape->desc.regularMipCount && tile >= t->shape->levels[l + 1].first_tile)
         l++;
-    tile -= t->levels[l].first_tile;
-    return (struct slc_place){l, tile % t->levels[l].width, tile / t->levels[l].width};
+    tile -= t->shape->levels[l].first_tile;
+    return (struct slc_place){l, tile % t->shape->levels[l].width,
+                              tile / t->shape->levels[l].width};
 }

@@ -52,7 +52,7 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_texture *scope, u
                               bool *refused)
 {
     struct slc_node *n = slc_node_at(m, node);
-    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count;
     uint64_t kept = slc_reserved_slots(m) + (scope ? owed_slots(m, n->level) : 0);
     if ((packed || m->heaps.free_total > kept) &&
         slc_tile_heaps_take(&m->heaps, node, &n->heap, &n->slot))
@@ -97,7 +97,7 @@ static int by_request_order(const void *a, const void *b)
 static struct request_key key_of(const slc_manager *m, const struct slc_texture *t, uint32_t node)
 {
     const struct slc_node *n = slc_node_at(m, node);
-    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     return (struct request_key){class << 8 | n->need, node, n->order};
 }
 
@@ -117,7 +117,7 @@ static uint32_t search_requests(const slc_manager *m, const struct slc_texture *
                                 struct request_key *keys)
 {
     uint32_t count = 0;
-    for (uint32_t tile = 0; tile < t->tile_count && count < t->requested_count; tile++) {
+    for (uint32_t tile = 0; tile < t->shape->tile_count && count < t->requested_count; tile++) {
         uint32_t node = slc_find_node(t, tile);
         if (node && slc_node_at(m, node)->state == SLUICE_TILE_STATE_REQUESTED)
             keys[count++] = key_of(m, t, node);
@@ -132,7 +132,7 @@ static struct request_key *sort_requests(const slc_manager *m, const struct slc_
     struct request_key *keys = slc_alloc(&m->cb, t->requested_count, sizeof *keys);
     if (!keys)
         return NULL;
-    bool few = m->requests.count < t->tile_count;
+    bool few = m->requests.count < t->shape->tile_count;
     uint32_t count = few ? pick_requests(m, t, keys) : search_requests(m, t, keys);
     (void)count;
     assert(count == t->requested_count);
@@ -172,49 +172,95 @@ static void next_request(const slc_manager *m, struct request_walk *w)
         w->node = slc_next_request(m, w->node);
 }
 
-/** The finest wanted tile that is finer than `level`, of these the one that is mapped longest. */
-static uint32_t finest_mapped(const slc_manager *m, uint32_t level)
+/** Tiles that one call looks at for one that is not seen any more. */
+enum { MAX_LOOKED_FOR = 1024 };
+
+/** Where displacing is: each tile is looked at once. */
+struct displacing {
+    uint32_t looks;
+    uint32_t left[SLUICE_MAX_MIP_LEVELS]; ///< of m->mapped
+};
+
+static struct displacing begin_displacing(const slc_manager *m)
 {
-    for (uint32_t l = 0; l < level && l < SLUICE_MAX_MIP_LEVELS; l++)
+    struct displacing d = {.looks = MAX_LOOKED_FOR};
+    for (uint32_t l = 0; l < SLUICE_MAX_MIP_LEVELS; l++)
+        d.left[l] = m->mapped[l].count;
+    return d;
+}
+
+/**
+ * A wanted tile of a level below `end` that the last map does not show; 0 if none is found. Tiles
+ * that are seen go to the end of their list, so all get their turn.
+ */
+static uint32_t unseen_mapped(slc_manager *m, struct displacing *d, uint32_t end)
+{
+    for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
+        for (struct slc_list *list = &m->mapped[l]; d->left[l] && d->looks; d->looks--) {
+            uint32_t node = list->head;
+            d->left[l]--;
+            if (!slc_is_seen(m, node))
+                return node;
+            slc_list_remove(m, list, node);
+            slc_list_append(m, list, node);
+        }
+    return 0;
+}
+
+/** The finest wanted tile of a level below `end`, the first in its list; 0 if there is none. */
+static uint32_t finest_mapped(const slc_manager *m, uint32_t end)
+{
+    for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
         if (m->mapped[l].head)
             return m->mapped[l].head;
     return 0;
 }
 
+static void displace(slc_manager *m, struct displacing *d, uint32_t node)
+{
+    uint32_t level = slc_node_at(m, node)->level;
+    slc_node_displace(m, node);
+    d->left[level] = slc_min_u32(d->left[level], m->mapped[level].count);
+}
+
 /** A wanted tile that may make room for the request; 0 if there is none. */
-static uint32_t displaceable_for(const slc_manager *m, uint32_t request)
+static uint32_t displaceable_for(slc_manager *m, struct displacing *d, uint32_t request)
 {
     const struct slc_node *n = slc_node_at(m, request);
-    if (n->tile >= slc_texture_at(m, n->texture)->regular_tile_count)
+    if (n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count)
         return finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
-    uint32_t gap = n->order < m->round.waited ? 0 : 1;
-    return n->level > gap ? finest_mapped(m, n->level - gap) : 0;
+    bool waited = n->order < m->round.waited, waited_long = n->order < m->round.waited_long;
+    uint32_t node = unseen_mapped(m, d, n->level + waited);
+    uint32_t gap = waited_long ? 0 : waited ? 1 : 2;
+    return node ? node : n->level > gap ? finest_mapped(m, n->level - gap) : 0;
 }
 
 /**
  * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
- * what comes later would not be seen. It ends, because each exchange is for something coarser. For
- * one level it is not worth the upload unless the request has waited for a whole round of maps.
+ * what comes later would not be seen. It ends, because each exchange is for something coarser or
+ * takes a tile that is not seen. A tile that is seen is not worth the upload for one or two levels
+ * unless the request has waited for rounds of maps.
  */
 static void displace_for(slc_manager *m, struct request_walk walk, uint32_t unserved)
 {
+    struct displacing d = begin_displacing(m);
     uint64_t coming = (uint64_t)m->unmapping.count + m->retiring.count;
     uint64_t reserved = slc_reserved_slots(m), free_slots = m->heaps.free_total;
     for (; free_slots + coming < reserved; coming++) {
         uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
         if (!victim)
             return;
-        slc_node_displace(m, victim);
+        displace(m, &d, victim);
     }
     coming -= free_slots < reserved ? reserved - free_slots : 0;
     for (uint32_t passed = 0; walk.node && unserved && passed < MAX_PASSED_OVER; passed++) {
         if (slc_is_asked_for(m, walk.node)) {
             unserved--;
-            uint32_t victim = coming ? 0 : displaceable_for(m, walk.node);
+            uint32_t victim = coming ? 0 : displaceable_for(m, &d, walk.node);
             if (!coming && !victim)
                 return;
             if (victim)
-                slc_node_displace(m, victim);
+                displace(m, &d, victim);
             coming -= coming > 0;
         }
         next_request(m, &walk);
@@ -250,7 +296,7 @@ static void prefetch_request(const slc_manager *m, uint32_t node)
     const struct slc_node *n = slc_node_at(m, node);
     const struct slc_texture *t = slc_texture_at(m, n->texture);
     __builtin_prefetch(t);
-    __builtin_prefetch(&t->levels[n->level]);
+    __builtin_prefetch(&t->shape->levels[n->level]);
     __builtin_prefetch(slc_node_at(m, n->next));
 }
 
@@ -270,7 +316,7 @@ static bool may_prefetch(const slc_manager *m)
 static SluiceResult prefetch_level(slc_manager *m, struct slc_texture *t, uint32_t level,
                                    uint32_t room, uint32_t *written, SluiceTile *tiles)
 {
-    const struct slc_level *grid = &t->levels[level];
+    const struct slc_level *grid = &t->shape->levels[level];
     uint32_t end = grid->first_tile + grid->width * grid->height;
     for (uint32_t tile = grid->first_tile; tile < end; tile++) {
         if (slc_find_node(t, tile))
@@ -306,7 +352,7 @@ static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, S
         if (m->prefetch_level >= m->config.prefetchLevels)
             m->prefetch_level = 0;
         struct slc_texture *t = slc_texture_at(m, m->prefetch_texture);
-        uint32_t levels = t->live ? t->desc.regularMipCount : 0;
+        uint32_t levels = t->live ? t->shape->desc.regularMipCount : 0;
         if (m->prefetch_level < levels) {
             SluiceResult result =
                 prefetch_level(m, t, levels - 1 - m->prefetch_level, room, written, tiles);
@@ -324,6 +370,9 @@ static SluiceResult prefetch(slc_manager *m, uint32_t room, uint32_t *written, S
     return SLUICE_SUCCESS;
 }
 
+/** Rounds of maps. */
+enum { LONG_WAIT = 4 };
+
 /** A round is over when as many maps have come as there are textures that hold something. */
 static void end_round(slc_manager *m)
 {
@@ -332,6 +381,10 @@ static void end_round(slc_manager *m)
     m->round.maps = 0;
     m->round.waited = m->round.began;
     m->round.began = m->requests.next_sequence;
+    if (++m->round.count % LONG_WAIT == 0) {
+        m->round.waited_long = m->round.began_long;
+        m->round.began_long = m->round.began;
+    }
 }
 
 static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
@@ -354,7 +407,7 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_texture *scope,
             break;
         next_request(m, &walk);
         prefetch_request(m, walk.node);
-        slc_node_set_state(m, node, SLUICE_TILE_STATE_ALLOCATED);
+        slc_tile_handed_out(m, node);
         tiles[written++] = slc_node_tile(m, node);
     }
     if (!scope && m->requests.count == 0 && m->config.prefetchLevels && result == SLUICE_SUCCESS)

@@ -79,8 +79,10 @@ fail:
 static void destroy_texture_memory(slc_manager *m, struct slc_texture *t)
 {
     slc_state_destroy(m, t);
-    slc_free(&m->cb, t->packed_nodes, t->desc.packedTileCount, sizeof *t->packed_nodes);
+    slc_free(&m->cb, t->packed_nodes, t->shape->desc.packedTileCount, sizeof *t->packed_nodes);
     t->packed_nodes = NULL;
+    slc_shape_give(m, t->shape);
+    t->shape = NULL;
 }
 
 void sluiceDestroyStreamedTextureManager(SluiceStreamedTextureManager *manager)
@@ -187,7 +189,7 @@ SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManager *manager,
     struct slc_texture *t;
     SluiceResult result = slc_find_texture(manager, textureId, &t);
     if (result == SLUICE_SUCCESS)
-        slc_write_layout(t, pLayout);
+        slc_write_layout(t->shape, pLayout);
     return result;
 }
 
@@ -201,7 +203,7 @@ SluiceResult sluiceGetTileState(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (tileIndex >= t->tile_count)
+    if (tileIndex >= t->shape->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tileIndex);
     if (pState)
@@ -276,12 +278,17 @@ static SluiceResult reserve_texture(slc_manager *m)
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult reserve_for_add(slc_manager *m, struct slc_texture *t)
+/** On an error everything that it made is in `t`. */
+static SluiceResult reserve_for_add(slc_manager *m, const SluiceStreamedTextureDesc *desc,
+                                    struct slc_texture *t)
 {
-    uint32_t packed = t->desc.packedTileCount;
+    SluiceResult result = slc_shape_take(m, desc, &t->shape);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t packed = t->shape->desc.packedTileCount;
     if (m->texture_count == UINT32_MAX - 1)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
-    SluiceResult result = reserve_texture(m);
+    result = reserve_texture(m);
     if (result != SLUICE_SUCCESS || packed == 0)
         return result;
     if (m->info.alwaysMapPackedTiles && !slc_reserve_nodes(m, packed))
@@ -294,12 +301,12 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
                                 SluiceTextureId *id)
 {
     struct slc_texture new_texture = {0};
-    SluiceResult result = slc_layout_texture(desc, &new_texture);
-    if (result != SLUICE_SUCCESS)
+    SluiceResult result = reserve_for_add(m, desc, &new_texture);
+    if (result != SLUICE_SUCCESS) {
+        if (new_texture.shape)
+            slc_shape_give(m, new_texture.shape);
         return result;
-    result = reserve_for_add(m, &new_texture);
-    if (result != SLUICE_SUCCESS)
-        return result;
+    }
     uint32_t index = m->texture_end;
     if (m->free_index_count > 0)
         index = heap_pop(m->free_indices, m->free_index_count--);
@@ -313,11 +320,11 @@ static SluiceResult add_texture(slc_manager *m, const SluiceStreamedTextureDesc 
     new_texture.first_follower = new_texture.last_follower = new_texture.next_follower = SLC_NONE;
     *t = new_texture;
     m->texture_count++;
-    m->tile_count += t->tile_count;
+    m->tile_count += t->shape->tile_count;
     slc_min_mip_dirty_all(m, t);
     if (m->info.alwaysMapPackedTiles)
         for (uint32_t i = 0; i < desc->packedTileCount; i++)
-            slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
+            slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
                             desc->regularMipCount);
     *id = slc_texture_id(t);
     return SLUICE_SUCCESS;
@@ -381,14 +388,15 @@ static SluiceResult remove_texture(slc_manager *m, SluiceTextureId id, uint64_t 
     unfollow(m, t);
     while (t->first_follower != SLC_NONE)
         unfollow(m, slc_texture_at(m, t->first_follower));
-    for (uint32_t tile = t->state ? 0 : t->regular_tile_count; tile < t->tile_count; tile++)
+    for (uint32_t tile = t->nodes ? 0 : t->shape->regular_tile_count; tile < t->shape->tile_count;
+         tile++)
         if (slc_find_node(t, tile))
             slc_node_retire(m, slc_find_node(t, tile), retire_value);
     forget_reports(m, id);
     slc_visit(m, t, false);
     slc_min_mip_forget(m, t);
+    m->tile_count -= t->shape->tile_count;
     destroy_texture_memory(m, t);
-    m->tile_count -= t->tile_count;
     m->texture_count--;
     t->live = false;
     /* An index whose generations are used up is never handed out again. */

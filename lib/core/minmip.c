@@ -13,20 +13,21 @@
 
 uint8_t slc_min_mip_floor(const struct slc_texture *t)
 {
-    bool packed = t->desc.packedTileCount > 0 && t->packed_resident == t->desc.packedTileCount;
-    return packed ? (uint8_t)t->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
+    bool packed =
+        t->shape->desc.packedTileCount > 0 && t->packed_resident == t->shape->desc.packedTileCount;
+    return packed ? (uint8_t)t->shape->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
 }
 
 static bool is_resident(const struct slc_texture *t, struct slc_place p)
 {
-    return t->state->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
+    return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
 /** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
 static struct slc_tile_range children(const struct slc_texture *t, uint32_t level,
                                       struct slc_tile_range r)
 {
-    const struct slc_level *here = &t->levels[level], *fine = &t->levels[level - 1];
+    const struct slc_level *here = &t->shape->levels[level], *fine = &t->shape->levels[level - 1];
     return (struct slc_tile_range){
         r.x0 * 2,
         r.y0 * 2,
@@ -46,7 +47,7 @@ static void axis_area(uint32_t i, uint32_t count, uint32_t level, uint32_t fine_
 
 struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
 {
-    const struct slc_level *grid = &t->levels[p.level], *fine = &t->levels[0];
+    const struct slc_level *grid = &t->shape->levels[p.level], *fine = &t->shape->levels[0];
     struct slc_tile_range r;
     axis_area(p.x, grid->width, p.level, fine->width, &r.x0, &r.x1);
     axis_area(p.y, grid->height, p.level, fine->height, &r.y0, &r.y1);
@@ -80,9 +81,14 @@ static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_ra
     t->dirty_y1 = slc_max_u32(t->dirty_y1, r.y1 + 1);
 }
 
+static struct slc_tile_range all_texels(const struct slc_texture *t)
+{
+    return (struct slc_tile_range){0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1};
+}
+
 void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t)
 {
-    mark_dirty(m, t, (struct slc_tile_range){0, 0, t->min_mip_width - 1, t->min_mip_height - 1});
+    mark_dirty(m, t, all_texels(t));
 }
 
 void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
@@ -101,104 +107,220 @@ void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
     m->dirty_count--;
 }
 
+/** `unit` bytes at the beginning and at the end of each row: all of it, if rows are no longer. */
+static inline void fill_ends(uint8_t *row, size_t pitch, uint32_t rows, size_t width, size_t unit,
+                             uint64_t word)
+{
+    for (; rows > 0; rows--, row += pitch) {
+        memcpy(row, &word, unit);
+        memcpy(row + width - unit, &word, unit);
+    }
+}
+
 static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
 {
-    for (uint32_t y = r.y0; y <= r.y1; y++)
-        slc_fill_bytes(t->state->min_mip + (size_t)y * t->min_mip_width + r.x0, value,
-                       r.x1 - r.x0 + 1);
+    size_t pitch = t->shape->min_mip_width, width = r.x1 - r.x0 + 1;
+    uint32_t rows = r.y1 - r.y0 + 1;
+    uint8_t *row = t->min_mip + r.y0 * pitch + r.x0;
+    uint64_t word = UINT64_C(0x0101010101010101) * value;
+    if (width == 1)
+        fill_ends(row, pitch, rows, width, 1, word);
+    else if (width < 4)
+        fill_ends(row, pitch, rows, width, 2, word);
+    else if (width < 8)
+        fill_ends(row, pitch, rows, width, 4, word);
+    else if (width <= 16)
+        fill_ends(row, pitch, rows, width, 8, word);
+    else
+        for (; rows > 0; rows--, row += pitch)
+            memset(row, value, width);
+}
+
+static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area);
+
+/** The tiles below one that counts, which therefore count if they are resident. */
+static void show_children(struct slc_texture *t, struct slc_place p)
+{
+    struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+    for (uint32_t y = c.y0; y <= c.y1; y++)
+        for (uint32_t x = c.x0; x <= c.x1; x++) {
+            struct slc_place child = {p.level - 1, x, y};
+            if (is_resident(t, child)) {
+                t->hidden_tiles--;
+                show(t, child, slc_area(t, child));
+            }
+        }
 }
 
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
-static void show(struct slc_texture *t, struct slc_place p)
+static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area)
 {
-    fill(t, slc_area(t, p), (uint8_t)p.level);
+    fill(t, area, (uint8_t)p.level);
+    if (p.level > 0 && t->hidden_tiles > 0)
+        show_children(t, p);
+}
+
+/** Whether a tile below one that counts does: then the map has a finer level where that begins. */
+static bool shows_children(const struct slc_texture *t, struct slc_place p)
+{
     if (p.level == 0)
-        return;
+        return false;
+    struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
+    for (uint32_t y = c.y0; y <= c.y1; y++) {
+        const uint8_t *row = t->min_mip + ((size_t)y << (p.level - 1)) * t->shape->min_mip_width;
+        for (uint32_t x = c.x0; x <= c.x1; x++)
+            if (row[x << (p.level - 1)] < p.level)
+                return true;
+    }
+    return false;
+}
+
+/** How many tiles below one count. */
+static uint32_t count_shown(const struct slc_texture *t, struct slc_place p)
+{
+    uint32_t count = 0;
+    if (p.level == 0)
+        return 0;
     struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
     for (uint32_t y = c.y0; y <= c.y1; y++)
         for (uint32_t x = c.x0; x <= c.x1; x++) {
             struct slc_place child = {p.level - 1, x, y};
             if (is_resident(t, child))
-                show(t, child);
+                count += 1 + count_shown(t, child);
         }
+    return count;
 }
 
 static void show_everything(struct slc_texture *t)
 {
-    struct slc_tile_range all = {0, 0, t->min_mip_width - 1, t->min_mip_height - 1};
-    fill(t, all, slc_min_mip_floor(t));
-    if (t->desc.regularMipCount == 0 || t->packed_resident < t->desc.packedTileCount)
+    fill(t, all_texels(t), slc_min_mip_floor(t));
+    t->hidden_tiles = t->resident_tiles;
+    if (t->shape->desc.regularMipCount == 0 || t->packed_resident < t->shape->desc.packedTileCount)
         return;
-    const struct slc_level *top = &t->levels[t->desc.regularMipCount - 1];
+    const struct slc_level *top = &t->shape->levels[t->shape->desc.regularMipCount - 1];
     for (uint32_t y = 0; y < top->height; y++)
         for (uint32_t x = 0; x < top->width; x++) {
-            struct slc_place p = {t->desc.regularMipCount - 1, x, y};
-            if (is_resident(t, p))
-                show(t, p);
+            struct slc_place p = {t->shape->desc.regularMipCount - 1, x, y};
+            if (is_resident(t, p)) {
+                t->hidden_tiles--;
+                show(t, p, slc_area(t, p));
+            }
         }
 }
 
 static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
 {
-    bool before = t->packed_resident == t->desc.packedTileCount;
+    bool before = t->packed_resident == t->shape->desc.packedTileCount;
     t->packed_resident += resident ? 1u : UINT32_MAX;
-    if (before == (t->packed_resident == t->desc.packedTileCount))
+    if (before == (t->packed_resident == t->shape->desc.packedTileCount))
         return;
-    if (t->state)
+    if (t->nodes)
         show_everything(t);
     slc_min_mip_dirty_all(m, t);
 }
 
-void slc_min_mip_prefetch(const struct slc_texture *t, uint32_t tile)
+void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n)
 {
-    if (tile >= t->regular_tile_count || !t->state)
+    if (n->tile >= t->shape->regular_tile_count)
         return;
-    struct slc_place p = slc_tile_place(t, tile);
-    size_t row = slc_min_u32(p.y << p.level, t->min_mip_height - 1);
-    __builtin_prefetch(t->state->min_mip + row * t->min_mip_width + (p.x << p.level));
+    struct slc_place p = slc_node_place(t, n);
+    size_t row = slc_min_u32(p.y << p.level, t->shape->min_mip_height - 1);
+    __builtin_prefetch(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
+}
+
+static void tile_came(slc_manager *m, struct slc_texture *t, struct slc_place p,
+                      struct slc_tile_range area, bool counts)
+{
+    t->resident_tiles++;
+    t->hidden_tiles += !counts;
+    if (!counts)
+        return;
+    show(t, p, area);
+    mark_dirty(m, t, area);
+}
+
+static void tile_went(slc_manager *m, struct slc_texture *t, struct slc_place p,
+                      struct slc_tile_range area, bool counted, uint8_t above)
+{
+    t->resident_tiles--;
+    t->hidden_tiles -= !counted;
+    if (!counted)
+        return;
+    if (shows_children(t, p))
+        t->hidden_tiles += count_shown(t, p);
+    fill(t, area, above);
+    mark_dirty(m, t, area);
+}
+
+/** As below for most tiles there are: on level 0 a tile is a texel. */
+static void finest_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, uint8_t above,
+                           bool resident)
+{
+    uint8_t *texel = &t->min_mip[tile];
+    bool counts = resident ? *texel == above : *texel == 0;
+    uint32_t one = resident ? 1 : UINT32_MAX;
+    t->resident_tiles += one;
+    t->hidden_tiles += counts ? 0 : one;
+    if (!counts)
+        return;
+    *texel = resident ? 0 : above;
+    uint32_t x = tile % t->shape->min_mip_width, y = tile / t->shape->min_mip_width;
+    mark_dirty(m, t, (struct slc_tile_range){x, y, x, y});
 }
 
 void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
                          bool resident)
 {
-    if (n->tile >= t->regular_tile_count) {
+    const struct slc_shape *shape = t->shape;
+    if (n->tile >= shape->regular_tile_count) {
         packed_changed(m, t, resident);
         return;
     }
-    t->state->nodes[n->tile] ^= SLC_RESIDENT;
+    t->nodes[n->tile] ^= SLC_RESIDENT;
+    if (n->level == 0 && shape->desc.regularMipCount > 1) {
+        finest_changed(m, t, n->tile, 1, resident);
+        return;
+    }
     /* Under a tile that does not count the map has one value: that of the last one above that does.
      */
     struct slc_place p = slc_node_place(t, n);
     struct slc_tile_range r = slc_area(t, p);
-    uint8_t shown = t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0];
-    bool coarsest = p.level + 1 == t->desc.regularMipCount;
+    uint8_t shown = t->min_mip[(size_t)r.y0 * shape->min_mip_width + r.x0];
+    bool coarsest = p.level + 1 == shape->desc.regularMipCount;
     uint8_t above = coarsest ? slc_min_mip_floor(t) : (uint8_t)(p.level + 1);
-    if (resident ? shown != above || t->packed_resident < t->desc.packedTileCount : shown > p.level)
-        return;
-    if (!resident)
-        fill(t, r, above);
-    else if (p.level == 0)
-        t->state->min_mip[(size_t)r.y0 * t->min_mip_width + r.x0] = 0;
+    if (resident)
+        tile_came(m, t, p, r, shown == above && t->packed_resident == shape->desc.packedTileCount);
     else
-        show(t, p);
-    mark_dirty(m, t, r);
+        tile_went(m, t, p, r, shown <= p.level, above);
 }
 
 static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,
                       uint8_t *out)
 {
-    if (t->state && r->width == t->min_mip_width && row_pitch == r->width) {
-        const uint8_t *rows = t->state->min_mip + (size_t)r->y * r->width;
+    if (t->nodes && r->width == t->shape->min_mip_width && row_pitch == r->width) {
+        const uint8_t *rows = t->min_mip + (size_t)r->y * r->width;
         memcpy(out, rows, (size_t)r->width * r->height);
         return;
     }
     for (uint32_t y = 0; y < r->height; y++) {
         uint8_t *row = out + y * row_pitch;
-        if (t->state)
-            memcpy(row, t->state->min_mip + (size_t)(r->y + y) * t->min_mip_width + r->x, r->width);
+        if (t->nodes)
+            memcpy(row, t->min_mip + (size_t)(r->y + y) * t->shape->min_mip_width + r->x, r->width);
         else
             memset(row, slc_min_mip_floor(t), r->width);
     }
+}
+
+/** A rectangle inside the map, to where there is room for it. */
+static SluiceResult write_rect(const struct slc_texture *t, const SluiceMinMipRect *r,
+                               size_t row_pitch, size_t size, uint8_t *out)
+{
+    size_t rows, needed;
+    if (row_pitch < r->width || !slc_mul_size(r->height - 1, row_pitch, &rows) ||
+        !slc_add_size(rows, r->width, &needed) || size < needed)
+        return SLUICE_ERROR_SIZE_MISMATCH;
+    copy_rect(t, r, row_pitch, out);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
@@ -211,16 +333,11 @@ SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, pRect->textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= t->min_mip_width ||
-        pRect->y >= t->min_mip_height || pRect->width > t->min_mip_width - pRect->x ||
-        pRect->height > t->min_mip_height - pRect->y)
+    uint32_t width = t->shape->min_mip_width, height = t->shape->min_mip_height;
+    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= width || pRect->y >= height ||
+        pRect->width > width - pRect->x || pRect->height > height - pRect->y)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    size_t rows, needed;
-    if (rowPitch < pRect->width || !slc_mul_size(pRect->height - 1, rowPitch, &rows) ||
-        !slc_add_size(rows, pRect->width, &needed) || size < needed)
-        return SLUICE_ERROR_SIZE_MISMATCH;
-    copy_rect(t, pRect, rowPitch, pMinMip);
-    return SLUICE_SUCCESS;
+    return write_rect(t, pRect, rowPitch, size, pMinMip);
 }
 
 SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
@@ -233,8 +350,8 @@ SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
     SluiceResult result = slc_find_texture(manager, textureId, &t);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceMinMipRect whole = {textureId, 0, 0, t->min_mip_width, t->min_mip_height};
-    return sluiceWriteMinMipRect(manager, &whole, rowPitch, size, pMinMip);
+    SluiceMinMipRect whole = {.width = t->shape->min_mip_width, .height = t->shape->min_mip_height};
+    return write_rect(t, &whole, rowPitch, size, pMinMip);
 }
 
 static SluiceResult get_updates(slc_manager *m, uint32_t *count, SluiceMinMipRect *rects)

@@ -53,7 +53,7 @@ static void insert_by_due(slc_manager *m, struct slc_list *list, uint32_t node)
 
 static uint32_t request_class(const slc_manager *m, const struct slc_node *n)
 {
-    bool packed = n->tile >= slc_texture_at(m, n->texture)->regular_tile_count;
+    bool packed = n->tile >= slc_texture_at(m, n->texture)->shape->regular_tile_count;
     return packed ? SLC_PACKED_CLASS : n->level;
 }
 
@@ -62,7 +62,7 @@ static void request_append(slc_manager *m, uint32_t node)
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
     struct slc_texture *t = slc_texture_at(m, n->texture);
-    uint32_t class = n->tile >= t->regular_tile_count ? SLC_PACKED_CLASS : n->level;
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     n->order = r->next_sequence++;
     slc_list_append(m, &r->lists[class][n->need], node);
     r->needs[class] |= 1u << n->need;
@@ -76,7 +76,8 @@ static void request_remove(slc_manager *m, uint32_t node)
 {
     struct slc_requests *r = &m->requests;
     struct slc_node *n = slc_node_at(m, node);
-    uint32_t class = request_class(m, n);
+    struct slc_texture *t = slc_texture_at(m, n->texture);
+    uint32_t class = n->tile >= t->shape->regular_tile_count ? SLC_PACKED_CLASS : n->level;
     struct slc_list *list = &r->lists[class][n->need];
     slc_list_remove(m, list, node);
     if (list->count == 0)
@@ -85,7 +86,7 @@ static void request_remove(slc_manager *m, uint32_t node)
         r->classes &= ~(1u << class);
     r->count--;
     r->counts[class]--;
-    slc_texture_at(m, n->texture)->requested_count--;
+    t->requested_count--;
 }
 
 static uint32_t last_bit(uint32_t bits)
@@ -120,7 +121,7 @@ uint32_t slc_next_request(const slc_manager *m, uint32_t node)
 
 static bool is_regular(const slc_manager *m, const struct slc_node *n)
 {
-    return n->tile < slc_texture_at(m, n->texture)->regular_tile_count;
+    return n->tile < slc_texture_at(m, n->texture)->shape->regular_tile_count;
 }
 
 /** Takes the node out of the list that its state keeps it in, if any. */
@@ -227,7 +228,7 @@ static uint32_t take_node(slc_manager *m, struct slc_texture *t, uint32_t *cell,
                                               .level = (uint8_t)level,
                                               .state = (uint8_t)state};
     *cell = node;
-    t->regular_nodes += tile < t->regular_tile_count;
+    t->regular_nodes += tile < t->shape->regular_tile_count;
     m->state_counts[state]++;
     return node;
 }
@@ -247,7 +248,7 @@ static void detach_node(slc_manager *m, uint32_t node)
     struct slc_node *n = slc_node_at(m, node);
     struct slc_texture *t = slc_texture_at(m, n->texture);
     *slc_node_cell(t, n->tile) = 0;
-    t->regular_nodes -= n->tile < t->regular_tile_count;
+    t->regular_nodes -= n->tile < t->shape->regular_tile_count;
 }
 
 static bool is_resident(uint8_t state)
@@ -431,6 +432,93 @@ static void park(slc_manager *m, uint32_t node)
         slc_list_standby(m, m->config.numExtraStandbyTiles);
 }
 
+void slc_tile_handed_out(slc_manager *m, uint32_t node)
+{
+    request_remove(m, node);
+    count_move(m, slc_node_at(m, node), SLUICE_TILE_STATE_ALLOCATED);
+}
+
+/* Runs: neighbours in one list that go to the end of another one are moved as a piece. A texture
+ * that comes into view or leaves it makes long ones. */
+
+static void splice(slc_manager *m, struct slc_list *from, struct slc_list *to,
+                   const struct slc_run *run)
+{
+    struct slc_node *first = slc_node_at(m, run->first), *last = slc_node_at(m, run->last);
+    if (first->prev)
+        slc_node_at(m, first->prev)->next = last->next;
+    else
+        from->head = last->next;
+    if (last->next)
+        slc_node_at(m, last->next)->prev = first->prev;
+    else
+        from->tail = first->prev;
+    from->count -= run->count;
+    first->prev = to->tail;
+    last->next = 0;
+    if (to->tail)
+        slc_node_at(m, to->tail)->next = run->first;
+    else
+        to->head = run->first;
+    to->tail = run->last;
+    to->count += run->count;
+}
+
+void slc_run_end(slc_manager *m, struct slc_run *run)
+{
+    struct slc_list *mapped = &m->mapped[run->level];
+    uint32_t count = run->count;
+    if (count == 0)
+        return;
+    if (run->wanted) {
+        splice(m, &m->standby, mapped, run);
+        m->restored_total += count;
+    } else {
+        splice(m, mapped, &m->standby, run);
+    }
+    uint32_t *counts = m->state_counts;
+    counts[SLUICE_TILE_STATE_MAPPED] += run->wanted ? count : 0 - count;
+    counts[SLUICE_TILE_STATE_STANDBY] += run->wanted ? 0 - count : count;
+    run->count = 0;
+    if (m->standby.count > m->config.numExtraStandbyTiles)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
+}
+
+/** Whether it is in the list that runs are taken from. */
+static bool fits_run(const struct slc_node *n, bool wanted)
+{
+    if (wanted)
+        return n->state == SLUICE_TILE_STATE_STANDBY && n->flags == 0;
+    return n->state == SLUICE_TILE_STATE_MAPPED;
+}
+
+bool slc_run_add(slc_manager *m, struct slc_run *run, uint32_t node, uint32_t level, bool wanted)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    if (run->count &&
+        !(run->next == node && run->wanted == wanted && run->level == level && fits_run(n, wanted)))
+        slc_run_end(m, run); /* which may list this tile for unmapping */
+    if (!fits_run(n, wanted))
+        return false;
+    if (run->count == 0)
+        *run = (struct slc_run){.first = node, .level = level, .wanted = wanted};
+    run->last = node;
+    run->next = n->next;
+    run->count++;
+    n->state = wanted ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY;
+    return true;
+}
+
+void slc_tile_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
+{
+    struct slc_node *n = slc_node_at(m, node);
+    n->flags = 0;
+    count_move(m, n, SLUICE_TILE_STATE_MAPPED);
+    if (n->tile < t->shape->regular_tile_count)
+        slc_list_append(m, &m->mapped[n->level], node);
+    slc_min_mip_changed(m, t, n, true);
+}
+
 void slc_tile_requested(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
                         uint32_t level, uint32_t need)
 {
@@ -461,8 +549,7 @@ void slc_tile_wanted(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint
 
 uint32_t slc_node_prefetch(slc_manager *m, struct slc_texture *t, uint32_t tile, uint32_t level)
 {
-    uint32_t node =
-        take_node(m, t, &t->state->nodes[tile], tile, level, SLUICE_TILE_STATE_CANCELLED);
+    uint32_t node = take_node(m, t, &t->nodes[tile], tile, level, SLUICE_TILE_STATE_CANCELLED);
     slc_node_at(m, node)->flags = SLC_NODE_LISTED;
     return node;
 }

@@ -95,8 +95,12 @@ SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocatio
                                  uint32_t tile_size)
 {
     uint32_t offsets[BIT_LEVELS + 1];
-    *h = (struct slc_tile_heaps){
-        .cb = cb, .allocator = *allocator, .capacity = capacity, .tile_size = tile_size};
+    *h = (struct slc_tile_heaps){.cb = cb,
+                                 .allocator = *allocator,
+                                 .capacity = capacity,
+                                 .tile_size = tile_size,
+                                 .open = UINT32_MAX,
+                                 .loose = UINT32_MAX};
     bit_level_offsets(capacity + 1, offsets);
     h->bit_words = offsets[BIT_LEVELS];
     h->buckets = slc_alloc(cb, (size_t)capacity + 1, sizeof *h->buckets);
@@ -109,9 +113,14 @@ SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocatio
     return SLUICE_SUCCESS;
 }
 
+static uint32_t word_count(const struct slc_tile_heaps *h)
+{
+    return (h->capacity + 63) / 64;
+}
+
 static void free_books(struct slc_tile_heaps *h, struct slc_tile_heap *heap)
 {
-    slc_free(h->cb, heap->free_slots, h->capacity, sizeof *heap->free_slots);
+    slc_free(h->cb, heap->free, word_count(h), sizeof *heap->free);
     slc_free(h->cb, heap->nodes, h->capacity, sizeof *heap->nodes);
 }
 
@@ -156,9 +165,9 @@ static uint32_t unused_entry(struct slc_tile_heaps *h)
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id)
 {
     struct slc_tile_heap heap = {0};
-    heap.free_slots = slc_alloc(h->cb, h->capacity, sizeof *heap.free_slots);
+    heap.free = slc_alloc(h->cb, word_count(h), sizeof *heap.free);
     heap.nodes = slc_calloc(h->cb, h->capacity, sizeof *heap.nodes);
-    if (!heap.free_slots || !heap.nodes || reserve_entry(h) != SLUICE_SUCCESS) {
+    if (!heap.free || !heap.nodes || reserve_entry(h) != SLUICE_SUCCESS) {
         free_books(h, &heap);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
@@ -171,9 +180,9 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
     }
     heap.id = *heap_id;
     heap.free_count = h->capacity;
-    /* Descending, so that slot 0 is on top: low slots fill first and replays stay readable. */
-    for (uint32_t i = 0; i < h->capacity; i++)
-        heap.free_slots[i] = h->capacity - 1 - i;
+    memset(heap.free, 0xFF, word_count(h) * sizeof *heap.free);
+    if (h->capacity % 64)
+        heap.free[word_count(h) - 1] = (UINT64_C(1) << h->capacity % 64) - 1;
     uint32_t index = unused_entry(h);
     h->heaps[index] = heap;
     bucket_insert(h, index);
@@ -182,36 +191,101 @@ SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, 
     return SLUICE_SUCCESS;
 }
 
-uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t node)
+/** Takes the heap out of its bucket until the buckets are looked at again. */
+static void loosen(struct slc_tile_heaps *h, uint32_t index)
+{
+    struct slc_tile_heap *heap = &h->heaps[index];
+    if (heap->loose)
+        return;
+    bucket_remove(h, index);
+    heap->loose = true;
+    heap->next = h->loose;
+    h->loose = index;
+}
+
+static void put_loose_back(struct slc_tile_heaps *h)
+{
+    h->open = UINT32_MAX;
+    while (h->loose != UINT32_MAX) {
+        uint32_t index = h->loose;
+        h->loose = h->heaps[index].next;
+        h->heaps[index].loose = false;
+        bucket_insert(h, index);
+    }
+}
+
+static uint32_t lowest_free(struct slc_tile_heap *heap)
+{
+    while (!heap->free[heap->low])
+        heap->low++;
+    return heap->low * 64 + (uint32_t)__builtin_ctzll(heap->free[heap->low]);
+}
+
+static void take_slot(struct slc_tile_heaps *h, struct slc_tile_heap *heap, uint32_t slot,
+                      uint32_t node)
+{
+    heap->free[slot / 64] &= ~(UINT64_C(1) << slot % 64);
+    heap->free_count--;
+    heap->nodes[slot] = node;
+    h->free_total--;
+}
+
+uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h)
+{
+    if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
+        return h->open;
+    put_loose_back(h);
+    uint32_t bucket = find_bit_above_zero(h);
+    if (bucket == UINT32_MAX)
+        return UINT32_MAX;
+    uint32_t fullest = h->buckets[bucket];
+    loosen(h, fullest);
+    return h->open = fullest;
+}
+
+uint32_t slc_tile_heaps_take_wish(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t node,
+                                  uint32_t wish)
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
-    assert(heap->free_count != SLC_HEAP_DEAD && heap->free_count > 0);
-    bucket_remove(h, heap_index);
-    uint32_t slot = heap->free_slots[--heap->free_count];
-    heap->nodes[slot] = node;
-    bucket_insert(h, heap_index);
-    h->free_total--;
+    assert(heap_index == h->open && heap->free_count > 0);
+    bool granted = wish < h->capacity && heap->free[wish / 64] >> wish % 64 & 1;
+    uint32_t slot = granted ? wish : lowest_free(heap);
+    take_slot(h, heap, slot, node);
     return slot;
 }
 
 bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot)
 {
-    uint32_t bucket = find_bit_above_zero(h);
-    if (bucket == UINT32_MAX)
+    *heap = slc_tile_heaps_fullest(h);
+    if (*heap == UINT32_MAX)
         return false;
-    *heap = h->buckets[bucket];
-    *slot = slc_tile_heaps_take_from(h, *heap, node);
+    *slot = slc_tile_heaps_take_wish(h, *heap, node, UINT32_MAX);
     return true;
+}
+
+uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t node)
+{
+    struct slc_tile_heap *heap = &h->heaps[heap_index];
+    assert(heap->free_count != SLC_HEAP_DEAD && heap->free_count > 0);
+    loosen(h, heap_index);
+    h->open = UINT32_MAX; /* this one may become the fullest */
+    uint32_t slot = lowest_free(heap);
+    take_slot(h, heap, slot, node);
+    return slot;
 }
 
 void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t slot)
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count < h->capacity && heap->nodes[slot] != 0);
-    bucket_remove(h, heap_index);
-    heap->free_slots[heap->free_count++] = slot;
+    /* others may be fuller now, or this one, if it was full */
+    if (heap_index == h->open || heap->free_count == 0)
+        h->open = UINT32_MAX;
+    loosen(h, heap_index);
+    heap->free[slot / 64] |= UINT64_C(1) << slot % 64;
+    heap->low = slot / 64 < heap->low ? slot / 64 : heap->low;
+    heap->free_count++;
     heap->nodes[slot] = 0;
-    bucket_insert(h, heap_index);
     h->free_total++;
 }
 
@@ -227,6 +301,7 @@ void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap_index)
 {
     struct slc_tile_heap *heap = &h->heaps[heap_index];
     assert(heap->free_count == h->capacity);
+    put_loose_back(h);
     bucket_remove(h, heap_index);
     h->allocator.pfnReleaseHeap(h->allocator.pUserData, heap->id);
     free_books(h, heap);

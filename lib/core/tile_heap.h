@@ -9,9 +9,11 @@ struct slc_tile_heap {
     uint32_t id;         ///< the application's
     uint32_t free_count; ///< SLC_HEAP_DEAD: this entry is unused
     uint32_t retiring_count;
-    uint32_t prev, next;  ///< among heaps with equally many free slots, UINT32_MAX ends
-    uint32_t *free_slots; ///< owned stack, [capacity]
-    uint32_t *nodes;      ///< owned, [capacity]: who lives in the slot, 0: nobody
+    uint32_t prev, next; ///< among heaps with equally many free slots, UINT32_MAX ends
+    bool loose;          ///< in no bucket until one has to be found
+    uint32_t low;        ///< in words below this one no slot is free
+    uint64_t *free;      ///< owned, a bit per slot
+    uint32_t *nodes;     ///< owned, [capacity]: who lives in the slot, 0: nobody
 };
 
 #define SLC_HEAP_DEAD UINT32_MAX
@@ -23,6 +25,8 @@ struct slc_tile_heaps {
     uint32_t tile_size;
     struct slc_tile_heap *heaps; ///< owned, [end], dead ones in between
     uint32_t end, room, live_count;
+    uint32_t loose; ///< heaps in no bucket, linked by `next`
+    uint32_t open;  ///< slots are taken from it while no other has fewer; loose; UINT32_MAX: none
     uint32_t *buckets; ///< owned, [capacity + 1]: first heap with that many free slots
     uint64_t *bits;    ///< owned: which buckets are not empty, and words over words of that
     uint32_t bit_words;
@@ -41,9 +45,14 @@ void slc_tile_heaps_finish(struct slc_tile_heaps *h);
  */
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id);
 
-/** A slot of a heap with the fewest free ones, or false. Writes heap index and slot. */
+/** The index of a heap with the fewest free slots but not none, UINT32_MAX without any. */
+uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h);
+/** Takes a free slot of that heap: `wish` if that is one, or the lowest one. */
+uint32_t slc_tile_heaps_take_wish(struct slc_tile_heaps *h, uint32_t heap, uint32_t node,
+                                  uint32_t wish);
+/** The lowest slot of a heap with the fewest free ones, or false. Writes heap index and slot. */
 bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot);
-/** A slot of this heap, which has one. */
+/** The lowest slot of this heap, which has one. */
 uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap, uint32_t node);
 void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap, uint32_t slot);
 

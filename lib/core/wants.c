@@ -11,19 +11,19 @@
 /* Room -------------------------------------------------------------------------------------- */
 
 /** Two rows of tiles. */
-static size_t rows_work_size(const struct slc_texture *t)
+static size_t rows_work_size(const struct slc_shape *s)
 {
-    return 2 * (slc_padded(t->levels[0].width) + SLC_BLOCK);
+    return 2 * (slc_padded(s->levels[0].width) + SLC_BLOCK);
 }
 
-size_t slc_wants_work_size(const struct slc_texture *t)
+size_t slc_wants_work_size(const struct slc_shape *s)
 {
-    if (t->desc.regularMipCount == 0)
+    if (s->desc.regularMipCount == 0)
         return 0;
     /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
-    size_t tiles = (size_t)t->levels[0].width * t->levels[0].height + SLC_BLOCK;
-    size_t regions = slc_padded(slc_region_count(t)) + SLC_BLOCK;
-    return rows_work_size(t) + regions + (slc_regions_are_tiles(t) ? 0 : tiles);
+    size_t tiles = (size_t)s->levels[0].width * s->levels[0].height + SLC_BLOCK;
+    size_t regions = slc_padded(s->region_count) + SLC_BLOCK;
+    return rows_work_size(s) + regions + (slc_regions_are_tiles(s) ? 0 : tiles);
 }
 
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work)
@@ -57,13 +57,13 @@ static uint64_t tiles_across(uint32_t region, uint32_t tile)
 static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t finer,
                      struct slc_wants_need *need)
 {
-    const SluiceStreamedTextureDesc *d = &t->desc;
-    if (t->state->bias > m->bias.value)
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
+    if (t->history->bias > m->bias.value)
         finer = slc_region_count(t);
     uint64_t nodes = finer * d->regularMipCount *
                      tiles_across(d->feedbackRegionWidth, d->tileWidth) *
                      tiles_across(d->feedbackRegionHeight, d->tileHeight);
-    need->nodes += nodes < t->regular_tile_count ? nodes : t->regular_tile_count;
+    need->nodes += nodes < t->shape->regular_tile_count ? nodes : t->shape->regular_tile_count;
     if (t->held_regions == 0)
         need->nodes += d->packedTileCount;
 }
@@ -101,7 +101,7 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
 static bool ask_all(const struct slc_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
-    const uint8_t *asked = t->state->asked;
+    const uint8_t *asked = t->history->asked;
     const struct level_blocks l = {slc_block_of(levels->coarsest), slc_block_of(levels->up),
                                    slc_block_of(levels->down), slc_block_of(levels->lowest),
                                    slc_block_of(levels->last)};
@@ -124,7 +124,8 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
 
 static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
 {
-    const uint8_t *asked = t->state->asked, *least = t->state->least, *known = t->state->known;
+    const struct slc_history *h = t->history;
+    const uint8_t *asked = h->asked, *least = h->least, *known = h->known;
     size_t padded = slc_padded(slc_region_count(t));
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
     struct compared c = {0};
@@ -155,14 +156,18 @@ uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
 void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
 {
-    struct slc_texture_state *s = t->state;
+    struct slc_history *h = t->history;
     struct compared c = {0};
-    bool differs = ask_all(t, values, levels, next);
+    /* what was asked for once asks for itself */
+    bool plain =
+        !levels->up && !levels->down && !levels->lowest && levels->coarsest == levels->last;
+    bool differs = !(plain && memcmp(values, h->asked, slc_region_count(t)) == 0) &&
+                   ask_all(t, values, levels, next);
     if (differs)
         c = compare_all(t, next);
-    s->next = differs ? next : NULL;
-    s->hits = c.hits;
-    s->returns = c.returns;
+    h->next = differs ? next : NULL;
+    h->hits = c.hits;
+    h->returns = c.returns;
     add_need(m, t, c.finer, need);
 }
 
@@ -170,22 +175,23 @@ void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *val
 static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFeedbackDesc *f)
 {
     uint32_t lowest = 0;
-    if (f->streamedMipLevels && f->streamedMipLevels < t->desc.regularMipCount)
-        lowest = t->desc.regularMipCount - f->streamedMipLevels;
+    if (f->streamedMipLevels && f->streamedMipLevels < t->shape->desc.regularMipCount)
+        lowest = t->shape->desc.regularMipCount - f->streamedMipLevels;
     int32_t bias = f->mipBias < -32 ? -32 : f->mipBias > 32 ? 32 : f->mipBias;
     return (struct slc_levels){.up = (uint8_t)(bias > 0 ? bias : 0),
                                .down = (uint8_t)(bias < 0 ? -bias : 0),
                                .lowest = (uint8_t)lowest,
-                               .coarsest = (uint8_t)(t->desc.mipLevelCount - 1),
-                               .last = (uint8_t)(t->desc.mipLevelCount - 1)};
+                               .coarsest = (uint8_t)(t->shape->desc.mipLevelCount - 1),
+                               .last = (uint8_t)(t->shape->desc.mipLevelCount - 1)};
 }
 
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
-                               const SluiceFeedbackDesc *feedback, struct slc_wants_need *need)
+                               const SluiceFeedbackDesc *feedback, uint32_t users,
+                               struct slc_wants_need *need)
 {
-    if (!t->state && slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
+    if (!t->nodes && slc_bytes_are(feedback->pMinMip, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return SLUICE_SUCCESS;
-    SluiceResult result = slc_state_make(m, t);
+    SluiceResult result = slc_history_make(m, t, users);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_levels levels = own_levels(t, feedback);
@@ -202,14 +208,14 @@ void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
 
 static void packed_wanted(slc_manager *m, struct slc_texture *t)
 {
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
-        slc_tile_wanted(m, t, &t->packed_nodes[i], t->regular_tile_count + i,
-                        t->desc.regularMipCount);
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
+        slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
+                        t->shape->desc.regularMipCount);
 }
 
 static void packed_unwanted(slc_manager *m, struct slc_texture *t)
 {
-    for (uint32_t i = 0; i < t->desc.packedTileCount; i++)
+    for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         slc_tile_unwanted(m, t->packed_nodes[i]);
 }
 
@@ -229,11 +235,17 @@ static slc_block at_most(slc_block values, slc_block limit)
  */
 struct moves {
     uint32_t count;
-    struct {
-        uint32_t tile;
-        uint8_t level, least;
-    } tiles[64];
+    struct slc_move tiles[64];
+    struct slc_move_log *log; ///< NULL: nobody repeats them
 };
+
+/** 255 in the first `count` bytes, at most a block. */
+static slc_block first_bytes(uint32_t count)
+{
+    static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
+                                                255, 255, 255, 255, 255, 255, 255, 255};
+    return slc_load_block(ramp + SLC_BLOCK - count);
+}
 
 /** log2 of the tiles of level 0 that want a tile, which some do. */
 static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t level)
@@ -241,54 +253,60 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     if (level == 0)
         return 0;
     struct slc_tile_range r = slc_area(t, slc_place_at(t, tile, level));
-    slc_block limit = slc_block_of((uint8_t)level);
-    uint32_t count = 0;
-    for (uint32_t y = r.y0; y <= r.y1; y++) {
-        const uint8_t *row = t->state->under + (size_t)y * t->levels[0].width;
-        for (uint32_t x = r.x0; x <= r.x1; x += SLC_BLOCK) {
-            uint32_t above =
-                slc_block_difference(at_most(slc_load_block(row + x), limit), slc_block_of(255));
-            uint32_t inside = r.x1 - x < SLC_BLOCK - 1 ? (2u << (r.x1 - x)) - 1 : 0xFFFF;
-            count += slc_count_bits(~above & inside);
+    const uint8_t *under = t->history->under + r.x0;
+    uint32_t pitch = t->shape->levels[0].width, width = r.x1 - r.x0 + 1;
+    slc_block limit = slc_block_of((uint8_t)level), sums = slc_block_of(0);
+    uint32_t count = 0, added = 0;
+    for (uint32_t y = r.y0; y <= r.y1; y++)
+        for (uint32_t x = 0; x < width; x += SLC_BLOCK) {
+            slc_block inside = first_bytes(slc_min_u32(width - x, SLC_BLOCK));
+            sums -= at_most(slc_load_block(under + (size_t)y * pitch + x), limit) & inside;
+            if (++added % 255 == 0) { /* a byte of the sum holds no more */
+                count += slc_block_sum(sums);
+                sums = slc_block_of(0);
+            }
         }
-    }
-    return 31u - (uint32_t)__builtin_clz(count);
+    return 31u - (uint32_t)__builtin_clz(count + slc_block_sum(sums));
 }
 
-static void want_tile(slc_manager *m, struct slc_texture *t, uint32_t *cell, uint32_t tile,
-                      uint32_t level)
+static void settle_move(slc_manager *m, struct slc_texture *t, struct slc_run *run,
+                        const struct slc_move *move)
 {
-    if (*cell)
-        slc_tile_wanted(m, t, cell, tile, level);
+    uint32_t *cell = &t->nodes[move->tile], node = *cell & ~SLC_RESIDENT;
+    if (node && slc_run_add(m, run, node, move->level, move->wanted))
+        return;
+    if (!move->wanted)
+        slc_tile_unwanted(m, node);
+    else if (node)
+        slc_tile_wanted(m, t, cell, move->tile, move->level);
     else
-        slc_tile_requested(m, t, cell, tile, level, need_of(t, tile, level));
+        slc_tile_requested(m, t, cell, move->tile, move->level,
+                           need_of(t, move->tile, move->level));
 }
 
 static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
 {
-    uint32_t *nodes = t->state->nodes;
+    struct slc_run run = {.count = 0};
     for (uint32_t i = 0; i < moves->count; i++)
-        __builtin_prefetch(slc_node_at(m, nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
-    for (uint32_t i = 0; i < moves->count; i++) {
-        uint32_t tile = moves->tiles[i].tile, level = moves->tiles[i].level;
-        uint32_t least = moves->tiles[i].least;
-        if (least <= level)
-            want_tile(m, t, &nodes[tile], tile, level);
-        else
-            slc_tile_unwanted(m, nodes[tile] & ~SLC_RESIDENT);
+        __builtin_prefetch(slc_node_at(m, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
+    for (uint32_t i = 0; i < moves->count; i++)
+        settle_move(m, t, &run, &moves->tiles[i]);
+    slc_run_end(m, &run);
+    if (moves->log) {
+        memcpy(moves->log->moves + moves->log->count, moves->tiles,
+               moves->count * sizeof *moves->tiles);
+        moves->log->count += moves->count;
     }
     moves->count = 0;
 }
 
-static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves, uint32_t tile,
-                     uint32_t level, uint8_t least)
+static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves,
+                     struct slc_move move)
 {
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
         settle_moves(m, t, moves);
-    __builtin_prefetch(&t->state->nodes[tile]);
-    moves->tiles[moves->count].tile = tile;
-    moves->tiles[moves->count].level = (uint8_t)level;
-    moves->tiles[moves->count++].least = least;
+    __builtin_prefetch(&t->nodes[move.tile]);
+    moves->tiles[moves->count++] = move;
 }
 
 /**
@@ -299,15 +317,13 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
                                      uint32_t level, uint32_t tile, const uint8_t *least,
                                      uint32_t count)
 {
-    static const uint8_t ramp[2 * SLC_BLOCK] = {255, 255, 255, 255, 255, 255, 255, 255,
-                                                255, 255, 255, 255, 255, 255, 255, 255};
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
-    uint8_t *under = t->state->under + tile;
+    uint8_t *under = t->history->under + tile;
     for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
         slc_block before = slc_load_block(under + i), now = slc_load_block(least + i);
         if (count - i < SLC_BLOCK) {
-            slc_block inside = slc_load_block(ramp + SLC_BLOCK - (count - i));
+            slc_block inside = first_bytes(count - i);
             now = (now & inside) | (before & ~inside);
         }
         if (!slc_block_difference(before, now))
@@ -317,7 +333,7 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
         uint32_t bits = slc_block_difference(at_most(before, limit), at_most(now, limit));
         for (; bits; bits &= bits - 1) {
             uint32_t k = i + (uint32_t)__builtin_ctz(bits);
-            add_move(m, t, moves, tile + k, level, least[k]);
+            add_move(m, t, moves, (struct slc_move){tile + k, (uint8_t)level, least[k] <= level});
         }
     }
     return changed;
@@ -326,13 +342,13 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 /** What the regions hold: the least level of their maps, and the bias. */
 static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
 {
-    const struct slc_texture_state *s = t->state;
+    const struct slc_history *h = t->history;
     if (m->bias.value == 0)
-        return s->least;
+        return h->least;
     slc_bias_map(m, t, work);
-    slc_block last = slc_block_of((uint8_t)(t->desc.mipLevelCount - 1));
+    slc_block last = slc_block_of((uint8_t)(t->shape->desc.mipLevelCount - 1));
     for (size_t i = 0; i < slc_padded(slc_region_count(t)); i += SLC_BLOCK) {
-        slc_block least = slc_load_block(s->least + i);
+        slc_block least = slc_load_block(h->least + i);
         slc_block held = slc_min_block(least + slc_load_block(work + i), last);
         held |= slc_equal_block(least, slc_block_of(SLUICE_MIP_UNTOUCHED));
         slc_store_block(work + i, held);
@@ -342,14 +358,14 @@ static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, u
 
 static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *held, uint8_t *work)
 {
-    const SluiceStreamedTextureDesc *d = &t->desc;
-    const struct slc_level *grid = &t->levels[0];
+    const SluiceStreamedTextureDesc *d = &t->shape->desc;
+    const struct slc_level *grid = &t->shape->levels[0];
     struct slc_grid regions = {.width = d->width,
                                .height = d->height,
                                .cell_width = d->feedbackRegionWidth,
                                .cell_height = d->feedbackRegionHeight,
-                               .columns = t->feedback_width,
-                               .rows = t->feedback_height};
+                               .columns = t->shape->feedback_width,
+                               .rows = t->shape->feedback_height};
     struct slc_grid tiles = {.width = d->width,
                              .height = d->height,
                              .cell_width = d->tileWidth,
@@ -364,13 +380,13 @@ static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *h
 static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, struct moves *moves,
                                        struct slc_range regions)
 {
-    const struct slc_level *grid = &t->levels[0];
-    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t);
+    const struct slc_level *grid = &t->shape->levels[0];
+    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t->shape);
     const uint8_t *least = held_levels(m, t, work);
-    if (!slc_regions_are_tiles(t))
+    if (!slc_regions_are_tiles(t->shape))
         least = search_tiles(t, least, work + slc_padded(slc_region_count(t)));
     struct slc_range all = {0, grid->width * grid->height};
-    if (slc_regions_are_tiles(t)) {
+    if (slc_regions_are_tiles(t->shape)) {
         all.first = regions.first;
         all.end = slc_min_u32(all.end, regions.end);
     }
@@ -387,9 +403,9 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, st
 static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, uint8_t *columns,
                        uint8_t *least)
 {
-    const struct slc_level *fine = &t->levels[level - 1], *here = &t->levels[level];
+    const struct slc_level *fine = &t->shape->levels[level - 1], *here = &t->shape->levels[level];
     uint32_t y0 = 2 * y, y1 = y + 1 == here->height ? fine->height : 2 * y + 2;
-    const uint8_t *row = t->state->under + fine->first_tile + (size_t)y0 * fine->width;
+    const uint8_t *row = t->history->under + fine->first_tile + (size_t)y0 * fine->width;
     for (uint32_t x = 0; x < fine->width; x += SLC_BLOCK) {
         slc_block v = slc_load_block(row + x);
         for (uint32_t k = 1; k < y1 - y0; k++)
@@ -406,8 +422,8 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
 static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, struct moves *moves,
                                      uint32_t level, struct slc_range below)
 {
-    const struct slc_level *grid = &t->levels[level];
-    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t) / 2;
+    const struct slc_level *grid = &t->shape->levels[level];
+    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t->shape) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
     uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
     struct slc_range rows = {0, 0};
@@ -421,39 +437,35 @@ static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, stru
     return rows;
 }
 
-/** Some region holds another level. */
-static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regions,
-                   bool held_before)
+static void packed_before(slc_manager *m, struct slc_texture *t, bool held_before)
 {
-    bool packed_move = !m->info.alwaysMapPackedTiles;
-    if (packed_move && !held_before && t->held_regions > 0)
+    if (!m->info.alwaysMapPackedTiles && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
-    if (t->desc.regularMipCount > 0) {
-        struct moves moves = {.count = 0};
-        struct slc_range rows = settle_level_0(m, t, &moves, regions);
-        for (uint32_t l = 1; l < t->desc.regularMipCount && rows.end > 0; l++)
-            rows = settle_level(m, t, &moves, l, rows);
-        settle_moves(m, t, &moves);
-    }
-    if (packed_move && held_before && t->held_regions == 0)
+}
+
+static void packed_after(slc_manager *m, struct slc_texture *t, bool held_before)
+{
+    if (!m->info.alwaysMapPackedTiles && held_before && t->held_regions == 0)
         packed_unwanted(m, t);
 }
 
-void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+/** Some region holds another level. */
+static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regions,
+                   bool held_before, struct slc_move_log *log)
 {
-    if (t->state) {
-        bool held_before = t->held_regions > 0;
-        m->bias.maps++;
-        m->round.maps++;
-        struct slc_range changed = slc_history_merge(m, t, time, timeout);
-        if (t->state->bias != m->bias.value)
-            changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
-        t->state->bias = m->bias.value;
-        if (changed.end > 0)
-            settle(m, t, changed, held_before);
-        slc_visit(m, t, t->held_regions > 0);
-        slc_state_release(m, t);
+    packed_before(m, t, held_before);
+    if (t->shape->desc.regularMipCount > 0) {
+        struct moves moves = {.count = 0, .log = log};
+        struct slc_range rows = settle_level_0(m, t, &moves, regions);
+        for (uint32_t l = 1; l < t->shape->desc.regularMipCount && rows.end > 0; l++)
+            rows = settle_level(m, t, &moves, l, rows);
+        settle_moves(m, t, &moves);
     }
+    packed_after(m, t, held_before);
+}
+
+static void take_time(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+{
     if (t->has_map && time != t->map_time) {
         t->interval = time - t->map_time;
         m->map_interval = t->interval;
@@ -463,19 +475,76 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     t->map_time = time;
 }
 
+void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
+                      struct slc_move_log *log)
+{
+    if (t->nodes) {
+        struct slc_history *h = t->history;
+        bool held_before = t->held_regions > 0;
+        m->bias.maps++;
+        m->round.maps++;
+        struct slc_range changed = slc_history_merge(m, t, time, timeout);
+        if (h->bias != m->bias.value)
+            changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
+        h->bias = m->bias.value;
+        if (changed.end > 0)
+            settle(m, t, changed, held_before, log);
+        slc_visit(m, t, t->held_regions > 0);
+        slc_state_release(m, t);
+    }
+    take_time(m, t, time, timeout);
+}
+
+void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct slc_texture *t,
+                      uint64_t time, uint64_t timeout, const struct slc_move_log *log)
+{
+    bool held_before = t->held_regions > 0;
+    struct moves moves = {.count = 0};
+    m->bias.maps++;
+    m->round.maps++;
+    t->held_regions = leader->held_regions;
+    t->hits = leader->hits;
+    t->returns = leader->returns;
+    packed_before(m, t, held_before);
+    for (uint32_t i = 0; i < log->count; i++)
+        add_move(m, t, &moves, log->moves[i]);
+    settle_moves(m, t, &moves);
+    packed_after(m, t, held_before);
+    slc_visit(m, t, t->held_regions > 0);
+    slc_state_release(m, t);
+    take_time(m, t, time, timeout);
+}
+
+/** Takes all wants of a texture back whose history the caller ends. */
+static void unwant_all(slc_manager *m, struct slc_texture *t)
+{
+    struct moves moves = {.count = 0};
+    const uint8_t *under = t->history->under;
+    for (uint32_t l = 0; l < t->shape->desc.regularMipCount; l++) {
+        const struct slc_level *grid = &t->shape->levels[l];
+        uint32_t first = grid->first_tile, count = grid->width * grid->height;
+        slc_block limit = slc_block_of((uint8_t)l);
+        for (uint32_t i = 0; i < count; i += SLC_BLOCK) {
+            uint32_t bits = ~slc_block_difference(at_most(slc_load_block(under + first + i), limit),
+                                                  slc_block_of(255));
+            bits &= count - i < SLC_BLOCK ? (1u << (count - i)) - 1 : 0xFFFF;
+            for (; bits; bits &= bits - 1)
+                add_move(m, t, &moves,
+                         (struct slc_move){first + i + (uint32_t)__builtin_ctz(bits), (uint8_t)l,
+                                           false});
+        }
+    }
+    settle_moves(m, t, &moves);
+}
+
 void slc_wants_forget(slc_manager *m, struct slc_texture *t)
 {
-    struct slc_texture_state *s = t->state;
-    size_t padded = slc_padded(slc_region_count(t));
-    memset(s->asked, SLUICE_MIP_UNTOUCHED, padded);
-    s->asked_least = SLUICE_MIP_UNTOUCHED;
-    memset(s->known, SLUICE_MIP_UNTOUCHED, padded);
-    s->absence = 0;
-    memset(s->least, SLUICE_MIP_UNTOUCHED, padded);
-    s->span_count = 0;
     t->held_regions = 0;
     slc_visit(m, t, false);
-    /* The scratch has room: the map of which this is the end needed as much. */
-    settle(m, t, (struct slc_range){0, (uint32_t)padded}, true);
+    unwant_all(m, t);
+    packed_after(m, t, true);
+    slc_history_drop(m, t);
     slc_state_release(m, t);
+    if (m->standby.count > m->config.numExtraStandbyTiles)
+        slc_list_standby(m, m->config.numExtraStandbyTiles);
 }

@@ -11,29 +11,36 @@ struct slc_wants_need {
 };
 
 /** Whether the regions are the tiles of level 0. */
-static inline bool slc_regions_are_tiles(const struct slc_texture *t)
+static inline bool slc_regions_are_tiles(const struct slc_shape *s)
 {
-    return t->desc.feedbackRegionWidth == t->desc.tileWidth &&
-           t->desc.feedbackRegionHeight == t->desc.tileHeight;
+    return s->desc.feedbackRegionWidth == s->desc.tileWidth &&
+           s->desc.feedbackRegionHeight == s->desc.tileHeight;
 }
 
-/** Scratch that a commit needs beside the map, and where it is. */
-size_t slc_wants_work_size(const struct slc_texture *t);
+/** Scratch that a commit needs beside the map: shape->work_size, and where it is. */
+size_t slc_wants_work_size(const struct slc_shape *s);
 static inline uint8_t *slc_wants_work(slc_manager *m, const struct slc_texture *t)
 {
-    return m->scratch + m->scratch_room - slc_wants_work_size(t);
+    return m->scratch + m->scratch_room - t->shape->work_size;
 }
 /** Room for the maps of one call, `bytes` padded bytes in all, and for one texture's work. */
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work);
 
-/** Puts what the map asks for into the scratch. Changes nothing that can be seen. */
+/**
+ * Puts what the map asks for into the scratch. Changes nothing that can be seen. All `users` of the
+ * texture's history will get the map.
+ */
 SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
-                               const SluiceFeedbackDesc *feedback, struct slc_wants_need *need);
+                               const SluiceFeedbackDesc *feedback, uint32_t users,
+                               struct slc_wants_need *need);
 
 /** The same for a follower; `asked` is what the primary's map asks for, NULL for an empty one. */
 SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
                                         const uint8_t *asked, struct slc_texture *follower,
                                         struct slc_wants_need *need);
+
+/** Same tiles, same regions. */
+bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *b);
 
 /** From the values of a map to what they ask for: clamp(min(v, coarsest) + up - down, lowest,
  * last). */
@@ -53,8 +60,25 @@ uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
 void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need);
 
-/** Merges state->next. Cannot fail. */
-void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout);
+/** A tile that becomes wanted or no longer is. */
+struct slc_move {
+    uint32_t tile;
+    uint8_t level;
+    bool wanted;
+};
+
+/** The moves of one map, for other textures that get it. */
+struct slc_move_log {
+    struct slc_move *moves; ///< room for one per regular tile
+    uint32_t count;
+};
+
+/** Merges history->next and writes the moves to `log` unless that is NULL. Cannot fail. */
+void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
+                      struct slc_move_log *log);
+/** The same for a texture that shares the history of one that has just been committed. */
+void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct slc_texture *t,
+                      uint64_t time, uint64_t timeout, const struct slc_move_log *log);
 
 /** A preparation came to nothing: gives back what it made. */
 void slc_wants_abandon(slc_manager *m, struct slc_texture *t);

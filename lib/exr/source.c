@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "exr/decode.h"
+#include "image/format.h"
 #include "image/mip.h"
 
 #include <pthread.h>
@@ -137,7 +138,8 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
 {
     if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    if (pInfo->format != SLUICE_FORMAT_UNDEFINED && sluiceFormatTexelSize(pInfo->format) == 0)
+    if (pInfo->format != SLUICE_FORMAT_UNDEFINED &&
+        (sluiceFormatTexelSize(pInfo->format) == 0 || slc_format_is_packed(pInfo->format)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);

@@ -1,23 +1,18 @@
 #include "image/convert.h"
 
+#include "image/format.h"
 #include "image/half.h"
+#include "image/small_float.h"
 #include "image/srgb.h"
+
+#include <assert.h>
+#include <string.h>
 
 uint32_t slc_format_channel_count(SluiceFormat format)
 {
-    switch (format) {
-    case SLUICE_FORMAT_UNDEFINED: return 0;
-    case SLUICE_FORMAT_R8_UNORM: return 1;
-    case SLUICE_FORMAT_R8G8B8A8_UNORM: return 4;
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: return 4;
-    case SLUICE_FORMAT_R16_SFLOAT: return 1;
-    case SLUICE_FORMAT_R16G16_SFLOAT: return 2;
-    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return 4;
-    case SLUICE_FORMAT_R32_SFLOAT: return 1;
-    case SLUICE_FORMAT_R32G32_SFLOAT: return 2;
-    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: return 4;
-    }
-    return 0;
+    SluiceFormatInfo info;
+    bool known = sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS;
+    return known && !slc_format_is_compressed(&info) ? info.channelCount : 0;
 }
 
 static void unorm8_from_rgba(uint32_t channels, const float *rgba, uint8_t *out, size_t count)
@@ -52,12 +47,38 @@ static void float_from_rgba(uint32_t channels, const float *rgba, char *out, siz
         memcpy(out, rgba + 4 * i, 4 * channels);
 }
 
+static uint32_t unorm_from_float(float value, uint32_t max)
+{
+    if (!(value > 0.0f))
+        return 0;
+    return value >= 1.0f ? max : (uint32_t)((double)value * max + 0.5);
+}
+
+static uint32_t word_from_rgba(SluiceFormat format, const float *rgba)
+{
+    if (format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32)
+        return slc_e5b9g9r9_from_float(rgba);
+    if (format == SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32)
+        return slc_ufloat_from_float(rgba[0], 6) | slc_ufloat_from_float(rgba[1], 6) << 11 |
+               slc_ufloat_from_float(rgba[2], 5) << 22;
+    return unorm_from_float(rgba[0], 1023) | unorm_from_float(rgba[1], 1023) << 10 |
+           unorm_from_float(rgba[2], 1023) << 20 | unorm_from_float(rgba[3], 3) << 30;
+}
+
+static void words_from_rgba(SluiceFormat format, const float *rgba, char *out, size_t count)
+{
+    for (size_t i = 0; i < count; i++, rgba += 4, out += 4) {
+        uint32_t word = word_from_rgba(format, rgba);
+        memcpy(out, &word, 4);
+    }
+}
+
 void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, size_t count)
 {
     uint32_t channels = slc_format_channel_count(format);
     switch (format) {
-    case SLUICE_FORMAT_UNDEFINED: return;
     case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R8G8_UNORM:
     case SLUICE_FORMAT_R8G8B8A8_UNORM: unorm8_from_rgba(channels, rgba, texels, count); return;
     case SLUICE_FORMAT_R8G8B8A8_SRGB: srgb_from_rgba(rgba, texels, count); return;
     case SLUICE_FORMAT_R16_SFLOAT:
@@ -66,6 +87,10 @@ void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, 
     case SLUICE_FORMAT_R32_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT:
     case SLUICE_FORMAT_R32G32B32A32_SFLOAT: float_from_rgba(channels, rgba, texels, count); return;
+    case SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32:
+    case SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32:
+    case SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32: words_from_rgba(format, rgba, texels, count); return;
+    default: assert(!"a format without texels"); /* sources refuse it */
     }
 }
 
@@ -113,12 +138,37 @@ static void rgba_from_float(uint32_t channels, const char *in, float *rgba, size
     }
 }
 
+static void rgba_from_word(SluiceFormat format, uint32_t word, float *rgba)
+{
+    if (format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32) {
+        slc_float_from_e5b9g9r9(word, rgba);
+    } else if (format == SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32) {
+        rgba[0] = slc_float_from_ufloat(word & 0x7FF, 6);
+        rgba[1] = slc_float_from_ufloat(word >> 11 & 0x7FF, 6);
+        rgba[2] = slc_float_from_ufloat(word >> 22, 5);
+    } else {
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] = (float)(word >> (10 * c) & 1023) / 1023.0f;
+        rgba[3] = (float)(word >> 30) / 3.0f;
+    }
+}
+
+static void rgba_from_words(SluiceFormat format, const char *in, float *rgba, size_t count)
+{
+    for (size_t i = 0; i < count; i++, rgba += 4, in += 4) {
+        uint32_t word;
+        memcpy(&word, in, 4);
+        set_defaults(rgba);
+        rgba_from_word(format, word, rgba);
+    }
+}
+
 void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, size_t count)
 {
     uint32_t channels = slc_format_channel_count(format);
     switch (format) {
-    case SLUICE_FORMAT_UNDEFINED: return;
     case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R8G8_UNORM:
     case SLUICE_FORMAT_R8G8B8A8_UNORM: rgba_from_unorm8(channels, texels, rgba, count); return;
     case SLUICE_FORMAT_R8G8B8A8_SRGB: rgba_from_srgb(texels, rgba, count); return;
     case SLUICE_FORMAT_R16_SFLOAT:
@@ -127,5 +177,9 @@ void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, si
     case SLUICE_FORMAT_R32_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT:
     case SLUICE_FORMAT_R32G32B32A32_SFLOAT: rgba_from_float(channels, texels, rgba, count); return;
+    case SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32:
+    case SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32:
+    case SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32: rgba_from_words(format, texels, rgba, count); return;
+    default: assert(!"a format without texels");
     }
 }

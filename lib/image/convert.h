@@ -1,15 +1,16 @@
 /**
- * Texels of any format from and to linear RGBA floats.
+ * Texels of any format that is not compressed from and to linear RGBA floats.
  *
- * Towards half, values saturate at +-65504; towards 8 bits they are clamped to [0, 1] and rounded
- * to nearest, sRGB formats encode R, G and B; in both NaN becomes 0. Towards float nothing changes.
+ * Towards half, values saturate at +-65504; towards 8 and 10 bits they are clamped to [0, 1] and
+ * rounded to nearest, sRGB formats encode R, G and B; small floats as small_float.h says; in all
+ * NaN becomes 0. Towards 32-bit float nothing changes.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H
 
 #include <sluice/image.h>
 
-/** Channels of a format: 1, 2 or 4; 0 for UNDEFINED. */
+/** Channels of a format: 1 to 4; 0 for UNDEFINED and compressed ones. */
 uint32_t slc_format_channel_count(SluiceFormat format);
 
 /** Nearest of the 256 steps; clamps to [0, 1], NaN becomes 0. */

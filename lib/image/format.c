@@ -1,49 +1,98 @@
-#include <sluice/image.h>
+#include "image/format.h"
+
+struct format {
+    const char *name;
+    SluiceFormatInfo info;
+};
+
+#define TEXELS(name, size, channels) [SLUICE_FORMAT_##name] = {#name, {size, 1, 1, channels}}
+#define BLOCKS(name, size, channels)                                                               \
+    [SLUICE_FORMAT_##name##_BLOCK] = {#name "_BLOCK", {size, 4, 4, channels}}
+
+static const struct format formats[SLUICE_FORMAT_COUNT] = {
+    [SLUICE_FORMAT_UNDEFINED] = {"UNDEFINED", {0}},
+    TEXELS(R8_UNORM, 1, 1),
+    TEXELS(R8G8_UNORM, 2, 2),
+    TEXELS(R8G8B8A8_UNORM, 4, 4),
+    TEXELS(R8G8B8A8_SRGB, 4, 4),
+    TEXELS(R16_SFLOAT, 2, 1),
+    TEXELS(R16G16_SFLOAT, 4, 2),
+    TEXELS(R16G16B16A16_SFLOAT, 8, 4),
+    TEXELS(R32_SFLOAT, 4, 1),
+    TEXELS(R32G32_SFLOAT, 8, 2),
+    TEXELS(R32G32B32A32_SFLOAT, 16, 4),
+    TEXELS(A2B10G10R10_UNORM_PACK32, 4, 4),
+    TEXELS(B10G11R11_UFLOAT_PACK32, 4, 3),
+    TEXELS(E5B9G9R9_UFLOAT_PACK32, 4, 3),
+    BLOCKS(BC1_RGB_UNORM, 8, 3),
+    BLOCKS(BC1_RGB_SRGB, 8, 3),
+    BLOCKS(BC1_RGBA_UNORM, 8, 4),
+    BLOCKS(BC1_RGBA_SRGB, 8, 4),
+    BLOCKS(BC2_UNORM, 16, 4),
+    BLOCKS(BC2_SRGB, 16, 4),
+    BLOCKS(BC3_UNORM, 16, 4),
+    BLOCKS(BC3_SRGB, 16, 4),
+    BLOCKS(BC4_UNORM, 8, 1),
+    BLOCKS(BC4_SNORM, 8, 1),
+    BLOCKS(BC5_UNORM, 16, 2),
+    BLOCKS(BC5_SNORM, 16, 2),
+    BLOCKS(BC6H_UFLOAT, 16, 3),
+    BLOCKS(BC6H_SFLOAT, 16, 3),
+    BLOCKS(BC7_UNORM, 16, 4),
+    BLOCKS(BC7_SRGB, 16, 4),
+};
+
+/* UNDEFINED for what a newer or confused caller may give. */
+static const struct format *find(SluiceFormat format)
+{
+    return &formats[(uint32_t)format < SLUICE_FORMAT_COUNT ? format : SLUICE_FORMAT_UNDEFINED];
+}
+
+SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo)
+{
+    if (!pInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (find(format)->info.blockSize == 0)
+        return SLUICE_ERROR_UNSUPPORTED;
+    *pInfo = find(format)->info;
+    return SLUICE_SUCCESS;
+}
 
 uint32_t sluiceFormatTexelSize(SluiceFormat format)
 {
-    switch (format) {
-    case SLUICE_FORMAT_UNDEFINED: return 0;
-    case SLUICE_FORMAT_R8_UNORM: return 1;
-    case SLUICE_FORMAT_R8G8B8A8_UNORM: return 4;
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: return 4;
-    case SLUICE_FORMAT_R16_SFLOAT: return 2;
-    case SLUICE_FORMAT_R16G16_SFLOAT: return 4;
-    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return 8;
-    case SLUICE_FORMAT_R32_SFLOAT: return 4;
-    case SLUICE_FORMAT_R32G32_SFLOAT: return 8;
-    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: return 16;
-    }
-    return 0;
+    const SluiceFormatInfo *info = &find(format)->info;
+    return info->blockSize && !slc_format_is_compressed(info) ? info->blockSize : 0;
+}
+
+uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height)
+{
+    const SluiceFormatInfo *info = &find(format)->info;
+    if (info->blockSize == 0)
+        return 0;
+    uint64_t row = slc_format_row_size(info, width), rows = slc_format_row_count(info, height);
+    return row && rows > UINT64_MAX / row ? UINT64_MAX : row * rows;
 }
 
 const char *sluiceFormatString(SluiceFormat format)
 {
-    switch (format) {
-    case SLUICE_FORMAT_UNDEFINED: return "UNDEFINED";
-    case SLUICE_FORMAT_R8_UNORM: return "R8_UNORM";
-    case SLUICE_FORMAT_R8G8B8A8_UNORM: return "R8G8B8A8_UNORM";
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: return "R8G8B8A8_SRGB";
-    case SLUICE_FORMAT_R16_SFLOAT: return "R16_SFLOAT";
-    case SLUICE_FORMAT_R16G16_SFLOAT: return "R16G16_SFLOAT";
-    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return "R16G16B16A16_SFLOAT";
-    case SLUICE_FORMAT_R32_SFLOAT: return "R32_SFLOAT";
-    case SLUICE_FORMAT_R32G32_SFLOAT: return "R32G32_SFLOAT";
-    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: return "R32G32B32A32_SFLOAT";
-    }
-    return "UNDEFINED";
+    return find(format)->name;
 }
 
 SluiceResult sluiceGetStandardTileShape(SluiceFormat format, uint32_t *pWidth, uint32_t *pHeight)
 {
     if (!pWidth || !pHeight)
         return SLUICE_ERROR_NULL_POINTER;
-    switch (sluiceFormatTexelSize(format)) {
-    case 1: *pWidth = 256, *pHeight = 256; return SLUICE_SUCCESS;
-    case 2: *pWidth = 256, *pHeight = 128; return SLUICE_SUCCESS;
-    case 4: *pWidth = 128, *pHeight = 128; return SLUICE_SUCCESS;
-    case 8: *pWidth = 128, *pHeight = 64; return SLUICE_SUCCESS;
-    case 16: *pWidth = 64, *pHeight = 64; return SLUICE_SUCCESS;
+    const SluiceFormatInfo *info = &find(format)->info;
+    uint32_t width = 0, height = 0; /* blocks */
+    switch (info->blockSize) {
+    case 1: width = 256, height = 256; break;
+    case 2: width = 256, height = 128; break;
+    case 4: width = 128, height = 128; break;
+    case 8: width = 128, height = 64; break;
+    case 16: width = 64, height = 64; break;
+    default: return SLUICE_ERROR_UNSUPPORTED;
     }
-    return SLUICE_ERROR_UNSUPPORTED;
+    *pWidth = width * info->blockWidth;
+    *pHeight = height * info->blockHeight;
+    return SLUICE_SUCCESS;
 }

@@ -2,14 +2,19 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/format.h"
 
 #include <string.h>
 
 SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const SluiceImageInfo *given,
                                  SluiceImageInfo *info)
 {
-    if (given->width == 0 || given->height == 0 || sluiceFormatTexelSize(given->format) == 0)
+    SluiceFormatInfo format;
+    if (given->width == 0 || given->height == 0 ||
+        sluiceGetFormatInfo(given->format, &format) != SLUICE_SUCCESS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (slc_format_is_compressed(&format) || given->arrayLayerCount > 1)
+        return SLUICE_ERROR_UNSUPPORTED;
     uint32_t level_count = slc_mip_count(slc_max_u32(given->width, given->height));
     if (given->mipLevelCount != 0 && given->mipLevelCount != level_count)
         return SLUICE_ERROR_INVALID_ARGUMENT;

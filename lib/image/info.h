@@ -7,7 +7,9 @@
 /**
  * Copies `given` with its name ("" for NULL); a level count of 0 becomes the full chain's.
  * Errors: INVALID_ARGUMENT for an empty or unknown format, a size of 0 or another level count than
- * the full chain's; OUT_OF_HOST_MEMORY.
+ * the full chain's; UNSUPPORTED for compressed formats, which nothing here can encode,
+ * and for arrays;
+ * OUT_OF_HOST_MEMORY.
  */
 SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const SluiceImageInfo *given,
                                  SluiceImageInfo *info);

@@ -31,16 +31,15 @@ static SluiceResult read_regions(struct SluiceTileLoader *loader, const struct s
     if (result != SLUICE_SUCCESS)
         return result;
     const atomic_bool *dropped = &loader->dropped[read - loader->queue.reads];
-    size_t texel_size = sluiceFormatTexelSize(info.format);
     for (uint32_t i = 0; i < read->region_count; i++) {
         if (atomic_load_explicit(dropped, memory_order_relaxed))
             return SLUICE_ERROR_CANCELLED;
         const SluiceImageRegion *region = &read->regions[i];
         result = sluiceReadImageRegion(read->source, region, read->texels[i],
-                                       region->width * texel_size);
+                                       sluiceFormatRegionSize(info.format, region->width, 1));
         if (result != SLUICE_SUCCESS)
             return result;
-        *size += (uint64_t)region->width * region->height * texel_size;
+        *size += sluiceFormatRegionSize(info.format, region->width, region->height);
     }
     return SLUICE_SUCCESS;
 }

@@ -1,6 +1,6 @@
 #include <sluice/image.h>
 
-#include "base/checked.h"
+#include "image/format.h"
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {
@@ -9,9 +9,22 @@ SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInf
     return source->pInterface->pfnGetInfo(source, pInfo);
 }
 
+/* Whole blocks; only the right and lower edge of a level may cut one. */
+static bool region_is_aligned(const SluiceImageRegion *region, const SluiceImageInfo *info,
+                              const SluiceFormatInfo *format)
+{
+    uint32_t right = region->x + region->width, bottom = region->y + region->height;
+    return region->x % format->blockWidth == 0 && region->y % format->blockHeight == 0 &&
+           (right % format->blockWidth == 0 ||
+            right == slc_mip_size(info->width, region->mipLevel)) &&
+           (bottom % format->blockHeight == 0 ||
+            bottom == slc_mip_size(info->height, region->mipLevel));
+}
+
 static bool region_is_inside(const SluiceImageRegion *region, const SluiceImageInfo *info)
 {
-    if (region->mipLevel >= info->mipLevelCount || region->width == 0 || region->height == 0)
+    if (region->arrayLayer >= slc_max_u32(1, info->arrayLayerCount) ||
+        region->mipLevel >= info->mipLevelCount || region->width == 0 || region->height == 0)
         return false;
     uint32_t width = slc_mip_size(info->width, region->mipLevel);
     uint32_t height = slc_mip_size(info->height, region->mipLevel);
@@ -28,9 +41,10 @@ SluiceResult sluiceReadImageRegion(SluiceImageSource *source, const SluiceImageR
     SluiceResult result = source->pInterface->pfnGetInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    size_t row;
-    if (!region_is_inside(pRegion, &info) ||
-        !slc_mul_size(pRegion->width, sluiceFormatTexelSize(info.format), &row) || rowPitch < row)
+    SluiceFormatInfo format;
+    if (sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS ||
+        !region_is_inside(pRegion, &info) || !region_is_aligned(pRegion, &info, &format) ||
+        rowPitch < slc_format_row_size(&format, pRegion->width))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     return source->pInterface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
 }

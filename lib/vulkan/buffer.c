@@ -11,6 +11,9 @@ static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
         return slc_find_memory_type(&caps->memory, type_bits, 0,
                                     VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     case SLC_BUFFER_UPLOAD: return slc_find_memory_type(&caps->memory, type_bits, host, 0);
+    case SLC_BUFFER_TABLE:
+        return slc_find_memory_type(&caps->memory, type_bits, host,
+                                    VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     case SLC_BUFFER_READBACK:
         return slc_find_memory_type(&caps->memory, type_bits, host,
                                     VK_MEMORY_PROPERTY_HOST_CACHED_BIT);

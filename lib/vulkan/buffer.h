@@ -7,6 +7,7 @@
 enum slc_buffer_kind {
     SLC_BUFFER_DEVICE,   ///< the GPU's own
     SLC_BUFFER_UPLOAD,   ///< written by the host, mapped, coherent
+    SLC_BUFFER_TABLE,    ///< small, written by the host, mapped, coherent; the GPU's if possible
     SLC_BUFFER_READBACK, ///< read by the host, mapped, cached where there is such memory
 };
 

@@ -2,12 +2,28 @@
 
 #include "base/log.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define MAX_QUEUE_FAMILIES 32u
 
+/* A software device maps every page that is bound into its process, and keeps the map until the
+ * image goes. When the system refuses more it loses data silently. A quarter is left to others. */
+static uint32_t find_max_touched_tiles(void)
+{
+    unsigned long maps = 65530; /* Linux's default */
+    FILE *file = fopen("/proc/sys/vm/max_map_count", "r");
+    if (file) {
+        if (fscanf(file, "%lu", &maps) != 1 || maps < 4)
+            maps = 65530;
+        fclose(file);
+    }
+    unsigned long limit = maps / 4 * 3;
+    return limit < UINT32_MAX ? (uint32_t)limit : UINT32_MAX;
+}
+
 /* A family of its own overlaps with drawing; the drawing family makes binds wait for frames. */
-static bool find_sparse_family(const struct slc_vk *vk, uint32_t *family)
+static bool find_sparse_family(const struct slc_vk *vk, SluiceVulkanDeviceCapabilities *caps)
 {
     VkQueueFamilyProperties families[MAX_QUEUE_FAMILIES];
     uint32_t count = MAX_QUEUE_FAMILIES;
@@ -20,10 +36,51 @@ static bool find_sparse_family(const struct slc_vk *vk, uint32_t *family)
         score += !(families[i].queueFlags & (VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT));
         if (score > best) {
             best = score;
-            *family = i;
+            caps->sparseQueueFamilyIndex = i;
+            caps->sparseQueueCount = families[i].queueCount;
+            caps->dedicatedSparseQueue = score == 2;
         }
     }
     return best >= 0;
+}
+
+static void take_features(SluiceVulkanDeviceCapabilities *out, const VkPhysicalDeviceFeatures *f)
+{
+    out->shaderResourceResidency = f->shaderResourceResidency;
+    out->shaderResourceMinLod = f->shaderResourceMinLod;
+    out->fragmentStoresAndAtomics = f->fragmentStoresAndAtomics;
+    out->textureCompressionBC = f->textureCompressionBC;
+    out->samplerAnisotropy = f->samplerAnisotropy;
+    out->sparseResidencyAliased = f->sparseResidencyAliased;
+}
+
+static void take_properties(SluiceVulkanDeviceCapabilities *out,
+                            const VkPhysicalDeviceProperties *p)
+{
+    bool software = p->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    memcpy(out->deviceName, p->deviceName, sizeof out->deviceName);
+    out->deviceType = p->deviceType;
+    out->apiVersion = p->apiVersion;
+    out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
+    out->standardTiles = p->sparseProperties.residencyStandard2DBlockShape;
+    out->residencyCodesExact = out->shaderResourceResidency && !software;
+    out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
+    out->maxTouchedTiles = software ? find_max_touched_tiles() : 0;
+    out->maxImageExtent = p->limits.maxImageDimension2D;
+    out->maxImageArrayLayers = p->limits.maxImageArrayLayers;
+    out->maxStorageBufferRange = p->limits.maxStorageBufferRange;
+    out->maxSamplerAnisotropy = p->limits.maxSamplerAnisotropy;
+    out->timestampPeriod = p->limits.timestampComputeAndGraphics ? p->limits.timestampPeriod : 0.0f;
+}
+
+static uint64_t largest_local_heap(const VkPhysicalDeviceMemoryProperties *memory)
+{
+    uint64_t size = 0;
+    for (uint32_t i = 0; i < memory->memoryHeapCount; i++)
+        if (memory->memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT &&
+            memory->memoryHeaps[i].size > size)
+            size = memory->memoryHeaps[i].size;
+    return size;
 }
 
 void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
@@ -33,27 +90,29 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                           .pNext = &features12};
-    VkPhysicalDeviceProperties2 properties = {.sType =
-                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
     vk->GetPhysicalDeviceFeatures2(vk->physical_device, &features);
     vk->GetPhysicalDeviceProperties2(vk->physical_device, &properties);
     vk->GetPhysicalDeviceMemoryProperties(vk->physical_device, &caps->memory);
-    const VkPhysicalDeviceProperties *p = &properties.properties;
     SluiceVulkanDeviceCapabilities *out = &caps->public;
-    out->shaderResourceResidency = features.features.shaderResourceResidency;
-    out->shaderResourceMinLod = features.features.shaderResourceMinLod;
-    out->residencyNonResidentStrict = p->sparseProperties.residencyNonResidentStrict;
-    out->sparseAddressSpaceSize = p->limits.sparseAddressSpaceSize;
+    take_features(out, &features.features);
+    take_properties(out, &properties.properties);
+    memcpy(out->driverName, driver.driverName, sizeof out->driverName);
+    memcpy(out->driverInfo, driver.driverInfo, sizeof out->driverInfo);
+    out->deviceLocalMemorySize = largest_local_heap(&caps->memory);
+    caps->max_storage_buffer_range = out->maxStorageBufferRange;
+    bool vulkan12 = out->apiVersion >= VK_API_VERSION_1_2;
+    out->timelineSemaphore = vulkan12 && features12.timelineSemaphore;
+    caps->timeline_semaphore = out->timelineSemaphore;
+    bool queue = find_sparse_family(vk, out);
     out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
-    caps->max_image_array_layers = p->limits.maxImageArrayLayers;
-    caps->max_storage_buffer_range = p->limits.maxStorageBufferRange;
-    memcpy(out->deviceName, p->deviceName, sizeof out->deviceName);
-    bool vulkan12 = p->apiVersion >= VK_API_VERSION_1_2;
-    caps->timeline_semaphore = vulkan12 && features12.timelineSemaphore;
+    caps->max_image_array_layers = properties.properties.limits.maxImageArrayLayers;
     out->sparse = vulkan12 && features.features.sparseBinding &&
-                  features.features.sparseResidencyImage2D &&
-                  find_sparse_family(vk, &out->sparseQueueFamilyIndex);
+                  features.features.sparseResidencyImage2D && queue;
 }
 
 uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,
@@ -151,6 +210,8 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
             pVulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     }
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
+    if (there.features.textureCompressionBC)
+        pFeatures->textureCompressionBC = VK_TRUE;
     pVulkan12->timelineSemaphore = VK_TRUE;
     return SLUICE_SUCCESS;
 }

@@ -6,7 +6,8 @@
 
 /* clang-format off */
 #define SLC_VK_INSTANCE_FUNCTIONS(X)                                                               \
-    X(GetDeviceProcAddr) X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceImageFormatProperties)   \
+    X(GetDeviceProcAddr) X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceFormatProperties) \
+    X(GetPhysicalDeviceImageFormatProperties)   \
     X(GetPhysicalDeviceMemoryProperties) X(GetPhysicalDeviceProperties2)                           \
     X(GetPhysicalDeviceQueueFamilyProperties) X(GetPhysicalDeviceSparseImageFormatProperties)
 

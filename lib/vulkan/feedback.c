@@ -1,9 +1,12 @@
-/* Which feedback maps are read back in a frame, and what the manager gets of them. */
+/* Which textures' feedback is resolved in a frame, and what the manager gets of it. */
 #include "vulkan/streamer.h"
 
 #include "base/checked.h"
 #include "base/log.h"
 
+#include <string.h>
+
+/* The one place where feedback enters the manager. */
 static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const uint8_t *map,
                              uint32_t width, uint32_t height, uint64_t time_stamp, uint64_t timeout)
 {
@@ -49,32 +52,148 @@ static SluiceResult want_everything(SluiceVulkanStreamer *s)
     return SLUICE_SUCCESS;
 }
 
+void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture)
+{
+    slc_feedback_map_init(&texture->feedback, s->feedback_levels + texture->region_first,
+                          texture->layout.feedbackWidth * texture->layout.feedbackHeight);
+    texture->feedback_whole = s->info.wholeFeedbackMaps;
+}
+
+uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
+{
+    return (uint64_t)region_count *
+           (s->info.feedbackEncoding == SLUICE_FEEDBACK_ENCODING_MASKS ? 2 : 4);
+}
+
+uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s)
+{
+    return s->info.feedbackEncoding == SLUICE_FEEDBACK_ENCODING_MASKS ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
+void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                             VkCommandBuffer commands)
+{
+    slc_resolve_record_new(&s->resolve, &s->vk, commands, texture->region_first,
+                           texture->region_count);
+    if (!s->buffers_cleared)
+        return; /* the whole buffer has just been filled */
+    uint64_t size = slc_feedback_size(s, 4);
+    s->vk.CmdFillBuffer(commands, s->feedback.buffer, texture->region_first / 4 * size,
+                        (texture->region_count + 3) / 4 * size, slc_feedback_clear_value(s));
+}
+
+/* There was no room: its marks are still there, and next time it is among the first. */
+static void try_again(SluiceVulkanStreamer *s, const struct slc_texture *texture, bool *first)
+{
+    s->counts.feedbackPostponed++;
+    if (*first && texture->primary_place != SLC_NONE)
+        s->primary_cursor = texture->primary_place;
+    *first = false;
+}
+
+static void ask_for_all(SluiceVulkanStreamer *s, struct slc_texture *texture, bool all)
+{
+    s->list_version += texture->feedback_whole != all;
+    texture->feedback_whole = all;
+}
+
+static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback_slot *slot)
+{
+    bool first_without_room = true;
+    for (uint32_t i = 0; i < slot->item_count; i++) {
+        struct slc_texture *texture = slc_streamer_texture(s, slot->items[i]);
+        if (texture->state != SLC_TEXTURE_LIVE || texture->id != slot->items[i])
+            continue; /* removed while its feedback was on its way */
+        const uint32_t *data;
+        struct SluiceResolveResult resolved = slc_readback_result(&s->readback, slot, i, &data);
+        if (resolved.state == SLUICE_RESOLVED_NOTHING) {
+            try_again(s, texture, &first_without_room);
+            continue;
+        }
+        if (!data || !slc_feedback_map_update(&texture->feedback, &resolved, data)) {
+            slc_log(&s->info.log, SLUICE_LOG_WARNING, "feedback came back damaged");
+            ask_for_all(s, texture, true);
+            continue;
+        }
+        ask_for_all(s, texture, s->info.wholeFeedbackMaps);
+        s->counts.feedbackWords += resolved.count;
+        SluiceResult result =
+            give_map(s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
+                     texture->layout.feedbackHeight, slot->time_stamp, s->info.feedbackTimeout);
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s)
 {
     if (s->info.mapEverything)
         return want_everything(s);
     struct slc_readback_slot *slot;
     while ((slot = slc_readback_oldest(&s->readback, s->completed_frame))) {
-        for (uint32_t i = 0; i < slot->item_count; i++) {
-            const struct slc_readback_item *item = &slot->items[i];
-            SluiceResult result =
-                give_map(s, item->id, slc_readback_map(&s->readback, slot, i), item->width,
-                         item->height, slot->time_stamp, s->info.feedbackTimeout);
-            if (result < 0)
-                return result;
-        }
+        SluiceResult result = read_slot(s, slot);
+        if (result < 0)
+            return result;
         slot->frame = 0;
     }
     return SLUICE_SUCCESS;
 }
 
-static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands,
-                    VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,
-                    VkAccessFlags used)
+static bool takes_part(const SluiceVulkanStreamer *s, uint32_t index)
 {
-    VkMemoryBarrier memory = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER, .srcAccessMask = written, .dstAccessMask = used};
-    s->vk.CmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
+    return !s->info.feedbackInTurns || (s->turns[index / 32] >> index % 32 & 1);
+}
+
+/* Those that slc_feedback_record of this frame will come to. */
+static void choose_turns(SluiceVulkanStreamer *s)
+{
+    memset(s->turns, 0, slc_turns_size(s));
+    uint32_t cursor = s->primary_cursor;
+    for (uint32_t i = share_of_frame(s); i > 0; i--) {
+        uint32_t index = next_primary(s);
+        s->turns[index / 32] |= 1u << index % 32;
+    }
+    s->primary_cursor = cursor;
+}
+
+void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    if (!s->info.feedbackInTurns) {
+        if (!s->buffers_cleared)
+            s->vk.CmdFillBuffer(commands, s->feedback_turns.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
+        return;
+    }
+    choose_turns(s);
+    const uint8_t *bytes = (const uint8_t *)s->turns;
+    for (uint64_t done = 0, size = slc_turns_size(s); done < size; done += 65536) {
+        uint64_t piece = size - done < 65536 ? size - done : 65536; /* as much as an update takes */
+        s->vk.CmdUpdateBuffer(commands, s->feedback_turns.buffer, done, piece, bytes + done);
+    }
+}
+
+static void list_items(SluiceVulkanStreamer *s, struct slc_readback_slot *slot, uint32_t share)
+{
+    slc_resolve_begin(&s->resolve, (uint32_t)(slot - s->readback.slots));
+    slot->item_count = 0;
+    slot->list_version = s->list_version;
+    slot->list_first = s->primary_cursor;
+    for (uint32_t i = 0; i < share; i++) {
+        uint32_t index = next_primary(s);
+        const struct slc_texture *texture = &s->textures[index];
+        /* The next frame clears what an older texture left in the regions of a new one; and those
+         * that came or went since the frame began may have shifted the turns. */
+        if (texture->added_frame == s->frame || !takes_part(s, index)) {
+            slot->list_version = 0;
+            continue;
+        }
+        if (!slc_resolve_add(&s->resolve, texture->region_first, texture->feedback.region_count,
+                             texture->feedback_whole ? SLUICE_RESOLVE_WHOLE : 0))
+            break; /* cannot be: there is room for all textures */
+        slot->items[slot->item_count++] = texture->id;
+    }
+    slot->list_end = s->primary_cursor;
+    slot->segment_count = s->resolve.segment_count;
 }
 
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
@@ -83,22 +202,15 @@ void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     if (share == 0 || s->info.mapEverything)
         return;
     struct slc_readback_slot *slot = slc_readback_begin(&s->readback, s->frame, s->time_stamp);
-    barrier(s, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-    slc_resolve_bind(&s->resolve, &s->vk, commands);
-    for (uint32_t i = 0; i < share; i++) {
-        const struct slc_texture *texture = &s->textures[next_primary(s)];
-        if (texture->added_frame == s->frame)
-            continue; /* the next frame clears what an older texture left in its regions */
-        uint32_t word;
-        if (!slc_readback_add(&s->readback, slot, texture->id, texture->layout.feedbackWidth,
-                              texture->layout.feedbackHeight, &word))
-            break; /* cannot be: a slot holds all maps */
-        slc_resolve_record(&s->resolve, &s->vk, commands, texture->region_first,
-                           texture->layout.feedbackWidth * texture->layout.feedbackHeight, word);
+    if (slot->list_version == s->list_version && slot->list_first == s->primary_cursor) {
+        slc_resolve_resume(&s->resolve, (uint32_t)(slot - s->readback.slots), slot->item_count,
+                           slot->segment_count);
+        s->primary_cursor = slot->list_end;
+    } else {
+        list_items(s, slot, share);
     }
-    barrier(s, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_HOST_READ_BIT);
+    if (slot->item_count)
+        slc_resolve_record(&s->resolve, &s->vk, commands,
+                           slc_readback_result_offset(&s->readback, slot),
+                           slc_readback_data_offset(&s->readback, slot), s->readback.capacity);
 }

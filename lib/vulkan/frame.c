@@ -32,7 +32,7 @@ static SluiceResult retire(SluiceVulkanStreamer *s)
                               "sluiceCompleteRetireValue");
 }
 
-/* Tiles leave the MinMip maps with this frame, and their page tables when older frames are over. */
+/* Tiles leave the MinMip maps with this frame; their pages are free when older frames are over. */
 static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
 {
     for (;;) {
@@ -94,7 +94,8 @@ static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     uint32_t done = 0;
     do {
         uint32_t count = 0;
-        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++)
+        for (; count < MAX_BARRIERS && done < s->new_texture_count; count++, done++) {
+            const struct slc_texture *texture = &s->textures[s->new_textures[done]];
             images[count] = (VkImageMemoryBarrier){
                 .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
                 .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_READ_BIT,
@@ -102,8 +103,10 @@ static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
                 .newLayout = VK_IMAGE_LAYOUT_GENERAL,
                 .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                 .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                .image = s->textures[s->new_textures[done]].image.image,
-                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1}};
+                .image = texture->image.image,
+                .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS,
+                                     texture->layer, 1}};
+        }
         s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                                  VK_PIPELINE_STAGE_TRANSFER_BIT |
                                      VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -124,7 +127,8 @@ static void barrier_after(SluiceVulkanStreamer *s, VkCommandBuffer commands,
 static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     slc_page_views_record(&s->page_views, &s->vk, commands);
-    s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE, SLUICE_MIP_UNTOUCHED);
+    s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE,
+                        slc_feedback_clear_value(s));
     s->vk.CmdFillBuffer(commands, s->min_mip.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
     s->vk.CmdFillBuffer(commands, s->texture_table.buffer, 0, VK_WHOLE_SIZE, 0);
     barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
@@ -139,6 +143,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     if (residency->record_begin)
         residency->record_begin(s->residency, s->frame, commands);
     slc_textures_record_new(s, commands);
+    slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
     SluiceResult result = slc_tile_uploads_record(s, commands);
     if (result >= 0 && residency->record_publish)

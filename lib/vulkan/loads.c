@@ -94,9 +94,12 @@ static SluiceImageRegion tile_region(const struct slc_texture *texture, const Sl
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     uint32_t x = tile->x * desc->tileWidth, y = tile->y * desc->tileHeight;
     return (SluiceImageRegion){
-        tile->mipLevel, x, y,
+        tile->mipLevel,
+        x,
+        y,
         slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - x),
-        slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - y)};
+        slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - y),
+        texture->layer};
 }
 
 /* Gives a unit to the loader; also again, for a source that was not ready. */
@@ -122,6 +125,7 @@ static SluiceResult submit_unit(SluiceVulkanStreamer *s, uint32_t index)
         read.priority = SLUICE_MAX_MIP_LEVELS;
         for (uint32_t i = 0; i < packed->rect_count; i++) {
             regions[i] = texture->packed.rects[packed->first_rect + i].region;
+            regions[i].arrayLayer = texture->layer;
             texels[i] =
                 unit_memory(s, index) + texture->packed.rects[packed->first_rect + i].offset;
         }
@@ -284,8 +288,21 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
     }
 }
 
+/* Before anything is read for it: the tile cannot ever be bound. */
+static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    s->counts.tilesFailed++;
+    return slc_streamer_check(s,
+                              sluiceReportFailedTiles(s->manager, s->textures[texture].id, 1,
+                                                      &tile->tileIndex, s->manager_time),
+                              "sluiceReportFailedTiles");
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
+    const struct slc_residency_interface *interface = s->residency->interface;
+    if (interface->reserve && !interface->reserve(s->residency, texture, tile))
+        return refuse_tile(s, texture, tile);
     uint32_t unit = unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_tile_map_add(&s->tile_units, slc_tile_key(texture, tile->tileIndex), unit);
@@ -395,7 +412,7 @@ static void bind_packed(SluiceVulkanStreamer *s)
 
 /* There is no memory for it. Later it is read again, and its staging slot serves others till then.
  */
-static void refuse_tile(SluiceVulkanStreamer *s, uint32_t index)
+static void give_tile_back(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
     SluiceResult result = sluiceReportFailedTiles(s->manager, s->textures[unit->texture].id, 1,
@@ -419,7 +436,7 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
         }
         SluiceResult result = s->residency->interface->map(s->residency, u->texture, &u->tile);
         if (result < 0)
-            refuse_tile(s, unit);
+            give_tile_back(s, unit);
         else
             slc_unit_list_append(s, result == SLUICE_SUCCESS ? &bound : &later, unit);
     }

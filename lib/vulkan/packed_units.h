@@ -10,7 +10,7 @@
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 
-/** Rectangles begin at multiples of this in their slot: a multiple of every texel size and of 4. */
+/** Rectangles begin at multiples of this in their slot: a multiple of every block size and of 4. */
 #define SLC_STAGING_ALIGNMENT 16u
 
 struct slc_packed_rect {
@@ -28,11 +28,11 @@ struct slc_packed_units {
     uint32_t rect_count, unit_count;
 };
 
-/** Of the levels [regularMipCount, mipLevelCount). */
+/** Of the levels [regularMipCount, mipLevelCount). Rectangles are whole blocks of `format`. */
 SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
                                    const SluiceAllocationCallbacks *cb,
-                                   const SluiceStreamedTextureDesc *desc, uint32_t texel_size,
-                                   uint32_t slot_size);
+                                   const SluiceStreamedTextureDesc *desc,
+                                   const SluiceFormatInfo *format, uint32_t slot_size);
 void slc_packed_units_finish(struct slc_packed_units *packed, const SluiceAllocationCallbacks *cb);
 
 #endif /* SLC_VULKAN_PACKED_UNITS_H */

@@ -6,10 +6,11 @@
 
 static uint64_t texel_bytes(const SluiceImageInfo *info, uint32_t first_level)
 {
-    uint64_t texels = 0;
+    uint64_t size = 0;
     for (uint32_t level = first_level; level < info->mipLevelCount; level++)
-        texels += (uint64_t)slc_mip_size(info->width, level) * slc_mip_size(info->height, level);
-    return texels * sluiceFormatTexelSize(info->format);
+        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                       slc_mip_size(info->height, level));
+    return size;
 }
 
 /* NULL, or what is wrong. */

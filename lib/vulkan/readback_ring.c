@@ -1,24 +1,39 @@
 #include "vulkan/readback_ring.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 
 #include <assert.h>
+#include <string.h>
+
+#define RESULT_WORDS 4u
+
+/* Whole results, so that those of the next slot are aligned. */
+static uint32_t slot_words(uint32_t max_items, uint32_t capacity)
+{
+    return RESULT_WORDS * (max_items + slc_div_up_u32(capacity, RESULT_WORDS));
+}
+
+uint64_t slc_readback_ring_size(uint32_t slot_count, uint32_t max_items, uint32_t capacity)
+{
+    return (uint64_t)slot_count * slot_words(max_items, capacity) * 4;
+}
 
 SluiceResult slc_readback_ring_init(struct slc_readback_ring *ring, const struct slc_vk *vk,
                                     const struct slc_caps *caps,
                                     const SluiceAllocationCallbacks *cb, uint32_t slot_count,
-                                    uint32_t items_per_slot, uint32_t slot_size)
+                                    uint32_t max_items, uint32_t capacity)
 {
-    *ring = (struct slc_readback_ring){.slot_count = slot_count,
-                                       .items_per_slot = items_per_slot,
-                                       .slot_size = (slot_size + 3) & ~3u};
+    *ring = (struct slc_readback_ring){
+        .slot_count = slot_count, .max_items = max_items, .capacity = capacity};
     ring->slots = slc_calloc(cb, slot_count, sizeof *ring->slots);
-    ring->items = slc_calloc(cb, (size_t)slot_count * items_per_slot, sizeof *ring->items);
+    ring->items = slc_calloc(cb, (size_t)slot_count * max_items, sizeof *ring->items);
     if (!ring->slots || !ring->items)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint32_t i = 0; i < slot_count; i++)
-        ring->slots[i].items = &ring->items[(size_t)i * items_per_slot];
-    return slc_buffer_init(&ring->buffer, vk, caps, (uint64_t)slot_count * ring->slot_size,
+        ring->slots[i].items = &ring->items[(size_t)i * max_items];
+    return slc_buffer_init(&ring->buffer, vk, caps,
+                           slc_readback_ring_size(slot_count, max_items, capacity),
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, SLC_BUFFER_READBACK);
 }
 
@@ -27,7 +42,7 @@ void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_v
 {
     slc_buffer_finish(&ring->buffer, vk);
     slc_free(cb, ring->slots, ring->slot_count, sizeof *ring->slots);
-    slc_free(cb, ring->items, (size_t)ring->slot_count * ring->items_per_slot, sizeof *ring->items);
+    slc_free(cb, ring->items, (size_t)ring->slot_count * ring->max_items, sizeof *ring->items);
     *ring = (struct slc_readback_ring){0};
 }
 
@@ -38,20 +53,19 @@ struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uin
     assert(slot->frame == 0);
     slot->frame = frame;
     slot->time_stamp = time_stamp;
-    slot->item_count = slot->used = 0;
     return slot;
 }
 
-bool slc_readback_add(struct slc_readback_ring *ring, struct slc_readback_slot *slot,
-                      SluiceTextureId id, uint32_t width, uint32_t height, uint32_t *word)
+uint32_t slc_readback_result_offset(const struct slc_readback_ring *ring,
+                                    const struct slc_readback_slot *slot)
 {
-    uint64_t size = ((uint64_t)width * height + 3) & ~(uint64_t)3;
-    if (slot->item_count == ring->items_per_slot || size > ring->slot_size - slot->used)
-        return false;
-    slot->items[slot->item_count++] = (struct slc_readback_item){id, slot->used, width, height};
-    *word = (uint32_t)((slot - ring->slots) * (ring->slot_size / 4)) + slot->used / 4;
-    slot->used += (uint32_t)size;
-    return true;
+    return (uint32_t)(slot - ring->slots) * slot_words(ring->max_items, ring->capacity);
+}
+
+uint32_t slc_readback_data_offset(const struct slc_readback_ring *ring,
+                                  const struct slc_readback_slot *slot)
+{
+    return slc_readback_result_offset(ring, slot) + RESULT_WORDS * ring->max_items;
 }
 
 struct slc_readback_slot *slc_readback_oldest(struct slc_readback_ring *ring,
@@ -67,9 +81,15 @@ struct slc_readback_slot *slc_readback_oldest(struct slc_readback_ring *ring,
     return oldest;
 }
 
-const uint8_t *slc_readback_map(const struct slc_readback_ring *ring,
-                                const struct slc_readback_slot *slot, uint32_t item)
+struct SluiceResolveResult slc_readback_result(const struct slc_readback_ring *ring,
+                                               const struct slc_readback_slot *slot, uint32_t item,
+                                               const uint32_t **data)
 {
-    const uint8_t *bytes = ring->buffer.mapped;
-    return bytes + (size_t)(slot - ring->slots) * ring->slot_size + slot->items[item].offset;
+    const uint32_t *words = ring->buffer.mapped;
+    struct SluiceResolveResult result;
+    memcpy(&result, &words[slc_readback_result_offset(ring, slot) + RESULT_WORDS * item],
+           sizeof result);
+    bool inside = result.offset <= ring->capacity && result.count <= ring->capacity - result.offset;
+    *data = inside ? &words[slc_readback_data_offset(ring, slot) + result.offset] : NULL;
+    return result;
 }

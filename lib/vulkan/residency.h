@@ -1,8 +1,7 @@
 /**
  * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
  * sparse binding; residency_paged.c: a page table for shaders; residency_dense.c: fully backed
- * images). The streamer decides nothing about
- * memory and an implementation nothing about tiles.
+ * images). The streamer decides nothing about memory and an implementation nothing about tiles.
  *
  * The protocol of a frame:
  *
@@ -33,13 +32,18 @@ struct slc_residency_interface {
     /** Nothing of it is in use on the GPU. */
     void (*destroy)(struct slc_residency *residency);
 
+    /** create_image takes arrays: their layers have the indices from `index` on. */
+    bool has_arrays;
     /** `index` is the streamer's; it names the image in the other calls. Logs what it refuses. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
                                  const SluiceImageInfo *info, struct slc_residency_image *image);
-    /** No frame that uses it is incomplete and image_is_idle. */
+    /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
     /** True when no change of it is pending or under way. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
+
+    /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
+    bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
     /** As SluiceHeapAllocator. */
     SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
@@ -49,8 +53,8 @@ struct slc_residency_interface {
     /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
     SluiceResult (*update)(struct slc_residency *residency, uint64_t completed_frame);
     /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
-     *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular tiles
-     * alone: not even soon. */
+     *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular
+     *  tiles alone: not even soon. */
     SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
     /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
      * times. */
@@ -83,6 +87,7 @@ struct slc_residency_interface {
 /** What is counted for the public statistics. */
 struct slc_residency_counters {
     uint64_t bind_calls, bind_runs, device_memory_size;
+    uint64_t unbinds, unbinds_saved; ///< tiles
 };
 
 /** The first member of every implementation's own struct. */
@@ -97,7 +102,8 @@ struct slc_residency_create_info {
     const SluiceAllocationCallbacks *cb;
     VkQueue sparse_queue;
     uint32_t max_image_count;
-    uint32_t max_changes; ///< maps and unmaps per frame
+    uint32_t max_changes;       ///< maps and unmaps per frame
+    uint32_t max_touched_tiles; ///< 0: no limit
     uint32_t max_region_count;
     struct slc_page_views *page_views; ///< where pages are shown
 };

@@ -1,13 +1,16 @@
 /*
  * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a
- * timeline semaphore that is only ever polled.
+ * timeline semaphore that is only ever polled. Tiles that are unmapped keep their bindings until
+ * their pages are needed (page_table.h).
  */
 #include "vulkan/residency.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
+#include "vulkan/page_table.h"
 #include "vulkan/sparse_image.h"
 #include "vulkan/tile_map.h"
 
@@ -16,7 +19,7 @@
 /* Batches that may be under way; more would only queue up behind a slow binding queue. */
 #define MAX_BATCHES 16u
 
-/* A tile whose binding is to be dropped when the last frame that may read it is over. */
+/* A tile that is given up when the last frame that may read it is over. */
 struct pending_unmap {
     uint64_t frame; ///< the first one that does not read it
     uint64_t key;   ///< in pending_tiles
@@ -24,9 +27,11 @@ struct pending_unmap {
     struct slc_tile_place place;
 };
 
-struct batch {
-    uint64_t value;
-    uint64_t first_frame; ///< of its unmaps; UINT64_MAX: none
+/* A heap that was released: it goes when the last binding to it is over. */
+struct dying_heap {
+    uint32_t heap_id;
+    uint32_t next_slot; ///< those before it are bound nowhere
+    uint64_t value;     ///< of the batch that made the last one so
 };
 
 struct sparse_residency {
@@ -40,20 +45,23 @@ struct sparse_residency {
     uint32_t max_image_count, max_changes;
     struct slc_device_heaps heaps;
     struct slc_sparse_image *images; ///< owned
+    struct slc_touch_budget touched;
+    bool told_of_touched;
 
     struct pending_unmap *pending; ///< owned ring, oldest first, frames never decrease
     uint32_t pending_first, pending_count, pending_capacity;
     struct slc_tile_map pending_tiles;
 
+    struct slc_page_table pages;
+    struct dying_heap *dying; ///< owned
+    uint32_t dying_count, dying_capacity;
+
     struct slc_bind_list list;
-    uint64_t list_first_frame;           ///< of the unmaps in the list
     VkSparseImageMemoryBind *tile_binds; ///< owned, as the next ones
     VkSparseMemoryBind *page_binds;
     VkSparseImageMemoryBindInfo *tile_infos;
     VkSparseImageOpaqueMemoryBindInfo *page_infos;
 
-    struct batch batches[MAX_BATCHES]; ///< ring, oldest first
-    uint32_t batch_first, batch_count;
     uint64_t submitted_value, completed_value;
 };
 
@@ -67,11 +75,44 @@ static const struct sparse_residency *const_sparse(const struct slc_residency *r
     return (const struct sparse_residency *)residency;
 }
 
-static uint64_t place_key(uint32_t index, struct slc_tile_place place)
+static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
-    /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
-    uint32_t level = place.level == SLC_TAIL_LEVEL ? 31 : place.level;
-    return (uint64_t)index << 37 | (uint64_t)level << 32 | (uint64_t)place.y << 16 | place.x;
+    struct sparse_residency *s = sparse(residency);
+    for (uint32_t i = 0; i < slc_max_u32(1, s->images[index].layer_count); i++) {
+        slc_page_table_drop_image(&s->pages, index + i);
+        slc_touched_tiles_finish(&s->images[index + i].touched, s->cb, &s->touched);
+    }
+    slc_sparse_image_destroy(&s->images[index], s->vk);
+}
+
+/* Packed tiles are needed always, so they count from the beginning. */
+static SluiceResult reserve_packed(struct sparse_residency *s, struct slc_sparse_image *image,
+                                   const SluiceImageInfo *info)
+{
+    SluiceStreamedTextureLayout layout;
+    SluiceResult result = sluiceGetStreamedTextureLayout(&image->layout.desc, &layout);
+    if (result == SLUICE_SUCCESS)
+        result = slc_touched_tiles_init(&image->touched, s->cb, &s->touched, layout.tileCount,
+                                        layout.regularTileCount);
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        slc_log(&s->vk->log, SLUICE_LOG_ERROR,
+                "%s: %u of %u tiles were bound, which is all %s bears",
+                info->pName ? info->pName : "image", s->touched.count, s->touched.limit,
+                s->caps->public.deviceName);
+    return result;
+}
+
+static bool reserve(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    if (slc_touched_tiles_touch(&s->images[index].touched, &s->touched, tile->tileIndex))
+        return true;
+    if (!s->told_of_touched)
+        slc_log(&s->vk->log, SLUICE_LOG_WARNING,
+                "%u different tiles were bound, %s bears no more: textures stay coarser",
+                s->touched.count, s->caps->public.deviceName);
+    s->told_of_touched = true;
+    return false;
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
@@ -82,17 +123,15 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     assert(!sparse_image->image);
     SluiceResult result =
         slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info);
-    if (result != SLUICE_SUCCESS)
+    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < sparse_image->layer_count; i++)
+        result = reserve_packed(s, &sparse_image[i], info);
+    if (result != SLUICE_SUCCESS) {
+        destroy_image(residency, index);
         return result;
+    }
     *image = (struct slc_residency_image){sparse_image->image, sparse_image->layout.desc,
                                           sparse_image->layout.uneven};
     return SLUICE_SUCCESS;
-}
-
-static void destroy_image(struct slc_residency *residency, uint32_t index)
-{
-    struct sparse_residency *s = sparse(residency);
-    slc_sparse_image_destroy(&s->images[index], s->vk);
 }
 
 static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
@@ -102,24 +141,90 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
     return image->last_value <= s->completed_value && image->unmap_count == 0;
 }
 
+/* All that is in the list or under way is over once the timeline stands there. */
+static uint64_t last_value(const struct sparse_residency *s)
+{
+    return s->submitted_value + (s->list.count ? 1 : 0);
+}
+
+static SluiceResult reserve_dying(struct sparse_residency *s)
+{
+    uint32_t count = s->heaps.capacity;
+    if (count <= s->dying_capacity)
+        return SLUICE_SUCCESS;
+    struct dying_heap *dying = slc_alloc(s->cb, count, sizeof *dying);
+    if (!dying)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint32_t i = 0; i < s->dying_count; i++)
+        dying[i] = s->dying[i];
+    slc_free(s->cb, s->dying, s->dying_capacity, sizeof *dying);
+    s->dying = dying;
+    s->dying_capacity = count;
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct sparse_residency *s = sparse(residency);
     const VkPhysicalDeviceMemoryProperties *memory = &s->caps->memory;
+    uint64_t page_count = size / SLC_TILE_SIZE;
     /* More than there is may not even be asked for. */
-    if (size > memory->memoryHeaps[memory->memoryTypes[s->memory_type].heapIndex].size)
+    if (size > memory->memoryHeaps[memory->memoryTypes[s->memory_type].heapIndex].size ||
+        page_count > UINT32_MAX)
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (s->dying_count) { /* all are equal, and what is bound to it still is good */
+        *heap_id = s->dying[--s->dying_count].heap_id;
+        return SLUICE_SUCCESS;
+    }
     SluiceResult result =
         slc_device_heaps_allocate(&s->heaps, s->vk, s->cb, size, s->memory_type, heap_id);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_page_table_add_heap(&s->pages, s->cb, *heap_id, (uint32_t)page_count);
+    if (result == SLUICE_SUCCESS)
+        result = reserve_dying(s);
+    if (result != SLUICE_SUCCESS)
+        slc_device_heaps_release(&s->heaps, s->vk, *heap_id);
     s->base.counters.device_memory_size = s->heaps.total_size;
     return result;
+}
+
+/* Half of the list is left to maps. */
+static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
+{
+    for (; heap->next_slot < s->pages.heap_page_count; heap->next_slot++) {
+        uint32_t image;
+        if (s->list.count >= s->list.capacity / 2 ||
+            !slc_page_table_unbind(&s->pages, &s->list, heap->heap_id, heap->next_slot, &image))
+            return false;
+        if (image == SLC_NO_IMAGE)
+            continue;
+        s->images[image].last_value = s->submitted_value + 1;
+        heap->value = s->submitted_value + 1;
+    }
+    return true;
+}
+
+static void release_dying(struct sparse_residency *s)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->dying_count; i++) {
+        struct dying_heap heap = s->dying[i];
+        if (unbind_heap(s, &heap) && heap.value <= s->completed_value)
+            slc_device_heaps_release(&s->heaps, s->vk, heap.heap_id);
+        else
+            s->dying[kept++] = heap;
+    }
+    s->dying_count = kept;
+    s->base.counters.device_memory_size = s->heaps.total_size;
 }
 
 static void release_heap(struct slc_residency *residency, uint32_t heap_id)
 {
     struct sparse_residency *s = sparse(residency);
-    slc_device_heaps_release(&s->heaps, s->vk, heap_id);
-    s->base.counters.device_memory_size = s->heaps.total_size;
+    assert(s->dying_count < s->dying_capacity);
+    /* Tiles that lay there may have been bound elsewhere by what is still under way. */
+    s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s)};
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
@@ -135,7 +240,7 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     assert(s->pending_count < s->pending_capacity);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     uint32_t at = (s->pending_first + s->pending_count++) % s->pending_capacity;
-    s->pending[at] = (struct pending_unmap){frame, place_key(index, place), index, place};
+    s->pending[at] = (struct pending_unmap){frame, slc_place_key(index, place), index, place};
     slc_tile_map_add(&s->pending_tiles, s->pending[at].key, at);
     s->images[index].unmap_count++;
 }
@@ -145,28 +250,31 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     /* Frames under way may still read the old page through their MinMip maps. */
-    if (slc_tile_map_get(&s->pending_tiles, place_key(index, place)) != SLC_TILE_MAP_NONE)
+    if (slc_tile_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_TILE_MAP_NONE)
         return SLUICE_NOT_READY;
+    uint32_t displaced, count = s->list.count;
     /* While no batch can be submitted the list only grows, so it may be full. */
-    if (!slc_bind_list_put(&s->list, index, place, tile->heapId, tile->slot))
+    if (!slc_page_table_bind(&s->pages, &s->list, index, place, tile->heapId, tile->slot,
+                             &displaced))
         return SLUICE_NOT_READY;
-    s->images[index].last_value = s->submitted_value + 1; /* not idle from here on */
+    /* not idle from here on */
+    if (s->list.count > count)
+        s->images[index].last_value = s->submitted_value + 1;
+    if (displaced != SLC_NO_IMAGE)
+        s->images[displaced].last_value = s->submitted_value + 1;
     return SLUICE_SUCCESS;
 }
 
-/* Unmaps that no incomplete frame reads any more join the list of this frame. */
+/* Tiles that no incomplete frame reads any more: their pages may go to others. */
 static void release_pending(struct sparse_residency *s, uint64_t completed_frame)
 {
     while (s->pending_count) {
         struct pending_unmap *unmap = &s->pending[s->pending_first];
-        if (unmap->frame > completed_frame + 1 ||
-            !slc_bind_list_put(&s->list, unmap->index, unmap->place, SLC_UNBIND, 0))
+        if (unmap->frame > completed_frame + 1)
             return;
-        if (s->list_first_frame > unmap->frame)
-            s->list_first_frame = unmap->frame;
+        slc_page_table_give_up(&s->pages, unmap->index, unmap->place);
         slc_tile_map_remove(&s->pending_tiles, unmap->key);
         s->images[unmap->index].unmap_count--;
-        s->images[unmap->index].last_value = s->submitted_value + 1;
         s->pending_first = (s->pending_first + 1) % s->pending_capacity;
         s->pending_count--;
     }
@@ -182,11 +290,10 @@ static SluiceResult update(struct slc_residency *residency, uint64_t completed_f
     if (result != SLUICE_SUCCESS)
         return result;
     s->completed_value = value;
-    while (s->batch_count && s->batches[s->batch_first].value <= value) {
-        s->batch_first = (s->batch_first + 1) % MAX_BATCHES;
-        s->batch_count--;
-    }
     release_pending(s, completed_frame);
+    release_dying(s);
+    s->base.counters.unbinds = s->pages.unbind_count;
+    s->base.counters.unbinds_saved = s->pages.unbinds_saved;
     return SLUICE_SUCCESS;
 }
 
@@ -203,12 +310,8 @@ static uint64_t min_u64(uint64_t a, uint64_t b)
 static uint64_t retire_limit(const struct slc_residency *residency, uint64_t completed_frame)
 {
     const struct sparse_residency *s = const_sparse(residency);
-    uint64_t first = s->list_first_frame;
-    if (s->pending_count)
-        first = min_u64(first, s->pending[s->pending_first].frame);
-    for (uint32_t i = 0; i < s->batch_count; i++)
-        first = min_u64(first, s->batches[(s->batch_first + i) % MAX_BATCHES].first_frame);
-    return first == UINT64_MAX ? completed_frame : min_u64(completed_frame, first - 1);
+    uint64_t first = s->pending_count ? s->pending[s->pending_first].frame : UINT64_MAX;
+    return min_u64(completed_frame, first - 1);
 }
 
 static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
@@ -220,7 +323,7 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
     uint32_t x = run->place.x * desc->tileWidth, y = run->place.y * desc->tileHeight;
     bool bound = run->heap_id != SLC_UNBIND;
     return (VkSparseImageMemoryBind){
-        .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0},
+        .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, image->layer},
         .offset = {(int32_t)x, (int32_t)y, 0},
         /* A tile at the edge ends with the level. */
         .extent = {slc_min_u32(run->count * desc->tileWidth, slc_mip_size(desc->width, level) - x),
@@ -237,7 +340,8 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
     const struct slc_sparse_layout *layout = &image->layout;
     uint64_t offset = (uint64_t)run->place.x * SLC_TILE_SIZE;
     bool bound = run->heap_id != SLC_UNBIND;
-    return (VkSparseMemoryBind){.resourceOffset = layout->tail_offset + offset,
+    uint64_t tail = layout->tail_offset + image->layer * layout->tail_stride;
+    return (VkSparseMemoryBind){.resourceOffset = tail + offset,
                                 .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
                                 .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
                                 .memoryOffset =
@@ -258,9 +362,11 @@ static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32
     }
     if (image->metadata && !image->metadata_bound) {
         s->page_binds[(*page_count)++] =
-            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset,
+            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset +
+                                                   image->layer * image->layout.metadata_stride,
                                  .size = image->layout.metadata_size,
                                  .memory = image->metadata,
+                                 .memoryOffset = image->layer * image->layout.metadata_size,
                                  .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
         image->metadata_bound = true;
     }
@@ -276,9 +382,10 @@ static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32
 static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
 {
     struct sparse_residency *s = sparse(residency);
-    /* What is collected now goes out with the next batch, in this call or in a later one. */
-    *value = s->submitted_value + 1;
-    if (s->list.count == 0 || s->batch_count == MAX_BATCHES)
+    /* What is collected now goes out with the next batch, in this call or in a later one. Tiles
+     * that got their old pages again are in none. */
+    *value = last_value(s);
+    if (s->list.count == 0 || s->submitted_value - s->completed_value == MAX_BATCHES)
         return SLUICE_SUCCESS;
     slc_bind_list_build_runs(&s->list);
     /* Batches are ordered by semaphores only, and a later one may rebind what an earlier one
@@ -309,11 +416,8 @@ static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
     if (result != SLUICE_SUCCESS)
         return result;
     s->submitted_value++;
-    s->batches[(s->batch_first + s->batch_count++) % MAX_BATCHES] =
-        (struct batch){*value, s->list_first_frame};
     s->base.counters.bind_calls++;
     s->base.counters.bind_runs += s->list.run_count;
-    s->list_first_frame = UINT64_MAX;
     slc_bind_list_clear(&s->list);
     return SLUICE_SUCCESS;
 }
@@ -342,9 +446,10 @@ static void destroy(struct slc_residency *residency)
 {
     struct sparse_residency *s = sparse(residency);
     const SluiceAllocationCallbacks *cb = s->cb;
-    if (s->images)
+    if (s->images && s->pages.first_pages)
         for (uint32_t i = 0; i < s->max_image_count; i++)
-            slc_sparse_image_destroy(&s->images[i], s->vk);
+            if (s->images[i].layer == 0)
+                destroy_image(residency, i);
     slc_device_heaps_finish(&s->heaps, s->vk, cb);
     s->vk->DestroySemaphore(s->vk->device, s->semaphore, NULL);
     uint32_t capacity = s->list.capacity, page_capacity = capacity + s->max_image_count;
@@ -353,6 +458,8 @@ static void destroy(struct slc_residency *residency)
     slc_free(cb, s->tile_infos, s->max_image_count, sizeof *s->tile_infos);
     slc_free(cb, s->page_infos, s->max_image_count, sizeof *s->page_infos);
     slc_bind_list_finish(&s->list, cb);
+    slc_page_table_finish(&s->pages, cb);
+    slc_free(cb, s->dying, s->dying_capacity, sizeof *s->dying);
     slc_tile_map_finish(&s->pending_tiles, cb);
     slc_free(cb, s->pending, s->pending_capacity, sizeof *s->pending);
     slc_free(cb, s->images, s->max_image_count, sizeof *s->images);
@@ -360,10 +467,12 @@ static void destroy(struct slc_residency *residency)
 }
 
 static const struct slc_residency_interface sparse_interface = {
+    .has_arrays = true,
     .destroy = destroy,
     .create_image = create_image,
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
+    .reserve = reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,
@@ -379,8 +488,11 @@ static const struct slc_residency_interface sparse_interface = {
 
 static SluiceResult create_arrays(struct sparse_residency *s)
 {
-    uint32_t capacity = 2 * s->max_changes;
+    uint32_t capacity = 4 * s->max_changes; /* a map may unbind the tile that had its page */
     SluiceResult result = slc_bind_list_init(&s->list, s->cb, capacity);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_page_table_init(&s->pages, s->cb, s->max_image_count);
     if (result != SLUICE_SUCCESS)
         return result;
     s->pending_capacity = 4 * s->max_changes;
@@ -422,7 +534,7 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     s->queue = info->sparse_queue;
     s->max_image_count = info->max_image_count;
     s->max_changes = info->max_changes;
-    s->list_first_frame = UINT64_MAX;
+    s->touched.limit = info->max_touched_tiles;
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = create_semaphore(s);

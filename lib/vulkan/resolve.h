@@ -1,27 +1,67 @@
-/** The compute pass that packs feedback to bytes in a readback slot and clears it. */
+/**
+ * The compute passes that compare feedback with what was resolved before, write the changes into a
+ * readback slot and clear what they have reported: shaders/resolve. Three dispatches for any number
+ * of textures.
+ */
 #ifndef SLC_VULKAN_RESOLVE_H
 #define SLC_VULKAN_RESOLVE_H
 
 #include "vulkan/buffer.h"
 
-struct slc_resolve {
-    VkDescriptorSetLayout set_layout;
-    VkPipelineLayout layout;
-    VkPipeline pipeline;
-    VkDescriptorPool pool;
-    VkDescriptorSet set;
+#include <sluice/shared/resolve.h>
+
+struct slc_resolve_create_info {
+    VkBuffer feedback, readback; ///< whole storage buffers
+    uint32_t region_capacity;    ///< of the feedback buffer, a multiple of 4
+    uint32_t slot_count;         ///< frames in flight
+    uint32_t max_items;          ///< per frame
+    uint32_t encoding;           ///< SLUICE_FEEDBACK_...
 };
 
-/** From `feedback` to `resolved`, both whole storage buffers. */
+struct slc_resolve {
+    struct slc_buffer last;  ///< a byte per region: the level that was resolved last
+    struct slc_buffer table; ///< a slot per frame in flight: max_segments segments, then the items
+    struct slc_buffer scratch; ///< of one frame: sums of the segments, then places of the items
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkPipeline pipelines[3];
+    VkDescriptorPool pool;
+    VkDescriptorSet set;
+    uint32_t max_segments, max_items;
+    uint32_t slot; ///< that is being filled
+    uint32_t segment_count, item_count;
+};
+
+/** Bytes of the table and of the scratch buffer, for comparing with limits. */
+uint64_t slc_resolve_table_size(const struct slc_resolve_create_info *info);
+uint64_t slc_resolve_scratch_size(const struct slc_resolve_create_info *info);
+
 SluiceResult slc_resolve_init(struct slc_resolve *resolve, const struct slc_vk *vk,
-                              VkBuffer feedback, VkBuffer resolved);
+                              const struct slc_caps *caps,
+                              const struct slc_resolve_create_info *info);
 void slc_resolve_finish(struct slc_resolve *resolve, const struct slc_vk *vk);
 
-void slc_resolve_bind(const struct slc_resolve *resolve, const struct slc_vk *vk,
-                      VkCommandBuffer commands);
-/** After slc_resolve_bind; the caller puts barriers around all dispatches. */
+/** Regions of a new texture: from here on the last resolved level is SLUICE_MIP_UNTOUCHED. The
+ *  caller puts barriers around this transfer. */
+void slc_resolve_record_new(const struct slc_resolve *resolve, const struct slc_vk *vk,
+                            VkCommandBuffer commands, uint32_t first_region, uint32_t region_count);
+
+/** Begins a frame's list of items in `slot`, which no frame under way uses. */
+void slc_resolve_begin(struct slc_resolve *resolve, uint32_t slot);
+/** Takes up the list that was made in `slot` last, which has these counts. */
+void slc_resolve_resume(struct slc_resolve *resolve, uint32_t slot, uint32_t item_count,
+                        uint32_t segment_count);
+/** The next item. `first_region` is a multiple of 4; flags SLUICE_RESOLVE_... False if the list is
+ *  full, which it never is before max_items while no region is named twice. */
+bool slc_resolve_add(struct slc_resolve *resolve, uint32_t first_region, uint32_t region_count,
+                     uint32_t flags);
+/**
+ * Resolves the items: results at word `result_offset` of the readback buffer, a multiple of 4, data
+ * from word `data_offset` on, at most `capacity` words. With barriers to all that shaders did
+ * before and to all that shaders and the host do later.
+ */
 void slc_resolve_record(const struct slc_resolve *resolve, const struct slc_vk *vk,
-                        VkCommandBuffer commands, uint32_t feedback_word, uint32_t region_count,
-                        uint32_t resolved_word);
+                        VkCommandBuffer commands, uint32_t result_offset, uint32_t data_offset,
+                        uint32_t capacity);
 
 #endif /* SLC_VULKAN_RESOLVE_H */

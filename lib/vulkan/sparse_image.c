@@ -3,31 +3,31 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
+#include "vulkan/format_caps.h"
 
 #define MAX_ASPECTS 4u
 
 static VkImageCreateInfo image_create_info(VkFormat format, uint32_t width, uint32_t height,
-                                           uint32_t level_count)
+                                           uint32_t level_count, uint32_t layer_count)
 {
-    return (VkImageCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .flags = VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = format,
-        .extent = {width, height, 1},
-        .mipLevels = level_count,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+    return (VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .flags = SLC_IMAGE_SPARSE_FLAGS,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {width, height, 1},
+                               .mipLevels = level_count,
+                               .arrayLayers = layer_count,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = SLC_IMAGE_USAGE,
+                               .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                               .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
 }
 
 SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,
                                     uint32_t *memory_type)
 {
-    VkImageCreateInfo info = image_create_info(VK_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
+    VkImageCreateInfo info = image_create_info(VK_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1, 1);
     VkImage image;
     SluiceResult result =
         slc_vk_result(vk, vk->CreateImage(vk->device, &info, NULL, &image), "vkCreateImage");
@@ -46,35 +46,37 @@ SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_ca
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
+static uint32_t layer_count(const SluiceImageInfo *info)
+{
+    return slc_max_u32(1, info->arrayLayerCount);
+}
+
 /* At least what the driver will say; it may not even be asked for more than it allows. */
 static uint64_t texel_bytes(const SluiceImageInfo *info)
 {
-    uint64_t texels = 0;
+    uint64_t size = 0;
     for (uint32_t level = 0; level < info->mipLevelCount; level++)
-        texels += (uint64_t)slc_mip_size(info->width, level) * slc_mip_size(info->height, level);
-    return texels * sluiceFormatTexelSize(info->format);
+        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                       slc_mip_size(info->height, level));
+    return size * layer_count(info);
 }
 
 static const char *check_format(const struct slc_vk *vk, const struct slc_caps *caps,
-                                const VkImageCreateInfo *info, const SluiceImageInfo *image)
+                                const SluiceImageInfo *image)
 {
-    VkImageFormatProperties limits;
-    if (info->format == VK_FORMAT_UNDEFINED)
+    SluiceVulkanFormatCapabilities format;
+    if (slc_vk_format(image->format) == VK_FORMAT_UNDEFINED)
         return "has no Vulkan format";
-    if (vk->GetPhysicalDeviceImageFormatProperties(vk->physical_device, info->format,
-                                                   info->imageType, info->tiling, info->usage,
-                                                   info->flags, &limits) != VK_SUCCESS)
+    slc_format_caps_init(&format, vk, image->format);
+    if (!format.tileWidth)
         return "is not available as a sparse image";
-    uint32_t count = 0;
-    vk->GetPhysicalDeviceSparseImageFormatProperties(vk->physical_device, info->format,
-                                                     info->imageType, info->samples, info->usage,
-                                                     info->tiling, &count, NULL);
-    if (count == 0)
-        return "is not available as a sparse image";
-    if (info->extent.width > limits.maxExtent.width ||
-        info->extent.height > limits.maxExtent.height || info->mipLevels > limits.maxMipLevels)
+    if (!format.sparse)
+        return "has tiles that are not pages of 64 KiB";
+    if (image->width > format.maxWidth || image->height > format.maxHeight ||
+        image->mipLevelCount > format.maxMipLevelCount ||
+        layer_count(image) > format.maxArrayLayerCount)
         return "is larger than the device allows";
-    if (texel_bytes(image) > limits.maxResourceSize ||
+    if (texel_bytes(image) > format.maxImageSize ||
         texel_bytes(image) > caps->public.sparseAddressSpaceSize)
         return "is larger than the sparse address space";
     return NULL;
@@ -105,8 +107,28 @@ static const char *read_layout(struct slc_sparse_image *image, const struct slc_
         return "is larger than the sparse address space";
     if (slc_sparse_layout_init(&image->layout, info, &memory, color, metadata,
                                caps->public.sparseAddressSpaceSize) != SLUICE_SUCCESS)
-        return "has tiles that are not pages of 64 KiB";
+        return "has tiles that are not pages of 64 KiB, or one tail for all layers";
     return NULL;
+}
+
+static SluiceResult allocate_metadata(struct slc_sparse_image *image, const struct slc_vk *vk,
+                                      uint32_t memory_type, uint32_t count)
+{
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                     .allocationSize = image->layout.metadata_size * count,
+                                     .memoryTypeIndex = memory_type};
+    return slc_vk_result(vk, vk->AllocateMemory(vk->device, &allocate, NULL, &image->metadata),
+                         "vkAllocateMemory for image metadata");
+}
+
+/* The layers share image and memory; each binds its own part of both. */
+static void fill_layers(struct slc_sparse_image *images, uint32_t count)
+{
+    images[0].layer_count = count;
+    for (uint32_t i = 1; i < count; i++) {
+        images[i] = images[0];
+        images[i].layer = i;
+    }
 }
 
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
@@ -114,9 +136,10 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
                                      const SluiceImageInfo *info)
 {
     *image = (struct slc_sparse_image){0};
-    VkImageCreateInfo create = image_create_info(slc_vk_format(info->format), info->width,
-                                                 info->height, info->mipLevelCount);
-    const char *trouble = check_format(vk, caps, &create, info);
+    VkImageCreateInfo create =
+        image_create_info(slc_vk_format(info->format), info->width, info->height,
+                          info->mipLevelCount, layer_count(info));
+    const char *trouble = check_format(vk, caps, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (!trouble) {
         result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),
@@ -131,21 +154,81 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
         slc_sparse_image_destroy(image, vk);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    if (image->layout.metadata_size == 0)
-        return SLUICE_SUCCESS;
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .allocationSize = image->layout.metadata_size,
-                                     .memoryTypeIndex = memory_type};
-    result = slc_vk_result(vk, vk->AllocateMemory(vk->device, &allocate, NULL, &image->metadata),
-                           "vkAllocateMemory for image metadata");
+    if (image->layout.metadata_size)
+        result = allocate_metadata(image, vk, memory_type, layer_count(info));
     if (result != SLUICE_SUCCESS)
         slc_sparse_image_destroy(image, vk);
+    else
+        fill_layers(image, layer_count(info));
     return result;
 }
 
-void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_vk *vk)
+void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk)
 {
-    vk->DestroyImage(vk->device, image->image, NULL);
-    vk->FreeMemory(vk->device, image->metadata, NULL);
-    *image = (struct slc_sparse_image){0};
+    vk->DestroyImage(vk->device, images->image, NULL);
+    vk->FreeMemory(vk->device, images->metadata, NULL);
+    for (uint32_t i = images->layer_count; i-- > 1;)
+        images[i] = (struct slc_sparse_image){0};
+    *images = (struct slc_sparse_image){0};
+}
+
+static void describe(SluiceVulkanSparseImageLayout *out, const struct slc_vk *vk,
+                     const struct slc_sparse_image *image)
+{
+    const struct slc_sparse_layout *layout = &image->layout;
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image->image, &memory);
+    *out = (SluiceVulkanSparseImageLayout){
+        .mipLevelCount = layout->desc.mipLevelCount,
+        .tileWidth = layout->desc.tileWidth,
+        .tileHeight = layout->desc.tileHeight,
+        .regularMipCount = layout->desc.regularMipCount,
+        .packedTileCount = layout->desc.packedTileCount,
+        .driverTail = layout->opaque_tail,
+        .tailSize = layout->tail_size,
+        .metadataSize = layout->metadata_size,
+        .imageSize = memory.size,
+        .alignment = memory.alignment,
+        .memoryTypeBits = memory.memoryTypeBits,
+    };
+}
+
+SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDevice physicalDevice,
+                                              VkDevice device,
+                                              PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
+                                              const SluiceLogCallback *pLog,
+                                              const SluiceImageInfo *pImage,
+                                              SluiceVulkanSparseImageLayout *pLayout)
+{
+    if (!instance || !physicalDevice || !device || !pfnGetInstanceProcAddr || !pImage || !pLayout)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pImage->width == 0 || pImage->height == 0)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_vk vk;
+    struct slc_caps caps;
+    struct slc_sparse_image image;
+    uint32_t memory_type;
+    SluiceImageInfo info = *pImage;
+    info.mipLevelCount = slc_mip_count(slc_max_u32(info.width, info.height));
+    info.arrayLayerCount = 1;
+    SluiceResult result =
+        slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
+    if (result == SLUICE_SUCCESS)
+        result = slc_vk_init_device(&vk, device);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_caps_init(&caps, &vk);
+    if (!caps.public.sparse) {
+        slc_log(pLog, SLUICE_LOG_ERROR, "%s has no sparse residency of 2D images",
+                caps.public.deviceName);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    result = slc_sparse_memory_type(&vk, &caps, &memory_type);
+    if (result == SLUICE_SUCCESS)
+        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    describe(pLayout, &vk, &image);
+    slc_sparse_image_destroy(&image, &vk);
+    return SLUICE_SUCCESS;
 }

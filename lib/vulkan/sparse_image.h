@@ -4,21 +4,29 @@
 
 #include "vulkan/caps.h"
 #include "vulkan/sparse_layout.h"
+#include "vulkan/touched_tiles.h"
 
+/** A sparse image, or one layer of an array: layers are places in one VkImage. */
 struct slc_sparse_image {
-    VkImage image;
+    VkImage image; ///< owned by the first layer
     struct slc_sparse_layout layout;
-    VkDeviceMemory metadata; ///< owned; VK_NULL_HANDLE where there is none
-    bool metadata_bound;
-    uint64_t last_value;  ///< of the last batch that names it
-    uint32_t unmap_count; ///< not yet in a batch
+    uint32_t layer, layer_count;
+    VkDeviceMemory metadata;          ///< as the image; VK_NULL_HANDLE where there is none
+    bool metadata_bound;              ///< of this layer
+    struct slc_touched_tiles touched; ///< the residency's business
+    uint64_t last_value;              ///< of the last batch that names it
+    uint32_t unmap_count;             ///< not yet in a batch
 };
 
-/** Errors: UNSUPPORTED with a message that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY. */
-SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
+/**
+ * `images` are as many as info->arrayLayerCount, or one for 0. Errors: UNSUPPORTED with a message
+ * that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ */
+SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
                                      const SluiceImageInfo *info);
-void slc_sparse_image_destroy(struct slc_sparse_image *image, const struct slc_vk *vk);
+/** `images` is the first layer; all of them go. */
+void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk);
 
 /** Device-local memory that sparse images can be bound to. Errors: as above. */
 SluiceResult slc_sparse_memory_type(const struct slc_vk *vk, const struct slc_caps *caps,

@@ -1,6 +1,6 @@
 #include "vulkan/sparse_layout.h"
 
-#include "base/checked.h"
+#include "image/format.h"
 
 /* The first level that fits into one tile; from there on pages would be mostly empty. */
 static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
@@ -36,17 +36,41 @@ static void set_own_packed_levels(SluiceStreamedTextureDesc *desc, const SluiceI
     desc->packedTileCount = info->mipLevelCount - desc->regularMipCount;
 }
 
+static uint64_t tile_size(const SluiceFormatInfo *format, VkExtent3D tile)
+{
+    return slc_format_row_size(format, tile.width) * slc_format_row_count(format, tile.height) *
+           tile.depth;
+}
+
+VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity)
+{
+    /* Lavapipe counts blocks: what it says would be a sixteenth of a page. */
+    if (slc_format_is_compressed(format) &&
+        (uint64_t)granularity.width * granularity.height * granularity.depth * format->blockSize ==
+            SLC_TILE_SIZE) {
+        granularity.width *= format->blockWidth;
+        granularity.height *= format->blockHeight;
+    }
+    return granularity;
+}
+
 SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
                                     const VkMemoryRequirements *memory,
                                     const VkSparseImageMemoryRequirements *color,
                                     const VkSparseImageMemoryRequirements *metadata,
                                     uint64_t address_space_size)
 {
-    VkExtent3D tile = color->formatProperties.imageGranularity;
-    uint64_t tile_size =
-        (uint64_t)tile.width * tile.height * tile.depth * sluiceFormatTexelSize(info->format);
-    if (tile_size != SLC_TILE_SIZE || tile.depth != 1 || memory->alignment == 0 ||
+    SluiceFormatInfo format;
+    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS)
+        return SLUICE_ERROR_UNSUPPORTED;
+    VkExtent3D tile = slc_sparse_tile_extent(&format, color->formatProperties.imageGranularity);
+    if (tile_size(&format, tile) != SLC_TILE_SIZE || tile.depth != 1 || memory->alignment == 0 ||
         SLC_TILE_SIZE % memory->alignment != 0 || memory->size > address_space_size)
+        return SLUICE_ERROR_UNSUPPORTED;
+
+    bool shared = color->formatProperties.flags & VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    bool has_tail = color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize;
+    if (info->arrayLayerCount > 1 && has_tail && shared)
         return SLUICE_ERROR_UNSUPPORTED;
 
     *layout = (struct slc_sparse_layout){0};
@@ -56,8 +80,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     desc->mipLevelCount = info->mipLevelCount;
     desc->tileWidth = tile.width;
     desc->tileHeight = tile.height;
-    layout->opaque_tail =
-        color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize > 0;
+    layout->opaque_tail = has_tail;
     if (layout->opaque_tail) {
         uint64_t pages = (color->imageMipTailSize + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE;
         if (pages > SLUICE_MAX_TILES_PER_TEXTURE)
@@ -66,12 +89,14 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         desc->packedTileCount = (uint32_t)pages;
         layout->tail_offset = color->imageMipTailOffset;
         layout->tail_size = color->imageMipTailSize;
+        layout->tail_stride = color->imageMipTailStride;
     } else {
         set_own_packed_levels(desc, info, tile);
     }
     if (metadata) {
         layout->metadata_offset = metadata->imageMipTailOffset;
         layout->metadata_size = metadata->imageMipTailSize;
+        layout->metadata_stride = metadata->imageMipTailStride;
     }
     set_regions(desc);
     layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||

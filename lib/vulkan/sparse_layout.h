@@ -13,14 +13,19 @@ struct slc_sparse_layout {
     SluiceStreamedTextureDesc desc;
     /** The driver has a mip tail, bound opaquely. Otherwise each packed tile is a whole level. */
     bool opaque_tail;
-    uint64_t tail_offset, tail_size;
-    uint64_t metadata_offset, metadata_size; ///< size 0: none to bind
-    bool uneven;                             ///< some level's size is not twice the next one's
+    uint64_t tail_offset, tail_size; ///< of the first layer
+    uint64_t tail_stride;            ///< from one layer's tail to the next one's
+    uint64_t metadata_offset, metadata_size, metadata_stride; ///< size 0: none to bind
+    bool uneven; ///< some level's size is not twice the next one's
 };
 
+/** The extent of a tile in texels: the granularity, or what a driver means that counts blocks. */
+VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity);
+
 /**
- * `metadata` may be NULL. Errors: UNSUPPORTED if the driver's tiles are not 64 KiB pages, or the
- * image is larger than `address_space_size`.
+ * The same for all layers of an array. `metadata` may be NULL. Errors: UNSUPPORTED if the driver's
+ * tiles are not 64 KiB pages, the layers of an array share one tail, or the image is larger than
+ * `address_space_size`.
  */
 SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
                                     const VkMemoryRequirements *memory,

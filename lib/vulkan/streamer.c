@@ -40,10 +40,13 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     set_default(&info->maxPageChunkCount, 64);
     if (info->framesInFlight > 16 || info->maxTextureCount > 1u << 20 ||
         info->maxLoadsInFlight > 1u << 16 || info->maxRegionCount > 1u << 28 ||
+        (info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_LEVELS &&
+         info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_MASKS) ||
         info->maxRegionCount < SLC_REGION_ALIGNMENT || info->maxPageChunkCount > 1u << 10 ||
         info->heapTileCapacity > 1u << 20)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
+    set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
     return SLUICE_SUCCESS;
 }
 
@@ -66,6 +69,8 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
         .max_region_count = s->info.maxRegionCount,
         .page_views = &s->page_views,
+        .max_touched_tiles =
+            s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
     };
     SluiceResult result =
         slc_page_views_init(&s->page_views, &s->vk, &s->caps, &s->cb, s->info.maxPageChunkCount);
@@ -113,25 +118,44 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->copy_capacity = tiles * SLUICE_MAX_READ_REGIONS;
     s->copies = slc_alloc(cb, s->copy_capacity, sizeof *s->copies);
     s->min_mip_shadow = slc_alloc(cb, s->info.maxRegionCount, 1);
+    s->turns = slc_calloc(cb, 1, slc_turns_size(s));
+    s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     if (s->info.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
     if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
-        !s->min_mip_shadow || (s->info.mapEverything && !s->zero_map))
+        !s->min_mip_shadow || !s->feedback_levels || !s->turns ||
+        (s->info.mapEverything && !s->zero_map))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     memset(s->min_mip_shadow, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
+}
+
+static struct slc_resolve_create_info resolve_info(const SluiceVulkanStreamer *s)
+{
+    return (struct slc_resolve_create_info){.feedback = s->feedback.buffer,
+                                            .readback = s->readback.buffer.buffer,
+                                            .region_capacity = s->regions.size,
+                                            .slot_count = s->info.framesInFlight,
+                                            .max_items = s->info.texturesPerFrame,
+                                            .encoding = (uint32_t)s->info.feedbackEncoding};
 }
 
 /* Shaders see each of the storage buffers as a whole. */
 static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
 {
     uint64_t limit = s->caps.max_storage_buffer_range;
+    struct slc_resolve_create_info resolve = resolve_info(s);
     const char *setting = NULL;
     if ((uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry) > limit)
         setting = "maxTextureCount";
-    else if ((uint64_t)s->regions.size * slc_max_u32(4, s->info.framesInFlight) > limit)
+    else if (slc_feedback_size(s, s->regions.size) > limit)
         setting = "maxRegionCount";
+    else if (slc_resolve_table_size(&resolve) > limit || slc_resolve_scratch_size(&resolve) > limit)
+        setting = "texturesPerFrame";
+    else if (slc_readback_ring_size(s->info.framesInFlight, s->info.texturesPerFrame,
+                                    s->info.feedbackReadbackSize / 4) > limit)
+        setting = "feedbackReadbackSize";
     if (!setting)
         return SLUICE_SUCCESS;
     slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s needs a storage buffer beyond the %llu bytes of %s",
@@ -151,8 +175,11 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
                             (uint64_t)s->info.maxTextureCount * sizeof(struct SluiceTextureEntry),
                             usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
-        result =
-            slc_buffer_init(&s->feedback, &s->vk, &s->caps, regions * 4, usage, SLC_BUFFER_DEVICE);
+        result = slc_buffer_init(&s->feedback, &s->vk, &s->caps,
+                                 slc_feedback_size(s, s->regions.size), usage, SLC_BUFFER_DEVICE);
+    if (result == SLUICE_SUCCESS)
+        result = slc_buffer_init(&s->feedback_turns, &s->vk, &s->caps, slc_turns_size(s), usage,
+                                 SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
         result = slc_buffer_init(&s->min_mip, &s->vk, &s->caps, regions, usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
@@ -162,10 +189,10 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
     if (result == SLUICE_SUCCESS)
         result =
             slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
-                                   s->info.texturesPerFrame, (uint32_t)regions);
+                                   s->info.texturesPerFrame, s->info.feedbackReadbackSize / 4);
+    struct slc_resolve_create_info resolve = resolve_info(s);
     if (result == SLUICE_SUCCESS)
-        result =
-            slc_resolve_init(&s->resolve, &s->vk, s->feedback.buffer, s->readback.buffer.buffer);
+        result = slc_resolve_init(&s->resolve, &s->vk, &s->caps, &resolve);
     return result;
 }
 
@@ -241,6 +268,8 @@ static void free_arrays(SluiceVulkanStreamer *s)
     uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
     slc_region_arena_finish(&s->regions, cb);
     slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
+    slc_free(cb, s->turns, 1, slc_turns_size(s));
+    slc_free(cb, s->feedback_levels, s->info.maxRegionCount, 1);
     slc_free(cb, s->min_mip_shadow, s->info.maxRegionCount, 1);
     slc_free(cb, s->copies, s->copy_capacity, sizeof *s->copies);
     slc_free(cb, s->tile_indices, tiles, sizeof *s->tile_indices);
@@ -264,6 +293,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
     slc_buffer_finish(&s->min_mip_staging, &s->vk);
     slc_buffer_finish(&s->min_mip, &s->vk);
+    slc_buffer_finish(&s->feedback_turns, &s->vk);
     slc_buffer_finish(&s->feedback, &s->vk);
     slc_buffer_finish(&s->texture_table, &s->vk);
     s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
@@ -299,6 +329,7 @@ void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBu
     *pBuffers = (SluiceVulkanBuffers){.textureTable = table,
                                       .feedback = streamer->feedback.buffer,
                                       .minMip = streamer->min_mip.buffer,
+                                      .feedbackTurns = streamer->feedback_turns.buffer,
                                       /* any buffer will do where it is not read */
                                       .pageTable = residency->interface->page_table
                                                        ? residency->interface->page_table(residency)
@@ -322,6 +353,8 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
     const struct slc_residency_counters *counters = &streamer->residency->counters;
     pStatistics->bindCalls = counters->bind_calls;
     pStatistics->bindRuns = counters->bind_runs;
+    pStatistics->unbinds = counters->unbinds;
+    pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->deviceMemorySize = counters->device_memory_size;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;

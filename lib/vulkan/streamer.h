@@ -5,6 +5,7 @@
 #include <sluice/loader.h>
 
 #include "vulkan/buffer.h"
+#include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
 #include "vulkan/page_views.h"
 #include "vulkan/readback_ring.h"
@@ -40,12 +41,16 @@ struct slc_texture {
     SluiceImageSource *source; ///< borrowed
     SluiceImageInfo info;
     struct slc_residency_image image;
+    uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
     VkImageView view;
+    VkImageView array_view; ///< owned by layer 0, of all layers
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;
-    uint32_t primary_place; ///< in primaries; SLC_NONE for followers
-    uint64_t added_frame;   ///< the last one begun before; its feedback and table entry come later
+    struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
+    bool feedback_whole;              ///< the next resolve must bring the whole map
+    uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
+    uint64_t added_frame; ///< the last one begun before; its feedback and table entry come later
     uint64_t removed_frame;
     uint32_t unit_count; ///< staging slots that name it
 
@@ -105,6 +110,7 @@ struct SluiceVulkanStreamer {
     uint32_t texture_high;        ///< textures from here on were never used
     uint32_t *primaries;          ///< owned; textures whose feedback is read back
     uint32_t primary_count, primary_cursor;
+    uint64_t list_version;  ///< counts whatever makes lists of what to resolve out of date
     uint32_t *new_textures; ///< owned; added since the last frame
     uint32_t new_texture_count;
     uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
@@ -127,6 +133,9 @@ struct SluiceVulkanStreamer {
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
     uint8_t *min_mip_shadow;           ///< owned; what min_mip holds after the frames begun
     uint8_t *zero_map;                 ///< owned; for mapEverything, maxRegionCount
+    struct slc_buffer feedback_turns;  ///< a bit per texture: takes part in this frame
+    uint32_t *turns;                   ///< owned; the same on the host
+    uint8_t *feedback_levels;          ///< owned; a byte per region, as resolved last
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
 
@@ -136,6 +145,12 @@ struct SluiceVulkanStreamer {
 static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, SluiceTextureId id)
 {
     return &s->textures[s->by_manager_index[(uint32_t)id]];
+}
+
+/** Bytes of the bits that say which textures write feedback. */
+static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
+{
+    return ((uint64_t)s->info.maxTextureCount + 31) / 32 * 4;
 }
 
 /** Logs what the manager refuses although it should not; returns `result`. */
@@ -163,7 +178,13 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
 /* minmip_upload.c: publishes what the manager changed */
 SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 
-/* feedback.c: which maps are read back, and what the manager gets of them */
+/* feedback.c: which textures' feedback is resolved, and what the manager gets of it */
+void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture);
+void slc_feedback_record_new(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                             VkCommandBuffer commands);
+void slc_feedback_record_turns(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count); ///< bytes
+uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s);                 ///< of each word
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 

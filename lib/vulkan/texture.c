@@ -7,12 +7,13 @@
 
 #include <assert.h>
 
-static uint32_t find_free(const SluiceVulkanStreamer *s)
+/* The first of `count` free ones side by side. */
+static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
 {
-    for (uint32_t i = 0; i < s->texture_high; i++)
-        if (s->textures[i].state == SLC_TEXTURE_FREE)
-            return i;
-    return s->texture_high < s->info.maxTextureCount ? s->texture_high : SLC_NONE;
+    uint32_t run = 0, i = 0;
+    for (; i < s->texture_high && run < count; i++)
+        run = s->textures[i].state == SLC_TEXTURE_FREE ? run + 1 : 0;
+    return count <= s->info.maxTextureCount - (i - run) ? i - run : SLC_NONE;
 }
 
 static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
@@ -27,15 +28,17 @@ static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
     return sluiceGetTextureLayout(s->manager, info->primaryId, &layout);
 }
 
-static SluiceResult create_view(SluiceVulkanStreamer *s, struct slc_texture *texture)
+static SluiceResult create_view(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                                VkImageViewType type, uint32_t layer_count, VkImageView *view)
 {
-    VkImageViewCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-        .image = texture->image.image,
-        .viewType = VK_IMAGE_VIEW_TYPE_2D,
-        .format = slc_vk_format(texture->info.format),
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1}};
-    return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, &texture->view),
+    VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                  .image = texture->image.image,
+                                  .viewType = type,
+                                  .format = slc_vk_format(texture->info.format),
+                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0,
+                                                       VK_REMAINING_MIP_LEVELS, texture->layer,
+                                                       layer_count}};
+    return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, view),
                          "vkCreateImageView");
 }
 
@@ -52,15 +55,22 @@ static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *te
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     }
     texture->region_count = (uint32_t)count;
-    return SLUICE_SUCCESS;
+    if ((count + 3) / 4 <= s->readback.capacity)
+        return SLUICE_SUCCESS;
+    slc_log(&s->info.log, SLUICE_LOG_ERROR,
+            "%s: its %llu feedback regions exceed feedbackReadbackSize",
+            texture->info.pName ? texture->info.pName : "image", (unsigned long long)count);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
 }
 
 static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     texture->packed_first_unit = SLC_NONE;
-    SluiceResult result = slc_packed_units_init(
-        &texture->packed, &s->cb, desc, sluiceFormatTexelSize(texture->info.format), SLC_TILE_SIZE);
+    SluiceFormatInfo format;
+    SluiceResult result = sluiceGetFormatInfo(texture->info.format, &format);
+    if (result == SLUICE_SUCCESS)
+        result = slc_packed_units_init(&texture->packed, &s->cb, desc, &format, SLC_TILE_SIZE);
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
@@ -78,8 +88,10 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
     SluiceResult result = sluiceAddStreamedTexture(s->manager, &texture->image.desc, &texture->id);
     if (result != SLUICE_SUCCESS)
         return result;
-    assert((uint32_t)texture->id < s->info.maxTextureCount);
-    if (primary != SLUICE_NO_TEXTURE)
+    /* Ids of what was taken back, below or in build_all, are not free before the next frame. */
+    if ((uint32_t)texture->id >= s->info.maxTextureCount)
+        result = SLUICE_ERROR_LIMIT_EXCEEDED;
+    else if (primary != SLUICE_NO_TEXTURE)
         result = sluiceSetPrimaryTexture(s->manager, texture->id, primary);
     if (result != SLUICE_SUCCESS)
         sluiceRemoveStreamedTexture(s->manager, texture->id, s->frame);
@@ -88,6 +100,7 @@ static SluiceResult add_to_manager(SluiceVulkanStreamer *s, struct slc_texture *
 
 static void add_primary(SluiceVulkanStreamer *s, uint32_t index)
 {
+    s->list_version++;
     s->textures[index].primary_place = s->primary_count;
     s->primaries[s->primary_count++] = index;
 }
@@ -97,6 +110,7 @@ static void remove_primary(SluiceVulkanStreamer *s, uint32_t index)
     uint32_t place = s->textures[index].primary_place;
     if (place == SLC_NONE)
         return;
+    s->list_version++;
     uint32_t last = s->primaries[--s->primary_count];
     s->primaries[place] = last;
     s->textures[last].primary_place = place;
@@ -108,8 +122,11 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
     struct slc_texture *texture = &s->textures[index];
     if (texture->view)
         s->vk.DestroyImageView(s->vk.device, texture->view, NULL);
-    if (texture->image.image)
-        s->residency->interface->destroy_image(s->residency, index);
+    if (texture->array_view)
+        s->vk.DestroyImageView(s->vk.device, texture->array_view, NULL);
+    /* of an array when its last layer goes */
+    if (texture->image.image && texture->layer + 1 == texture->layer_count)
+        s->residency->interface->destroy_image(s->residency, texture->first);
     if (texture->region_count)
         slc_region_arena_give(&s->regions, texture->region_first, texture->region_count);
     slc_free(&s->cb, texture->packed_tiles, texture->image.desc.packedTileCount,
@@ -118,59 +135,72 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
     *texture = (struct slc_texture){.state = SLC_TEXTURE_FREE};
 }
 
-static SluiceResult build(SluiceVulkanStreamer *s, uint32_t index,
-                          const SluiceVulkanTextureCreateInfo *info)
+/* Views, regions and packed levels of one layer, whose image is there. */
+static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
-    struct slc_texture *texture = &s->textures[index];
-    *texture = (struct slc_texture){.source = info->source,
-                                    .primary_id = info->primaryId,
-                                    .added_frame = s->frame,
-                                    .address_modes = {info->addressModeU, info->addressModeV}};
-    SluiceResult result = sluiceGetImageInfo(info->source, &texture->info);
-    if (result == SLUICE_SUCCESS)
-        result = s->residency->interface->create_image(s->residency, index, &texture->info,
-                                                       &texture->image);
-    if (result == SLUICE_SUCCESS)
-        result = create_view(s, texture);
+    SluiceResult result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D, 1, &texture->view);
+    if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->layer_count > 1)
+        result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D_ARRAY, texture->layer_count,
+                             &texture->array_view);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetStreamedTextureLayout(&texture->image.desc, &texture->layout);
     if (result == SLUICE_SUCCESS)
         result = take_regions(s, texture);
     if (result == SLUICE_SUCCESS)
         result = create_packed(s, texture);
-    if (result == SLUICE_SUCCESS)
-        result = add_to_manager(s, texture, info->primaryId);
     return result;
 }
 
-SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
-                                    const SluiceVulkanTextureCreateInfo *pCreateInfo,
-                                    SluiceVulkanTexture *pTexture)
+/* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
+static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
+                              const SluiceVulkanTextureCreateInfo *info,
+                              const SluiceImageInfo *image, uint32_t count)
 {
-    SluiceVulkanStreamer *s = streamer;
-    if (!s || !pCreateInfo || !pTexture || !pCreateInfo->source)
-        return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = check_create_info(s, pCreateInfo);
+    struct slc_residency_image residency_image;
+    SluiceResult result =
+        s->residency->interface->create_image(s->residency, first, image, &residency_image);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint32_t index = find_free(s);
-    if (index == SLC_NONE)
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
-    result = build(s, index, pCreateInfo);
-    if (result != SLUICE_SUCCESS) {
-        destroy_parts(s, index);
-        return result;
+    for (uint32_t i = 0; i < count; i++)
+        s->textures[first + i] =
+            (struct slc_texture){.source = info->source,
+                                 .primary_id = info->primaryId,
+                                 .info = *image,
+                                 .image = residency_image,
+                                 .first = first,
+                                 .layer = i,
+                                 .layer_count = count,
+                                 .added_frame = s->frame,
+                                 .address_modes = {info->addressModeU, info->addressModeV}};
+    for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
+        result = build(s, &s->textures[first + i]);
+    uint32_t added = 0;
+    while (added < count && result == SLUICE_SUCCESS) {
+        result = add_to_manager(s, &s->textures[first + added], info->primaryId);
+        added += result == SLUICE_SUCCESS;
     }
+    if (result == SLUICE_SUCCESS)
+        return result;
+    while (added > 0)
+        sluiceRemoveStreamedTexture(s->manager, s->textures[first + --added].id, s->frame);
+    for (uint32_t i = 0; i < count; i++)
+        destroy_parts(s, first + i);
+    return result;
+}
+
+static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture *public)
+{
     struct slc_texture *texture = &s->textures[index];
     texture->state = SLC_TEXTURE_LIVE;
-    if (index == s->texture_high)
-        s->texture_high++;
+    if (index >= s->texture_high)
+        s->texture_high = index + 1;
     s->by_manager_index[(uint32_t)texture->id] = index;
+    slc_feedback_add(s, texture);
     s->new_textures[s->new_texture_count++] = index;
     texture->primary_place = SLC_NONE;
     if (texture->primary_id == SLUICE_NO_TEXTURE)
         add_primary(s, index);
-    *pTexture = (SluiceVulkanTexture){
+    *public = (SluiceVulkanTexture){
         .textureId = texture->id,
         .image = texture->image.image,
         .imageView = texture->view,
@@ -179,8 +209,44 @@ SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
         .height = texture->info.height,
         .mipLevelCount = texture->info.mipLevelCount,
         .tableIndex = index,
+        .arrayLayer = texture->layer,
+        .arrayView = s->textures[texture->first].array_view,
     };
+}
+
+SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
+                                         const SluiceVulkanTextureCreateInfo *pCreateInfo,
+                                         uint32_t layerCount, SluiceVulkanTexture *pLayers)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !pCreateInfo || !pLayers || !pCreateInfo->source)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageInfo image;
+    SluiceResult result = check_create_info(s, pCreateInfo);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetImageInfo(pCreateInfo->source, &image);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (layerCount != (image.arrayLayerCount ? image.arrayLayerCount : 1))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (layerCount > 1 && !s->residency->interface->has_arrays)
+        return SLUICE_ERROR_UNSUPPORTED;
+    uint32_t first = find_free(s, layerCount);
+    if (first == SLC_NONE)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    result = build_all(s, first, pCreateInfo, &image, layerCount);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    for (uint32_t i = 0; i < layerCount; i++)
+        publish(s, first + i, &pLayers[i]);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
+                                    const SluiceVulkanTextureCreateInfo *pCreateInfo,
+                                    SluiceVulkanTexture *pTexture)
+{
+    return sluiceAddVulkanTextureArray(streamer, pCreateInfo, 1, pTexture);
 }
 
 /* They stand alone from now on, so their own feedback is read. */
@@ -204,38 +270,61 @@ static void forget_new(SluiceVulkanStreamer *s, uint32_t index)
     s->new_texture_count = kept;
 }
 
+static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    SluiceTextureId id = texture->id;
+    SluiceResult result = sluiceRemoveStreamedTexture(s->manager, id, s->frame);
+    if (result != SLUICE_SUCCESS)
+        return slc_streamer_check(s, result, "sluiceRemoveStreamedTexture");
+    texture->state = SLC_TEXTURE_REMOVED;
+    texture->removed_frame = s->frame;
+    s->removed_count++;
+    slc_loads_drop(s, index);
+    remove_primary(s, index);
+    free_followers(s, id);
+    forget_new(s, index);
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTextureId textureId)
 {
     SluiceVulkanStreamer *s = streamer;
     if (!s)
         return SLUICE_ERROR_NULL_POINTER;
     /* The manager knows which ids are good. */
-    SluiceResult result = sluiceRemoveStreamedTexture(s->manager, textureId, s->frame);
+    SluiceStreamedTextureLayout layout;
+    SluiceResult result = sluiceGetTextureLayout(s->manager, textureId, &layout);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint32_t index = s->by_manager_index[(uint32_t)textureId];
-    struct slc_texture *texture = &s->textures[index];
+    const struct slc_texture *texture = &s->textures[s->by_manager_index[(uint32_t)textureId]];
     assert(texture->id == textureId && texture->state == SLC_TEXTURE_LIVE);
-    texture->state = SLC_TEXTURE_REMOVED;
-    texture->removed_frame = s->frame;
-    s->removed_count++;
-    slc_loads_drop(s, index);
-    remove_primary(s, index);
-    free_followers(s, textureId);
-    forget_new(s, index);
-    return SLUICE_SUCCESS;
+    uint32_t first = texture->first, count = texture->layer_count;
+    for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
+        result = remove_layer(s, first + i);
+    return result;
+}
+
+static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *first)
+{
+    bool over = first->removed_frame <= s->completed_frame;
+    for (uint32_t i = 0; i < first->layer_count && over; i++)
+        over = first[i].unit_count == 0 &&
+               s->residency->interface->image_is_idle(s->residency, first->first + i);
+    return over;
 }
 
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
 {
     for (uint32_t i = 0; i < s->texture_high && s->removed_count; i++) {
-        struct slc_texture *texture = &s->textures[i];
-        if (texture->state != SLC_TEXTURE_REMOVED)
+        const struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_REMOVED || texture->layer != 0)
             continue;
-        if (texture->removed_frame <= s->completed_frame && texture->unit_count == 0 &&
-            s->residency->interface->image_is_idle(s->residency, i)) {
-            destroy_parts(s, i);
-            s->removed_count--;
+        uint32_t count = texture->layer_count;
+        if (is_over(s, texture)) {
+            for (uint32_t layer = 0; layer < count; layer++)
+                destroy_parts(s, i + layer);
+            s->removed_count -= count;
         } else if (limit >= texture->removed_frame) {
             /* Its pages are bound to its slots until it is gone. */
             limit = texture->removed_frame ? texture->removed_frame - 1 : 0;
@@ -260,6 +349,8 @@ static uint32_t log2_of(uint32_t power)
 
 static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
+    SluiceFormatInfo format = {.channelCount = 4};
+    (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
     return (struct SluiceTextureEntry){
         .width = desc->width,
@@ -277,7 +368,7 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .pageTableOffset = texture->image.page_table_offset,
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
-                 slc_format_components(texture->info.format) << SLUICE_TEXTURE_COMPONENTS_SHIFT,
+                 format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }
 
@@ -289,9 +380,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         struct SluiceTextureEntry entry = table_entry(texture);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
-        if (s->buffers_cleared) /* else the whole buffer has just been filled */
-            s->vk.CmdFillBuffer(commands, s->feedback.buffer, (uint64_t)texture->region_first * 4,
-                                (uint64_t)texture->region_count * 4, SLUICE_MIP_UNTOUCHED);
+        slc_feedback_record_new(s, texture, commands);
     }
     s->new_texture_count = 0;
 }

@@ -6,11 +6,11 @@
 
 #include <assert.h>
 
-static VkBufferImageCopy copy_of(uint64_t offset, const SluiceImageRegion *region)
+static VkBufferImageCopy copy_of(uint64_t offset, const SluiceImageRegion *region, uint32_t layer)
 {
     return (VkBufferImageCopy){
         .bufferOffset = offset,
-        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, region->mipLevel, 0, 1},
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, region->mipLevel, layer, 1},
         .imageOffset = {(int32_t)region->x, (int32_t)region->y, 0},
         .imageExtent = {region->width, region->height, 1}};
 }
@@ -26,7 +26,7 @@ static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
         const struct slc_packed_unit *packed = &texture->packed.units[unit->packed_unit];
         for (uint32_t i = 0; i < packed->rect_count; i++) {
             const struct slc_packed_rect *rect = &texture->packed.rects[packed->first_rect + i];
-            copies[i] = copy_of(base + rect->offset, &rect->region);
+            copies[i] = copy_of(base + rect->offset, &rect->region, texture->layer);
         }
         return packed->rect_count;
     }
@@ -37,7 +37,7 @@ static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
         tile->mipLevel, x, y,
         slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - x),
         slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - y)};
-    copies[0] = copy_of(base, &region);
+    copies[0] = copy_of(base, &region, texture->layer);
     return 1;
 }
 
@@ -75,9 +75,9 @@ static SluiceResult upload_texture(SluiceVulkanStreamer *s, VkCommandBuffer comm
         struct slc_unit *unit = &s->units[units[i]];
         uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
         for (uint32_t j = copy_count; j < copy_count + added; j++)
-            s->counts.bytesUploaded += (uint64_t)s->copies[j].imageExtent.width *
-                                       s->copies[j].imageExtent.height *
-                                       sluiceFormatTexelSize(s->textures[texture].info.format);
+            s->counts.bytesUploaded += sluiceFormatRegionSize(s->textures[texture].info.format,
+                                                              s->copies[j].imageExtent.width,
+                                                              s->copies[j].imageExtent.height);
         copy_count += added;
         assert(copy_count <= s->copy_capacity);
         if (unit->packed_unit == SLC_NONE) {

@@ -517,6 +517,8 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_SLOT_OWED] = "free slots left to coarser requests of other textures",
     [NAIVE_RETURNS] = "maps with returns that were learned from",
     [NAIVE_DISPLACED] = "displaced",
+    [NAIVE_UNSEEN_DISPLACED] = "displaced as no longer seen",
+    [NAIVE_SEEN_DISPLACED] = "displaced although seen",
     [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",
     [NAIVE_DISPLACED_UNWANTED] = "displaced and no longer wanted",
 };

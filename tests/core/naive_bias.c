@@ -21,7 +21,7 @@ static uint64_t wanted_limit(const struct naive_manager *n)
     uint64_t heaps = n->config.maxHeapCount ? n->config.maxHeapCount : UINT64_MAX;
     if (n->heap_refused && n->heap_count > 0 && n->heap_count < heaps)
         heaps = n->heap_count;
-    return heaps == UINT64_MAX ? UINT64_MAX : 3 * heaps * n->capacity;
+    return heaps == UINT64_MAX ? UINT64_MAX : 7 * heaps * n->capacity / 2;
 }
 
 static void raise_bias(struct naive_bias *b, uint64_t wanted, uint64_t limit)

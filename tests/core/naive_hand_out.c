@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_PASSED_OVER 4096u
 #define MAX_PREFETCH_TEXTURES 256u
 
 static uint32_t min_u32(uint32_t a, uint32_t b)
@@ -140,7 +139,7 @@ static bool find_slot(struct naive_manager *n, const struct call *call,
     return false;
 }
 
-static bool is_passed_over(const struct naive_manager *n, const struct naive_ref *ref)
+bool naive_is_passed_over(const struct naive_manager *n, const struct naive_ref *ref)
 {
     const struct naive_tile *tile = ref->tile;
     return n->starved && !tile->packed &&
@@ -176,7 +175,7 @@ static void forget(struct naive_manager *n, struct naive_texture *t)
     n->events[NAIVE_FORGOTTEN]++;
 }
 
-static void count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted)
+void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted)
 {
     uint32_t standby;
     struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &standby);
@@ -195,14 +194,14 @@ static bool make_room(struct naive_manager *n, uint64_t unserved)
     const uint64_t retiring = naive_count_all(n, NAIVE_SLOT_RETIRING);
     uint32_t listed, unlisted;
     bool forgot = false;
-    count_standby(n, &listed, &unlisted);
+    naive_count_standby(n, &listed, &unlisted);
     while (listed + retiring + unlisted < needed) {
         struct naive_texture *t = oldest_texture(n);
         if (!t || !is_idle(n, t))
             break;
         forget(n, t);
         forgot = true;
-        count_standby(n, &listed, &unlisted);
+        naive_count_standby(n, &listed, &unlisted);
     }
     if (needed > listed + retiring) {
         const uint64_t more = needed - listed - retiring;
@@ -211,76 +210,17 @@ static bool make_room(struct naive_manager *n, uint64_t unserved)
     return forgot;
 }
 
-/* The MAPPED regular tile of the finest level below `end`, of equals the first that became so. */
-static struct naive_tile *finest_mapped(const struct naive_manager *n, uint32_t end)
-{
-    uint32_t count;
-    struct naive_tile *finest = NULL;
-    struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_MAPPED, &count);
-    for (uint32_t i = 0; i < count; i++) {
-        struct naive_tile *tile = refs[i].tile;
-        if (tile->packed || tile->level >= end)
-            continue;
-        if (!finest || tile->level < finest->level ||
-            (tile->level == finest->level && tile->mapped_at < finest->mapped_at))
-            finest = tile;
-    }
-    free(refs);
-    return finest;
-}
-
-/* The levels below this may make room for a request. */
-static uint32_t displaceable_below(const struct naive_manager *n, const struct naive_tile *request)
-{
-    if (request->packed)
-        return SLUICE_MAX_MIP_LEVELS;
-    if (request->requested_at <= n->round.waited)
-        return request->level;
-    return request->level > 0 ? request->level - 1 : 0;
-}
-
 static void end_round(struct naive_manager *n)
 {
     if (n->round.maps == 0 || n->round.maps < naive_count_holding(n))
         return;
-    n->round = (struct naive_round){.began = n->stamp, .waited = n->round.began};
-}
-
-/* Wanted tiles for the reserve. Returns false if there are too few. */
-static bool displace_for_reserve(struct naive_manager *n, uint64_t *coming)
-{
-    const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
-    for (; free_slots + *coming < reserved; ++*coming) {
-        struct naive_tile *tile = finest_mapped(n, SLUICE_MAX_MIP_LEVELS);
-        if (!tile)
-            return false;
-        naive_displace(n, tile);
-    }
-    *coming -= free_slots < reserved ? reserved - free_slots : 0;
-    return true;
-}
-
-/* Wanted tiles for `unserved` of the requests; refs[0] is the one that got no slot. */
-static void displace(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
-                     uint32_t unserved)
-{
-    uint32_t listed, unlisted;
-    count_standby(n, &listed, &unlisted);
-    uint64_t coming = (uint64_t)listed + naive_count_all(n, NAIVE_SLOT_RETIRING);
-    if (!displace_for_reserve(n, &coming))
-        return;
-    for (uint32_t i = 0; i < count && i < MAX_PASSED_OVER && unserved > 0; i++) {
-        if (is_passed_over(n, &refs[i]))
-            continue;
-        unserved--;
-        if (coming > 0) {
-            coming--;
-            continue;
-        }
-        struct naive_tile *tile = finest_mapped(n, displaceable_below(n, refs[i].tile));
-        if (!tile)
-            return;
-        naive_displace(n, tile);
+    struct naive_round *r = &n->round;
+    r->maps = 0;
+    r->waited = r->began;
+    r->began = n->stamp;
+    if (++r->count % 4 == 0) {
+        r->waited_long = r->began_long;
+        r->began_long = n->stamp;
     }
 }
 
@@ -309,9 +249,9 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
     bool refused = false;
     for (uint32_t i = 0; i < count && out->count < call->room; i++) {
         struct naive_tile *tile = refs[i].tile;
-        if (is_passed_over(n, &refs[i])) {
+        if (naive_is_passed_over(n, &refs[i])) {
             n->events[NAIVE_PASSED_OVER]++;
-            if (++passed_over == MAX_PASSED_OVER)
+            if (++passed_over == NAIVE_MAX_PASSED_OVER)
                 return false;
             continue;
         }
@@ -330,7 +270,7 @@ static bool may_prefetch(struct naive_manager *n, const struct call *call,
                          const struct outcome *seen, const struct outcome *out, bool *cut_short)
 {
     uint32_t listed, unlisted, cancelled;
-    count_standby(n, &listed, &unlisted);
+    naive_count_standby(n, &listed, &unlisted);
     free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELLED, &cancelled));
     *cut_short = out->count == call->room;
     if (*cut_short || unlisted + cancelled >= n->config.numExtraStandbyTiles || !slot_for(n, false))
@@ -408,7 +348,7 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     end_round(n);
     if (stopped) {
         if (!make_room(n, unserved))
-            displace(n, refs + stopped_at, count - stopped_at, unserved);
+            naive_displace_for(n, refs + stopped_at, count - stopped_at, unserved);
         result = SLUICE_BUDGET_REACHED;
     }
     free(refs);

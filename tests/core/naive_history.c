@@ -149,6 +149,13 @@ static uint32_t level_to_delete(uint64_t needed, uint32_t s, uint64_t newer)
     return k;
 }
 
+bool naive_would_believe(const struct naive_manager *n, const struct naive_texture *t,
+                         uint64_t misses, uint32_t level)
+{
+    const uint32_t s = regions_per_tile_log2(&t->layout.desc);
+    return level_to_delete(misses_needed(n, t), s, misses) <= level;
+}
+
 /* Returns whether nothing is left. */
 static bool delete_levels(struct naive_manager *n, const struct naive_texture *t,
                           struct naive_span *span, uint32_t below)
@@ -180,7 +187,7 @@ static void let_lapse(struct naive_manager *n, struct naive_texture *t, uint64_t
         for (uint32_t k = i + 1; k < t->span_count; k++)
             newer = add_weights(newer, t->spans[k].weight);
         newer = max_u64(newer, t->absence);
-        if (age >= timeout || (n->starved && newer >= 2 && age >= timeout - timeout / 4))
+        if (age >= timeout)
             over_and_empty[i] = delete_levels(n, t, span, level_to_delete(needed, s, newer));
     }
     uint32_t deleted = 0;

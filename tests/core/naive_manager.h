@@ -88,6 +88,8 @@ enum naive_event {
     NAIVE_SLOT_OWED,    ///< or more than the reserve, but coarser ones are requested
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
     NAIVE_DISPLACED,
+    NAIVE_UNSEEN_DISPLACED,
+    NAIVE_SEEN_DISPLACED,
     NAIVE_DISPLACED_UNMAPPED,
     NAIVE_DISPLACED_UNWANTED, ///< before they were unmapped
     NAIVE_EVENT_COUNT
@@ -104,6 +106,8 @@ struct naive_bias {
 struct naive_round {
     uint64_t maps;          ///< merged in it
     uint64_t began, waited; ///< stamps: requests up to `waited` have waited
+    uint32_t count;
+    uint64_t began_long, waited_long; ///< the same, over four rounds
 };
 
 struct naive_manager {
@@ -168,6 +172,9 @@ void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
 void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
                     uint64_t time, uint64_t timeout);
+/* Whether so many misses are enough to let go of a level. */
+bool naive_would_believe(const struct naive_manager *n, const struct naive_texture *t,
+                         uint64_t misses, uint32_t level);
 void naive_forget_history(struct naive_texture *t);
 bool naive_has_state(const struct naive_texture *t);
 bool naive_holds_anything(const struct naive_texture *t);
@@ -183,6 +190,22 @@ uint64_t naive_count_holding(const struct naive_manager *n);
 void naive_look_at_bias(struct naive_manager *n);
 /** Of all slots of living heaps. */
 uint32_t naive_reserved(const struct naive_manager *n);
+/** A tile with its texture, to be sorted. */
+struct naive_ref {
+    struct naive_texture *texture;
+    struct naive_tile *tile;
+    uint64_t key[4]; ///< compared in this order
+};
+
+/* Requests that one call may pass over. */
+#define NAIVE_MAX_PASSED_OVER 4096u
+bool naive_is_passed_over(const struct naive_manager *n, const struct naive_ref *ref);
+void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted);
+
+/* naive_displace.c */
+/* Wanted tiles for `unserved` of the requests; refs[0] is the one that got no slot. */
+void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
+                        uint32_t unserved);
 uint32_t naive_count_all(const struct naive_manager *n, enum naive_slot_use use);
 void naive_retry_due(struct naive_manager *n, uint64_t now);
 /** Checks what all list calls have in common; *only is NULL for all textures. */
@@ -208,12 +231,6 @@ void *naive_alloc(size_t count, size_t size);
 void naive_complain(struct naive_manager *n, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/** A tile with its texture, to be sorted. */
-struct naive_ref {
-    struct naive_texture *texture;
-    struct naive_tile *tile;
-    uint64_t key[4]; ///< compared in this order
-};
 /** All tiles in a state, of one texture or of all (NULL); the caller sets keys and frees it. */
 struct naive_ref *naive_collect(const struct naive_manager *n, const struct naive_texture *only,
                                 SluiceTileState state, uint32_t *count);

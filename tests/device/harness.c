@@ -161,7 +161,26 @@ static uint32_t drawing_family(struct harness *h)
     return 0;
 }
 
-static bool create_device(struct harness *h)
+/* What a test asks for beyond the library's own needs. */
+struct extras {
+    const char *const *extensions;
+    uint32_t extension_count;
+    void *features;
+};
+
+static bool has_extensions(struct harness *h, const struct extras *extras)
+{
+    static VkExtensionProperties there[512];
+    uint32_t count = 512, found = 0;
+    if (h->EnumerateDeviceExtensionProperties(h->physical_device, NULL, &count, there) < 0)
+        return false;
+    for (uint32_t i = 0; i < extras->extension_count; i++)
+        for (uint32_t j = 0; j < count; j++)
+            found += strcmp(extras->extensions[i], there[j].extensionName) == 0;
+    return found == extras->extension_count;
+}
+
+static bool create_device(struct harness *h, const struct extras *extras)
 {
     SluiceLogCallback log = {h, on_log};
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -178,6 +197,8 @@ static bool create_device(struct harness *h)
     vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
     features.features.samplerAnisotropy = there.features.samplerAnisotropy;
     vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
+    vulkan12.pNext = extras->features;
+    vulkan12.bufferDeviceAddress = extras->extension_count > 0 && there12.bufferDeviceAddress;
     h->anisotropy = there.features.samplerAnisotropy;
     h->mirror_clamp = there12.samplerMirrorClampToEdge;
     if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, h->mode, &log,
@@ -198,7 +219,9 @@ static bool create_device(struct harness *h)
     VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                .pNext = &features,
                                .queueCreateInfoCount = own_sparse_family ? 2 : 1,
-                               .pQueueCreateInfos = queues};
+                               .pQueueCreateInfos = queues,
+                               .enabledExtensionCount = extras->extension_count,
+                               .ppEnabledExtensionNames = extras->extensions};
     if (h->CreateDevice(h->physical_device, &info, NULL, &h->device) != VK_SUCCESS)
         return false;
 #define LOAD(name) h->name = (PFN_vk##name)h->GetDeviceProcAddr(h->device, "vk" #name);
@@ -230,6 +253,13 @@ static int no_device(struct harness *h, const char *why)
 
 int harness_init(struct harness *h)
 {
+    return harness_init_with(h, NULL, 0, NULL);
+}
+
+int harness_init_with(struct harness *h, const char *const *extensions, uint32_t extension_count,
+                      void *features)
+{
+    const struct extras extras = {extensions, extension_count, features};
     *h = (struct harness){0};
     h->library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!h->library)
@@ -246,7 +276,9 @@ int harness_init(struct harness *h)
         return no_device(h, getenv("SLUICE_DEVICE")
                                 ? "the device that SLUICE_DEVICE names is absent or lacks the mode"
                                 : "no device has Vulkan 1.2 and what the residency mode needs");
-    if (!create_device(h))
+    if (extension_count && !has_extensions(h, &extras))
+        return no_device(h, "the device lacks an extension that this test is about");
+    if (!create_device(h, &extras))
         return 1;
     fprintf(stderr, "# %s, residency %s, validation %s\n", h->caps.deviceName, h->mode_name,
             h->validates ? "on" : "absent");

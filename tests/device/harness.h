@@ -15,7 +15,7 @@
 
 /* clang-format off */
 #define HARNESS_INSTANCE_FUNCTIONS(X)                                                             \
-    X(CreateDevice) X(DestroyInstance) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr)           \
+    X(CreateDevice) X(DestroyInstance) X(EnumerateDeviceExtensionProperties) X(EnumeratePhysicalDevices) X(GetDeviceProcAddr)           \
     X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties)                             \
     X(GetPhysicalDeviceProperties) X(GetPhysicalDeviceQueueFamilyProperties)
 
@@ -76,6 +76,10 @@ struct harness {
 
 /** 0; or 77, having said why there is no device to test on; or 1. */
 int harness_init(struct harness *h);
+/** The same with extensions, and 77 if the device lacks one; `features` is a chain of structures
+ * for vkCreateDevice or NULL. Also enables bufferDeviceAddress. */
+int harness_init_with(struct harness *h, const char *const *extensions, uint32_t extension_count,
+                      void *features);
 /** Returns `status`, or 1 if that was 0 and validation complains about what is left. After a failed
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);

@@ -4,6 +4,7 @@
 
 #include "picture_codes_frag.h"
 #include "picture_frag.h"
+#include "picture_query_frag.h"
 #include "picture_vert.h"
 
 static VkShaderModule module(struct harness *h, const uint32_t *code, size_t size)
@@ -33,7 +34,7 @@ static void create_target(struct painter *p)
                      VK_SUCCESS);
 }
 
-static void create_pipeline(struct painter *p)
+static void create_pipeline(struct painter *p, bool query)
 {
     struct harness *h = p->prober->h;
     bool codes = p->prober->codes;
@@ -46,8 +47,9 @@ static void create_pipeline(struct painter *p)
          .pName = "main"},
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-         .module = codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
-                         : module(h, picture_frag, sizeof picture_frag),
+         .module = query   ? module(h, picture_query_frag, sizeof picture_query_frag)
+                   : codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
+                           : module(h, picture_frag, sizeof picture_frag),
          .pName = "main",
          .pSpecializationInfo = constants}};
     VkPipelineVertexInputStateCreateInfo input = {
@@ -85,11 +87,21 @@ static void create_pipeline(struct painter *p)
     h->DestroyShaderModule(h->device, stages[1].module, NULL);
 }
 
-void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture)
+static void init(struct painter *p, struct prober *prober, struct probe_texture texture, bool query)
 {
     *p = (struct painter){.prober = prober, .texture = texture};
     create_target(p);
-    create_pipeline(p);
+    create_pipeline(p, query);
+}
+
+void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture)
+{
+    init(p, prober, texture, false);
+}
+
+void painter_init_query(struct painter *p, struct prober *prober, struct probe_texture texture)
+{
+    init(p, prober, texture, true);
 }
 
 void painter_finish(struct painter *p)

@@ -15,6 +15,8 @@ struct painter {
 };
 
 void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture);
+/** The same, but the feedback is what textureQueryLod says. */
+void painter_init_query(struct painter *p, struct prober *prober, struct probe_texture texture);
 void painter_finish(struct painter *p);
 
 /** For harness_frame; user is the painter. */

@@ -81,6 +81,68 @@ static void regions_that_leave_their_level_are_refused(void **state)
     sluiceDestroyImageSource(NULL);
 }
 
+struct block_source {
+    SluiceImageSource base;
+    SluiceImageInfo info;
+    SluiceImageRegion last;
+};
+
+static SluiceResult block_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    *info = ((struct block_source *)base)->info;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult block_read(SluiceImageSource *base, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch)
+{
+    (void)texels;
+    (void)row_pitch;
+    ((struct block_source *)base)->last = *region;
+    return SLUICE_SUCCESS;
+}
+
+static void regions_of_compressed_formats_are_whole_blocks(void **state)
+{
+    (void)state;
+    const SluiceImageSourceInterface interface = {block_info, block_read, NULL};
+    struct block_source source = {
+        .base = {&interface},
+        .info = {30, 10, 5, SLUICE_FORMAT_BC7_UNORM_BLOCK, "blocks"}}; /* levels 30x10, 15x5, 7x2 */
+    static const SluiceImageRegion good[] = {{0, 0, 0, 4, 4},  {0, 8, 4, 20, 4}, {0, 0, 0, 30, 10},
+                                             {0, 28, 8, 2, 2}, {1, 12, 4, 3, 1}, {2, 0, 0, 7, 2},
+                                             {2, 4, 0, 3, 2},  {4, 0, 0, 1, 1}};
+    static const SluiceImageRegion bad[] = {{0, 2, 0, 4, 4}, {0, 0, 2, 4, 4},  {0, 0, 0, 5, 4},
+                                            {0, 0, 0, 4, 6}, {0, 28, 8, 1, 2}, {0, 28, 8, 2, 1},
+                                            {2, 0, 0, 6, 2}, {2, 0, 0, 7, 1},  {0, 0, 0, 32, 4}};
+    char texels[8 * 3 * 16];
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        CHECK_OK(sluiceReadImageRegion(&source.base, &good[i], texels, 128));
+        assert_memory_equal(&source.last, &good[i], sizeof good[i]);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        CHECK_RESULT(sluiceReadImageRegion(&source.base, &bad[i], texels, 128),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+    /* a row of 30 texels is 8 blocks of 16 bytes */
+    CHECK_RESULT(sluiceReadImageRegion(&source.base, &good[2], texels, 127),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+}
+
+static void sources_that_compute_texels_cannot_compress(void **state)
+{
+    (void)state;
+    SluiceProceduralImage image = {NULL, mark};
+    SluiceImageSource *source = NULL;
+    for (int f = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK; f <= SLUICE_FORMAT_BC7_SRGB_BLOCK; f++) {
+        SluiceImageInfo info = {8, 8, 0, (SluiceFormat)f, "blocks"};
+        CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, &source),
+                     SLUICE_ERROR_UNSUPPORTED);
+        CHECK_RESULT(sluiceCreateMemoryImageSource("", &info, NULL, &source),
+                     SLUICE_ERROR_UNSUPPORTED);
+    }
+    assert_null(source);
+}
+
 static void wrong_descriptions_are_refused(void **state)
 {
     (void)state;
@@ -115,6 +177,69 @@ static void memory_levels_are_what_was_given_and_its_means(void **state)
     CHECK_OK(sluiceReadImageRegion(source, &(SluiceImageRegion){2, 0, 0, 1, 1}, read, 1));
     assert_int_equal(read[0], 29);
     sluiceDestroyImageSource(source);
+}
+
+static void array_layers_are_the_sources_given(void **state)
+{
+    (void)state;
+    SluiceImageInfo info = {2, 2, 0, SLUICE_FORMAT_R8_UNORM, "layer"};
+    SluiceImageSource *layers[3], *array = NULL;
+    for (int i = 0; i < 3; i++) {
+        const uint8_t texels[4] = {(uint8_t)i, (uint8_t)(10 + i), 20, 30};
+        CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &layers[i]));
+    }
+    CHECK_OK(sluiceCreateArrayImageSource(layers, 3, NULL, &array));
+    CHECK_OK(sluiceGetImageInfo(array, &info));
+    assert_int_equal(info.arrayLayerCount, 3);
+    assert_int_equal(info.mipLevelCount, 2);
+    for (uint32_t i = 0; i < 3; i++) {
+        uint8_t read[2];
+        SluiceImageRegion region = {0, 0, 0, 2, 1, i};
+        CHECK_OK(sluiceReadImageRegion(array, &region, read, 2));
+        assert_int_equal(read[0], i);
+        assert_int_equal(read[1], 10 + i);
+        region.arrayLayer = i + 1;
+        if (i < 2)
+            CHECK_RESULT(sluiceReadImageRegion(layers[i], &region, read, 2),
+                         SLUICE_ERROR_INVALID_ARGUMENT);
+    }
+    uint8_t read[4];
+    CHECK_RESULT(sluiceReadImageRegion(array, &(SluiceImageRegion){0, 0, 0, 2, 2, 3}, read, 2),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    sluiceDestroyImageSource(array);
+    for (int i = 0; i < 3; i++)
+        sluiceDestroyImageSource(layers[i]);
+}
+
+static void array_layers_must_be_alike(void **state)
+{
+    (void)state;
+    SluiceImageSource *marked = create_marked(4, 4), *wide = create_marked(8, 4), *array = NULL;
+    SluiceImageSource *different[] = {marked, wide}, *same[] = {marked, marked};
+    CHECK_RESULT(sluiceCreateArrayImageSource(different, 2, NULL, &array),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceCreateArrayImageSource(same, 0, NULL, &array),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceCreateArrayImageSource(NULL, 2, NULL, &array), SLUICE_ERROR_NULL_POINTER);
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct failing_allocator a;
+        failing_allocator_init(&a, n);
+        result = sluiceCreateArrayImageSource(same, 2, &a.callbacks, &array);
+        if (result == SLUICE_SUCCESS) {
+            SluiceImageSource *nested[] = {array, array}, *other;
+            CHECK_RESULT(sluiceCreateArrayImageSource(nested, 2, NULL, &other),
+                         SLUICE_ERROR_INVALID_ARGUMENT);
+            sluiceDestroyImageSource(array);
+        }
+        assert_int_equal(a.live_bytes, 0);
+    }
+    SluiceProceduralImage image = {NULL, mark};
+    SluiceImageInfo info = {8, 8, 0, SLUICE_FORMAT_R8_UNORM, "array", 2};
+    CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, &array),
+                 SLUICE_ERROR_UNSUPPORTED);
+    sluiceDestroyImageSource(marked);
+    sluiceDestroyImageSource(wide);
 }
 
 static void creation_survives_every_refused_allocation(void **state)
@@ -166,8 +291,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(procedural_regions_hold_the_texels_they_name),
         cmocka_unit_test(regions_that_leave_their_level_are_refused),
+        cmocka_unit_test(regions_of_compressed_formats_are_whole_blocks),
+        cmocka_unit_test(sources_that_compute_texels_cannot_compress),
         cmocka_unit_test(wrong_descriptions_are_refused),
         cmocka_unit_test(memory_levels_are_what_was_given_and_its_means),
+        cmocka_unit_test(array_layers_are_the_sources_given),
+        cmocka_unit_test(array_layers_must_be_alike),
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(null_pointers_are_refused),
     };

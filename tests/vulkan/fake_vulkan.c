@@ -1,6 +1,9 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/test.h"
+#include "vulkan/feedback_map.h"
+
+#include <sluice/shared/texture_table.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -144,6 +147,13 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
         .queueCount = 1};
 }
 
+static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
+                                                      VkFormatProperties *properties)
+{
+    (void)device, (void)format;
+    *properties = (VkFormatProperties){0};
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL get_format(VkPhysicalDevice device, VkFormat format,
                                                  VkImageType type, VkImageTiling tiling,
                                                  VkImageUsageFlags usage, VkImageCreateFlags flags,
@@ -164,7 +174,9 @@ static VKAPI_ATTR void VKAPI_CALL get_sparse_format(VkPhysicalDevice device, VkF
                                                     VkSparseImageFormatProperties *properties)
 {
     (void)device, (void)format, (void)type, (void)samples, (void)usage, (void)tiling;
-    (void)properties;
+    if (properties && *count)
+        properties[0] = (VkSparseImageFormatProperties){
+            VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0};
     *count = 1;
 }
 
@@ -207,12 +219,18 @@ static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage i
     uint32_t tail = 0;
     while (object->extent.width >> tail > FAKE_TILE || object->extent.height >> tail > FAKE_TILE)
         tail++;
-    *count = 1;
-    *requirements = (VkSparseImageMemoryRequirements){
+    *count = fake->metadata_size ? 2 : 1;
+    requirements[1] = (VkSparseImageMemoryRequirements){
+        .formatProperties = {VK_IMAGE_ASPECT_METADATA_BIT, {0}, 0},
+        .imageMipTailSize = fake->metadata_size,
+        .imageMipTailOffset = 1ull << 31,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
+    requirements[0] = (VkSparseImageMemoryRequirements){
         .formatProperties = {VK_IMAGE_ASPECT_COLOR_BIT, {FAKE_TILE, FAKE_TILE, 1}, 0},
         .imageMipTailFirstLod = fake->tail_page_count ? tail : object->level_count,
         .imageMipTailSize = fake->tail_page_count * 65536ull,
-        .imageMipTailOffset = 1ull << 30};
+        .imageMipTailOffset = 1ull << 30,
+        .imageMipTailStride = FAKE_TAIL_STRIDE};
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBufferCreateInfo *info,
@@ -258,7 +276,10 @@ static VKAPI_ATTR void VKAPI_CALL free_memory(VkDevice device, VkDeviceMemory me
     (void)cb;
     if (!memory)
         return;
-    fake_of(device)->live_memory -= OBJECT(memory)->size;
+    struct fake_vulkan *fake = fake_of(device);
+    fake->live_memory -= OBJECT(memory)->size;
+    if (fake->freed_count < FAKE_EVENTS)
+        fake->freed_memories[fake->freed_count++] = memory;
     free(OBJECT(memory)->memory);
     drop(fake_of(device), memory);
 }
@@ -365,6 +386,16 @@ static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
     for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
         for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
             const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
+            if (b->flags & VK_SPARSE_MEMORY_BIND_METADATA_BIT) {
+                assert_int_equal(b->resourceOffset % FAKE_TAIL_STRIDE, 0);
+                assert_true(b->resourceOffset >= 1ull << 31);
+                assert_int_equal((b->resourceOffset - (1ull << 31)) / FAKE_TAIL_STRIDE,
+                                 b->memoryOffset / fake->metadata_size); /* the layer */
+                assert_int_equal(b->size, fake->metadata_size);
+                assert_true(b->memory != VK_NULL_HANDLE);
+                fake->metadata_binds++;
+                continue;
+            }
             assert_int_equal(b->size, 65536);
             uint32_t page = (uint32_t)((b->resourceOffset - (1ull << 30)) / 65536);
             note_bind(fake, &(struct fake_bind){info->pImageOpaqueBinds[i].image, FAKE_TAIL, page,
@@ -407,7 +438,8 @@ static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t write_co
                                               const VkCopyDescriptorSet *copies)
 {
     (void)write_count, (void)copy_count, (void)copies;
-    fake_of(device)->resolved = OBJECT(writes[0].pBufferInfo[1].buffer);
+    fake_of(device)->table = OBJECT(writes[0].pBufferInfo[2].buffer);
+    fake_of(device)->readback = OBJECT(writes[0].pBufferInfo[4].buffer);
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
@@ -444,18 +476,49 @@ static VKAPI_ATTR void VKAPI_CALL push_constants(VkCommandBuffer commands, VkPip
                                                  uint32_t size, const void *values)
 {
     (void)layout, (void)stages, (void)offset;
-    memcpy(fake_of(commands)->push, values, size);
+    assert_int_equal(size, sizeof fake_of(commands)->push);
+    memcpy(&fake_of(commands)->push, values, size);
 }
 
-/* The resolve pass, with the feedback that the test wants. */
+/* Buffers that are mapped, and only those, have memory. */
+static void *words_of(const struct fake_object *buffer)
+{
+    return OBJECT(buffer->memory)->memory;
+}
+
+static void resolve_item(struct fake_vulkan *fake, uint32_t index, uint32_t *at)
+{
+    const struct SluiceResolveSegment *segments = words_of(fake->table);
+    const struct SluiceResolveItem *item =
+        (const struct SluiceResolveItem *)words_of(fake->table) + fake->push.firstItem + index;
+    uint32_t first = segments[fake->push.firstSegment + item->firstSegment].firstRegion;
+    uint32_t *words = words_of(fake->readback);
+    struct SluiceResolveResult result = {SLUICE_RESOLVED_MAP, (item->regionCount + 3) / 4, *at, 0};
+    if (result.count > fake->push.capacity - *at)
+        result = (struct SluiceResolveResult){SLUICE_RESOLVED_NOTHING, 0, 0, 0};
+    *at += result.count;
+    uint8_t *levels = (uint8_t *)&words[fake->push.dataOffset + result.offset];
+    for (uint32_t i = 0; i < item->regionCount && result.count; i++) {
+        levels[i] = fake->want(fake->user, first + i);
+        result.checksum += slc_resolve_weight(i) * (SLUICE_MIP_UNTOUCHED - (uint32_t)levels[i]);
+    }
+    if (fake->damage_count && fake->damage_count--)
+        result.checksum ^= 1;
+    fake->whole_count += (item->flags & SLUICE_RESOLVE_WHOLE) != 0;
+    memcpy(&words[fake->push.resultOffset + 4 * index], &result, sizeof result);
+}
+
+/* The resolve passes, with the feedback that the test wants: whole maps, which are always allowed.
+ */
 static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x, uint32_t y,
                                            uint32_t z)
 {
     (void)x, (void)y, (void)z;
     struct fake_vulkan *fake = fake_of(commands);
-    uint8_t *bytes = OBJECT(fake->resolved->memory)->memory;
-    for (uint32_t i = 0; i < fake->push[1]; i++)
-        bytes[fake->push[2] * 4 + i] = fake->want(fake->user, fake->push[0] + i);
+    if (++fake->dispatch_count % 3 != 0)
+        return;
+    for (uint32_t i = 0, at = 0; i < fake->push.itemCount; i++)
+        resolve_item(fake, i, &at);
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
@@ -544,6 +607,7 @@ static const struct {
 } functions[] = {
     ENTRY(GetDeviceProcAddr, get_device_function),
     ENTRY(GetPhysicalDeviceFeatures2, get_features),
+    ENTRY(GetPhysicalDeviceFormatProperties, get_format_features),
     ENTRY(GetPhysicalDeviceImageFormatProperties, get_format),
     ENTRY(GetPhysicalDeviceMemoryProperties, get_memory),
     ENTRY(GetPhysicalDeviceProperties2, get_properties),

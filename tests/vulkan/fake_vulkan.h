@@ -7,10 +7,12 @@
 #ifndef TESTS_VULKAN_FAKE_VULKAN_H
 #define TESTS_VULKAN_FAKE_VULKAN_H
 
+#include <sluice/shared/resolve.h>
 #include <sluice/vulkan.h>
 
 #define FAKE_TILE 128u
 #define FAKE_TAIL UINT32_MAX
+#define FAKE_TAIL_STRIDE (1ull << 24) ///< from layer to layer
 #define FAKE_EVENTS 4096u
 #define FAKE_WORDS 65536u
 
@@ -30,6 +32,8 @@ struct fake_copy {
 
 struct fake_vulkan {
     uint32_t tail_page_count; ///< 0: no tail
+    uint64_t metadata_size;   ///< of every image; 0: none
+    uint64_t metadata_binds;
 
     /** What the two timelines stand at; the test sets them. */
     uint64_t frame_value, bind_value;
@@ -41,7 +45,8 @@ struct fake_vulkan {
     struct fake_bind binds[FAKE_EVENTS];
     struct fake_copy copies[FAKE_EVENTS];
     VkImage destroyed_images[FAKE_EVENTS];
-    uint32_t bind_count, copy_count, destroyed_count, bind_calls;
+    VkDeviceMemory freed_memories[FAKE_EVENTS];
+    uint32_t bind_count, copy_count, destroyed_count, freed_count, bind_calls;
     bool published; ///< copies to images are over: MinMip maps were copied
 
     /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
@@ -60,9 +65,12 @@ struct fake_vulkan {
     void *user;
     /** The feedback of one region, by its index in the feedback buffer. */
     uint8_t (*want)(void *user, uint32_t region);
+    uint32_t damage_count; ///< so many results that are resolved next have a wrong checksum
+    uint32_t whole_count;  ///< items of which the whole map was asked for
 
-    struct fake_object *resolved; ///< the buffer of the second binding
-    uint32_t push[3];
+    struct fake_object *table, *readback; ///< buffers of the resolve passes
+    struct SluiceResolveParams push;
+    uint32_t dispatch_count;
 };
 
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);

@@ -108,6 +108,48 @@ static void adding_survives(uint64_t objects_per_texture)
     sluiceDestroyImageSource(info.source);
 }
 
+static void adding_an_array_survives_every_failing_call(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake;      /* large */
+    mode = SLUICE_RESIDENCY_MODE_SPARSE; /* the only one with arrays */
+    SluiceImageSource *layer = grey_source(), *array;
+    CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
+                                          &array));
+    SluiceVulkanTextureCreateInfo info = {.source = array};
+    for (size_t f = 0; f < FAILURES; f++) {
+        fake = (struct fake_vulkan){.tail_page_count = 1, .metadata_size = 65536};
+        SluiceVulkanStreamer *streamer;
+        CHECK_OK(create(&fake, &streamer));
+        uint64_t objects = fake.live_objects, memory = fake.live_memory;
+        for (uint64_t n = 1;; n++) {
+            SluiceVulkanTexture textures[3];
+            fake.calls = 0;
+            fake.failing_call = n;
+            fake.failure = failures[f].from;
+            SluiceResult result = sluiceAddVulkanTextureArray(streamer, &info, 3, textures);
+            if (fake.calls < n) {
+                CHECK_OK(result);
+                break;
+            }
+            CHECK_RESULT(result, failures[f].to);
+            assert_int_equal(fake.live_objects, objects);
+            assert_int_equal(fake.live_memory, memory);
+        }
+        /* an image, its metadata, a view of each layer and one of all */
+        assert_int_equal(fake.live_objects, objects + 6);
+        assert_int_equal(fake.live_memory, memory + 3 * 65536);
+        SluiceVulkanTexture another[3];
+        CHECK_RESULT(sluiceAddVulkanTextureArray(streamer, &info, 3, another),
+                     SLUICE_ERROR_LIMIT_EXCEEDED); /* one place is left */
+        fake.failing_call = 0;
+        sluiceDestroyVulkanStreamer(streamer);
+        check_nothing_left(&fake);
+    }
+    sluiceDestroyImageSource(array);
+    sluiceDestroyImageSource(layer);
+}
+
 /* Frames that complete at once, until one fails. */
 static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer)
 {
@@ -198,6 +240,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(creation_survives_every_failing_call),
         cmocka_unit_test(adding_survives_every_failing_call),
+        cmocka_unit_test(adding_an_array_survives_every_failing_call),
         cmocka_unit_test(frames_survive_every_failing_call),
     };
     return RUN_TESTS(tests);

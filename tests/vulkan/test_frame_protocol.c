@@ -3,7 +3,8 @@
  * - texels are copied only into tiles whose binding is over,
  * - MinMip maps show only tiles that are bound and were copied to since,
  * - no binding of a tile changes, and no image goes, while a frame that may read it is incomplete,
- * - no page belongs to two tiles.
+ * - no page belongs to two tiles,
+ * - memory goes only when nothing is bound to it any more, and nothing under way was.
  */
 #include "vulkan/fake_vulkan.h"
 
@@ -17,8 +18,9 @@ enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
 struct tile {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
     uint64_t offset;
-    uint64_t batch; ///< of the last change
-    bool copied;    ///< since it was bound
+    uint64_t batch;        ///< of the last change
+    VkDeviceMemory before; ///< that change
+    bool copied;           ///< since it was bound
 };
 
 struct texture {
@@ -37,7 +39,7 @@ struct model {
     SluiceVulkanStreamer *streamer;
     struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
     uint64_t frame;
-    uint64_t applied_batch;
+    uint32_t heaps_freed, added;
     uint32_t window; ///< seed of what the camera sees
 };
 
@@ -67,6 +69,7 @@ static void model_add(struct model *m)
         return; /* the removed ones are not gone yet */
     const uint32_t *size = sizes[rand() % 5];
     struct texture *t = &m->textures[i];
+    m->added++;
     *t = (struct texture){.used = true};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo info = {.width = size[0],
@@ -143,7 +146,8 @@ static void take_binds(struct model *m)
         check_unseen(m, t, index);
         struct tile *tile = &t->tiles[index];
         assert_true(tile->batch < m->fake.submitted_bind_value); /* once in a batch */
-        *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value, false};
+        *tile = (struct tile){bind->memory, bind->offset, m->fake.submitted_bind_value,
+                              tile->memory, false};
     }
     assert_true(m->fake.bind_calls <= 1);
     for (uint32_t i = 0; i < m->fake.bind_count; i++) { /* when all of them are done */
@@ -151,6 +155,20 @@ static void take_binds(struct model *m)
         const struct texture *t = find_image(m, bind->image);
         check_page(m, &t->tiles[tile_index(t, bind->level, bind->x, bind->y)]);
     }
+}
+
+/* Images that are gone have been taken out before. */
+static void take_freed(struct model *m)
+{
+    for (uint32_t f = 0; f < m->fake.freed_count; f++)
+        for (uint32_t i = 0; i < 2 * TEXTURES; i++)
+            for (uint32_t j = 0; j < m->textures[i].layout.tileCount; j++) {
+                const struct tile *tile = &m->textures[i].tiles[j];
+                assert_true(tile->memory != m->fake.freed_memories[f]);
+                assert_true(tile->before != m->fake.freed_memories[f] ||
+                            tile->batch <= m->fake.bind_value);
+            }
+    m->heaps_freed += m->fake.freed_count;
 }
 
 static void check_copied_into(const struct model *m, const struct tile *tile)
@@ -209,7 +227,8 @@ static uint64_t advance(uint64_t value, uint64_t end)
 static uint32_t model_frame(struct model *m, uint64_t time)
 {
     struct fake_vulkan *fake = &m->fake;
-    fake->bind_count = fake->copy_count = fake->destroyed_count = fake->bind_calls = 0;
+    fake->bind_count = fake->copy_count = fake->destroyed_count = 0;
+    fake->freed_count = fake->bind_calls = 0;
     fake->published = false;
     fake->frame_value = advance(fake->frame_value, m->frame);
     if (rand() % 4 == 0) /* slow at times, so that batches pile up */
@@ -227,6 +246,7 @@ static uint32_t model_frame(struct model *m, uint64_t time)
     fake->frame_semaphore = frame.semaphore;
     m->frame = frame.frameIndex;
     take_destroyed(m);
+    take_freed(m); /* before the binds of this frame */
     take_binds(m);
     take_copies(m);
     uint32_t visible = take_visible(m);
@@ -246,11 +266,27 @@ static void remove_any(struct model *m)
     model_add(m);
 }
 
-static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps, unsigned seed)
+/* As an application does that wants its memory back; some of it is needed again at once. */
+static void release_heaps(struct model *m)
+{
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    uint32_t heaps[8], count = 8;
+    CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
+    SluiceResult result = sluiceGetEmptyHeaps(manager, &count, heaps);
+    assert_true(result >= 0);
+    for (uint32_t i = 0; i < count; i++)
+        CHECK_OK(sluiceReleaseHeap(manager, heaps[i]));
+}
+
+static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
+                uint32_t heaps, unsigned seed)
 {
     static struct model model; /* large */
     struct model *m = &model;
-    *m = (struct model){.fake = {.tail_page_count = tail_page_count, .want = want, .user = m}};
+    *m = (struct model){.fake = {.tail_page_count = tail_page_count,
+                                 .metadata_size = metadata_size,
+                                 .want = want,
+                                 .user = m}};
     SluiceVulkanStreamerCreateInfo info = {.framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
@@ -272,12 +308,20 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
             m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
         if (step % 50 == 0)
             remove_any(m);
+        if (step % 7 == 0)
+            release_heaps(m);
         shown += model_frame(m, step);
     }
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
     assert_true(shown > 10000);
     assert_true(stats.tilesUnmapped > 50);
+    assert_true(stats.unbinds + stats.unbindsSaved > 50);
+    assert_true(stats.unbindsSaved > 0);
+    /* once each, but for those that came last */
+    assert_in_range(m->fake.metadata_binds, metadata_size ? m->added - 2 * TEXTURES : 0,
+                    metadata_size ? m->added : 0);
+    assert_true(heaps == 0 || m->heaps_freed > 0);
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
     sluiceDestroyVulkanStreamer(m->streamer);
@@ -290,25 +334,31 @@ static void run(uint32_t tail_page_count, uint32_t heap_capacity, uint32_t heaps
 static void promises_hold_without_a_tail(void **state)
 {
     (void)state;
-    run(0, 64, 6, 41);
+    run(0, 0, 64, 6, 41);
 }
 
 static void promises_hold_with_a_tail_of_one_page(void **state)
 {
     (void)state;
-    run(1, 64, 6, 42);
+    run(1, 0, 64, 6, 42);
 }
 
 static void promises_hold_with_a_tail_of_many_pages_and_little_memory(void **state)
 {
     (void)state;
-    run(5, 32, 3, 43);
+    run(5, 0, 32, 3, 43);
+}
+
+static void promises_hold_with_metadata_that_is_bound_once(void **state)
+{
+    (void)state;
+    run(1, 196608, 64, 6, 45);
 }
 
 static void promises_hold_with_room_for_everything(void **state)
 {
     (void)state;
-    run(2, 256, 0, 44);
+    run(2, 0, 256, 0, 44);
 }
 
 /* Its regions still hold what was asked of a texture that is gone; they are cleared by the next. */
@@ -340,13 +390,63 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     assert_int_equal(m->fake.live_objects, 0);
 }
 
+/* Pages of the tails of three layers: two of each, a stride apart; and metadata once per layer. */
+static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    fake = (struct fake_vulkan){.tail_page_count = 2, .metadata_size = 131072, .want = want};
+    struct model window = {.window = 1};
+    fake.user = &window;
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "grey"};
+    SluiceImageSource *layer, *array;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &layer));
+    CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
+                                          &array));
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
+    fake_vulkan_fill(&fake, &info);
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceVulkanTextureCreateInfo create = {.source = array};
+    SluiceVulkanTexture textures[3];
+    CHECK_OK(sluiceAddVulkanTextureArray(streamer, &create, 3, textures));
+    uint32_t seen[3] = {0}, stride = (uint32_t)(FAKE_TAIL_STRIDE / 65536);
+    for (uint64_t i = 1; i <= 6; i++) {
+        SluiceStreamingFrame frame;
+        fake.bind_count = fake.copy_count = 0;
+        fake.published = false;
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+        CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(&fake), i, &frame));
+        for (uint32_t b = 0; b < fake.bind_count; b++)
+            if (fake.binds[b].level == FAKE_TAIL) {
+                assert_true(fake.binds[b].x / stride < 3 && fake.binds[b].x % stride < 2);
+                seen[fake.binds[b].x / stride] |= 1u << fake.binds[b].x % stride;
+            }
+        CHECK_OK(sluiceEndStreamingFrame(streamer, fake_vulkan_commands(&fake)));
+        fake.frame_semaphore = frame.semaphore;
+        fake.frame_value = i;
+        fake.bind_value = fake.submitted_bind_value;
+    }
+    assert_int_equal(fake.metadata_binds, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        assert_int_equal(seen[i], 3);
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyImageSource(array);
+    sluiceDestroyImageSource(layer);
+    assert_int_equal(fake.live_objects, 0);
+    assert_int_equal(fake.live_memory, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(promises_hold_without_a_tail),
         cmocka_unit_test(promises_hold_with_a_tail_of_one_page),
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
+        cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
         cmocka_unit_test(promises_hold_with_room_for_everything),
+        cmocka_unit_test(layers_of_an_array_bind_tails_and_metadata_of_their_own),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),
     };
     return RUN_TESTS(tests);

@@ -150,6 +150,67 @@ static void tiles_that_are_not_pages_and_images_beyond_the_space_are_refused(voi
                  SLUICE_ERROR_UNSUPPORTED);
 }
 
+static void granularity_in_blocks_is_told_from_granularity_in_texels(void **state)
+{
+    (void)state;
+    const struct {
+        SluiceFormat format;
+        VkExtent3D said, meant;
+    } cases[] = {
+        {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, {128, 64, 1}, {512, 256, 1}}, /* lavapipe */
+        {SLUICE_FORMAT_BC4_SNORM_BLOCK, {128, 64, 1}, {512, 256, 1}},
+        {SLUICE_FORMAT_BC7_UNORM_BLOCK, {64, 64, 1}, {256, 256, 1}},
+        {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, {512, 256, 1}, {512, 256, 1}}, /* as specified */
+        {SLUICE_FORMAT_BC7_SRGB_BLOCK, {256, 256, 1}, {256, 256, 1}},
+        {SLUICE_FORMAT_R32G32B32A32_SFLOAT, {64, 64, 1}, {64, 64, 1}},
+        {SLUICE_FORMAT_R8_UNORM, {256, 256, 1}, {256, 256, 1}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        SluiceImageInfo info = image(4096, 4096, cases[i].format);
+        VkSparseImageMemoryRequirements c =
+            color(cases[i].said.width, cases[i].said.height, info.mipLevelCount, 0, 0);
+        struct slc_sparse_layout layout;
+        CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+        assert_int_equal(layout.desc.tileWidth, cases[i].meant.width);
+        assert_int_equal(layout.desc.tileHeight, cases[i].meant.height);
+        assert_int_equal(
+            sluiceFormatRegionSize(info.format, layout.desc.tileWidth, layout.desc.tileHeight),
+            SLC_TILE_SIZE);
+    }
+}
+
+static void block_tiles_that_are_not_pages_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageInfo info = image(4096, 4096, SLUICE_FORMAT_BC7_UNORM_BLOCK);
+    VkSparseImageMemoryRequirements c = color(128, 128, info.mipLevelCount, 0, 0);
+    struct slc_sparse_layout layout;
+    CHECK_RESULT(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE),
+                 SLUICE_ERROR_UNSUPPORTED);
+}
+
+static void layers_of_an_array_have_tails_of_their_own_or_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageInfo info = image(1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
+    info.arrayLayerCount = 6;
+    VkSparseImageMemoryRequirements c = color(128, 128, 3, 2 * 65536, 1 << 23);
+    c.imageMipTailStride = 1 << 24;
+    struct slc_sparse_layout layout;
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+    assert_int_equal(layout.tail_stride, 1 << 24);
+    assert_int_equal(layout.desc.packedTileCount, 2);
+    c.formatProperties.flags = VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    CHECK_RESULT(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE),
+                 SLUICE_ERROR_UNSUPPORTED);
+    info.arrayLayerCount = 1; /* then there is only one to share it */
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+    info.arrayLayerCount = 6;
+    c = color(128, 128, info.mipLevelCount, 0, 0); /* no tail at all */
+    c.formatProperties.flags = VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+    CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
+}
+
 static void metadata_is_remembered(void **state)
 {
     (void)state;
@@ -172,6 +233,9 @@ int main(void)
         cmocka_unit_test(regular_tile_is_where_it_says),
         cmocka_unit_test(sizes_that_do_not_halve_evenly_are_told),
         cmocka_unit_test(tiles_that_are_not_pages_and_images_beyond_the_space_are_refused),
+        cmocka_unit_test(granularity_in_blocks_is_told_from_granularity_in_texels),
+        cmocka_unit_test(block_tiles_that_are_not_pages_are_refused),
+        cmocka_unit_test(layers_of_an_array_have_tails_of_their_own_or_are_refused),
         cmocka_unit_test(metadata_is_remembered),
     };
     return RUN_TESTS(tests);

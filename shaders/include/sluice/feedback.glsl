@@ -7,7 +7,16 @@
  *     if (sluiceSelectRandomQuad(uvec2(gl_FragCoord.xy), seed, 1.0 / 16.0))
  *         sluiceWriteFeedback(tableIndex, uv, dx, dy, 0.0, 8.0);
  *
- * A texture set writes once, with the primary's index.
+ * A texture set writes once, with the primary's index. In compute and ray tracing shaders the
+ * derivatives are whatever the caller knows: of ray cones, for instance.
+ *
+ * To be defined before this file, besides what buffers.glsl says:
+ *
+ *     #define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_MASKS  // as the streamer's; default: LEVELS
+ *     #define SLUICE_FEEDBACK_TURN_WORD(i) turns.words[i]     // uint, read; default: all take part
+ *
+ * The second one leaves out textures that are not resolved in this frame, at the cost of one load:
+ * see SluiceVulkanStreamerCreateInfo.feedbackInTurns.
  */
 #ifndef SLUICE_FEEDBACK_GLSL
 #define SLUICE_FEEDBACK_GLSL
@@ -15,13 +24,45 @@
 #include "buffers.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
+#include "shared/feedback.h"
 
+#ifndef SLUICE_FEEDBACK_ENCODING
+#define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_LEVELS
+#endif
+
+/* Most writes change nothing, and a load is far cheaper than an atomic. */
 void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
 {
     uint at = entry.feedbackOffset + y * entry.regionCountX + x;
-    /* Most writes change nothing, and a load is far cheaper than an atomic. */
+#if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
+    uint shift = (at & 1u) * 16u;
+    uint bit = 1u << min(level, SLUICE_FEEDBACK_MASK_LEVELS - 1u);
+    uint asFine = bit | (bit - 1u);
+    if ((SLUICE_FEEDBACK_WORD(at >> 1u) >> shift & asFine) == 0u)
+        atomicOr(SLUICE_FEEDBACK_WORD(at >> 1u), bit << shift);
+#else
     if (level < SLUICE_FEEDBACK_WORD(at))
         atomicMin(SLUICE_FEEDBACK_WORD(at), level);
+#endif
+}
+
+/** Whether what is written for this texture in this frame is asked for. */
+bool sluiceTakesPart(uint tableIndex)
+{
+#ifdef SLUICE_FEEDBACK_TURN_WORD
+    return (SLUICE_FEEDBACK_TURN_WORD(tableIndex >> 5u) >> (tableIndex & 31u) & 1u) != 0u;
+#else
+    return true;
+#endif
+}
+
+void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint level)
+{
+    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
+    if (sluiceFootprintIsOneRegion(at))
+        return;
+    for (uint i = 1u; i < 9u; i++)
+        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
 }
 
 /**
@@ -33,18 +74,63 @@ void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
 void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
+    if (!sluiceTakesPart(tableIndex))
+        return;
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);
     float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
     uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
     uint coarsest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
-    SluiceFootprint at = sluiceComputeFootprint(
-        entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest);
-    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
-    if (sluiceFootprintIsOneRegion(at))
-        return;
-    for (uint i = 1u; i < 9u; i++)
-        sluiceMarkRegion(entry, at.x[i % 3u], at.y[i / 3u], level);
+    sluiceMarkFootprint(entry,
+                        sluiceComputeFootprint(
+                            entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest),
+                        level);
 }
+
+#ifdef SLUICE_FEEDBACK_QUERY
+/* How far two evaluations of the same level of detail may lie apart: a step of its fraction. */
+#define SLUICE_QUERY_MARGIN (1.0 / 256.0)
+
+/**
+ * The same with the level that the device itself says it will take, for comparison: it needs no
+ * margin for other formulas, but a texture and derivatives, so that it costs every pixel what
+ * sluiceWriteFeedback costs the selected ones. Fragment shaders only, in uniform control flow, with
+ * `selected` in place of a branch around it. `tex` must be the whole texture that is streamed, with
+ * the sampler that it is sampled with. In paged residency no device takes the level: there it is the
+ * computed one. Define SLUICE_FEEDBACK_QUERY to have it.
+ *
+ * With anisotropy the finer of this level and the computed one counts: where derivatives exceed
+ * maxAnisotropy, a widely used driver names levels half of its logarithm coarser than it samples.
+ */
+void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
+                              float maxAnisotropy, bool selected)
+{
+    float lod = textureQueryLod(tex, uv).y; /* neither clamped nor rounded */
+    vec2 dx = dFdx(uv), dy = dFdy(uv);
+    if (!selected || !sluiceTakesPart(tableIndex))
+        return;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        sluiceWriteFeedback(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+        return;
+    }
+#endif
+    lod = lod == lod ? clamp(lod, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
+    lod += sluiceClampLodBias(lodBias);
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    float finest = lod - SLUICE_QUERY_MARGIN;
+    if (maxAnisotropy > 1.0) {
+        vec2 size = vec2(entry.width, entry.height);
+        float computed = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+        finest = min(finest, computed - sluiceLodMargin(maxAnisotropy));
+    }
+    uint level = sluiceFinestLevel(finest, 0.0, entry.mipLevelCount);
+    uint coarsest = sluiceCoarsestLevel(lod + SLUICE_QUERY_MARGIN, entry.mipLevelCount);
+    sluiceMarkFootprint(entry,
+                        sluiceComputeFootprint(
+                            entry, uv, sluiceHalfBox(dx, dy, lodBias, maxAnisotropy), coarsest),
+                        level);
+}
+#endif
 
 #endif

@@ -64,6 +64,10 @@ void main()
     bool selected = (params.flags & PICTURE_LATTICE) != 0u
                         ? sluiceSelectLattice(pixel, params.first)
                         : sluiceSelectRandomQuad(pixel, params.first, 1.0 / 16.0);
+#ifdef SLUICE_FEEDBACK_QUERY
+    sluiceWriteFeedbackQuery(tex, params.tableIndex, uv, bias, anisotropy, selected);
+#else
     if (selected)
         sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);
+#endif
 }

@@ -1,0 +1,74 @@
+/*
+ * Textures of one description share what follows from it. There are few descriptions, so that is
+ * nearly always in the cache, and a texture itself is small.
+ */
+#include "core/wants.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+/* A bucket is searched no further: then a texture gets a shape of its own. */
+enum { MAX_SEARCHED = 8 };
+
+static uint32_t hash_of(const SluiceStreamedTextureDesc *d)
+{
+    const uint32_t words[] = {d->width,
+                              d->height,
+                              d->mipLevelCount,
+                              d->regularMipCount,
+                              d->packedTileCount,
+                              d->tileWidth,
+                              d->tileHeight,
+                              d->feedbackRegionWidth,
+                              d->feedbackRegionHeight};
+    uint32_t hash = 2166136261u;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        hash = (hash ^ words[i]) * 0x9E3779B1u;
+    return hash ^ hash >> 15;
+}
+
+static bool are_equal(const SluiceStreamedTextureDesc *a, const SluiceStreamedTextureDesc *b)
+{
+    return a->width == b->width && a->height == b->height && a->mipLevelCount == b->mipLevelCount &&
+           a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount &&
+           a->tileWidth == b->tileWidth && a->tileHeight == b->tileHeight &&
+           a->feedbackRegionWidth == b->feedbackRegionWidth &&
+           a->feedbackRegionHeight == b->feedbackRegionHeight;
+}
+
+SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *desc,
+                            struct slc_shape **shape)
+{
+    struct slc_shape layout = {.users = 1};
+    SluiceResult result = slc_layout_texture(desc, &layout);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    layout.hash = hash_of(&layout.desc);
+    layout.work_size = slc_wants_work_size(&layout);
+    struct slc_shape **bucket = &m->shapes[layout.hash % SLC_SHAPE_BUCKETS], *s = *bucket;
+    for (uint32_t i = 0; s && i < MAX_SEARCHED; i++, s = s->next)
+        if (s->hash == layout.hash && are_equal(&s->desc, &layout.desc)) {
+            s->users++;
+            *shape = s;
+            return SLUICE_SUCCESS;
+        }
+    s = slc_alloc(&m->cb, 1, sizeof *s);
+    if (!s)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    *s = layout;
+    s->next = *bucket;
+    *bucket = *shape = s;
+    return SLUICE_SUCCESS;
+}
+
+void slc_shape_give(slc_manager *m, struct slc_shape *shape)
+{
+    if (--shape->users > 0)
+        return;
+    struct slc_shape **link = &m->shapes[shape->hash % SLC_SHAPE_BUCKETS];
+    while (*link != shape)
+        link = &(*link)->next;
+    *link = shape->next;
+    slc_free(&m->cb, shape, 1, sizeof *shape);
+}

@@ -1,0 +1,83 @@
+#include "base/alloc.h"
+#include "base/checked.h"
+
+#include <sluice/image.h>
+
+struct array_source {
+    SluiceImageSource base;
+    SluiceAllocationCallbacks allocator;
+    SluiceImageInfo info;
+    SluiceImageSource **layers; ///< owned, what they point to is not
+};
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    *info = ((struct array_source *)base)->info;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    SluiceImageRegion inner = *region;
+    inner.arrayLayer = 0;
+    return sluiceReadImageRegion(((struct array_source *)base)->layers[region->arrayLayer], &inner,
+                                 texels, row_pitch);
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    struct array_source *source = (struct array_source *)base;
+    SluiceAllocationCallbacks cb = source->allocator;
+    slc_free(&cb, source->layers, source->info.arrayLayerCount, sizeof *source->layers);
+    slc_free(&cb, source, 1, sizeof *source);
+}
+
+static const SluiceImageSourceInterface array_interface = {get_info, read_region, destroy};
+
+static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t count,
+                                 SluiceImageInfo *info)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceImageInfo other;
+        SluiceResult result = sluiceGetImageInfo(layers[i], i ? &other : info);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        if (i == 0)
+            other = *info;
+        if (other.width != info->width || other.height != info->height ||
+            other.format != info->format || other.mipLevelCount != info->mipLevelCount ||
+            other.arrayLayerCount > 1)
+            return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    info->arrayLayerCount = count;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers, uint32_t layerCount,
+                                          const SluiceAllocationCallbacks *pAllocator,
+                                          SluiceImageSource **pSource)
+{
+    if (!ppLayers || !pSource || !slc_allocator_is_valid(pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageInfo info;
+    if (layerCount == 0)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_layers(ppLayers, layerCount, &info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
+    struct array_source *source = slc_calloc(&cb, 1, sizeof *source);
+    if (!source)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    *source = (struct array_source){.base = {&array_interface}, .allocator = cb, .info = info};
+    source->layers = slc_alloc(&cb, layerCount, sizeof *source->layers);
+    if (!source->layers) {
+        slc_free(&cb, source, 1, sizeof *source);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    for (uint32_t i = 0; i < layerCount; i++)
+        source->layers[i] = ppLayers[i];
+    *pSource = &source->base;
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,34 @@
+/** Sizes of rows and rectangles in any format, also compressed ones. */
+#ifndef SLC_IMAGE_FORMAT_H
+#define SLC_IMAGE_FORMAT_H
+
+#include <sluice/image.h>
+
+#include "base/checked.h"
+
+/** Bytes of a row of `width` texels, or of the blocks that hold them. */
+static inline uint64_t slc_format_row_size(const SluiceFormatInfo *format, uint32_t width)
+{
+    return (uint64_t)slc_div_up_u32(width, format->blockWidth) * format->blockSize;
+}
+
+/** Rows of texels, or of the blocks that hold them. */
+static inline uint32_t slc_format_row_count(const SluiceFormatInfo *format, uint32_t height)
+{
+    return slc_div_up_u32(height, format->blockHeight);
+}
+
+static inline bool slc_format_is_compressed(const SluiceFormatInfo *format)
+{
+    return format->blockWidth > 1 || format->blockHeight > 1;
+}
+
+/** Channels that are not a whole number of bytes, or share some. */
+static inline bool slc_format_is_packed(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 ||
+           format == SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32 ||
+           format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+}
+
+#endif /* SLC_IMAGE_FORMAT_H */

@@ -1,0 +1,16 @@
+/** What a device makes of one format. */
+#ifndef SLC_VULKAN_FORMAT_CAPS_H
+#define SLC_VULKAN_FORMAT_CAPS_H
+
+#include "vulkan/dispatch.h"
+
+/** How streamed images are used. */
+#define SLC_IMAGE_USAGE (VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT)
+#define SLC_IMAGE_SPARSE_FLAGS                                                                     \
+    (VK_IMAGE_CREATE_SPARSE_BINDING_BIT | VK_IMAGE_CREATE_SPARSE_RESIDENCY_BIT)
+
+/** Needs only the instance functions. All zero for formats without a counterpart in Vulkan. */
+void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
+                          SluiceFormat format);
+
+#endif /* SLC_VULKAN_FORMAT_CAPS_H */

@@ -1,0 +1,175 @@
+/* Every format, from its source through staging memory and bindings to what a shader fetches. */
+#include "device/blocks.h"
+#include "device/scene.h"
+
+#include "base/checked.h"
+#include "image/convert.h"
+#include "support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct fetch {
+    struct scene *scene;
+    uint32_t texture, count;
+};
+
+static void record_fetch(void *user, VkCommandBuffer commands)
+{
+    struct fetch *fetch = user;
+    prober_record(&fetch->scene->prober, commands, fetch->scene->textures[fetch->texture].probe, 0,
+                  fetch->count, PROBE_FETCH);
+}
+
+/* What the texels in memory mean; their conversions have tests of their own. */
+static void texel_of_source(const struct scene_texture *texture, const SluiceImageRegion *region,
+                            float rgba[4])
+{
+    char texel[16];
+    CHECK_OK(sluiceReadImageRegion(texture->source, region, texel, sizeof texel));
+    slc_texels_to_rgba(texture->info.format, texel, rgba, 1);
+}
+
+static void check_fetched(const struct scene_texture *texture, const struct ProbeInput *in,
+                          const struct ProbeOutput *out)
+{
+    SluiceFormat format = texture->info.format;
+    SluiceFormatInfo info;
+    CHECK_OK(sluiceGetFormatInfo(format, &info));
+    SluiceImageRegion region = {(uint32_t)in->lodBias, (uint32_t)in->uv[0], (uint32_t)in->uv[1], 1,
+                                1};
+    float expected[4];
+    bool compressed = sluiceFormatTexelSize(format) == 0;
+    if (compressed)
+        block_texel(format, region.mipLevel, region.x, region.y, expected);
+    else
+        texel_of_source(texture, &region, expected);
+    /* divisions by 255, 1023 and 3 may be products */
+    float tolerance = compressed ? BLOCK_TOLERANCE : fmaxf(1e-6f, pattern_tolerance(format));
+    for (uint32_t c = 0; c < 4; c++)
+        if (!(fabsf(out->color[c] - expected[c]) <= tolerance * fmaxf(1, fabsf(expected[c]))))
+            fail_msg("%ux%u %s: level %u (%u, %u) channel %u is %.9g, not %.9g",
+                     texture->info.width, texture->info.height, sluiceFormatString(format),
+                     region.mipLevel, region.x, region.y, c, (double)out->color[c],
+                     (double)expected[c]);
+}
+
+static void fetch_and_check(struct fetch *fetch)
+{
+    struct prober *prober = &fetch->scene->prober;
+    harness_run(fetch->scene->h, record_fetch, fetch);
+    for (uint32_t i = 0; i < fetch->count; i++)
+        check_fetched(&fetch->scene->textures[fetch->texture], &prober_inputs(prober)[i],
+                      &prober_outputs(prober)[i]);
+    fetch->count = 0;
+}
+
+/* The last texel of every level, and others here and there. */
+static void fetch_some(struct scene *scene, uint32_t index, uint32_t per_level)
+{
+    const SluiceImageInfo *info = &scene->textures[index].info;
+    struct fetch fetch = {scene, index, 0};
+    for (uint32_t level = 0; level < info->mipLevelCount; level++) {
+        uint32_t width = slc_mip_size(info->width, level);
+        uint32_t height = slc_mip_size(info->height, level);
+        for (uint32_t i = 0; i < per_level; i++) {
+            uint32_t x = i ? (uint32_t)rand() % width : width - 1;
+            uint32_t y = i ? (uint32_t)rand() % height : height - 1;
+            prober_inputs(&scene->prober)[fetch.count++] =
+                (struct ProbeInput){.uv = {(float)x, (float)y}, .lodBias = (float)level};
+            if (fetch.count == PROBE_CAPACITY)
+                fetch_and_check(&fetch);
+        }
+    }
+    fetch_and_check(&fetch);
+}
+
+static void check_formats(struct harness *h, SluiceFormat first, SluiceFormat last,
+                          const uint32_t (*sizes)[2], uint32_t size_count, uint32_t per_level)
+{
+    struct scene scene;
+    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
+    srand(3);
+    uint32_t count = 0;
+    for (uint32_t f = first; f <= last; f++)
+        for (uint32_t s = f % 3; s < size_count; s += 3, count++) {
+            SluiceFormat format = (SluiceFormat)f;
+            scene_add(&scene, sluiceFormatTexelSize(format)
+                                  ? pattern_source(PATTERN_HASH, sizes[s][0], sizes[s][1], format)
+                                  : block_source(sizes[s][0], sizes[s][1], format));
+        }
+    scene_settle(&scene, 16);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_int_equal(stats.manager.mappedTileCount, stats.manager.tileCount);
+    for (uint32_t i = 0; i < count; i++)
+        fetch_some(&scene, i, per_level);
+    scene_finish(&scene);
+}
+
+static void texels_of_every_uncompressed_format_are_as_in_the_source(void **state)
+{
+    static const uint32_t sizes[][2] = {{600, 300}, {259, 131}, {1, 1}};
+    check_formats(*state, SLUICE_FORMAT_R8_UNORM, SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32, sizes, 3,
+                  200);
+}
+
+static void texels_of_every_compressed_format_are_as_in_the_source(void **state)
+{
+    /* whole tiles; edges that cut tiles and blocks; less than a block; tall */
+    static const uint32_t sizes[][2] = {{1024, 1024}, {1031, 517}, {777, 1301},
+                                        {3, 2},       {64, 64},    {5, 1200}};
+    check_formats(*state, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC4_SNORM_BLOCK, sizes,
+                  6, 100);
+    check_formats(*state, SLUICE_FORMAT_BC5_UNORM_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK, sizes, 6,
+                  100);
+}
+
+/* Where a driver has a tail it may be the whole of such an image. */
+static void texels_of_elongated_compressed_images_are_as_in_the_source(void **state)
+{
+    static const uint32_t sizes[][2] = {{16384, 128}, {128, 16384}, {16380, 5}};
+    check_formats(*state, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK, SLUICE_FORMAT_BC2_UNORM_BLOCK, sizes,
+                  3, 60);
+    check_formats(*state, SLUICE_FORMAT_BC6H_SFLOAT_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK, sizes, 3,
+                  60);
+}
+
+/* The loop works for tiles that are not square and cut at the edge, not only when all is mapped. */
+static void compressed_textures_are_streamed_by_feedback(void **state)
+{
+    struct scene scene;
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
+    srand(4);
+    const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
+                                    SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC5_UNORM_BLOCK};
+    const struct scene_aim corner = {0.1, 0.2, 0.2, 0.1, 0, 3, 0, 0};
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t t = scene_add(&scene, block_source(2050, 2000 + i, formats[i]));
+        scene_aim(&scene, t, 64, &corner);
+    }
+    scene_settle(&scene, 14);
+    assert_int_equal(scene_missing(&scene), 0);
+    assert_int_equal(scene_non_resident(&scene), 0);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_true(stats.manager.mappedTileCount < stats.manager.tileCount / 2);
+    scene_finish(&scene);
+}
+
+int main(void)
+{
+    struct harness h;
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    struct CMUnitTest tests[] = {
+        cmocka_unit_test(texels_of_every_uncompressed_format_are_as_in_the_source),
+        cmocka_unit_test(texels_of_every_compressed_format_are_as_in_the_source),
+        cmocka_unit_test(texels_of_elongated_compressed_images_are_as_in_the_source),
+        cmocka_unit_test(compressed_textures_are_streamed_by_feedback),
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
+        tests[i].initial_state = &h;
+    return harness_finish(&h, RUN_TESTS(tests));
+}

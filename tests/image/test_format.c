@@ -1,0 +1,137 @@
+#include "image/convert.h"
+#include "image/format.h"
+#include "support/test.h"
+
+#include <string.h>
+
+struct expected {
+    SluiceFormat format;
+    const char *name;
+    uint32_t bits_per_texel, tile_width, tile_height, channels;
+};
+
+#define EXPECT(name, bits, width, height, channels)                                                \
+    {                                                                                              \
+        SLUICE_FORMAT_##name, #name, bits, width, height, channels                                 \
+    }
+
+/* Tiles: Vulkan specification, "Standard Sparse Image Block Shapes (Single Sample)". */
+static const struct expected all[] = {
+    EXPECT(R8_UNORM, 8, 256, 256, 1),
+    EXPECT(R8G8_UNORM, 16, 256, 128, 2),
+    EXPECT(R8G8B8A8_UNORM, 32, 128, 128, 4),
+    EXPECT(R8G8B8A8_SRGB, 32, 128, 128, 4),
+    EXPECT(R16_SFLOAT, 16, 256, 128, 1),
+    EXPECT(R16G16_SFLOAT, 32, 128, 128, 2),
+    EXPECT(R16G16B16A16_SFLOAT, 64, 128, 64, 4),
+    EXPECT(R32_SFLOAT, 32, 128, 128, 1),
+    EXPECT(R32G32_SFLOAT, 64, 128, 64, 2),
+    EXPECT(R32G32B32A32_SFLOAT, 128, 64, 64, 4),
+    EXPECT(A2B10G10R10_UNORM_PACK32, 32, 128, 128, 4),
+    EXPECT(B10G11R11_UFLOAT_PACK32, 32, 128, 128, 3),
+    EXPECT(E5B9G9R9_UFLOAT_PACK32, 32, 128, 128, 3),
+    EXPECT(BC1_RGB_UNORM_BLOCK, 4, 512, 256, 3),
+    EXPECT(BC1_RGB_SRGB_BLOCK, 4, 512, 256, 3),
+    EXPECT(BC1_RGBA_UNORM_BLOCK, 4, 512, 256, 4),
+    EXPECT(BC1_RGBA_SRGB_BLOCK, 4, 512, 256, 4),
+    EXPECT(BC2_UNORM_BLOCK, 8, 256, 256, 4),
+    EXPECT(BC2_SRGB_BLOCK, 8, 256, 256, 4),
+    EXPECT(BC3_UNORM_BLOCK, 8, 256, 256, 4),
+    EXPECT(BC3_SRGB_BLOCK, 8, 256, 256, 4),
+    EXPECT(BC4_UNORM_BLOCK, 4, 512, 256, 1),
+    EXPECT(BC4_SNORM_BLOCK, 4, 512, 256, 1),
+    EXPECT(BC5_UNORM_BLOCK, 8, 256, 256, 2),
+    EXPECT(BC5_SNORM_BLOCK, 8, 256, 256, 2),
+    EXPECT(BC6H_UFLOAT_BLOCK, 8, 256, 256, 3),
+    EXPECT(BC6H_SFLOAT_BLOCK, 8, 256, 256, 3),
+    EXPECT(BC7_UNORM_BLOCK, 8, 256, 256, 4),
+    EXPECT(BC7_SRGB_BLOCK, 8, 256, 256, 4),
+};
+#define COUNT (sizeof all / sizeof all[0])
+
+static void every_format_is_in_the_table_once(void **state)
+{
+    (void)state;
+    bool seen[SLUICE_FORMAT_COUNT] = {0};
+    for (size_t i = 0; i < COUNT; i++) {
+        assert_false(seen[all[i].format]);
+        seen[all[i].format] = true;
+    }
+    assert_int_equal(COUNT, SLUICE_FORMAT_COUNT - 1);
+}
+
+static void formats_are_described_as_vulkan_does(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT; i++) {
+        const struct expected *e = &all[i];
+        bool compressed = strstr(e->name, "_BLOCK") != NULL;
+        SluiceFormatInfo info;
+        CHECK_OK(sluiceGetFormatInfo(e->format, &info));
+        assert_string_equal(sluiceFormatString(e->format), e->name);
+        assert_int_equal(info.blockWidth, compressed ? 4 : 1);
+        assert_int_equal(info.blockHeight, compressed ? 4 : 1);
+        assert_int_equal(info.blockSize * 8,
+                         e->bits_per_texel * info.blockWidth * info.blockHeight);
+        assert_int_equal(info.channelCount, e->channels);
+        assert_int_equal(sluiceFormatTexelSize(e->format), compressed ? 0 : e->bits_per_texel / 8);
+        assert_int_equal(slc_format_channel_count(e->format), compressed ? 0 : e->channels);
+    }
+}
+
+static void standard_tiles_are_64_kib(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT; i++) {
+        uint32_t width, height;
+        CHECK_OK(sluiceGetStandardTileShape(all[i].format, &width, &height));
+        assert_int_equal(width, all[i].tile_width);
+        assert_int_equal(height, all[i].tile_height);
+        assert_int_equal(sluiceFormatRegionSize(all[i].format, width, height), 65536);
+    }
+}
+
+static void cut_blocks_count_as_whole_ones(void **state)
+{
+    (void)state;
+    const SluiceFormat bc1 = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, bc7 = SLUICE_FORMAT_BC7_UNORM_BLOCK;
+    assert_int_equal(sluiceFormatRegionSize(bc1, 1, 1), 8);
+    assert_int_equal(sluiceFormatRegionSize(bc1, 4, 4), 8);
+    assert_int_equal(sluiceFormatRegionSize(bc1, 5, 4), 16);
+    assert_int_equal(sluiceFormatRegionSize(bc7, 5, 9), 2 * 3 * 16);
+    assert_int_equal(sluiceFormatRegionSize(bc7, 0, 9), 0);
+    assert_int_equal(sluiceFormatRegionSize(SLUICE_FORMAT_R8G8_UNORM, 5, 3), 30);
+    assert_true(sluiceFormatRegionSize(SLUICE_FORMAT_R32G32B32A32_SFLOAT, UINT32_MAX, UINT32_MAX) ==
+                UINT64_MAX);
+    assert_true(sluiceFormatRegionSize(bc1, UINT32_MAX, UINT32_MAX) == (uint64_t)1 << 63);
+}
+
+static void unknown_formats_are_refused(void **state)
+{
+    (void)state;
+    const SluiceFormat unknown[] = {SLUICE_FORMAT_UNDEFINED, (SluiceFormat)SLUICE_FORMAT_COUNT,
+                                    (SluiceFormat)99, (SluiceFormat)-1};
+    for (size_t i = 0; i < sizeof unknown / sizeof unknown[0]; i++) {
+        SluiceFormatInfo info;
+        uint32_t width, height;
+        CHECK_RESULT(sluiceGetFormatInfo(unknown[i], &info), SLUICE_ERROR_UNSUPPORTED);
+        CHECK_RESULT(sluiceGetStandardTileShape(unknown[i], &width, &height),
+                     SLUICE_ERROR_UNSUPPORTED);
+        assert_int_equal(sluiceFormatTexelSize(unknown[i]), 0);
+        assert_int_equal(sluiceFormatRegionSize(unknown[i], 4, 4), 0);
+        assert_string_equal(sluiceFormatString(unknown[i]), "UNDEFINED");
+    }
+    CHECK_RESULT(sluiceGetFormatInfo(SLUICE_FORMAT_R8_UNORM, NULL), SLUICE_ERROR_NULL_POINTER);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_format_is_in_the_table_once),
+        cmocka_unit_test(formats_are_described_as_vulkan_does),
+        cmocka_unit_test(standard_tiles_are_64_kib),
+        cmocka_unit_test(cut_blocks_count_as_whole_ones),
+        cmocka_unit_test(unknown_formats_are_refused),
+    };
+    return RUN_TESTS(tests);
+}

@@ -1,0 +1,129 @@
+/* Feedback from a device that damages it, and settings that no device can fulfil. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+static uint8_t want_all(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return 0;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static SluiceImageSource *grey_source(void)
+{
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo info = {
+        .width = 512, .height = 512, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+    return source;
+}
+
+static void count_warnings(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)message;
+    *(uint32_t *)user += severity == SLUICE_LOG_WARNING;
+}
+
+static void frame(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer, uint64_t time)
+{
+    SluiceStreamingFrame frame;
+    fake->published = false;
+    fake->copy_count = fake->bind_count = 0;
+    fake->bind_value = fake->submitted_bind_value;
+    CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+    CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(fake), time, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(streamer, fake_vulkan_commands(fake)));
+    fake->frame_semaphore = frame.semaphore;
+    fake->frame_value = frame.signalValue;
+}
+
+static uint64_t maps_given(SluiceVulkanStreamer *streamer)
+{
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(streamer, &stats);
+    return stats.feedbackMaps;
+}
+
+static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    uint32_t warnings = 0;
+    fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_all};
+    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4,
+                                           .maxRegionCount = 256,
+                                           .loaderThreadCount = 1,
+                                           .feedbackTimeout = 100,
+                                           .log = {&warnings, count_warnings}};
+    fake_vulkan_fill(&fake, &info);
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceVulkanTextureCreateInfo texture_info = {.source = grey_source()};
+    SluiceVulkanTexture texture;
+    CHECK_OK(sluiceAddVulkanTexture(streamer, &texture_info, &texture));
+    for (uint64_t time = 1; time <= 5; time++) /* the first map comes with frame 2 */
+        frame(&fake, streamer, time);
+    assert_int_equal(maps_given(streamer), 4);
+    assert_int_equal(fake.whole_count, 0);
+
+    fake.damage_count = 1;
+    frame(&fake, streamer, 6);
+    frame(&fake, streamer, 7); /* reads it */
+    assert_int_equal(maps_given(streamer), 5);
+    assert_int_equal(warnings, 1);
+    assert_int_equal(fake.whole_count, 1);
+    frame(&fake, streamer, 8);
+    assert_int_equal(maps_given(streamer), 6);
+    frame(&fake, streamer, 9);
+    assert_int_equal(fake.whole_count, 1); /* once is enough */
+    assert_int_equal(warnings, 1);
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyImageSource(texture_info.source);
+    assert_int_equal(fake.live_objects, 0);
+}
+
+static void settings_beyond_the_device_are_refused(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large; its storage buffers have at most 2^27 bytes */
+    const struct {
+        SluiceVulkanStreamerCreateInfo info;
+        SluiceResult result;
+    } cases[] = {
+        {{.feedbackReadbackSize = 1u << 26}, SLUICE_ERROR_LIMIT_EXCEEDED},
+        {{.feedbackReadbackSize = UINT32_MAX}, SLUICE_ERROR_LIMIT_EXCEEDED},
+        {{.maxTextureCount = 1u << 20, .texturesPerFrame = 1u << 20, .framesInFlight = 16},
+         SLUICE_ERROR_LIMIT_EXCEEDED},
+        {{.maxRegionCount = 1u << 26}, SLUICE_ERROR_LIMIT_EXCEEDED},
+        {{.maxRegionCount = 1u << 26, .feedbackEncoding = SLUICE_FEEDBACK_ENCODING_MASKS},
+         SLUICE_SUCCESS},
+        {{.feedbackEncoding = (SluiceFeedbackEncoding)2}, SLUICE_ERROR_INVALID_ARGUMENT},
+        {{.feedbackReadbackSize = 1}, SLUICE_SUCCESS},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        fake = (struct fake_vulkan){0};
+        SluiceVulkanStreamerCreateInfo info = cases[i].info;
+        fake_vulkan_fill(&fake, &info);
+        SluiceVulkanStreamer *streamer;
+        CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), cases[i].result);
+        sluiceDestroyVulkanStreamer(streamer);
+        assert_int_equal(fake.live_objects, 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(damaged_feedback_is_dropped_and_asked_for_as_a_whole),
+        cmocka_unit_test(settings_beyond_the_device_are_refused),
+    };
+    return RUN_TESTS(tests);
+}
