@@ -38,26 +38,3 @@ VkFormat slc_vk_format(SluiceFormat format)
 {
     return (uint32_t)format < SLUICE_FORMAT_COUNT ? vk_formats[format] : VK_FORMAT_UNDEFINED;
 }
-
-uint32_t slc_format_components(SluiceFormat format)
-{
-    switch (format) {
-    case SLUICE_FORMAT_R8_UNORM:
-    case SLUICE_FORMAT_R16_SFLOAT:
-    case SLUICE_FORMAT_R32_SFLOAT:
-    case SLUICE_FORMAT_BC4_UNORM_BLOCK:
-    case SLUICE_FORMAT_BC4_SNORM_BLOCK: return 1;
-    case SLUICE_FORMAT_R8G8_UNORM:
-    case SLUICE_FORMAT_R16G16_SFLOAT:
-    case SLUICE_FORMAT_R32G32_SFLOAT:
-    case SLUICE_FORMAT_BC5_UNORM_BLOCK:
-    case SLUICE_FORMAT_BC5_SNORM_BLOCK: return 2;
-    case SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32:
-    case SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32:
-    case SLUICE_FORMAT_BC6H_UFLOAT_BLOCK:
-    case SLUICE_FORMAT_BC6H_SFLOAT_BLOCK:
-    case SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK:
-    case SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK: return 3;
-    default: return 4;
-    }
-}

@@ -7,7 +7,4 @@
 /** VK_FORMAT_UNDEFINED for formats that have no counterpart. */
 VkFormat slc_vk_format(SluiceFormat format);
 
-/** How many components have values of their own, from red on: 1 to 4. */
-uint32_t slc_format_components(SluiceFormat format);
-
 #endif /* SLC_VULKAN_FORMAT_H */

@@ -1,8 +1,7 @@
 /**
  * What makes texels resident: one interface, one implementation per file (residency_sparse.c:
  * sparse binding; residency_paged.c: a page table for shaders; residency_dense.c: fully backed
- * images). The streamer decides nothing about
- * memory and an implementation nothing about tiles.
+ * images). The streamer decides nothing about memory and an implementation nothing about tiles.
  *
  * The protocol of a frame:
  *
@@ -54,8 +53,8 @@ struct slc_residency_interface {
     /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
     SluiceResult (*update)(struct slc_residency *residency, uint64_t completed_frame);
     /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
-     *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular tiles
-     * alone: not even soon. */
+     *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular
+     *  tiles alone: not even soon. */
     SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
     /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
      * times. */

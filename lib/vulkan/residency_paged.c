@@ -4,7 +4,7 @@
  *
  * Nothing has to be waited for: copies and stores to the table are recorded behind a barrier on the
  * queue that draws, so earlier frames have read a page before it is overwritten, and a frame that
- * no longer shows a tile may give its page away (docs/decisions/0021-paged-residency.md).
+ * no longer shows a tile may give its page away (docs/decisions/0023-paged-residency.md).
  */
 #include "vulkan/residency.h"
 
@@ -27,7 +27,8 @@ struct paged_image {
     struct slc_plain_image tail; ///< the packed levels
     SluiceStreamedTextureDesc desc;
     SluiceFormat format;
-    uint32_t first_word, word_count; ///< in the table; 0: all levels are packed
+    uint32_t block_width, block_height; ///< texels
+    uint32_t first_word, word_count;    ///< in the table; 0: all levels are packed
 };
 
 /* A word of the table that changes with this frame. */
@@ -110,7 +111,14 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     SluiceResult result = slc_standard_layout_init(&layout, info);
     if (result != SLUICE_SUCCESS)
         return result;
-    *image = (struct paged_image){.desc = layout.desc, .format = info->format};
+    SluiceFormatInfo format;
+    result = sluiceGetFormatInfo(info->format, &format);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *image = (struct paged_image){.desc = layout.desc,
+                                  .format = info->format,
+                                  .block_width = format.blockWidth,
+                                  .block_height = format.blockHeight};
     result = take_words(p, image);
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&image->tail, &p->memory, p->vk, p->caps, p->cb, info,
@@ -271,6 +279,11 @@ static void record_begin(struct slc_residency *residency, uint64_t frame, VkComm
     count_memory(p);
 }
 
+static uint32_t round_up(uint32_t size, uint32_t to)
+{
+    return slc_div_up_u32(size, to) * to;
+}
+
 /* The copy into the image that holds the texels; which one that is. */
 static VkImage place_copy(struct paged_residency *p, const struct paged_image *image,
                           VkBufferImageCopy *copy)
@@ -289,6 +302,9 @@ static VkImage place_copy(struct paged_residency *p, const struct paged_image *i
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
     copy->imageOffset.y %= (int32_t)desc->tileHeight;
+    /* A tile at the edge ends inside the page, where only whole blocks may end. */
+    copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
+    copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
     store(p, word, page);
     return slc_page_image(&p->cache, page);
 }

@@ -349,6 +349,8 @@ static uint32_t log2_of(uint32_t power)
 
 static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
+    SluiceFormatInfo format = {.channelCount = 4};
+    (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
     return (struct SluiceTextureEntry){
         .width = desc->width,
@@ -366,7 +368,7 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .pageTableOffset = texture->image.page_table_offset,
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
-                 slc_format_components(texture->info.format) << SLUICE_TEXTURE_COMPONENTS_SHIFT,
+                 format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }
 

@@ -111,7 +111,8 @@ static void adding_survives(uint64_t objects_per_texture)
 static void adding_an_array_survives_every_failing_call(void **state)
 {
     (void)state;
-    static struct fake_vulkan fake; /* large */
+    static struct fake_vulkan fake;      /* large */
+    mode = SLUICE_RESIDENCY_MODE_SPARSE; /* the only one with arrays */
     SluiceImageSource *layer = grey_source(), *array;
     mode = SLUICE_RESIDENCY_MODE_SPARSE; /* the others have none */
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,

@@ -126,7 +126,8 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
  * margin for other formulas, but a texture and derivatives, so that it costs every pixel what
  * sluiceWriteFeedback costs the selected ones. Fragment shaders only, in uniform control flow, with
  * `selected` in place of a branch around it. `tex` must be the whole texture that is streamed, with
- * the sampler that it is sampled with. Define SLUICE_FEEDBACK_QUERY to have it.
+ * the sampler that it is sampled with. In paged residency no device takes the level: there it is the
+ * computed one. Define SLUICE_FEEDBACK_QUERY to have it.
  *
  * With anisotropy the finer of this level and the computed one counts: where derivatives exceed
  * maxAnisotropy, a widely used driver names levels half of its logarithm coarser than it samples.
@@ -138,6 +139,12 @@ void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lod
     vec2 dx = dFdx(uv), dy = dFdy(uv);
     if (!selected || !sluiceTakesPart(tableIndex))
         return;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        sluiceWriteFeedback(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+        return;
+    }
+#endif
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);
     vec2 lods = sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
