@@ -230,7 +230,8 @@ static void take_slot(struct slc_tile_heaps *h, struct slc_tile_heap *heap, uint
     h->free_total--;
 }
 
-uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h)
+/** The index of a heap with the fewest free slots but not none, UINT32_MAX without any. */
+static uint32_t fullest(struct slc_tile_heaps *h)
 {
     if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
         return h->open;
@@ -238,28 +239,18 @@ uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h)
     uint32_t bucket = find_bit_above_zero(h);
     if (bucket == UINT32_MAX)
         return UINT32_MAX;
-    uint32_t fullest = h->buckets[bucket];
-    loosen(h, fullest);
-    return h->open = fullest;
-}
-
-uint32_t slc_tile_heaps_take_wish(struct slc_tile_heaps *h, uint32_t heap_index, uint32_t node,
-                                  uint32_t wish)
-{
-    struct slc_tile_heap *heap = &h->heaps[heap_index];
-    assert(heap_index == h->open && heap->free_count > 0);
-    bool granted = wish < h->capacity && heap->free[wish / 64] >> wish % 64 & 1;
-    uint32_t slot = granted ? wish : lowest_free(heap);
-    take_slot(h, heap, slot, node);
-    return slot;
+    uint32_t found = h->buckets[bucket];
+    loosen(h, found);
+    return h->open = found;
 }
 
 bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot)
 {
-    *heap = slc_tile_heaps_fullest(h);
+    *heap = fullest(h);
     if (*heap == UINT32_MAX)
         return false;
-    *slot = slc_tile_heaps_take_wish(h, *heap, node, UINT32_MAX);
+    *slot = lowest_free(&h->heaps[*heap]);
+    take_slot(h, &h->heaps[*heap], *slot, node);
     return true;
 }
 

@@ -45,11 +45,6 @@ void slc_tile_heaps_finish(struct slc_tile_heaps *h);
  */
 SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id);
 
-/** The index of a heap with the fewest free slots but not none, UINT32_MAX without any. */
-uint32_t slc_tile_heaps_fullest(struct slc_tile_heaps *h);
-/** Takes a free slot of that heap: `wish` if that is one, or the lowest one. */
-uint32_t slc_tile_heaps_take_wish(struct slc_tile_heaps *h, uint32_t heap, uint32_t node,
-                                  uint32_t wish);
 /** The lowest slot of a heap with the fewest free ones, or false. Writes heap index and slot. */
 bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot);
 /** The lowest slot of this heap, which has one. */
