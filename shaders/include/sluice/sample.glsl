@@ -27,6 +27,15 @@
 /* Samplers clamp the bias of implicit samples; each device takes at least this (maxSamplerLodBias). */
 #define SLUICE_MAX_IMPLICIT_LOD_BIAS 2.0
 
+/*
+ * Some devices read levels coarser than Vulkan's formula where anisotropic footprints are long
+ * (docs/drivers.md), so there too it is looked what is resident. Define it as false, or as a constant_id
+ * constant, to save that on devices that do not.
+ */
+#ifndef SLUICE_ANISOTROPY_OVERREACHES
+#define SLUICE_ANISOTROPY_OVERREACHES true
+#endif
+
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
@@ -81,6 +90,29 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
 }
 
 /**
+ * Whether levels beyond `coarsest` are there as well, if a sampler reads them: up to those that it
+ * would take without anisotropy, `lod`. They reach further to the sides, over other tiles.
+ */
+bool sluiceReachIsThere(SluiceTextureEntry entry, vec2 uv, vec2 halfBox, uint coarsest, float lod)
+{
+    uint widest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    if (widest <= coarsest)
+        return true;
+    SluiceFootprint at = sluiceComputeFootprint(entry, uv, halfBox, widest);
+    return sluiceMaxMinMip(entry, at, coarsest + 1u) <= coarsest + 1u;
+}
+
+/** The LOD without anisotropy, where samplers may come near it; else so fine that it never counts. */
+float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+{
+    bool overreaches = SLUICE_ANISOTROPY_OVERREACHES && maxAnisotropy > 1.0;
+#ifdef SLUICE_PAGED
+    overreaches = overreaches && !SLUICE_PAGED;
+#endif
+    return overreaches ? sluiceComputeLod(dx, dy, lodBias, 1.0) : -SLUICE_LOD_LIMIT;
+}
+
+/**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
  * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
  * s.level is SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of `uv` per pixel.
@@ -107,6 +139,9 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     float width = exp2(SLUICE_LOD_POINT);
 
     vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    float reach = clamped ? -SLUICE_LOD_LIMIT
+                          : sluiceOverreachedLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    bool round = false;
     uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
         uint there = sluiceMaxMinMip(
@@ -116,10 +151,16 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
             s.plain = false;
             return s;
         }
-        if (there <= s.level)
-            break;
+        if (there <= s.level) {
+            if (round || sluiceReachIsThere(entry, s.uv, halfBox, coarsest, reach))
+                break;
+            round = true; /* such a footprint has but one level */
+            halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)) / size);
+            continue;
+        }
         clamped = true;
         s.level = tries < SLUICE_CLAMP_STEPS ? there : max(entry.regularMipCount, there);
+        s.lod = float(s.level) + margin;
         coarsest = min(s.level + 1u, entry.mipLevelCount - 1u);
         if (tries >= SLUICE_CLAMP_STEPS)
             break;
@@ -131,8 +172,14 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         s.lod = float(s.level) + margin;
         width = exp2(s.lod);
     }
-    if (!s.plain)
+    if (round) {
+        s.plain = false;
+        width = exp2(max(s.lod, SLUICE_LOD_POINT));
+        s.dx = vec2(width, 0.0) / size;
+        s.dy = vec2(0.0, width) / size;
+    } else if (!s.plain) {
         sluiceWiden(s.dx, s.dy, size, width);
+    }
     return s;
 }
 
