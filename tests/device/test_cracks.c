@@ -39,6 +39,7 @@ struct sample {
 static struct kind kinds[TEXTURES];
 static struct holed_source sources[TEXTURES];
 static uint32_t regular_levels[TEXTURES];
+static uint64_t fade_time;
 static struct sample samples[ROUNDS][TEXTURES][SCENE_SAMPLES];
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
@@ -186,7 +187,8 @@ static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyM
                                            .texturesPerFrame = TEXTURES,
                                            .heapTileCapacity = 64,
                                            .maxHeapCount = whole ? 0 : 6,
-                                           .mapEverything = whole};
+                                           .mapEverything = whole,
+                                           .residencyFadeTime = fade_time};
     scene_init(scene, h, info);
     for (uint32_t t = 0; t < TEXTURES; t++) {
         const struct kind *k = &kinds[t];
@@ -329,6 +331,15 @@ static void random_residency_shows_no_texel_that_is_not_there(void **state)
     compare(*state, aim_anywhere);
 }
 
+static void random_residency_that_fades_shows_no_texel_that_is_not_there(void **state)
+{
+    srand(33);
+    make_kinds(*state);
+    fade_time = 7;
+    compare(*state, aim_anywhere);
+    fade_time = 0;
+}
+
 static void what_reaches_over_an_edge_of_residency_finds_it(void **state)
 {
     struct harness *h = *state;
@@ -352,6 +363,7 @@ int main(void)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(random_residency_shows_no_texel_that_is_not_there),
+        cmocka_unit_test(random_residency_that_fades_shows_no_texel_that_is_not_there),
         cmocka_unit_test(what_reaches_over_an_edge_of_residency_finds_it),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

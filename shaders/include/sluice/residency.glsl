@@ -60,7 +60,7 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return 0u;
     float last = float(entry.mipLevelCount - 1u);
-    float fine = floor(clamp(s.lod - (s.plain ? sluiceLodMargin(maxAnisotropy) : 0.0), 0.0, last));
+    float fine = float(s.level);
     float coarse = ceil(clamp(s.lod, 0.0, last));
     float widest = coarse;
     uint taps = 1u;
