@@ -211,15 +211,22 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount: mind the device's limits on
      *  samplers and sampled images per stage. */
     uint32_t maxPageChunkCount;
+    /**
+     * In the unit of the time stamps, at most 2^40: how long a region takes to become one level
+     * sharper once finer tiles are there, in steps of 1/256 level, so that nothing pops. 0: at
+     * once. A tenth of a second is hardly noticed. Coarser regions always become so at once: their
+     * tiles are gone, which nobody looked at unless there is too little memory.
+     */
+    uint64_t residencyFadeTime;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
  * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
  *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20,
- *         maxRegionCount 2^28 or maxPageChunkCount 2^10; UNSUPPORTED if the device has no mode that
- *         was asked for; LIMIT_EXCEEDED if maxTextureCount, maxRegionCount, texturesPerFrame or
- *         feedbackReadbackSize need a storage buffer beyond the device's maxStorageBufferRange;
- *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ *         maxRegionCount 2^28, maxPageChunkCount 2^10 or residencyFadeTime 2^40; UNSUPPORTED if the
+ * device has no mode that was asked for; LIMIT_EXCEEDED if maxTextureCount, maxRegionCount,
+ * texturesPerFrame or feedbackReadbackSize need a storage buffer beyond the device's
+ * maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
@@ -297,7 +304,7 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 typedef struct SluiceVulkanBuffers {
     VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
     VkBuffer feedback;      ///< uint[], read and written
-    VkBuffer minMip;        ///< uint[], read
+    VkBuffer minMip;        ///< uint[], two texels each, read
     VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
     VkBuffer pageTable;     ///< uint[], read in paged mode alone; in others any valid buffer
 } SluiceVulkanBuffers;
@@ -369,6 +376,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t deviceMemorySize;
     uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
     uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
+    uint32_t fadingTextures;    ///< that still get sharper, see residencyFadeTime
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

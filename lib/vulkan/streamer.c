@@ -43,7 +43,7 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
         (info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_LEVELS &&
          info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_MASKS) ||
         info->maxRegionCount < SLC_REGION_ALIGNMENT || info->maxPageChunkCount > 1u << 10 ||
-        info->heapTileCapacity > 1u << 20)
+        info->heapTileCapacity > 1u << 20 || info->residencyFadeTime > SLC_MAX_FADE_TIME)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
@@ -117,17 +117,21 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->tile_indices = slc_alloc(cb, tiles, sizeof *s->tile_indices);
     s->copy_capacity = tiles * SLUICE_MAX_READ_REGIONS;
     s->copies = slc_alloc(cb, s->copy_capacity, sizeof *s->copies);
-    s->min_mip_shadow = slc_alloc(cb, s->info.maxRegionCount, 1);
+    s->min_mip_texels = slc_alloc(cb, s->info.maxRegionCount, sizeof *s->min_mip_texels);
+    s->min_mip_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
+    s->fades = slc_alloc(cb, textures, sizeof *s->fades);
     s->turns = slc_calloc(cb, 1, slc_turns_size(s));
     s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     if (s->info.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
     if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
-        !s->min_mip_shadow || !s->feedback_levels || !s->turns ||
+        !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->feedback_levels || !s->turns ||
         (s->info.mapEverything && !s->zero_map))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    memset(s->min_mip_shadow, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
+    memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
+    memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
+    s->fade_clock.time_per_level = s->info.residencyFadeTime;
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
 }
 
@@ -167,7 +171,7 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 {
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    uint64_t regions = s->regions.size;
+    uint64_t min_mip_size = (uint64_t)s->regions.size * sizeof *s->min_mip_texels;
     SluiceResult result = check_buffer_sizes(s);
     if (result == SLUICE_SUCCESS)
         result =
@@ -181,11 +185,12 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
         result = slc_buffer_init(&s->feedback_turns, &s->vk, &s->caps, slc_turns_size(s), usage,
                                  SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
-        result = slc_buffer_init(&s->min_mip, &s->vk, &s->caps, regions, usage, SLC_BUFFER_DEVICE);
-    if (result == SLUICE_SUCCESS)
         result =
-            slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps, regions * s->info.framesInFlight,
-                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+            slc_buffer_init(&s->min_mip, &s->vk, &s->caps, min_mip_size, usage, SLC_BUFFER_DEVICE);
+    if (result == SLUICE_SUCCESS)
+        result = slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps,
+                                 min_mip_size * s->info.framesInFlight,
+                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
     if (result == SLUICE_SUCCESS)
         result =
             slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
@@ -270,7 +275,9 @@ static void free_arrays(SluiceVulkanStreamer *s)
     slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
     slc_free(cb, s->turns, 1, slc_turns_size(s));
     slc_free(cb, s->feedback_levels, s->info.maxRegionCount, 1);
-    slc_free(cb, s->min_mip_shadow, s->info.maxRegionCount, 1);
+    slc_free(cb, s->fades, textures, sizeof *s->fades);
+    slc_free(cb, s->min_mip_levels, s->info.maxRegionCount, 1);
+    slc_free(cb, s->min_mip_texels, s->info.maxRegionCount, sizeof *s->min_mip_texels);
     slc_free(cb, s->copies, s->copy_capacity, sizeof *s->copies);
     slc_free(cb, s->tile_indices, tiles, sizeof *s->tile_indices);
     slc_free(cb, s->tiles, tiles, sizeof *s->tiles);
@@ -356,6 +363,7 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
     pStatistics->unbinds = counters->unbinds;
     pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->deviceMemorySize = counters->device_memory_size;
+    pStatistics->fadingTextures = streamer->fade_count;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;
          unit = streamer->units[unit].next)

@@ -5,6 +5,7 @@
 #include <sluice/loader.h>
 
 #include "vulkan/buffer.h"
+#include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
 #include "vulkan/page_views.h"
@@ -34,6 +35,11 @@ enum slc_packed_state {
     SLC_PACKED_UPLOADING,
 };
 
+/** Texels of a MinMip map that are not what they are to become, and some that are. */
+struct slc_fade_rect {
+    uint32_t x0, y0, x1, y1; ///< y1 is 0: none
+};
+
 struct slc_texture {
     enum slc_texture_state state;
     SluiceTextureId id;
@@ -47,6 +53,7 @@ struct slc_texture {
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;
+    struct slc_fade_rect fade;
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
@@ -131,11 +138,15 @@ struct SluiceVulkanStreamer {
 
     struct slc_buffer texture_table, feedback, min_mip;
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
-    uint8_t *min_mip_shadow;           ///< owned; what min_mip holds after the frames begun
-    uint8_t *zero_map;                 ///< owned; for mapEverything, maxRegionCount
-    struct slc_buffer feedback_turns;  ///< a bit per texture: takes part in this frame
-    uint32_t *turns;                   ///< owned; the same on the host
-    uint8_t *feedback_levels;          ///< owned; a byte per region, as resolved last
+    uint16_t *min_mip_texels;          ///< owned; what min_mip holds after the frames begun
+    uint8_t *min_mip_levels;           ///< owned; the manager's maps, which texels move to
+    struct slc_fade_clock fade_clock;
+    uint32_t *fades; ///< owned; textures whose texels move
+    uint32_t fade_count;
+    uint8_t *zero_map;                ///< owned; for mapEverything, maxRegionCount
+    struct slc_buffer feedback_turns; ///< a bit per texture: takes part in this frame
+    uint32_t *turns;                  ///< owned; the same on the host
+    uint8_t *feedback_levels;         ///< owned; a byte per region, as resolved last
     struct slc_readback_ring readback;
     struct slc_resolve resolve;
 

@@ -10,6 +10,8 @@
 #ifndef SLUICE_LOD_GLSL
 #define SLUICE_LOD_GLSL
 
+#include "shared/texture_table.h"
+
 /* Ends of the range in which everything is computed; beyond them there are no levels. */
 #define SLUICE_LOD_LIMIT 32.0
 
@@ -73,6 +75,19 @@ vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     return sluiceComputeLods(dx, dy, lodBias, maxAnisotropy).x;
+}
+
+/** The finest LOD that a texel of the MinMip buffer allows to samplers of that margin. */
+float sluiceLodLimit(uint shown, float margin)
+{
+    return shown == 0u ? -SLUICE_LOD_LIMIT
+                       : (float(shown) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) + margin;
+}
+
+/** The finest level whose tiles are sure to be resident, by a texel of the MinMip buffer. */
+uint sluiceShownLevel(uint shown)
+{
+    return (max(shown, uint(SLUICE_SHOWN_MARGIN)) - uint(SLUICE_SHOWN_MARGIN)) / uint(SLUICE_SHOWN_STEPS);
 }
 
 /** The finest level of `count` that a sampler may touch at this LOD. */

@@ -60,20 +60,23 @@ uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, v
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return 0u;
     float last = float(entry.mipLevelCount - 1u);
-    float fine = floor(clamp(s.lod - (s.plain ? sluiceLodMargin(maxAnisotropy) : 0.0), 0.0, last));
+    float fine = float(s.level);
     float coarse = ceil(clamp(s.lod, 0.0, last));
+    float widest = coarse;
     uint taps = 1u;
     vec2 axis = vec2(0.0);
     if (maxAnisotropy > 1.0) {
         taps = 9u;
         vec2 size = vec2(entry.width, entry.height);
         axis = length(s.dx * size) >= length(s.dy * size) ? s.dx : s.dy;
+        float reach = sluiceOverreachedLod(s.dx * size, s.dy * size, 0.0, maxAnisotropy);
+        widest = max(coarse, float(sluiceCoarsestLevel(reach, entry.mipLevelCount)));
     }
     uint count = 0u;
     for (uint i = 0u; i < taps; i++) {
         vec2 at = s.uv + (taps > 1u ? axis * (float(i) / float(taps - 1u) - 0.5) : vec2(0.0));
-        count += sluiceProbeNonResident(nearestMipTex, entry, at, fine);
-        count += sluiceProbeNonResident(nearestMipTex, entry, at, coarse);
+        for (float level = fine; level <= widest; level++)
+            count += sluiceProbeNonResident(nearestMipTex, entry, at, level);
     }
     return count;
 }

@@ -27,6 +27,15 @@
 /* Samplers clamp the bias of implicit samples; each device takes at least this (maxSamplerLodBias). */
 #define SLUICE_MAX_IMPLICIT_LOD_BIAS 2.0
 
+/*
+ * Some devices read levels coarser than Vulkan's formula where anisotropic footprints are long
+ * (docs/drivers.md), so there too it is looked what is resident. Define it as false, or as a constant_id
+ * constant, to save that on devices that do not.
+ */
+#ifndef SLUICE_ANISOTROPY_OVERREACHES
+#define SLUICE_ANISOTROPY_OVERREACHES true
+#endif
+
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
@@ -40,27 +49,29 @@ struct SluiceSampling {
     float lod;          /* what the sampler will choose, about */
     uint wantedLevel;   /* the finest level that would be touched if all were there */
     uint level;         /* the finest level that may be touched; SLUICE_MIP_UNTOUCHED: none */
+    uint missing;       /* levels that it is coarser than it should be, rounded up */
     bool plain;         /* texture() touches only what is there, and may be used instead */
 };
 
+/** A texel of the MinMip buffer: see SLUICE_SHOWN_STEPS. */
 uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
 {
     uint at = entry.minMipOffset + y * entry.regionCountX + x;
-    return (SLUICE_MIN_MIP_WORD(at >> 2u) >> ((at & 3u) * 8u)) & 255u;
+    return (SLUICE_MIN_MIP_WORD(at >> 1u) >> ((at & 1u) * 16u)) & 0xFFFFu;
 }
 
-/** The coarsest of the MinMip values over a footprint of samples of `finestLevel` and coarser. */
+/** The largest of the MinMip texels over a footprint of samples of `finestLevel` and coarser. */
 uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at, uint finestLevel)
 {
-    uint level = sluiceReadMinMip(entry, at.x.x, at.y.x);
+    uint shown = sluiceReadMinMip(entry, at.x.x, at.y.x);
     if (sluiceFootprintIsOneRegion(at))
-        return level;
+        return shown;
     uvec2 steps = sluiceFootprintSteps(at, finestLevel);
     for (uint i = 1u; i < steps.x * steps.y; i++) {
         uvec2 region = sluiceFootprintRegion(at, finestLevel, uvec2(i % steps.x, i / steps.x));
-        level = max(level, sluiceReadMinMip(entry, region.x, region.y));
+        shown = max(shown, sluiceReadMinMip(entry, region.x, region.y));
     }
-    return level;
+    return shown;
 }
 
 /**
@@ -78,6 +89,45 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
     vec2 direction = majorLength > 1.0e-15 ? major / majorLength : vec2(1.0, 0.0);
     dx = direction * (majorLength >= width ? majorLength : width) / size;
     dy = vec2(-direction.y, direction.x) * width / size;
+}
+
+/**
+ * Whether levels beyond `coarsest` are there as well, if a sampler reads them: up to those that it
+ * would take without anisotropy, `lod`. They reach further to the sides, over other tiles.
+ */
+bool sluiceReachIsThere(SluiceTextureEntry entry, vec2 uv, vec2 halfBox, uint coarsest, float lod)
+{
+    uint widest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    if (widest <= coarsest)
+        return true;
+    SluiceFootprint at = sluiceComputeFootprint(entry, uv, halfBox, widest);
+    return sluiceShownLevel(sluiceMaxMinMip(entry, at, coarsest + 1u)) <= coarsest + 1u;
+}
+
+/** The LOD without anisotropy, where samplers may come near it; else so fine that it never counts. */
+float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
+{
+    bool overreaches = SLUICE_ANISOTROPY_OVERREACHES && maxAnisotropy > 1.0;
+#ifdef SLUICE_PAGED
+    overreaches = overreaches && !SLUICE_PAGED;
+#endif
+    return overreaches ? sluiceComputeLod(dx, dy, lodBias, 1.0) : -SLUICE_LOD_LIMIT;
+}
+
+/**
+ * The largest MinMip texel that counts for a sample of s.lod: what coarser levels alone touch, at
+ * the rim of the footprint, must be there of those levels, and does not make the sample coarser.
+ */
+uint sluiceMaxShown(SluiceTextureEntry entry, SluiceSampling s, vec2 halfBox, uint coarsest,
+                    float margin)
+{
+    for (uint level = coarsest;; level--) {
+        uint shown = sluiceMaxMinMip(
+            entry, sluiceComputeFootprint(entry, s.uv, halfBox, level), s.level);
+        if (level <= s.level || sluiceLodLimit(shown, margin) <= s.lod ||
+            sluiceShownLevel(shown) > level)
+            return shown;
+    }
 }
 
 /**
@@ -99,6 +149,7 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.lod = lods.x;
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
     s.level = s.wantedLevel;
+    s.missing = 0u;
     float biasScale = exp2(sluiceClampLodBias(lodBias));
     s.dx = clamped ? vec2(0.0) : dx * biasScale;
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
@@ -107,39 +158,57 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     float width = exp2(SLUICE_LOD_POINT);
 
     vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    float reach = clamped ? -SLUICE_LOD_LIMIT
+                          : sluiceOverreachedLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    bool round = false;
     uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
-        uint there = sluiceMaxMinMip(
-            entry, sluiceComputeFootprint(entry, s.uv, halfBox, coarsest), s.level);
-        if (there == SLUICE_MIP_UNTOUCHED) {
-            s.level = SLUICE_MIP_UNTOUCHED;
+        uint shown = sluiceMaxShown(entry, s, halfBox, coarsest, margin);
+        if (shown >= SLUICE_SHOWN_NOTHING) {
+            s.level = s.missing = SLUICE_MIP_UNTOUCHED;
             s.plain = false;
             return s;
         }
-        if (there <= s.level)
-            break;
+        float limit = sluiceLodLimit(shown, margin);
+        if (limit <= s.lod) {
+            if (round || sluiceReachIsThere(entry, s.uv, halfBox, coarsest, reach))
+                break;
+            round = true; /* such a footprint has but one level */
+            halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)) / size);
+            continue;
+        }
         clamped = true;
-        s.level = tries < SLUICE_CLAMP_STEPS ? there : max(entry.regularMipCount, there);
-        coarsest = min(s.level + 1u, entry.mipLevelCount - 1u);
+        if (tries >= SLUICE_CLAMP_STEPS)
+            limit = max(limit, float(entry.regularMipCount) + margin);
+        s.lod = limit;
+        s.level = sluiceFinestLevel(limit, margin, entry.mipLevelCount);
+        s.missing = max(uint(ceil(max(limit - margin, 0.0))) - s.wantedLevel, 1u);
+        coarsest = sluiceCoarsestLevel(limit, entry.mipLevelCount);
         if (tries >= SLUICE_CLAMP_STEPS)
             break;
         if (maxAnisotropy > 1.0)
-            halfBox = max(halfBox, vec2(exp2(float(s.level))) / size);
+            halfBox = max(halfBox, vec2(exp2(limit - margin)) / size);
     }
     if (clamped) {
         s.plain = false;
-        s.lod = float(s.level) + margin;
+        s.lod = min(s.lod, float(s.level + 1u) + margin); /* not finite: the last level */
         width = exp2(s.lod);
     }
-    if (!s.plain)
+    if (round) {
+        s.plain = false;
+        width = exp2(max(s.lod, SLUICE_LOD_POINT));
+        s.dx = vec2(width, 0.0) / size;
+        s.dy = vec2(0.0, width) / size;
+    } else if (!s.plain) {
         sluiceWiden(s.dx, s.dy, size, width);
+    }
     return s;
 }
 
 /** How many levels a sample is coarser than it should be; SLUICE_MIP_UNTOUCHED if it is nothing. */
 uint sluiceMissingLevels(SluiceSampling s)
 {
-    return s.level == SLUICE_MIP_UNTOUCHED ? s.level : s.level - s.wantedLevel;
+    return s.missing;
 }
 
 /**

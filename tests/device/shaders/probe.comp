@@ -69,6 +69,17 @@ void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotr
                               (sluiceSelectLattice(pixel, at / 5u) ? 2u : 0u);
 }
 
+vec4 sampleRow(vec2 uv, vec2 dx, vec2 dy, float lod, float anisotropy)
+{
+    vec2 size = vec2(textureSize(tex, 0));
+    float x = length(dx * size), y = length(dy * size);
+    float count = anisotropy > 1.0 ? clamp(ceil(max(x, y) / exp2(lod) - 0.01), 1.0, anisotropy) : 1.0;
+    vec4 sum = vec4(0.0);
+    for (float i = 0.0; i < count; i++)
+        sum += textureLod(tex, uv + (x >= y ? dx : dy) * ((i + 0.5) / count - 0.5), lod);
+    return sum / count;
+}
+
 void main()
 {
     if (gl_GlobalInvocationID.x >= params.count)
@@ -88,6 +99,9 @@ void main()
         evaluateTwins(at, uv, dx, dy, bias, anisotropy);
         return;
     }
+    if ((params.flags & PROBE_TRUTH) != 0u)
+        writeColor(at, bias >= 0.0 ? sampleRow(uv, dx, dy, bias, anisotropy)
+                                   : textureGrad(tex, uv, dx, dy));
     if ((params.flags & PROBE_FETCH) != 0u)
         writeColor(at, sluiceTexelFetch(tex, params.tableIndex, ivec2(uv), uint(bias)));
     if ((params.flags & PROBE_SAMPLE) != 0u) {

@@ -14,6 +14,9 @@
 #define PROBE_FETCH 8u  /* uv are texel coordinates, lodBias the level */
 #define PROBE_WORDS 16u /* copies feedback words instead */
 #define PROBE_TWINS 32u /* evaluates the functions that have C twins */
+/* textureGrad of the whole texture instead; where lodBias >= 0 that many levels coarse, in a row of
+ * samples along the longer derivative, as paged residency takes them */
+#define PROBE_TRUTH 64u
 
 #define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
 

@@ -2,17 +2,27 @@
  * One streamed texture, as shaders see it: an element of the texture table, a std430 array.
  *
  * A region is the area of a tile of level 0. The feedback buffer has one word per region, the
- * MinMip buffer one byte, both row by row.
+ * MinMip buffer 16 bits, the first of two in the low half of a word; both row by row.
  */
 #ifndef SLUICE_SHARED_TEXTURE_TABLE_H
 #define SLUICE_SHARED_TEXTURE_TABLE_H
 
 #include "types.h"
 
-/* In feedback: nothing was sampled. In the MinMip map: not even the packed levels are there. */
+/* In feedback: nothing was sampled. As a level of what may be sampled: not even packed levels. */
 #ifndef SLUICE_MIP_UNTOUCHED
 #define SLUICE_MIP_UNTOUCHED 255
 #endif
+
+/*
+ * In the MinMip buffer: the finest level of detail that may be shown, in steps, and a margin on
+ * top, the largest of sluiceLodMargin; 0 where all may be, and from _NOTHING on where not even the
+ * packed levels may. While a region gets sharper the value sinks step by step: see
+ * docs/frame-loop.md. The tiles of levels from (value - margin) / steps on are resident.
+ */
+#define SLUICE_SHOWN_STEPS 256
+#define SLUICE_SHOWN_MARGIN 48
+#define SLUICE_SHOWN_NOTHING 0xFF00
 
 /* As VkSamplerAddressMode. */
 #define SLUICE_ADDRESS_MODE_REPEAT 0
@@ -42,7 +52,7 @@ struct SluiceTextureEntry {
     uint regionCountX;
     uint regionCountY;
     uint feedbackOffset; /* first word in the feedback buffer */
-    uint minMipOffset;   /* first byte in the MinMip buffer, a multiple of 4 */
+    uint minMipOffset;   /* first texel in the MinMip buffer, a multiple of 4 */
     uint addressModeU;   /* of the samplers that it is sampled with */
     uint addressModeV;
     uint flags;

@@ -1,0 +1,372 @@
+/*
+ * Whatever happens to be resident: no sample touches a texel that is not, and each is what a
+ * texture shows that is resident as a whole, at the level that was used. What is not resident is
+ * seen in three ways: by the shader's counter, by texels that are transparent there alone, and by
+ * the difference from the whole texture, which the device samples with the same derivatives.
+ */
+#include "device/scene.h"
+
+#include "support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TEXTURES 16u
+#define ROUNDS 16u
+#define SAMPLES (ROUNDS * TEXTURES * SCENE_SAMPLES)
+
+/* A source some of whose tiles cannot be read, so that finer ones lie under holes. */
+struct holed_source {
+    SluiceImageSource base;
+    SluiceImageSource *inner;
+    uint32_t seed;
+};
+
+struct kind {
+    uint32_t width, height;
+    SluiceFormat format;
+    VkSamplerAddressMode u, v;
+    float anisotropy;
+};
+
+/* What was sampled in all rounds, to be sampled again where everything is resident. */
+struct sample {
+    struct ProbeInput in;
+    struct ProbeOutput out;
+};
+
+static struct kind kinds[TEXTURES];
+static struct holed_source sources[TEXTURES];
+static uint32_t regular_levels[TEXTURES];
+static uint64_t fade_time;
+static struct sample samples[ROUNDS][TEXTURES][SCENE_SAMPLES];
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    return sluiceGetImageInfo(((struct holed_source *)base)->inner, info);
+}
+
+/* One in eight tiles; levels that may be packed are whole. */
+static bool is_hole(const struct holed_source *source, const SluiceImageRegion *region)
+{
+    SluiceImageInfo info; /* in the loader's threads: no checks */
+    sluiceGetImageInfo(source->inner, &info);
+    if (info.width >> region->mipLevel <= 128 && info.height >> region->mipLevel <= 128)
+        return false;
+    uint32_t h = source->seed ^ region->x * 0x9E3779B1u ^ region->y * 0x85EBCA77u ^
+                 region->mipLevel * 0xC2B2AE3Du;
+    h = (h ^ h >> 15) * 0x2C1B3C6Du;
+    return (h ^ h >> 13) % 8 == 0;
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    struct holed_source *source = (struct holed_source *)base;
+    if (is_hole(source, region))
+        return SLUICE_ERROR_IO;
+    return sluiceReadImageRegion(source->inner, region, texels, row_pitch);
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    (void)base; /* one of the array */
+}
+
+static const SluiceImageSourceInterface holed_interface = {get_info, read_region, destroy};
+
+static double draw(void)
+{
+    return (double)rand() / RAND_MAX;
+}
+
+/* No borders: their colour would look like texels that are not resident. */
+static VkSamplerAddressMode address_mode(const struct harness *h)
+{
+    const VkSamplerAddressMode modes[] = {
+        VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+        VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        h->mirror_clamp ? VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
+                        : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
+    return modes[rand() % 4];
+}
+
+static void make_kinds(struct harness *h)
+{
+    const uint32_t sizes[][2] = {{1024, 1024}, {1000, 1500}, {2048, 300}, {129, 2000}, {700, 700}};
+    const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R16G16B16A16_SFLOAT,
+                                    SLUICE_FORMAT_R32G32B32A32_SFLOAT};
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        kinds[i] =
+            (struct kind){sizes[i % 5][0], sizes[i % 5][1], formats[i % 3],
+                          address_mode(h), address_mode(h), h->anisotropy && i % 2 ? 16.0f : 1.0f};
+}
+
+/* Somewhere, or within two to sixteen texels of a corner of a tile of the level, in the image or
+ * beside it. */
+static float coordinate(uint32_t size, double texels)
+{
+    if (rand() % 2)
+        return (float)(draw() * 3 - 1);
+    uint32_t tile = 64u << rand() % 2;
+    double corner = floor(draw() * size / (tile * texels) + 0.5) * tile * texels;
+    return (float)((corner + (draw() - 0.5) * (4 << rand() % 4) * texels) / size +
+                   (rand() % 4 ? 0 : rand() % 3 - 1));
+}
+
+/* Magnified by up to 16 and up to the end of the chain; twice as long as anisotropy reaches. */
+static struct ProbeInput random_input(const struct kind *kind)
+{
+    double texels = exp2(draw() * 10 - 4), angle = draw() * 6.2831853;
+    double ratio = rand() % 3 ? exp2(draw() * (kind->anisotropy > 1 ? 6 : 2)) : 1;
+    double turn = rand() % 3 ? 1.5707963 : draw() * 3;
+    angle = rand() % 2 ? angle : rand() % 4 * 1.5707963;
+    double w = texels / kind->width, h = texels / kind->height;
+    return (struct ProbeInput){
+        .uv = {coordinate(kind->width, fmax(texels, 1)), coordinate(kind->height, fmax(texels, 1))},
+        .dx = {(float)(cos(angle) * w * ratio), (float)(sin(angle) * h * ratio)},
+        .dy = {(float)(cos(angle + turn) * w), (float)(sin(angle + turn) * h)},
+        .lodBias = rand() % 4 ? 0 : (float)(rand() % 17 - 8) / 4,
+        .maxAnisotropy = kind->anisotropy};
+}
+
+typedef void aim_function(struct scene *scene, bool no_feedback);
+
+static void aim_anywhere(struct scene *scene, bool no_feedback)
+{
+    for (uint32_t t = 0; t < TEXTURES; t++) {
+        struct ProbeInput *inputs = scene_inputs(scene, t);
+        for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+            inputs[i] = random_input(&kinds[t]);
+        scene->textures[t].sample_count = no_feedback ? SCENE_SAMPLES : 1u << rand() % 6;
+        scene->textures[t].no_feedback = no_feedback;
+    }
+}
+
+/* One tile of level 0 is asked for, in its middle, and looked at along its edges, so that what
+ * reaches over them finds the coarsest levels there. */
+static void aim_at_islands(struct scene *scene, bool no_feedback)
+{
+    static uint32_t column, row;
+    if (!no_feedback) {
+        column = (uint32_t)rand() % 16;
+        row = (uint32_t)rand() % 16;
+    }
+    for (uint32_t t = 0; t < TEXTURES; t++) {
+        struct ProbeInput *inputs = scene_inputs(scene, t);
+        for (uint32_t i = 0; i < SCENE_SAMPLES; i++) {
+            bool along = rand() % 2;
+            double texel = 1.0 / kinds[t].width, tile = 64 * texel;
+            double minor = exp2(draw() * 2) * texel, major = minor * exp2(draw() * 6);
+            double edge = (rand() % 2 ? tile : 0) + (draw() - 0.5) * 64 * texel, at = tile * draw();
+            inputs[i] =
+                (struct ProbeInput){.uv = {(float)(column * tile + (along ? at : edge)),
+                                           (float)(row * tile + (along ? edge : at))},
+                                    .dx = {(float)(along ? major : 0), (float)(along ? 0 : major)},
+                                    .dy = {(float)(along ? 0 : minor), (float)(along ? minor : 0)},
+                                    .maxAnisotropy = kinds[t].anisotropy};
+            if (no_feedback)
+                continue;
+            inputs[i].uv[0] = (float)((column + 0.5) * tile);
+            inputs[i].uv[1] = (float)((row + 0.5) * tile);
+            memset(inputs[i].dx, 0, sizeof inputs[i].dx);
+            memset(inputs[i].dy, 0, sizeof inputs[i].dy);
+        }
+        scene->textures[t].sample_count = no_feedback ? SCENE_SAMPLES : 1;
+        scene->textures[t].no_feedback = no_feedback;
+    }
+}
+
+static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyMode mode,
+                        bool whole)
+{
+    SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode,
+                                           .feedbackTimeout = 6,
+                                           .retryDelay = 1u << 30,
+                                           .texturesPerFrame = TEXTURES,
+                                           .heapTileCapacity = 64,
+                                           .maxHeapCount = whole ? 0 : 6,
+                                           .mapEverything = whole,
+                                           .residencyFadeTime = fade_time};
+    scene_init(scene, h, info);
+    for (uint32_t t = 0; t < TEXTURES; t++) {
+        const struct kind *k = &kinds[t];
+        SluiceImageSource *inner = pattern_source(PATTERN_LEVEL, k->width, k->height, k->format);
+        sources[t] = (struct holed_source){{.pInterface = &holed_interface}, inner, t};
+        scene_add_as(scene, whole ? inner : &sources[t].base, k->u, k->v, k->anisotropy,
+                     SLUICE_NO_TEXTURE);
+        scene->textures[t].owns = whole;
+    }
+}
+
+static void find_regular_levels(const struct scene *scene)
+{
+    for (uint32_t t = 0; t < TEXTURES; t++) {
+        SluiceStreamedTextureLayout layout;
+        CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(scene->streamer),
+                                        scene->textures[t].texture.textureId, &layout));
+        regular_levels[t] = layout.desc.regularMipCount;
+    }
+}
+
+/* Frames in which few samples ask for tiles, then one in which many look at what is there. */
+static void draw_round(struct scene *scene, uint32_t round, aim_function *aim)
+{
+    struct harness *h = scene->h;
+    aim(scene, false);
+    harness_settle(h, scene->streamer, 1 + (uint32_t)rand() % 6, scene_record, scene);
+    aim(scene, true);
+    harness_settle(h, scene->streamer, 1, scene_record, scene);
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+            samples[round][t][i] =
+                (struct sample){scene_inputs(scene, t)[i], scene_outputs(scene, t)[i]};
+    assert_int_equal(scene_non_resident(scene), 0);
+}
+
+/* The samples again, of the whole texture, with the derivatives that were used. */
+static void aim_at_truth(struct scene *scene, uint32_t round, bool paged)
+{
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        for (uint32_t i = 0; i < SCENE_SAMPLES; i++) {
+            const struct sample *s = &samples[round][t][i];
+            struct ProbeInput *in = &scene_inputs(scene, t)[i];
+            *in = s->in;
+            memcpy(in->dx, &s->out.footprint[0], sizeof in->dx);
+            memcpy(in->dy, &s->out.footprint[2], sizeof in->dy);
+            /* packed levels are sampled by the sampler in every mode */
+            bool row = paged && s->out.lod < (float)regular_levels[t];
+            in->lodBias = row ? fmaxf(s->out.lod, 0) : -1;
+        }
+}
+
+static void record_truth(void *user, VkCommandBuffer commands)
+{
+    struct scene *scene = user;
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        prober_record(&scene->prober, commands, scene->textures[t].probe, t * SCENE_SAMPLES,
+                      SCENE_SAMPLES, PROBE_TRUTH);
+}
+
+/* Filter weights have eight bits, and devices may differ in the last one from mode to mode. */
+static float tolerance(SluiceResidencyMode mode)
+{
+    return mode == SLUICE_RESIDENCY_MODE_DENSE    ? 0
+           : mode == SLUICE_RESIDENCY_MODE_SPARSE ? 0.008f
+                                                  : 0.02f;
+}
+
+static void check_sample(const struct kind *k, const struct sample *s, const float *truth,
+                         float at_most, float *worst)
+{
+    for (uint32_t c = 0; c < 4; c++) {
+        float error = fabsf(s->out.color[c] - truth[c]);
+        *worst = fmaxf(*worst, error);
+        if (error <= at_most && fabsf(s->out.color[3] - 1) <= at_most)
+            continue;
+        fail_msg("%ux%u %s, modes %d %d, anisotropy %g: uv %.9g %.9g dx %.9g %.9g dy %.9g %.9g "
+                 "bias %g; channel %u is %g, of the whole texture %g; lod %g, level %u of %u",
+                 k->width, k->height, sluiceFormatString(k->format), (int)k->u, (int)k->v,
+                 (double)k->anisotropy, (double)s->in.uv[0], (double)s->in.uv[1],
+                 (double)s->in.dx[0], (double)s->in.dx[1], (double)s->in.dy[0], (double)s->in.dy[1],
+                 (double)s->in.lodBias, c, (double)s->out.color[c], (double)truth[c],
+                 (double)s->out.lod, s->out.level, s->out.wantedLevel);
+    }
+}
+
+static void check_round(struct scene *truth, uint32_t round, SluiceResidencyMode mode, float *worst)
+{
+    aim_at_truth(truth, round, mode == SLUICE_RESIDENCY_MODE_PAGED);
+    harness_settle(truth->h, truth->streamer, 1, record_truth, truth);
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+            if (samples[round][t][i].out.level != SLUICE_MIP_UNTOUCHED)
+                check_sample(&kinds[t], &samples[round][t][i], scene_outputs(truth, t)[i].color,
+                             tolerance(mode), worst);
+}
+
+static void destroy_sources(void)
+{
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        sluiceDestroyImageSource(sources[t].inner);
+}
+
+/* Enough of the samples must be clamped, and enough must not. */
+static void compare(struct harness *h, aim_function *aim)
+{
+    SluiceVulkanStreamerStatistics stats;
+    struct scene scene;
+    uint32_t clamped = 0;
+    float worst = 0;
+    h->quiet = true; /* holes are failed reads */
+    scene_begin(&scene, h, h->mode, false);
+    find_regular_levels(&scene);
+    harness_settle(h, scene.streamer, 4, NULL, NULL);
+    for (uint32_t round = 0; round < ROUNDS; round++)
+        draw_round(&scene, round, aim);
+    scene_finish(&scene);
+    destroy_sources();
+    h->quiet = false;
+    scene_begin(&scene, h, SLUICE_RESIDENCY_MODE_DENSE, true);
+    do {
+        harness_settle(h, scene.streamer, 4, NULL, NULL);
+        sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    } while (stats.manager.mappedTileCount < stats.manager.tileCount);
+    for (uint32_t round = 0; round < ROUNDS; round++)
+        check_round(&scene, round, h->mode, &worst);
+    scene_finish(&scene);
+    for (uint32_t round = 0; round < ROUNDS; round++)
+        for (uint32_t t = 0; t < TEXTURES; t++)
+            for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
+                clamped += samples[round][t][i].out.missingLevels != 0;
+    print_message("# clamped %u of %u samples\n# worst %g\n", clamped, SAMPLES, (double)worst);
+    assert_in_range(clamped, SAMPLES / 16, SAMPLES - SAMPLES / 16);
+}
+
+static void random_residency_shows_no_texel_that_is_not_there(void **state)
+{
+    srand(31);
+    make_kinds(*state);
+    compare(*state, aim_anywhere);
+}
+
+static void random_residency_that_fades_shows_no_texel_that_is_not_there(void **state)
+{
+    srand(33);
+    make_kinds(*state);
+    fade_time = 7;
+    compare(*state, aim_anywhere);
+    fade_time = 0;
+}
+
+static void what_reaches_over_an_edge_of_residency_finds_it(void **state)
+{
+    struct harness *h = *state;
+    const float anisotropies[] = {1, 2, 4, 8, 16};
+    srand(32);
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        kinds[t] = (struct kind){1024,
+                                 1024,
+                                 SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                                 address_mode(h),
+                                 address_mode(h),
+                                 h->anisotropy ? anisotropies[t % 5] : 1};
+    compare(h, aim_at_islands);
+}
+
+int main(void)
+{
+    struct harness h;
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_residency_shows_no_texel_that_is_not_there),
+        cmocka_unit_test(random_residency_that_fades_shows_no_texel_that_is_not_there),
+        cmocka_unit_test(what_reaches_over_an_edge_of_residency_finds_it),
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
+        tests[i].initial_state = &h;
+    return harness_finish(&h, RUN_TESTS(tests));
+}
