@@ -1,0 +1,172 @@
+/* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
+#include "bench.h"
+
+#include "../../samples/common/options.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    measurement *measure;
+} measurements[] = {
+    {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
+    {"budget", measure_budget},     {"resolve", measure_resolve},
+};
+#define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
+
+static const char *const mode_names[] = {"auto", "sparse", "paged", "dense"};
+
+void report(const struct bench *bench, double value, const char *unit, const char *name, ...)
+{
+    char text[128];
+    va_list arguments;
+    va_start(arguments, name);
+    vsnprintf(text, sizeof text, name, arguments);
+    va_end(arguments);
+    figure(bench->mode_name, text, value, unit);
+    fflush(stdout);
+}
+
+bool check(SluiceResult result, const char *what)
+{
+    if (result >= 0)
+        return true;
+    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    return false;
+}
+
+double median(struct samples *samples)
+{
+    return samples->count ? samples_quantile(samples, 0.5) : NAN;
+}
+
+struct arguments {
+    const char *device, *only;
+    int residency; ///< index in mode_names; "all" is 0
+    uint32_t size[2], texture_size, threads;
+    bool json, quick, list;
+};
+
+/* Whether `list`, names with commas between them, has `name`; NULL has all. */
+static bool chosen(const char *list, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        if (strncmp(at, name, length) == 0 && (at[length] == '\0' || at[length] == ','))
+            return true;
+    return list == NULL;
+}
+
+static bool names_are_known(const char *list)
+{
+    char copy[256];
+    snprintf(copy, sizeof copy, "%s", list ? list : "");
+    for (char *name = strtok(copy, ","); name; name = strtok(NULL, ",")) {
+        bool known = false;
+        for (size_t i = 0; i < MEASUREMENT_COUNT; i++)
+            known |= strcmp(name, measurements[i].name) == 0;
+        if (!known) {
+            fprintf(stderr, "there is no measurement %s; see --help\n", name);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* 0; 1 if something failed; 77 if the device lacks the mode. */
+static int measure_mode(const struct arguments *arguments, SluiceResidencyMode mode)
+{
+    struct bench bench = {.mode = mode,
+                          .mode_name = mode_names[mode],
+                          .size = {arguments->size[0], arguments->size[1]},
+                          .texture_size = arguments->texture_size,
+                          .threads = arguments->threads};
+    struct gpu_request request = {.device = arguments->device,
+                                  .modes = {mode, SLUICE_RESIDENCY_MODE_DENSE}};
+    bool unsupported;
+    if (!gpu_create(&request, &bench.gpu, &unsupported))
+        return unsupported ? 77 : 1;
+    const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
+    bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
+    fprintf(stderr, "%s: %s, %s %s%s\n", bench.mode_name, caps->deviceName, caps->driverName,
+            caps->driverInfo, bench.wall ? ", wall time" : "");
+    int status = 0;
+    for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
+        if (!chosen(arguments->only, measurements[i].name))
+            continue;
+        if (!measurements[i].measure(&bench)) {
+            fprintf(stderr, "%s: %s failed\n", bench.mode_name, measurements[i].name);
+            status = 1;
+        }
+    }
+    gpu_destroy(&bench.gpu);
+    return status;
+}
+
+static int measure(const struct arguments *arguments)
+{
+    int status = 77;
+    for (int mode = 1; mode <= 3; mode++) {
+        if (arguments->residency && arguments->residency != mode)
+            continue;
+        int outcome = measure_mode(arguments, (SluiceResidencyMode)mode);
+        if (outcome == 1 || status == 77)
+            status = outcome;
+    }
+    return status;
+}
+
+static void fill_in_sizes(struct arguments *a)
+{
+    if (a->size[0] == 0) {
+        a->size[0] = a->quick ? 320 : 1920;
+        a->size[1] = a->quick ? 180 : 1080;
+    }
+    if (a->texture_size == 0)
+        a->texture_size = a->quick ? 2048 : 16384;
+}
+
+int main(int argc, char **argv)
+{
+    struct arguments a = {0};
+    const struct option table[] = {
+        {OPTION_TEXT, "device", "NAME", &a.device, "an index of --list-devices, or part of a name",
+         0, 0},
+        {OPTION_CHOICE, "residency", "all|sparse|paged|dense", &a.residency, "mode to measure", 0,
+         0},
+        {OPTION_TEXT, "only", "NAMES", &a.only,
+         "some of sampling,feedback,fill,budget,resolve (default: all)", 0, 0},
+        {OPTION_SIZE, "size", "WxH", &a.size,
+         "of pictures in pixels; 0x0: 1920x1080, with --quick 320x180", 0, 8192},
+        {OPTION_UINT, "texture", "TEXELS", &a.texture_size,
+         "edge of the texture of scenes, a power of 2; 0: 16384, with --quick 2048", 0, 16384},
+        {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
+         0, 256},
+        {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
+        {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
+        {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
+    };
+    switch (options_parse(table, sizeof table / sizeof *table,
+                          "Usage: vulkan_figures [options]\n"
+                          "Measures what streaming costs; a figure per line.\n\n",
+                          argc, argv)) {
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    case OPTIONS_RUN: break;
+    }
+    if (a.list)
+        return gpu_list_devices() > 0 ? 0 : 77;
+    if (!names_are_known(a.only))
+        return 2;
+    options.json = a.json;
+    options.quick = a.quick;
+    fill_in_sizes(&a);
+    if (a.texture_size < 1024 || (a.texture_size & (a.texture_size - 1))) {
+        fprintf(stderr, "--texture wants a power of 2 from 1024 to 16384\n");
+        return 2;
+    }
+    return measure(&a);
+}
