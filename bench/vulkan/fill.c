@@ -199,7 +199,7 @@ static bool run_budget(struct fill *fill, uint32_t cache_tiles)
     report(bench, cache / 1e6, "MB", "budget.cache");
     report(bench, samples, "samples", "budget.samples");
     report(bench, counts[BENCH_COUNT_NOTHING], "samples", "budget.missing");
-    report(bench, 100 * counts[BENCH_COUNT_COARSER] / samples, "% of samples", "budget.coarser");
+    report(bench, 100.0 * counts[BENCH_COUNT_COARSER] / samples, "% of samples", "budget.coarser");
     report(bench, counts[BENCH_COUNT_LEVELS] / samples, "levels", "budget.levels_too_coarse");
     report(bench, 100 * uploaded / cache, "% of cache", "budget.uploads_per_frame");
     report(bench, 100 * (double)most / cache, "% of cache", "budget.uploads_worst_frame");

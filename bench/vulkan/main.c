@@ -13,7 +13,8 @@ static const struct {
     measurement *measure;
 } measurements[] = {
     {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
-    {"budget", measure_budget},     {"resolve", measure_resolve},
+    {"budget", measure_budget},     {"resolve", measure_resolve},   {"host", measure_host},
+    {"sharp", measure_sharp},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
 
@@ -138,7 +139,7 @@ int main(int argc, char **argv)
         {OPTION_CHOICE, "residency", "all|sparse|paged|dense", &a.residency, "mode to measure", 0,
          0},
         {OPTION_TEXT, "only", "NAMES", &a.only,
-         "some of sampling,feedback,fill,budget,resolve (default: all)", 0, 0},
+         "some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)", 0, 0},
         {OPTION_SIZE, "size", "WxH", &a.size,
          "of pictures in pixels; 0x0: 1920x1080, with --quick 320x180", 0, 8192},
         {OPTION_UINT, "texture", "TEXELS", &a.texture_size,

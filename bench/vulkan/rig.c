@@ -105,6 +105,8 @@ bool rig_create(struct rig *rig, const struct rig_info *info)
 void rig_destroy(struct rig *rig)
 {
     const struct gpu *gpu = &rig->bench->gpu;
+    if (!rig->streamer)
+        return;
     vkDeviceWaitIdle(gpu->device);
     for (uint32_t i = 0; i < rig->pipeline_count; i++)
         vkDestroyPipeline(gpu->device, rig->pipelines[i], NULL);

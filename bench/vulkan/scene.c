@@ -36,9 +36,14 @@ bool scene_create(struct scene *scene, const struct bench *bench, float anisotro
     struct rig_info plain = info;
     plain.streamer.residencyMode = SLUICE_RESIDENCY_MODE_DENSE;
     plain.output_words = 1;
-    if (!rig_create(&scene->plain, &plain) || !load_everything(&scene->plain))
-        return false;
-    info.plain_view = scene->plain.textures[0].imageView;
+    if (everything) {
+        if (!rig_create(&scene->plain, &plain) || !load_everything(&scene->plain))
+            return false;
+        info.plain_view = scene->plain.textures[0].imageView;
+    } else {
+        info.streamer.tilesPerFrame = 8192; /* all at once */
+        info.streamer.maxLoadsInFlight = 16384;
+    }
     scene->has_target =
         target_create(&bench->gpu, bench->size[0], bench->size[1], 1, &scene->target);
     return scene->has_target && rig_create(&scene->rig, &info) &&

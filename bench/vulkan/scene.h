@@ -26,7 +26,7 @@ struct scene_constants {
     float anisotropy;
 };
 
-/** With `everything`, all of the texture is resident afterwards. */
+/** With `everything`, all of the texture is resident afterwards, and there is a plain one. */
 bool scene_create(struct scene *scene, const struct bench *bench, float anisotropy,
                   bool everything);
 void scene_destroy(struct scene *scene);

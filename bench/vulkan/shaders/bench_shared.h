@@ -8,7 +8,7 @@
 
 /* Specialization constants. */
 #define BENCH_CONSTANT_PAGED 0
-#define BENCH_CONSTANT_STREAMED 1   /* else an ordinary texture and texture() */
+#define BENCH_CONSTANT_STREAMED 1 /* else an ordinary texture and texture() */
 #define BENCH_CONSTANT_SCENE 2
 #define BENCH_CONSTANT_FEEDBACK 3
 #define BENCH_CONSTANT_ANISOTROPY 4 /* of the sampler; 1: none */
@@ -24,16 +24,16 @@
 #define BENCH_FEEDBACK_LATTICE 2
 
 /* wants.comp: which level each region wants, one thread per region */
-#define BENCH_WANTS_PATCH 0 /* level, and one finer within patch[] regions from the origin */
+#define BENCH_WANTS_PATCH 0  /* level, and one finer within patch[] regions from the origin */
 #define BENCH_WANTS_RANDOM 1 /* level, or with the given probability one coarser */
-#define BENCH_WANTS_VIEW 2  /* as a camera sees textures that lie side by side on a floor */
-#define BENCH_WANTS_COUNT 3 /* nothing; counts what is missing for PATCH */
+#define BENCH_WANTS_VIEW 2   /* as a camera sees textures that lie side by side on a floor */
+#define BENCH_WANTS_COUNT 3  /* nothing; counts what is missing for PATCH */
 
 /* Words of the output buffer after BENCH_WANTS_COUNT. */
 #define BENCH_COUNT_SAMPLES 0
 #define BENCH_COUNT_NOTHING 1 /* samples for which not even the packed levels are there */
 #define BENCH_COUNT_COARSER 2
-#define BENCH_COUNT_LEVELS 3  /* by how many levels, together */
+#define BENCH_COUNT_LEVELS 3 /* by how many levels, together */
 #define BENCH_COUNT_WORDS 4
 
 struct BenchParams {
