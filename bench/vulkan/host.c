@@ -3,7 +3,9 @@
 #include "rig.h"
 
 #include <math.h>
+#include <stdalign.h>
 #include <stdatomic.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -18,6 +20,8 @@
 static void *count_allocation(void *user, size_t size, size_t alignment)
 {
     atomic_fetch_add((atomic_uint *)user, 1);
+    if (alignment <= alignof(max_align_t))
+        return malloc(size); /* faster */
     return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }
 

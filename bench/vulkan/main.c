@@ -48,7 +48,7 @@ struct arguments {
     const char *device, *only;
     int residency; ///< index in mode_names; "all" is 0
     uint32_t size[2], texture_size, threads;
-    bool json, quick, list;
+    bool json, quick, list, validation;
 };
 
 /* Whether `list`, names with commas between them, has `name`; NULL has all. */
@@ -86,6 +86,7 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
                           .texture_size = arguments->texture_size,
                           .threads = arguments->threads};
     struct gpu_request request = {.device = arguments->device,
+                                  .validation = arguments->validation,
                                   .modes = {mode, SLUICE_RESIDENCY_MODE_DENSE}};
     bool unsupported;
     if (!gpu_create(&request, &bench.gpu, &unsupported))
@@ -103,6 +104,8 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
             status = 1;
         }
     }
+    if (atomic_load(&bench.gpu.validation_messages) > 0)
+        status = 1;
     gpu_destroy(&bench.gpu);
     return status;
 }
@@ -123,8 +126,8 @@ static int measure(const struct arguments *arguments)
 static void fill_in_sizes(struct arguments *a)
 {
     if (a->size[0] == 0) {
-        a->size[0] = a->quick ? 320 : 1920;
-        a->size[1] = a->quick ? 180 : 1080;
+        a->size[0] = a->quick ? 160 : 1920;
+        a->size[1] = a->quick ? 90 : 1080;
     }
     if (a->texture_size == 0)
         a->texture_size = a->quick ? 2048 : 16384;
@@ -141,12 +144,14 @@ int main(int argc, char **argv)
         {OPTION_TEXT, "only", "NAMES", &a.only,
          "some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)", 0, 0},
         {OPTION_SIZE, "size", "WxH", &a.size,
-         "of pictures in pixels; 0x0: 1920x1080, with --quick 320x180", 0, 8192},
+         "of pictures in pixels; 0x0: 1920x1080, with --quick 160x90", 0, 8192},
         {OPTION_UINT, "texture", "TEXELS", &a.texture_size,
          "edge of the texture of scenes, a power of 2; 0: 16384, with --quick 2048", 0, 16384},
         {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
          0, 256},
         {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
+        {OPTION_FLAG, "validation", NULL, &a.validation,
+         "with validation layers, which must be silent; times mean nothing then", 0, 0},
         {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
         {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
     };

@@ -9,11 +9,13 @@
 #   --only NAMES      some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           small pictures, few and small textures: to see that everything works
-#   --size WxH        of pictures in pixels (default: 1920x1080, with --quick 320x180)
+#   --size WxH        of pictures in pixels (default: 1920x1080, with --quick 160x90)
 #   --texture TEXELS  edge of the texture of scenes (default: 16384, with --quick 2048)
 #   --threads COUNT   that load tiles (default: all processors but one)
 #   --bin DIR         run DIR/vulkan_figures instead of building; if DIR holds libvulkan.so.1, with that
 #   --work DIR        keep the build there (default: a scratch folder, removed)
+#   --validation      with validation layers, which must be silent; times mean nothing then
+#   --list-figures    print the names of the table's figures
 #   --list-devices, --help
 #
 # The library is built static, -O3 and without asserts. All ratios are of times in the same run, taken
@@ -29,7 +31,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 export LC_ALL=C
 
-json=no bin='' work='' arguments=() scratch=''
+json=no list=no bin='' work='' arguments=() scratch=''
 trap '[ -z "$scratch" ] || rm -rf "$scratch"' EXIT
 
 say() { printf '%s\n' "$*" >&2; }
@@ -41,7 +43,7 @@ die() {
 while [ $# -gt 0 ]; do
     case $1 in
     --json) json=yes ;;
-    --quick | --list-devices) arguments+=("$1") ;;
+    --quick | --list-devices | --validation) arguments+=("$1") ;;
     --bin | --work)
         [ $# -ge 2 ] || die "$1 needs a value (see --help)"
         declare "${1#--}=$2"
@@ -52,6 +54,7 @@ while [ $# -gt 0 ]; do
         arguments+=("$1" "$2")
         shift
         ;;
+    --list-figures) list=yes ;;
     --help) sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) die "unknown option $1 (see --help)" ;;
     esac
@@ -155,6 +158,10 @@ run() {
     fi
 }
 
+if [ "$list" = yes ]; then
+    table | cut -d'|' -f1
+    exit
+fi
 scratch=$(mktemp -d)
 [ -n "$bin" ] || build
 [ -x "$bin/vulkan_figures" ] || die "there is no program $bin/vulkan_figures"

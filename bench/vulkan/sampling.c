@@ -8,7 +8,7 @@
 
 #define MAX_VARIANTS 8u
 #define FRAMES 101u
-#define LEAST_FRAMES 9u
+#define LEAST_FRAMES 5u
 #define GROUP_SECONDS 10.0 /* software devices draw no more frames than this lasts */
 
 static const char *const scene_names[3] = {"floor", "close_up", "noise"};
@@ -96,7 +96,8 @@ static bool sample_scenes(const struct bench *bench, float anisotropy)
     struct scene scene;
     bool done = scene_create(&scene, bench, anisotropy, true);
     for (uint32_t stage = 0; done && stage < 2; stage++)
-        for (uint32_t which = 0; done && which < (anisotropy > 1.0f ? 1u : 3u); which++)
+        for (uint32_t which = 0; done && which < (anisotropy > 1.0f || options.quick ? 1u : 3u);
+             which++)
             done = sample_scene(&scene, stage == 1, which, anisotropy);
     scene_destroy(&scene);
     return done;
@@ -151,7 +152,7 @@ bool measure_feedback(const struct bench *bench)
     struct scene scene;
     bool done = scene_create(&scene, bench, 1.0f, true);
     for (uint32_t stage = 0; done && stage < 2; stage++)
-        for (uint32_t which = 0; done && which < 3; which++)
+        for (uint32_t which = 0; done && which < (options.quick ? 1u : 3u); which++)
             done = feed_scene(&scene, stage == 1, which);
     scene_destroy(&scene);
     return done;
