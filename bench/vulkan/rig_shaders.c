@@ -160,7 +160,7 @@ void rig_write_pages(struct rig *rig, struct rig_slot *slot)
 }
 
 static const VkSpecializationMapEntry constant_entries[BENCH_CONSTANT_COUNT] = {
-    {0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}, {4, 16, 4}, {5, 20, 4}};
+    {0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}, {4, 16, 4}};
 
 static VkSpecializationInfo specialize(const struct rig_constants *constants)
 {

@@ -4,6 +4,8 @@
 
 #include "bench_scene_comp.h"
 #include "bench_scene_frag.h"
+#include "bench_scene_paged_comp.h"
+#include "bench_scene_paged_frag.h"
 
 static struct rig_info rig_info(const struct bench *bench, float anisotropy)
 {
@@ -61,17 +63,23 @@ VkPipeline scene_pipeline(struct scene *scene, const struct scene_constants *con
 {
     bool paged = sluiceGetVulkanResidencyMode(scene->rig.streamer) == SLUICE_RESIDENCY_MODE_PAGED;
     struct rig_constants values = {{
-        [BENCH_CONSTANT_PAGED] = paged,
         [BENCH_CONSTANT_STREAMED] = constants->streamed,
         [BENCH_CONSTANT_SCENE] = constants->scene,
         [BENCH_CONSTANT_FEEDBACK] = constants->feedback,
         [BENCH_CONSTANT_COUNTING] = constants->counting,
     }};
     memcpy(&values.values[BENCH_CONSTANT_ANISOTROPY], &constants->anisotropy, 4);
+    struct rig *rig = &scene->rig;
+    VkRenderPass pass = scene->target.pass;
+    if (constants->fragment && paged)
+        return rig_screen_pipeline(rig, bench_scene_paged_frag, sizeof bench_scene_paged_frag,
+                                   &values, pass);
     if (constants->fragment)
-        return rig_screen_pipeline(&scene->rig, bench_scene_frag, sizeof bench_scene_frag, &values,
-                                   scene->target.pass);
-    return rig_compute_pipeline(&scene->rig, bench_scene_comp, sizeof bench_scene_comp, &values);
+        return rig_screen_pipeline(rig, bench_scene_frag, sizeof bench_scene_frag, &values, pass);
+    if (paged)
+        return rig_compute_pipeline(rig, bench_scene_paged_comp, sizeof bench_scene_paged_comp,
+                                    &values);
+    return rig_compute_pipeline(rig, bench_scene_comp, sizeof bench_scene_comp, &values);
 }
 
 struct BenchParams scene_params(const struct scene *scene)

@@ -7,13 +7,12 @@
 #define BENCH_PAGE_CHUNKS 64
 
 /* Specialization constants. */
-#define BENCH_CONSTANT_PAGED 0
-#define BENCH_CONSTANT_STREAMED 1 /* else an ordinary texture and texture() */
-#define BENCH_CONSTANT_SCENE 2
-#define BENCH_CONSTANT_FEEDBACK 3
-#define BENCH_CONSTANT_ANISOTROPY 4 /* of the sampler; 1: none */
-#define BENCH_CONSTANT_COUNTING 5   /* instead of a picture, which regions are sharp */
-#define BENCH_CONSTANT_COUNT 6
+#define BENCH_CONSTANT_STREAMED 0 /* else an ordinary texture and texture() */
+#define BENCH_CONSTANT_SCENE 1
+#define BENCH_CONSTANT_FEEDBACK 2
+#define BENCH_CONSTANT_ANISOTROPY 3 /* of the sampler; 1: none */
+#define BENCH_CONSTANT_COUNTING 4   /* instead of a picture, which regions are sharp */
+#define BENCH_CONSTANT_COUNT 5
 
 #define BENCH_SCENE_FLOOR 0    /* a plane up to the horizon */
 #define BENCH_SCENE_CLOSE_UP 1 /* a few regions fill the screen */
