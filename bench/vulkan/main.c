@@ -77,6 +77,18 @@ static bool names_are_known(const char *list)
     return true;
 }
 
+/* What was not asked for: 1080p over a texture of more than a GiB, or what a CPU can hold. */
+static void fill_in_sizes(struct bench *bench)
+{
+    static const uint32_t sizes[3][2] = {{1920, 1080}, {640, 360}, {160, 90}};
+    static const uint32_t textures[3] = {16384, 8192, 2048};
+    uint32_t which = options.quick ? 2 : bench->wall ? 1 : 0;
+    if (bench->size[0] == 0)
+        memcpy(bench->size, sizes[which], sizeof bench->size);
+    if (bench->texture_size == 0)
+        bench->texture_size = textures[which];
+}
+
 /* 0; 1 if something failed; 77 if the device lacks the mode. */
 static int measure_mode(const struct arguments *arguments, SluiceResidencyMode mode)
 {
@@ -93,6 +105,7 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
         return unsupported ? 77 : 1;
     const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
     bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
+    fill_in_sizes(&bench);
     fprintf(stderr, "%s: %s, %s %s%s\n", bench.mode_name, caps->deviceName, caps->driverName,
             caps->driverInfo, bench.wall ? ", wall time" : "");
     int status = 0;
@@ -123,16 +136,6 @@ static int measure(const struct arguments *arguments)
     return status;
 }
 
-static void fill_in_sizes(struct arguments *a)
-{
-    if (a->size[0] == 0) {
-        a->size[0] = a->quick ? 160 : 1920;
-        a->size[1] = a->quick ? 90 : 1080;
-    }
-    if (a->texture_size == 0)
-        a->texture_size = a->quick ? 2048 : 16384;
-}
-
 int main(int argc, char **argv)
 {
     struct arguments a = {0};
@@ -144,9 +147,12 @@ int main(int argc, char **argv)
         {OPTION_TEXT, "only", "NAMES", &a.only,
          "some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)", 0, 0},
         {OPTION_SIZE, "size", "WxH", &a.size,
-         "of pictures in pixels; 0x0: 1920x1080, with --quick 160x90", 0, 8192},
+         "of pictures in pixels; 0x0: 1920x1080, on software devices\n640x360, with --quick 160x90",
+         0, 8192},
         {OPTION_UINT, "texture", "TEXELS", &a.texture_size,
-         "edge of the texture of scenes, a power of 2; 0: 16384, with --quick 2048", 0, 16384},
+         "edge of the texture of scenes, a power of 2; 0: 16384, on software\ndevices 8192, with "
+         "--quick 2048",
+         0, 16384},
         {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
          0, 256},
         {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
@@ -167,10 +173,13 @@ int main(int argc, char **argv)
         return gpu_list_devices() > 0 ? 0 : 77;
     if (!names_are_known(a.only))
         return 2;
+    if ((a.size[0] == 0) != (a.size[1] == 0)) {
+        fprintf(stderr, "--size wants two numbers, or 0x0\n");
+        return 2;
+    }
     options.json = a.json;
     options.quick = a.quick;
-    fill_in_sizes(&a);
-    if (a.texture_size < 1024 || (a.texture_size & (a.texture_size - 1))) {
+    if (a.texture_size && (a.texture_size < 1024 || (a.texture_size & (a.texture_size - 1)))) {
         fprintf(stderr, "--texture wants a power of 2 from 1024 to 16384\n");
         return 2;
     }

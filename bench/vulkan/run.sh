@@ -9,8 +9,10 @@
 #   --only NAMES      some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           small pictures, few and small textures: to see that everything works
-#   --size WxH        of pictures in pixels (default: 1920x1080, with --quick 160x90)
-#   --texture TEXELS  edge of the texture of scenes (default: 16384, with --quick 2048)
+#   --size WxH        of pictures in pixels (default: 1920x1080, on software devices 640x360, with
+#                     --quick 160x90)
+#   --texture TEXELS  edge of the texture of scenes (default: 16384, on software devices 8192, with
+#                     --quick 2048)
 #   --threads COUNT   that load tiles (default: all processors but one)
 #   --bin DIR         run DIR/vulkan_figures instead of building; if DIR holds libvulkan.so.1, with that
 #   --work DIR        keep the build there (default: a scratch folder, removed)

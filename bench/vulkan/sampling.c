@@ -9,7 +9,7 @@
 #define MAX_VARIANTS 8u
 #define FRAMES 101u
 #define LEAST_FRAMES 5u
-#define GROUP_SECONDS 10.0 /* software devices draw no more frames than this lasts */
+#define GROUP_SECONDS 5.0 /* software devices draw no more frames than this lasts */
 
 static const char *const scene_names[3] = {"floor", "close_up", "noise"};
 static const char *const stage_names[2] = {"compute", "fragment"};
