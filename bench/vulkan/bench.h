@@ -22,6 +22,9 @@ __attribute__((format(printf, 4, 5))) void report(const struct bench *bench, dou
 /** Prints to stderr what it is about, and returns false unless `result` is a success or news. */
 bool check(SluiceResult result, const char *what);
 
+/** The first allowed memory type in device memory. */
+uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed);
+
 /** Median in the unit of the samples; NaN if there are none. */
 double median(struct samples *samples);
 

@@ -70,7 +70,7 @@ static bool fill_create(struct fill *fill, const struct rig_info *info)
 }
 
 struct fill_times {
-    double seconds, host_seconds, gpu_seconds;
+    double seconds, host_seconds, host_cpu_seconds, gpu_seconds;
     uint64_t frames, binds;
 };
 
@@ -88,6 +88,7 @@ static bool fill_run(struct fill *fill, struct fill_times *times)
     while (done && !all && clock_seconds() - start < TIME_LIMIT && gpu.count + 8 < gpu.room) {
         done = rig_frame(rig, &work);
         times->host_seconds += rig->host_seconds;
+        times->host_cpu_seconds += rig->host_cpu_seconds;
         all = rig_statistics(rig).tilesMapped >= fill->tile_count;
     }
     done = done && rig_finish(rig);
@@ -128,6 +129,8 @@ static bool fill_with(const struct bench *bench, uint32_t tiles_per_frame, doubl
     report(bench, (double)times.frames, "frames", "fill.%u_per_frame.frames", tiles_per_frame);
     report(bench, 100 * times.host_seconds / times.seconds, "% of the time",
            "fill.%u_per_frame.host", tiles_per_frame);
+    report(bench, 1e6 * times.host_cpu_seconds / (double)*tile_count, "us per tile",
+           "fill.%u_per_frame.host_cpu", tiles_per_frame);
     if (!bench->wall)
         report(bench, 100 * times.gpu_seconds / times.seconds, "% of the time",
                "fill.%u_per_frame.gpu_copies", tiles_per_frame);

@@ -125,15 +125,6 @@ struct binds {
     uint32_t columns, tile_count; ///< of the image's level 0, that have memory
 };
 
-static uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed)
-{
-    for (uint32_t i = 0; i < gpu->memory.memoryTypeCount; i++)
-        if ((allowed & 1u << i) &&
-            (gpu->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
-            return i;
-    return 0;
-}
-
 static bool create_binds(struct binds *b, const struct bench *bench, uint32_t tile_count)
 {
     const struct gpu *gpu = &bench->gpu;

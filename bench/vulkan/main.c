@@ -31,6 +31,15 @@ void report(const struct bench *bench, double value, const char *unit, const cha
     fflush(stdout);
 }
 
+uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed)
+{
+    for (uint32_t i = 0; i < gpu->memory.memoryTypeCount; i++)
+        if ((allowed & 1u << i) &&
+            (gpu->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
+            return i;
+    return 0;
+}
+
 bool check(SluiceResult result, const char *what)
 {
     if (result >= 0)

@@ -1,9 +1,11 @@
+#define _POSIX_C_SOURCE 200809L
 #include "rig.h"
 
 #include "../../samples/common/clock.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #define WAIT_NANOSECONDS (60ull * 1000000000ull)
 /* Frames in which nothing more arrives until it is taken as loaded. */
@@ -80,11 +82,35 @@ static bool create_commands(struct rig *rig)
                      "vkCreateQueryPool");
 }
 
+/* Never where the device would have to reach it over a bus. */
+static bool create_picture(struct rig *rig, uint32_t words)
+{
+    const struct gpu *gpu = &rig->bench->gpu;
+    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                               .size = (VkDeviceSize)words * 4,
+                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
+    rig->picture.size = info.size;
+    if (!gpu_check(vkCreateBuffer(gpu->device, &info, NULL, &rig->picture.buffer),
+                   "vkCreateBuffer"))
+        return false;
+    VkMemoryRequirements requirements;
+    vkGetBufferMemoryRequirements(gpu->device, rig->picture.buffer, &requirements);
+    VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                   .allocationSize = requirements.size,
+                                   .memoryTypeIndex =
+                                       device_local_type(gpu, requirements.memoryTypeBits)};
+    return gpu_check(vkAllocateMemory(gpu->device, &memory, NULL, &rig->picture.memory),
+                     "vkAllocateMemory") &&
+           gpu_check(vkBindBufferMemory(gpu->device, rig->picture.buffer, rig->picture.memory, 0),
+                     "vkBindBufferMemory");
+}
+
 static bool create_buffers(struct rig *rig, const struct rig_info *info)
 {
     const struct gpu *gpu = &rig->bench->gpu;
     uint32_t words = info->output_words ? info->output_words : 1;
-    if (!gpu_create_buffer(gpu, (VkDeviceSize)words * 4,
+    if (!create_picture(rig, info->picture_words ? info->picture_words : 1) ||
+        !gpu_create_buffer(gpu, (VkDeviceSize)words * 4,
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            &rig->outputs) ||
         !gpu_create_buffer(gpu, (VkDeviceSize)rig->texture_count * 4,
@@ -113,6 +139,7 @@ void rig_destroy(struct rig *rig)
     rig_destroy_descriptors(rig);
     gpu_destroy_buffer(gpu, &rig->outputs);
     gpu_destroy_buffer(gpu, &rig->indices);
+    gpu_destroy_buffer(gpu, &rig->picture);
     vkDestroyQueryPool(gpu->device, rig->queries, NULL);
     for (uint32_t i = 0; i < RIG_FRAMES; i++)
         if (rig->slots[i].commands[0])
@@ -120,6 +147,13 @@ void rig_destroy(struct rig *rig)
     sluiceDestroyVulkanStreamer(rig->streamer);
     free(rig->textures);
     *rig = (struct rig){.bench = rig->bench};
+}
+
+static double thread_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static void add_sample(struct samples *samples, double seconds)
@@ -218,9 +252,10 @@ static bool record_rest(struct rig *rig, struct rig_slot *slot, const struct rig
     if (!gpu_check(vkEndCommandBuffer(slot->commands[1]), "vkEndCommandBuffer") ||
         !begin_commands(slot->commands[2]))
         return false;
-    double start = clock_seconds();
+    double cpu = thread_seconds(), start = clock_seconds();
     SluiceResult result = sluiceEndStreamingFrame(rig->streamer, slot->commands[2]);
     rig->host_seconds += clock_seconds() - start;
+    rig->host_cpu_seconds += thread_seconds() - cpu;
     stamp(rig, slot->commands[2], query + 3);
     return check(result, "sluiceEndStreamingFrame") &&
            gpu_check(vkEndCommandBuffer(slot->commands[2]), "vkEndCommandBuffer");

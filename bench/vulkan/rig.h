@@ -19,7 +19,8 @@ struct rig_info {
     SluiceVulkanStreamerCreateInfo streamer;
     SluiceFormat format;
     uint32_t texture_size, texture_count;
-    uint32_t output_words;  ///< of the buffer that shaders write to; at least 1
+    uint32_t output_words;  ///< of a buffer that shaders write to and the host reads
+    uint32_t picture_words; ///< of a buffer that they write to, in device memory
     float anisotropy;       ///< of the samplers; 1: none
     VkImageView plain_view; ///< VK_NULL_HANDLE: that of the first texture
 };
@@ -46,8 +47,9 @@ struct rig {
     uint32_t map_width, map_height; ///< feedback regions of each texture
     uint64_t frame;                 ///< the last one
     double host_seconds;            ///< of begin and end in the last frame, on the host
+    double host_cpu_seconds;        ///< the same, of the thread alone
 
-    struct gpu_buffer outputs, indices;
+    struct gpu_buffer outputs, indices, picture;
     VkSampler sampler;
     VkDescriptorSetLayout set_layouts[2];
     VkPipelineLayout layout;

@@ -7,13 +7,14 @@
 #include "bench_wants_comp.h"
 
 #define STAGES (VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT)
-#define BUFFER_COUNT 5u /* bindings 0 to 4 of set 0 */
+#define BUFFER_COUNT 6u /* bindings 0 to 5 of set 0; then two images */
+#define BINDING_COUNT 8u
 
 static bool create_layouts(struct rig *rig)
 {
     VkDevice device = rig->bench->gpu.device;
-    VkDescriptorSetLayoutBinding bindings[7];
-    for (uint32_t i = 0; i < 7; i++)
+    VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
+    for (uint32_t i = 0; i < BINDING_COUNT; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
             .descriptorType = i < BUFFER_COUNT ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
@@ -25,7 +26,7 @@ static bool create_layouts(struct rig *rig)
         {1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, BENCH_PAGE_CHUNKS, STAGES, NULL}};
     VkDescriptorSetLayoutCreateInfo infos[2] = {
         {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-         .bindingCount = 7,
+         .bindingCount = BINDING_COUNT,
          .pBindings = bindings},
         {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
          .bindingCount = 2,
@@ -91,23 +92,24 @@ static void write_set(struct rig *rig, VkImageView plain)
 {
     SluiceVulkanBuffers buffers;
     sluiceGetVulkanBuffers(rig->streamer, &buffers);
-    const VkBuffer used[BUFFER_COUNT] = {buffers.textureTable, buffers.minMip, buffers.feedback,
-                                         rig->outputs.buffer, rig->indices.buffer};
+    const VkBuffer used[BUFFER_COUNT] = {buffers.textureTable, buffers.minMip,
+                                         buffers.feedback,     rig->outputs.buffer,
+                                         rig->indices.buffer,  rig->picture.buffer};
     VkDescriptorBufferInfo infos[BUFFER_COUNT + RIG_FRAMES];
     VkDescriptorImageInfo images[2];
-    VkWriteDescriptorSet writes[7 + RIG_FRAMES];
-    for (uint32_t i = 0; i < 7 + RIG_FRAMES; i++) {
-        bool image = i == 5 || i == 6;
+    VkWriteDescriptorSet writes[BINDING_COUNT + RIG_FRAMES];
+    for (uint32_t i = 0; i < BINDING_COUNT + RIG_FRAMES; i++) {
+        bool image = i >= BUFFER_COUNT && i < BINDING_COUNT;
         uint32_t buffer = i < BUFFER_COUNT ? i : i - 2;
-        writes[i] = (VkWriteDescriptorSet){.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                           .dstSet = i < 7 ? rig->set : rig->slots[i - 7].pages,
-                                           .dstBinding = i < 7 ? i : 0,
-                                           .descriptorCount = 1,
-                                           .descriptorType =
-                                               image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
-                                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                           .pImageInfo = image ? &images[i - 5] : NULL,
-                                           .pBufferInfo = image ? NULL : &infos[buffer]};
+        writes[i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet = i < BINDING_COUNT ? rig->set : rig->slots[i - BINDING_COUNT].pages,
+            .dstBinding = i < BINDING_COUNT ? i : 0,
+            .descriptorCount = 1,
+            .descriptorType = image ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .pImageInfo = image ? &images[i - BUFFER_COUNT] : NULL,
+            .pBufferInfo = image ? NULL : &infos[buffer]};
         if (!image)
             infos[buffer] = (VkDescriptorBufferInfo){i < BUFFER_COUNT ? used[i] : buffers.pageTable,
                                                      0, VK_WHOLE_SIZE};
@@ -117,7 +119,7 @@ static void write_set(struct rig *rig, VkImageView plain)
     images[1] = images[0];
     if (plain)
         images[1].imageView = plain;
-    vkUpdateDescriptorSets(rig->bench->gpu.device, 7 + RIG_FRAMES, writes, 0, NULL);
+    vkUpdateDescriptorSets(rig->bench->gpu.device, BINDING_COUNT + RIG_FRAMES, writes, 0, NULL);
 }
 
 bool rig_create_descriptors(struct rig *rig, const struct rig_info *info)

@@ -91,6 +91,22 @@ static bool sample_scene(struct scene *scene, bool fragment, uint32_t which, flo
     return done;
 }
 
+/* What is in each of the times: stamps, and waiting for all before. */
+static bool measure_nothing(struct scene *scene)
+{
+    struct samples samples;
+    samples_init(&samples, LEAST_FRAMES);
+    struct rig_work work = {.samples = {.work = &samples}};
+    bool done = true;
+    for (uint32_t i = 0; done && i < LEAST_FRAMES; i++)
+        done = rig_frame(&scene->rig, &work);
+    done = done && rig_finish(&scene->rig);
+    if (done)
+        report(scene->rig.bench, median(&samples) / 1e3, "us", "sampling.nothing");
+    samples_finish(&samples);
+    return done;
+}
+
 static bool sample_scenes(const struct bench *bench, float anisotropy)
 {
     struct scene scene;
@@ -99,6 +115,8 @@ static bool sample_scenes(const struct bench *bench, float anisotropy)
         for (uint32_t which = 0; done && which < (anisotropy > 1.0f || options.quick ? 1u : 3u);
              which++)
             done = sample_scene(&scene, stage == 1, which, anisotropy);
+    if (done && !(anisotropy > 1.0f))
+        done = measure_nothing(&scene);
     scene_destroy(&scene);
     return done;
 }

@@ -10,7 +10,6 @@
 static struct rig_info rig_info(const struct bench *bench, float anisotropy)
 {
     uint32_t regions = bench->texture_size / 128 * (bench->texture_size / 128) + 1;
-    uint32_t pixels = bench->size[0] * bench->size[1];
     return (struct rig_info){.bench = bench,
                              .streamer = {.maxTextureCount = 1,
                                           .texturesPerFrame = 1,
@@ -20,7 +19,8 @@ static struct rig_info rig_info(const struct bench *bench, float anisotropy)
                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                              .texture_size = bench->texture_size,
                              .texture_count = 1,
-                             .output_words = pixels > regions ? pixels : regions,
+                             .output_words = regions,
+                             .picture_words = bench->size[0] * bench->size[1],
                              .anisotropy = anisotropy};
 }
 
@@ -37,7 +37,7 @@ bool scene_create(struct scene *scene, const struct bench *bench, float anisotro
     struct rig_info info = rig_info(bench, anisotropy);
     struct rig_info plain = info;
     plain.streamer.residencyMode = SLUICE_RESIDENCY_MODE_DENSE;
-    plain.output_words = 1;
+    plain.picture_words = 1;
     if (everything) {
         if (!rig_create(&scene->plain, &plain) || !load_everything(&scene->plain))
             return false;
@@ -87,7 +87,8 @@ struct BenchParams scene_params(const struct scene *scene)
     float size = (float)scene->rig.bench->texture_size;
     return (struct BenchParams){.width = scene->rig.bench->size[0],
                                 .height = scene->rig.bench->size[1],
-                                .textureSize = {size, size}};
+                                .textureSize = {size, size},
+                                .tableIndex = scene->rig.textures[0].tableIndex};
 }
 
 static void draw(struct rig *rig, VkCommandBuffer commands, const struct scene_draw *d,

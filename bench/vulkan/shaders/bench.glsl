@@ -12,8 +12,9 @@ layout(std430, set = 0, binding = 1) readonly buffer MinMip { uint words[]; } mi
 layout(std430, set = 0, binding = 2) buffer Feedback { uint words[]; } feedback;
 layout(std430, set = 0, binding = 3) buffer Outputs { uint outputs[]; };
 layout(std430, set = 0, binding = 4) readonly buffer Indices { uint tableIndices[]; };
-layout(set = 0, binding = 5) uniform sampler2D streamedTexture;
-layout(set = 0, binding = 6) uniform sampler2D plainTexture;
+layout(std430, set = 0, binding = 5) writeonly buffer Picture { uint picture[]; };
+layout(set = 0, binding = 6) uniform sampler2D streamedTexture;
+layout(set = 0, binding = 7) uniform sampler2D plainTexture;
 #ifdef BENCH_PAGED
 layout(std430, set = 1, binding = 0) readonly buffer PageTable { uint words[]; } pageTable;
 layout(set = 1, binding = 1) uniform sampler2DArray pages[BENCH_PAGE_CHUNKS];

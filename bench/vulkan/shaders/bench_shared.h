@@ -47,7 +47,8 @@ struct BenchParams {
     float camera[2]; /* metres */
     float textureSize[2];
     uint patchSize[2]; /* regions */
+    uint tableIndex;   /* of the scene's texture */
 };
-SLUICE_SHARED_SIZE(struct BenchParams, 56)
+SLUICE_SHARED_SIZE(struct BenchParams, 60)
 
 #endif

@@ -17,7 +17,7 @@ void main()
         p.dy = dFdy(p.uv);
     }
     if (streamed)
-        outColor = sluiceSample(streamedTexture, tableIndices[0], p.uv, 0.0, anisotropy, missing);
+        outColor = sluiceSample(streamedTexture, params.tableIndex, p.uv, 0.0, anisotropy, missing);
     else
         outColor = texture(plainTexture, p.uv);
     writeSceneFeedback(uvec2(gl_FragCoord.xy), p);

@@ -59,5 +59,5 @@ void writeSceneFeedback(uvec2 pixel, Place p)
                         ? sluiceSelectLattice(pixel, params.seed)
                         : sluiceSelectRandomQuad(pixel, params.seed, params.probability);
     if (selected)
-        sluiceWriteFeedback(tableIndices[0], p.uv, p.dx, p.dy, 0.0, anisotropy);
+        sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
 }
