@@ -27,6 +27,8 @@ uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed);
 
 /** Median in the unit of the samples; NaN if there are none. */
 double median(struct samples *samples);
+/** The same, but of wall times the least: what disturbs them only makes them longer. */
+double typical(const struct bench *bench, struct samples *samples);
 
 typedef bool measurement(const struct bench *bench);
 measurement measure_sampling, measure_feedback, measure_fill, measure_budget, measure_resolve,

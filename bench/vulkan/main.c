@@ -53,6 +53,11 @@ double median(struct samples *samples)
     return samples->count ? samples_quantile(samples, 0.5) : NAN;
 }
 
+double typical(const struct bench *bench, struct samples *samples)
+{
+    return bench->wall && samples->count ? samples_quantile(samples, 0.0) : median(samples);
+}
+
 struct arguments {
     const char *device, *only;
     int residency; ///< index in mode_names; "all" is 0

@@ -39,7 +39,7 @@ static bool run_pattern(struct rig *rig, VkPipeline pipeline, const struct patte
     done = done && rig_finish(rig);
     if (done) {
         words = rig_statistics(rig).feedbackWords - words;
-        report(bench, median(&gpu) / 1e3, "us", "resolve.%s.gpu", pattern->name);
+        report(bench, typical(bench, &gpu) / 1e3, "us", "resolve.%s.gpu", pattern->name);
         report(bench, samples_quantile(&gpu, 0.99) / 1e3, "us", "resolve.%s.gpu_p99",
                pattern->name);
         report(bench, (double)words * 4 / frames / 1024, "KiB", "resolve.%s.readback",

@@ -80,7 +80,8 @@ static bool sample_scene(struct scene *scene, bool fragment, uint32_t which, flo
     bool done = prepare(scene, variants, 2) && run(scene, variants, 2);
     if (done) {
         const char *stage = stage_names[fragment], *kind = anisotropy > 1.0f ? "_aniso8" : "";
-        double plain = median(&variants[0].samples), streamed = median(&variants[1].samples);
+        double plain = typical(bench, &variants[0].samples),
+               streamed = typical(bench, &variants[1].samples);
         report(bench, plain / 1e3, "us", "sampling.%s.%s%s.plain", stage, scene_names[which], kind);
         report(bench, streamed / 1e3, "us", "sampling.%s.%s%s.streamed", stage, scene_names[which],
                kind);
@@ -102,7 +103,8 @@ static bool measure_nothing(struct scene *scene)
         done = rig_frame(&scene->rig, &work);
     done = done && rig_finish(&scene->rig);
     if (done)
-        report(scene->rig.bench, median(&samples) / 1e3, "us", "sampling.nothing");
+        report(scene->rig.bench, typical(scene->rig.bench, &samples) / 1e3, "us",
+               "sampling.nothing");
     samples_finish(&samples);
     return done;
 }
@@ -148,13 +150,13 @@ static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
         variants[i].constants.anisotropy = 1.0f;
     }
     bool done = prepare(scene, variants, 6) && run(scene, variants, 6);
-    double plain = done ? median(&variants[0].samples) : NAN;
-    double none = done ? median(&variants[1].samples) : NAN;
+    double plain = done ? typical(bench, &variants[0].samples) : NAN;
+    double none = done ? typical(bench, &variants[1].samples) : NAN;
     const char *stage = stage_names[fragment], *name = scene_names[which];
     if (done)
         report(bench, none / 1e3, "us", "feedback.%s.%s.none", stage, name);
     for (uint32_t i = 2; done && i < 6; i++) {
-        double added = median(&variants[i].samples) - none;
+        double added = typical(bench, &variants[i].samples) - none;
         report(bench, added / 1e3, "us", "feedback.%s.%s.%s.time", stage, name, variants[i].name);
         report(bench, 100 * added / none, "%", "feedback.%s.%s.%s.added", stage, name,
                variants[i].name);
