@@ -61,6 +61,7 @@ double typical(const struct bench *bench, struct samples *samples)
 struct arguments {
     const char *device, *only;
     int residency; ///< index in mode_names; "all" is 0
+    int clock;     ///< auto, device, host
     uint32_t size[2], texture_size, threads;
     bool json, quick, list, validation;
 };
@@ -118,7 +119,10 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
     if (!gpu_create(&request, &bench.gpu, &unsupported))
         return unsupported ? 77 : 1;
     const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
-    bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
+    bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    if (arguments->clock)
+        bench.wall = arguments->clock == 2;
+    bench.wall |= !(caps->timestampPeriod > 0);
     fill_in_sizes(&bench);
     fprintf(stderr, "%s: %s, %s %s%s\n", bench.mode_name, caps->deviceName, caps->driverName,
             caps->driverInfo, bench.wall ? ", wall time" : "");
@@ -169,6 +173,8 @@ int main(int argc, char **argv)
          0, 16384},
         {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
          0, 256},
+        {OPTION_CHOICE, "clock", "auto|device|host", &a.clock,
+         "that times draws; auto: the host's on software devices", 0, 0},
         {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
         {OPTION_FLAG, "validation", NULL, &a.validation,
          "with validation layers, which must be silent; times mean nothing then", 0, 0},
