@@ -1,9 +1,12 @@
 /*
  * Publishes the MinMip maps. The manager's changed rectangles are what texels are to become; what
  * they are moves there step by step (fade.h). What moved goes through this frame's staging memory,
- * which has the layout of the buffer, and is copied word by word.
+ * which has the layout of the buffer, with what is around (around.h), and is copied row by row.
  */
 #include "vulkan/streamer.h"
+
+#include "base/checked.h"
+#include "vulkan/around.h"
 
 #include <assert.h>
 #include <string.h>
@@ -56,22 +59,28 @@ static SluiceResult take_updates(SluiceVulkanStreamer *s)
     }
 }
 
-/* From the rectangle's first byte to its last, whole words. Rows between are copied as they are. */
+/* Whole rows, and as many beside those of the rectangle as their words look around. */
 static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *texture,
                           const struct slc_fade_rect *rect)
 {
-    uint32_t width = texture->layout.minMipWidth;
-    uint32_t first = texture->region_first + rect->y0 * width + rect->x0;
-    uint32_t end = texture->region_first + (rect->y1 - 1) * width + rect->x1;
-    first &= ~1u;
-    end = (end + 1) & ~1u;
-    uint64_t size = (uint64_t)(end - first) * sizeof *s->min_mip_texels;
-    uint64_t to = (uint64_t)first * sizeof *s->min_mip_texels;
-    uint64_t from =
-        s->frame % s->info.framesInFlight * s->regions.size * (uint64_t)sizeof *s->min_mip_texels +
-        to;
-    memcpy((uint8_t *)s->min_mip_staging.mapped + from, s->min_mip_texels + first, size);
-    return (VkBufferCopy){from, to, size};
+    struct slc_around around = {
+        .texels = s->min_mip_texels + texture->region_first,
+        .width = texture->layout.minMipWidth,
+        .height = texture->layout.minMipHeight,
+        .radius = slc_texture_is_ragged(texture) ? SLUICE_AROUND_RAGGED : SLUICE_AROUND,
+        .wraps_x = texture->address_modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        .wraps_y = texture->address_modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT};
+    uint32_t y0 = rect->y0 > around.radius ? rect->y0 - around.radius : 0;
+    uint32_t y1 = slc_min_u32(rect->y1 + around.radius, around.height);
+    if (around.wraps_y && (rect->y0 < around.radius || rect->y1 + around.radius > around.height))
+        y0 = 0, y1 = around.height;
+    uint64_t first = texture->region_first + (uint64_t)y0 * around.width;
+    uint64_t size = (uint64_t)(y1 - y0) * around.width * sizeof(uint32_t);
+    uint64_t slot = s->frame % s->info.framesInFlight * (uint64_t)s->regions.size;
+    uint32_t *words = (uint32_t *)s->min_mip_staging.mapped + slot + first;
+    for (uint32_t y = y0; y < y1; y++, words += around.width)
+        slc_around_row(&around, y, s->around_row, words);
+    return (VkBufferCopy){(slot + first) * sizeof *words, first * sizeof *words, size};
 }
 
 /* One step of all that moves in a texture; the rectangle shrinks to the rows that move on. */

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "vulkan/around.h"
 
 #include <string.h>
 
@@ -120,14 +121,15 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->min_mip_texels = slc_alloc(cb, s->info.maxRegionCount, sizeof *s->min_mip_texels);
     s->min_mip_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     s->fades = slc_alloc(cb, textures, sizeof *s->fades);
+    s->around_row = slc_alloc(cb, SLC_AROUND_SCRATCH, sizeof *s->around_row);
     s->turns = slc_calloc(cb, 1, slc_turns_size(s));
     s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     if (s->info.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
     if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
-        !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->feedback_levels || !s->turns ||
-        (s->info.mapEverything && !s->zero_map))
+        !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->around_row ||
+        !s->feedback_levels || !s->turns || (s->info.mapEverything && !s->zero_map))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
@@ -171,7 +173,7 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 {
     const VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    uint64_t min_mip_size = (uint64_t)s->regions.size * sizeof *s->min_mip_texels;
+    uint64_t min_mip_size = (uint64_t)s->regions.size * sizeof(uint32_t);
     SluiceResult result = check_buffer_sizes(s);
     if (result == SLUICE_SUCCESS)
         result =
@@ -276,6 +278,7 @@ static void free_arrays(SluiceVulkanStreamer *s)
     slc_free(cb, s->turns, 1, slc_turns_size(s));
     slc_free(cb, s->feedback_levels, s->info.maxRegionCount, 1);
     slc_free(cb, s->fades, textures, sizeof *s->fades);
+    slc_free(cb, s->around_row, SLC_AROUND_SCRATCH, sizeof *s->around_row);
     slc_free(cb, s->min_mip_levels, s->info.maxRegionCount, 1);
     slc_free(cb, s->min_mip_texels, s->info.maxRegionCount, sizeof *s->min_mip_texels);
     slc_free(cb, s->copies, s->copy_capacity, sizeof *s->copies);

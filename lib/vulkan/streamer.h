@@ -138,7 +138,8 @@ struct SluiceVulkanStreamer {
 
     struct slc_buffer texture_table, feedback, min_mip;
     struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
-    uint16_t *min_mip_texels;          ///< owned; what min_mip holds after the frames begun
+    uint16_t *min_mip_texels;          ///< owned; what min_mip shows after the frames begun
+    uint16_t *around_row;              ///< owned; scratch
     uint8_t *min_mip_levels;           ///< owned; the manager's maps, which texels move to
     struct slc_fade_clock fade_clock;
     uint32_t *fades; ///< owned; textures whose texels move
@@ -204,5 +205,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 /** Destroys what is over; returns the largest retire value that no texture holds back. */
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
 void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);
+/** Regions at the edge are narrower, or levels do not halve evenly. */
+bool slc_texture_is_ragged(const struct slc_texture *texture);
 
 #endif /* SLC_VULKAN_STREAMER_H */

@@ -2,6 +2,7 @@
 #include "vulkan/streamer.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
 
@@ -347,6 +348,23 @@ static uint32_t log2_of(uint32_t power)
     return log;
 }
 
+bool slc_texture_is_ragged(const struct slc_texture *texture)
+{
+    const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
+    return texture->image.uneven || desc->width % desc->feedbackRegionWidth ||
+           desc->height % desc->feedbackRegionHeight;
+}
+
+/* Regions are tiles, and where all levels are packed there is one. */
+static float quick_reach2(const SluiceStreamedTextureDesc *desc)
+{
+    if (desc->regularMipCount == 0)
+        return 1e30f;
+    float reach =
+        (float)slc_min_u32(desc->feedbackRegionWidth, desc->feedbackRegionHeight) / SLUICE_REACH;
+    return reach * reach;
+}
+
 static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
 {
     SluiceFormatInfo format = {.channelCount = 4};
@@ -367,7 +385,9 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .addressModeV = (uint)texture->address_modes[1],
         .pageTableOffset = texture->image.page_table_offset,
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
+        .quickReach2 = quick_reach2(desc),
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
+                 (slc_texture_is_ragged(texture) ? SLUICE_TEXTURE_FLAG_RAGGED : 0u) |
                  format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }

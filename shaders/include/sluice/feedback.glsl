@@ -24,6 +24,7 @@
 #include "buffers.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
+#include "quick.glsl"
 #include "shared/feedback.h"
 
 #ifndef SLUICE_FEEDBACK_ENCODING
@@ -72,12 +73,17 @@ void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint leve
 void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, uint level, uint coarsest)
 {
+    vec2 size = vec2(entry.width, entry.height);
+    uvec2 region;
+    if (sluiceStaysInRegion(entry, uv, dx * size, dy * size, lodBias, region)) {
+        sluiceMarkRegion(entry, region.x, region.y, level);
+        return;
+    }
     vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
     sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, coarsest), level);
     if (!(maxAnisotropy > 1.0))
         return;
     /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
-    vec2 size = vec2(entry.width, entry.height);
     uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
                                       entry.mipLevelCount);
     if (widest > coarsest)

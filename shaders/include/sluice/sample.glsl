@@ -15,6 +15,7 @@
 #include "buffers.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
+#include "quick.glsl"
 #ifdef SLUICE_PAGED
 #include "paged.glsl"
 #endif
@@ -57,7 +58,7 @@ struct SluiceSampling {
 uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
 {
     uint at = entry.minMipOffset + y * entry.regionCountX + x;
-    return (SLUICE_MIN_MIP_WORD(at >> 1u) >> ((at & 1u) * 16u)) & 0xFFFFu;
+    return SLUICE_MIN_MIP_WORD(at) & 0xFFFFu;
 }
 
 /** The largest of the MinMip texels over a footprint of samples of `finestLevel` and coarser. */
@@ -131,6 +132,23 @@ uint sluiceMaxShown(SluiceTextureEntry entry, SluiceSampling s, vec2 halfBox, ui
 }
 
 /**
+ * True if all levels that a sample touches are resident for sure. `dx` and `dy` in texels, `lod` is
+ * the finest of sluiceComputeLods.
+ */
+bool sluiceIsSurelyThere(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lod, float lodBias,
+                         float maxAnisotropy)
+{
+    if (!(sluiceReach2(dx, dy, lodBias) < entry.quickReach2) || !sluiceIsFinite(uv))
+        return false;
+    uvec2 region = sluiceRegionOfTexel(entry, sluiceFoldTexel(entry, uv));
+    uint around =
+        SLUICE_MIN_MIP_WORD(entry.minMipOffset + region.y * entry.regionCountX + region.x) >> 16u;
+    float allowed = (lod - sluiceLodMargin(maxAnisotropy)) * float(SLUICE_SHOWN_STEPS) +
+                    float(SLUICE_SHOWN_MARGIN);
+    return float(around) <= max(allowed, 0.0);
+}
+
+/**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
  * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
  * s.level is SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of `uv` per pixel.
@@ -155,6 +173,9 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
     s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
+    if (s.plain &&
+        sluiceIsSurelyThere(entry, uv, dx * size, dy * size, s.lod, lodBias, maxAnisotropy))
+        return s;
     float width = exp2(SLUICE_LOD_POINT);
 
     vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);

@@ -1,8 +1,9 @@
 /*
  * One streamed texture, as shaders see it: an element of the texture table, a std430 array.
  *
- * A region is the area of a tile of level 0. The feedback buffer has one word per region, the
- * MinMip buffer 16 bits, the first of two in the low half of a word; both row by row.
+ * A region is the area of a tile of level 0. The feedback buffer has one word per region, and so has
+ * the MinMip buffer: its own texel in the low half, the largest one of the regions around it in the
+ * high half. Both row by row.
  */
 #ifndef SLUICE_SHARED_TEXTURE_TABLE_H
 #define SLUICE_SHARED_TEXTURE_TABLE_H
@@ -24,6 +25,16 @@
 #define SLUICE_SHOWN_MARGIN 48
 #define SLUICE_SHOWN_NOTHING 0xFF00
 
+/*
+ * Texels of level 0 that a sample reaches to each side, as a multiple of the root of the sum of its
+ * squared derivatives, at least 1: half of it for an anisotropic footprint, and 0.5625 texels of a
+ * level up to one coarser than it leads to.
+ */
+#define SLUICE_REACH 1.625
+/* How far "around" goes, in regions, and where regions are ragged. */
+#define SLUICE_AROUND 1
+#define SLUICE_AROUND_RAGGED 2
+
 /* As VkSamplerAddressMode. */
 #define SLUICE_ADDRESS_MODE_REPEAT 0
 #define SLUICE_ADDRESS_MODE_MIRRORED_REPEAT 1
@@ -33,6 +44,8 @@
 
 /* A level's size is not the next finer one's halved, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
+/* Regions at the edge are narrower than the others, or the texture is uneven. */
+#define SLUICE_TEXTURE_FLAG_RAGGED 2
 /* Among the flags: how many components the format has, in three bits. */
 #define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 
@@ -58,7 +71,7 @@ struct SluiceTextureEntry {
     uint flags;
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
-    uint reserved[1];
+    float quickReach2;    /* bound of sluiceReach2 up to which samples stay in regions next to theirs */
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 64)
 
