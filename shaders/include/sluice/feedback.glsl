@@ -78,7 +78,7 @@ void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float
         return;
     /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
     vec2 size = vec2(entry.width, entry.height);
-    uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
+    uint widest = sluiceCoarsestLevel(sluiceComputeLods(dx * size, dy * size, lodBias, 1.0).y,
                                       entry.mipLevelCount);
     if (widest > coarsest)
         sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, widest),
@@ -150,11 +150,11 @@ void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lod
     vec2 lods = sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
     bool known = lod == lod && sluiceIsFinite(uv);
     lod = known ? sluiceClampLod(lod + sluiceClampLodBias(lodBias)) : SLUICE_LOD_LIMIT;
-    float finest = lod - SLUICE_QUERY_MARGIN, widest = lod + SLUICE_QUERY_MARGIN;
-    if (known && maxAnisotropy > 1.0) {
+    float finest = lod - SLUICE_QUERY_MARGIN;
+    if (known && maxAnisotropy > 1.0)
         finest = min(finest, lods.x - sluiceLodMargin(maxAnisotropy));
-        widest = max(widest, lods.y);
-    }
+    /* sample.glsl looks as far around as the computed level may reach */
+    float widest = known ? max(lod + SLUICE_QUERY_MARGIN, lods.y) : lod;
     sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy,
                      sluiceFinestLevel(finest, 0.0, entry.mipLevelCount),
                      sluiceCoarsestLevel(widest, entry.mipLevelCount));
