@@ -28,9 +28,9 @@
 /*
  * Texels of level 0 that a sample reaches to each side, as a multiple of the root of the sum of its
  * squared derivatives, at least 1: half of it for an anisotropic footprint, and 0.5625 texels of a
- * level up to one coarser than it leads to.
+ * level up to one and an eighth coarser than it leads to.
  */
-#define SLUICE_REACH 1.625
+#define SLUICE_REACH 1.75
 /* How far "around" goes, in regions, and where regions are ragged. */
 #define SLUICE_AROUND 1
 #define SLUICE_AROUND_RAGGED 2
