@@ -1,0 +1,207 @@
+/* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
+#include "bench.h"
+
+#include "../../samples/common/options.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    measurement *measure;
+} measurements[] = {
+    {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
+    {"budget", measure_budget},     {"resolve", measure_resolve},   {"host", measure_host},
+    {"sharp", measure_sharp},
+};
+#define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
+
+static const char *const mode_names[] = {"auto", "sparse", "paged", "dense"};
+
+void report(const struct bench *bench, double value, const char *unit, const char *name, ...)
+{
+    char text[128];
+    va_list arguments;
+    va_start(arguments, name);
+    vsnprintf(text, sizeof text, name, arguments);
+    va_end(arguments);
+    figure(bench->mode_name, text, value, unit);
+    fflush(stdout);
+}
+
+uint32_t device_local_type(const struct gpu *gpu, uint32_t allowed)
+{
+    for (uint32_t i = 0; i < gpu->memory.memoryTypeCount; i++)
+        if ((allowed & 1u << i) &&
+            (gpu->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
+            return i;
+    return 0;
+}
+
+bool check(SluiceResult result, const char *what)
+{
+    if (result >= 0)
+        return true;
+    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    return false;
+}
+
+double median(struct samples *samples)
+{
+    return samples->count ? samples_quantile(samples, 0.5) : NAN;
+}
+
+double typical(const struct bench *bench, struct samples *samples)
+{
+    return bench->wall && samples->count ? samples_quantile(samples, 0.0) : median(samples);
+}
+
+struct arguments {
+    const char *device, *only;
+    int residency; ///< index in mode_names; "all" is 0
+    int clock;     ///< auto, device, host
+    uint32_t size[2], texture_size, threads;
+    bool json, quick, list, validation;
+};
+
+/* Whether `list`, names with commas between them, has `name`; NULL has all. */
+static bool chosen(const char *list, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        if (strncmp(at, name, length) == 0 && (at[length] == '\0' || at[length] == ','))
+            return true;
+    return list == NULL;
+}
+
+static bool names_are_known(const char *list)
+{
+    char copy[256];
+    snprintf(copy, sizeof copy, "%s", list ? list : "");
+    for (char *name = strtok(copy, ","); name; name = strtok(NULL, ",")) {
+        bool known = false;
+        for (size_t i = 0; i < MEASUREMENT_COUNT; i++)
+            known |= strcmp(name, measurements[i].name) == 0;
+        if (!known) {
+            fprintf(stderr, "there is no measurement %s; see --help\n", name);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What was not asked for: 1080p over a texture of more than a GiB, or what a CPU can hold. */
+static void fill_in_sizes(struct bench *bench)
+{
+    static const uint32_t sizes[3][2] = {{1920, 1080}, {640, 360}, {160, 90}};
+    static const uint32_t textures[3] = {16384, 8192, 2048};
+    uint32_t which = options.quick ? 2 : bench->wall ? 1 : 0;
+    if (bench->size[0] == 0)
+        memcpy(bench->size, sizes[which], sizeof bench->size);
+    if (bench->texture_size == 0)
+        bench->texture_size = textures[which];
+}
+
+/* 0; 1 if something failed; 77 if the device lacks the mode. */
+static int measure_mode(const struct arguments *arguments, SluiceResidencyMode mode)
+{
+    struct bench bench = {.mode = mode,
+                          .mode_name = mode_names[mode],
+                          .size = {arguments->size[0], arguments->size[1]},
+                          .texture_size = arguments->texture_size,
+                          .threads = arguments->threads};
+    struct gpu_request request = {.device = arguments->device,
+                                  .validation = arguments->validation,
+                                  .modes = {mode, SLUICE_RESIDENCY_MODE_DENSE}};
+    bool unsupported;
+    if (!gpu_create(&request, &bench.gpu, &unsupported))
+        return unsupported ? 77 : 1;
+    const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
+    bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    if (arguments->clock)
+        bench.wall = arguments->clock == 2;
+    bench.wall |= !(caps->timestampPeriod > 0);
+    fill_in_sizes(&bench);
+    fprintf(stderr, "%s: %s, %s %s%s\n", bench.mode_name, caps->deviceName, caps->driverName,
+            caps->driverInfo, bench.wall ? ", wall time" : "");
+    int status = 0;
+    for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
+        if (!chosen(arguments->only, measurements[i].name))
+            continue;
+        if (!measurements[i].measure(&bench)) {
+            fprintf(stderr, "%s: %s failed\n", bench.mode_name, measurements[i].name);
+            status = 1;
+        }
+    }
+    if (atomic_load(&bench.gpu.validation_messages) > 0)
+        status = 1;
+    gpu_destroy(&bench.gpu);
+    return status;
+}
+
+static int measure(const struct arguments *arguments)
+{
+    int status = 77;
+    for (int mode = 1; mode <= 3; mode++) {
+        if (arguments->residency && arguments->residency != mode)
+            continue;
+        int outcome = measure_mode(arguments, (SluiceResidencyMode)mode);
+        if (outcome == 1 || status == 77)
+            status = outcome;
+    }
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    struct arguments a = {0};
+    const struct option table[] = {
+        {OPTION_TEXT, "device", "NAME", &a.device, "an index of --list-devices, or part of a name",
+         0, 0},
+        {OPTION_CHOICE, "residency", "all|sparse|paged|dense", &a.residency, "mode to measure", 0,
+         0},
+        {OPTION_TEXT, "only", "NAMES", &a.only,
+         "some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)", 0, 0},
+        {OPTION_SIZE, "size", "WxH", &a.size,
+         "of pictures in pixels; 0x0: 1920x1080, on software devices\n640x360, with --quick 160x90",
+         0, 8192},
+        {OPTION_UINT, "texture", "TEXELS", &a.texture_size,
+         "edge of the texture of scenes, a power of 2; 0: 16384, on software\ndevices 8192, with "
+         "--quick 2048",
+         0, 16384},
+        {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
+         0, 256},
+        {OPTION_CHOICE, "clock", "auto|device|host", &a.clock,
+         "that times draws; auto: the host's on software devices", 0, 0},
+        {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
+        {OPTION_FLAG, "validation", NULL, &a.validation,
+         "with validation layers, which must be silent; times mean nothing then", 0, 0},
+        {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
+        {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
+    };
+    switch (options_parse(table, sizeof table / sizeof *table,
+                          "Usage: vulkan_figures [options]\n"
+                          "Measures what streaming costs; a figure per line.\n\n",
+                          argc, argv)) {
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    case OPTIONS_RUN: break;
+    }
+    if (a.list)
+        return gpu_list_devices() > 0 ? 0 : 77;
+    if (!names_are_known(a.only))
+        return 2;
+    if ((a.size[0] == 0) != (a.size[1] == 0)) {
+        fprintf(stderr, "--size wants two numbers, or 0x0\n");
+        return 2;
+    }
+    options.json = a.json;
+    options.quick = a.quick;
+    if (a.texture_size && (a.texture_size < 1024 || (a.texture_size & (a.texture_size - 1)))) {
+        fprintf(stderr, "--texture wants a power of 2 from 1024 to 16384\n");
+        return 2;
+    }
+    return measure(&a);
+}

@@ -1,0 +1,118 @@
+/**
+ * A streamer with some textures of one free source, and a loop of frames around it that can be
+ * timed. What a frame does between begin and end is up to the measurement.
+ */
+#ifndef BENCH_VULKAN_RIG_H
+#define BENCH_VULKAN_RIG_H
+
+#include "bench.h"
+#include "source.h"
+
+#include "bench_shared.h"
+
+#define RIG_FRAMES 3u
+#define RIG_MAX_PIPELINES 64u
+
+struct rig_info {
+    const struct bench *bench;
+    /** Of what is not zero: handles are filled in. */
+    SluiceVulkanStreamerCreateInfo streamer;
+    SluiceFormat format;
+    uint32_t texture_size, texture_count;
+    uint32_t output_words;  ///< of a buffer that shaders write to and the host reads
+    uint32_t picture_words; ///< of a buffer that they write to, in device memory
+    float anisotropy;       ///< of the samplers; 1: none
+    VkImageView plain_view; ///< VK_NULL_HANDLE: that of the first texture
+};
+
+/** Seconds, in a frame's three parts. Any may be NULL: then nothing is timed. */
+struct rig_samples {
+    struct samples *begin, *work, *end;
+};
+
+struct rig_slot {
+    VkCommandBuffer commands[3]; ///< begin, work, end
+    VkDescriptorSet pages;
+    uint64_t page_generation;
+    uint64_t signal_value;
+    struct rig_samples samples;
+};
+
+struct rig {
+    const struct bench *bench;
+    SluiceVulkanStreamer *streamer;
+    struct free_source source;
+    SluiceVulkanTexture *textures; ///< owned
+    uint32_t texture_count;
+    uint32_t map_width, map_height; ///< feedback regions of each texture
+    uint64_t frame;                 ///< the last one
+    double host_seconds;            ///< of begin and end in the last frame, on the host
+    double host_cpu_seconds;        ///< the same, of the thread alone
+
+    struct gpu_buffer outputs, indices, picture;
+    VkSampler sampler;
+    VkDescriptorSetLayout set_layouts[2];
+    VkPipelineLayout layout;
+    VkDescriptorPool descriptor_pool;
+    VkDescriptorSet set;
+    VkQueryPool queries;
+    VkSemaphore semaphore;
+    struct rig_slot slots[RIG_FRAMES];
+    VkPipeline pipelines[RIG_MAX_PIPELINES]; ///< destroyed with the rig
+    uint32_t pipeline_count;
+};
+
+typedef void rig_record(struct rig *rig, VkCommandBuffer commands, void *user);
+
+struct rig_work {
+    rig_record *warm_up; ///< untimed, before; may be NULL
+    rig_record *record;
+    void *user;
+    struct rig_samples samples;
+};
+
+/** Says on stderr what failed. A rig that was not created can be destroyed. */
+bool rig_create(struct rig *rig, const struct rig_info *info);
+void rig_destroy(struct rig *rig);
+
+/* rig_shaders.c */
+bool rig_create_descriptors(struct rig *rig, const struct rig_info *info);
+void rig_destroy_descriptors(struct rig *rig);
+void rig_write_pages(struct rig *rig, struct rig_slot *slot);
+
+/** Values of the constants of bench_shared.h, in their order; bits of floats. */
+struct rig_constants {
+    uint32_t values[BENCH_CONSTANT_COUNT];
+};
+
+/** VK_NULL_HANDLE on failure. */
+VkPipeline rig_compute_pipeline(struct rig *rig, const uint32_t *words, size_t size,
+                                const struct rig_constants *constants);
+VkPipeline rig_screen_pipeline(struct rig *rig, const uint32_t *words, size_t size,
+                               const struct rig_constants *constants, VkRenderPass pass);
+
+/** Binds a pipeline, descriptors and parameters for the work of a frame. */
+void rig_bind(struct rig *rig, VkCommandBuffer commands, VkPipelineBindPoint point,
+              VkPipeline pipeline, const struct BenchParams *params);
+
+/** A frame; up to RIG_FRAMES are under way. Samples are added when it is over. */
+bool rig_frame(struct rig *rig, const struct rig_work *work);
+/** Waits for all frames, and adds their samples. */
+bool rig_finish(struct rig *rig);
+/** Waits for frames, reads and bindings as well. */
+bool rig_settle(struct rig *rig);
+
+/** A dispatch of wants.comp for all textures; `user` of rig_work is a struct rig_wants. */
+struct rig_wants {
+    VkPipeline pipeline;
+    struct BenchParams params; ///< width, height and textureCount are filled in
+};
+rig_record rig_record_wants;
+VkPipeline rig_wants_pipeline(struct rig *rig);
+
+/** Frames that want what `wants` says until all of it is mapped. */
+bool rig_load(struct rig *rig, struct rig_wants *wants);
+
+SluiceVulkanStreamerStatistics rig_statistics(const struct rig *rig);
+
+#endif /* BENCH_VULKAN_RIG_H */

@@ -1,0 +1,54 @@
+/* What the shaders of the benchmarks and their host side share. */
+#ifndef BENCH_SHARED_H
+#define BENCH_SHARED_H
+
+#include "sluice/shared/types.h"
+
+#define BENCH_PAGE_CHUNKS 64
+
+/* Specialization constants. */
+#define BENCH_CONSTANT_STREAMED 0 /* else an ordinary texture and texture() */
+#define BENCH_CONSTANT_SCENE 1
+#define BENCH_CONSTANT_FEEDBACK 2
+#define BENCH_CONSTANT_ANISOTROPY 3 /* of the sampler; 1: none */
+#define BENCH_CONSTANT_COUNTING 4   /* instead of a picture, which regions are sharp */
+#define BENCH_CONSTANT_COUNT 5
+
+#define BENCH_SCENE_FLOOR 0    /* a plane up to the horizon */
+#define BENCH_SCENE_CLOSE_UP 1 /* a few regions fill the screen */
+#define BENCH_SCENE_NOISE 2    /* each 4x4 pixels somewhere else */
+
+#define BENCH_FEEDBACK_NONE 0
+#define BENCH_FEEDBACK_QUADS 1 /* quads of pixels at random */
+#define BENCH_FEEDBACK_LATTICE 2
+
+/* wants.comp: which level each region wants, one thread per region */
+#define BENCH_WANTS_PATCH 0  /* level, and one finer within patch[] regions from the origin */
+#define BENCH_WANTS_RANDOM 1 /* level, or with the given probability one coarser */
+#define BENCH_WANTS_VIEW 2   /* as a camera sees textures that lie side by side on a floor */
+#define BENCH_WANTS_COUNT 3  /* nothing; counts what is missing for PATCH */
+
+/* Words of the output buffer after BENCH_WANTS_COUNT. */
+#define BENCH_COUNT_SAMPLES 0
+#define BENCH_COUNT_NOTHING 1 /* samples for which not even the packed levels are there */
+#define BENCH_COUNT_COARSER 2
+#define BENCH_COUNT_LEVELS 3 /* by how many levels, together */
+#define BENCH_COUNT_WORDS 4
+
+struct BenchParams {
+    uint width; /* of the picture; wants.comp: of a feedback map */
+    uint height;
+    uint textureCount;
+    uint kind;
+    uint level;
+    uint seed;
+    float probability;
+    float cameraAngle;
+    float camera[2]; /* metres */
+    float textureSize[2];
+    uint patchSize[2]; /* regions */
+    uint tableIndex;   /* of the scene's texture */
+};
+SLUICE_SHARED_SIZE(struct BenchParams, 60)
+
+#endif

@@ -1,0 +1,15 @@
+/** An image source that costs next to nothing: copies of one tile of noise. */
+#ifndef BENCH_VULKAN_SOURCE_H
+#define BENCH_VULKAN_SOURCE_H
+
+#include <sluice/image.h>
+
+struct free_source {
+    SluiceImageSource base; ///< must be first
+    SluiceImageInfo info;
+};
+
+/** No memory of its own; one serves any number of textures. Square, of a full chain. */
+void free_source_init(struct free_source *source, SluiceFormat format, uint32_t size);
+
+#endif /* BENCH_VULKAN_SOURCE_H */
