@@ -279,7 +279,8 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
  * each other, and all are layers of one image. They are removed together, with any of their ids.
  *
  * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
- * device or the residency mode cannot stream arrays.
+ * device or the residency mode cannot stream arrays, or the device binds all layers of so small an
+ * array as one.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
     SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,

@@ -57,7 +57,7 @@ static SluiceResult create_layouts(struct slc_resolve *r, const struct slc_vk *v
 }
 
 static SluiceResult create_pipeline(const struct slc_resolve *r, const struct slc_vk *vk,
-                                    const uint32_t *code, size_t size, uint32_t encoding,
+                                    const uint32_t *code, size_t size, const uint32_t constants[2],
                                     VkPipeline *pipeline)
 {
     VkShaderModuleCreateInfo module_info = {
@@ -68,21 +68,36 @@ static SluiceResult create_pipeline(const struct slc_resolve *r, const struct sl
                       "vkCreateShaderModule");
     if (result != SLUICE_SUCCESS)
         return result;
-    VkSpecializationMapEntry entry = {.constantID = 0, .size = sizeof encoding};
-    VkSpecializationInfo constants = {1, &entry, sizeof encoding, &encoding};
+    const VkSpecializationMapEntry entries[2] = {{0, 0, sizeof *constants},
+                                                 {1, sizeof *constants, sizeof *constants}};
+    VkSpecializationInfo specialization = {2, entries, 2 * sizeof *constants, constants};
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                   .module = module,
                   .pName = "main",
-                  .pSpecializationInfo = &constants},
+                  .pSpecializationInfo = &specialization},
         .layout = r->layout};
     result = slc_vk_result(
         vk, vk->CreateComputePipelines(vk->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
         "vkCreateComputePipelines");
     vk->DestroyShaderModule(vk->device, module, NULL);
     return result;
+}
+
+static uint32_t scan_group_size(const struct slc_vk *vk)
+{
+    VkPhysicalDeviceProperties2 properties = {.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    vk->GetPhysicalDeviceProperties2(vk->physical_device, &properties);
+    const VkPhysicalDeviceLimits *limits = &properties.properties.limits;
+    uint32_t size = SLUICE_RESOLVE_SCAN_GROUP_SIZE;
+    while (size > 128 && /* which each device has */
+           (size > limits->maxComputeWorkGroupInvocations ||
+            size > limits->maxComputeWorkGroupSize[0]))
+        size /= 2;
+    return size;
 }
 
 static SluiceResult create_pipelines(struct slc_resolve *r, const struct slc_vk *vk,
@@ -94,9 +109,11 @@ static SluiceResult create_pipelines(struct slc_resolve *r, const struct slc_vk 
     } passes[3] = {{resolve_count_comp, sizeof resolve_count_comp},
                    {resolve_scan_comp, sizeof resolve_scan_comp},
                    {resolve_write_comp, sizeof resolve_write_comp}};
+    const uint32_t constants[2] = {encoding, scan_group_size(vk)};
     SluiceResult result = SLUICE_SUCCESS;
     for (uint32_t i = 0; i < 3 && result == SLUICE_SUCCESS; i++)
-        result = create_pipeline(r, vk, passes[i].code, passes[i].size, encoding, &r->pipelines[i]);
+        result =
+            create_pipeline(r, vk, passes[i].code, passes[i].size, constants, &r->pipelines[i]);
     return result;
 }
 

@@ -81,11 +81,12 @@ static inline bool slc_twin_is_finite(struct slc_twin_vec2 v)
     return fabsf(v.x) <= 1.0e33f && fabsf(v.y) <= 1.0e33f;
 }
 
+#define SLC_TWIN_LOD_COARSER_MARGIN 0.125f
+
 static inline float slc_twin_lod_of_square(float minor2, float lod_bias)
 {
     float lod = 0.5f * log2f(slc_twin_clamp(minor2, 5.4e-20f, 1.8e19f));
-    return slc_twin_clamp(lod + slc_twin_clamp_lod_bias(lod_bias), -SLC_TWIN_LOD_LIMIT,
-                          SLC_TWIN_LOD_LIMIT);
+    return slc_twin_clamp(lod + lod_bias, -SLC_TWIN_LOD_LIMIT, SLC_TWIN_LOD_LIMIT);
 }
 
 /* x: the finest, y: the coarsest */
@@ -98,18 +99,21 @@ static inline struct slc_twin_vec2 slc_twin_compute_lods(struct slc_twin_vec2 dx
     if (!(x2 >= 0.0f && y2 >= 0.0f)) /* NaN */
         return (struct slc_twin_vec2){SLC_TWIN_LOD_LIMIT, SLC_TWIN_LOD_LIMIT};
     float n = slc_twin_clamp_anisotropy(max_anisotropy);
-    float major2 = fmaxf(x2, y2);
+    float fine_major2 = fmaxf(x2, y2), coarse_major2 = fine_major2;
     float fine2 = fminf(x2, y2), coarse2 = fine2;
     float sum = x2 + y2;
-    if (n > 1.0f && sum > 1.0e-30f && sum < 1.0e30f) {
+    if (sum > 1.0e-30f && sum < 1.0e30f) {
         float area = (dx.x * dy.y - dx.y * dy.x) / sum;
-        fine2 = fminf(fine2, 2.0f * area * area * sum /
-                                 (1.0f + sqrtf(fmaxf(1.0f - 4.0f * area * area, 0.0f))));
+        float root = 1.0f + sqrtf(fmaxf(1.0f - 4.0f * area * area, 0.0f));
+        fine2 = fminf(fine2, 2.0f * area * area * sum / root);
+        coarse_major2 = fmaxf(coarse_major2, 0.5f * root * sum);
     }
-    fine2 = fmaxf(fine2, major2 / (n * n));
-    coarse2 = fmaxf(coarse2, major2 / (n * n));
-    return (struct slc_twin_vec2){slc_twin_lod_of_square(fine2, lod_bias),
-                                  slc_twin_lod_of_square(coarse2, lod_bias)};
+    fine2 = fmaxf(fine2, fine_major2 / (n * n));
+    coarse2 = fmaxf(coarse2, coarse_major2 / (n * n));
+    float bias = slc_twin_clamp_lod_bias(lod_bias);
+    return (struct slc_twin_vec2){
+        slc_twin_lod_of_square(fine2, bias),
+        slc_twin_lod_of_square(coarse2, bias + SLC_TWIN_LOD_COARSER_MARGIN)};
 }
 
 static inline float slc_twin_compute_lod(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy,
@@ -280,8 +284,8 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
     wants.wide_regions = wants.regions;
     if (!(max_anisotropy > 1.0f))
         return wants;
-    uint32_t widest =
-        slc_twin_coarsest_level(slc_twin_compute_lod(tx, ty, lod_bias, 1.0f), entry->mipLevelCount);
+    uint32_t widest = slc_twin_coarsest_level(slc_twin_compute_lods(tx, ty, lod_bias, 1.0f).y,
+                                              entry->mipLevelCount);
     if (widest > coarsest) {
         wants.wide_level = coarsest + 1;
         wants.wide_regions = slc_twin_compute_footprint(entry, uv, half_box, widest);

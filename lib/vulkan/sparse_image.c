@@ -105,9 +105,12 @@ static const char *read_layout(struct slc_sparse_image *image, const struct slc_
         return "cannot be bound to the memory of the heaps";
     if (memory.size > caps->public.sparseAddressSpaceSize)
         return "is larger than the sparse address space";
+    if (slc_sparse_layers_share_tail(info, color))
+        return "has one mip tail for all layers, and layers are loaded one by one: it is too small "
+               "for an array on this device";
     if (slc_sparse_layout_init(&image->layout, info, &memory, color, metadata,
                                caps->public.sparseAddressSpaceSize) != SLUICE_SUCCESS)
-        return "has tiles that are not pages of 64 KiB, or one tail for all layers";
+        return "has tiles that are not pages of 64 KiB";
     return NULL;
 }
 

@@ -54,6 +54,19 @@ static void set_own_packed_levels(SluiceStreamedTextureDesc *desc, const SluiceI
     desc->packedTileCount = info->mipLevelCount - desc->regularMipCount;
 }
 
+static bool has_driver_tail(const SluiceImageInfo *info,
+                            const VkSparseImageMemoryRequirements *color)
+{
+    return color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize;
+}
+
+bool slc_sparse_layers_share_tail(const SluiceImageInfo *info,
+                                  const VkSparseImageMemoryRequirements *color)
+{
+    return info->arrayLayerCount > 1 && has_driver_tail(info, color) &&
+           color->formatProperties.flags & VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
+}
+
 SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info,
                                     const VkMemoryRequirements *memory,
                                     const VkSparseImageMemoryRequirements *color,
@@ -68,9 +81,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
         SLC_TILE_SIZE % memory->alignment != 0 || memory->size > address_space_size)
         return SLUICE_ERROR_UNSUPPORTED;
 
-    bool shared = color->formatProperties.flags & VK_SPARSE_IMAGE_FORMAT_SINGLE_MIPTAIL_BIT;
-    bool has_tail = color->imageMipTailFirstLod < info->mipLevelCount && color->imageMipTailSize;
-    if (info->arrayLayerCount > 1 && has_tail && shared)
+    if (slc_sparse_layers_share_tail(info, color))
         return SLUICE_ERROR_UNSUPPORTED;
 
     *layout = (struct slc_sparse_layout){0};
@@ -80,7 +91,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     desc->mipLevelCount = info->mipLevelCount;
     desc->tileWidth = tile.width;
     desc->tileHeight = tile.height;
-    layout->opaque_tail = has_tail;
+    layout->opaque_tail = has_driver_tail(info, color);
     if (layout->opaque_tail) {
         uint64_t pages = (color->imageMipTailSize + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE;
         if (pages > SLUICE_MAX_TILES_PER_TEXTURE)

@@ -22,6 +22,10 @@ struct slc_sparse_layout {
 /** The extent of a tile in texels: the granularity, or what a driver means that counts blocks. */
 VkExtent3D slc_sparse_tile_extent(const SluiceFormatInfo *format, VkExtent3D granularity);
 
+/** Whether the layers of an array have but one mip tail, which cannot be bound layer by layer. */
+bool slc_sparse_layers_share_tail(const SluiceImageInfo *info,
+                                  const VkSparseImageMemoryRequirements *color);
+
 /**
  * The same for all layers of an array. `metadata` may be NULL. Errors: UNSUPPORTED if the driver's
  * tiles are not 64 KiB pages, the layers of an array share one tail, or the image is larger than

@@ -1,61 +1,54 @@
 /*
- * One workgroup: counts of segments become places of segments, and each item gets its place among
- * the results or, where the room ends, none. Each invocation takes a run of neighbours.
+ * One workgroup, as large as the device allows: counts of segments become places of segments, and
+ * each item gets its place among the results or, where the room ends, none. Neighbours take
+ * neighbours, all at once, then as many again.
  */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "resolve.glsl"
 
-#define GROUP SLUICE_RESOLVE_SCAN_GROUP_SIZE
-
-layout(local_size_x = GROUP) in;
+layout(local_size_x_id = 1) in;
 /* In: count and checksum per segment. Out: their sums over all segments before, one element more;
  * and per item where its data begins and its state. */
 layout(std430, binding = 3) coherent buffer Scratch { uvec2 sums[]; } scratch;
 /* Whole results, because each store may be a transfer to the host. */
 layout(std430, binding = 4) writeonly buffer Readback { uvec4 results[]; } readback;
 
-shared uvec2 sums[GROUP];
+const uint group = gl_WorkGroupSize.x;
+shared uvec2 sums[2u * group]; /* two, in turns: one barrier per step */
 
-/** The sum over all invocations before this one. */
-uvec2 sumBefore(uvec2 own)
+/** The sum over all invocations before this one; `total`: over all. */
+uvec2 sumBefore(uvec2 own, out uvec2 total)
 {
-    uint at = gl_LocalInvocationIndex;
-    barrier(); /* for the call before */
-    sums[at] = own;
+    uint at = gl_LocalInvocationIndex, from = 0u;
     uvec2 sum = own;
-    for (uint step = 1u; step < GROUP; step *= 2u) {
+    barrier(); /* for the call before */
+    sums[at] = sum;
+    for (uint step = 1u; step < group; step *= 2u) {
         barrier();
-        uvec2 left = at >= step ? sums[at - step] : uvec2(0u);
-        barrier();
-        sum += left;
-        sums[at] = sum;
+        sum += at >= step ? sums[from + at - step] : uvec2(0u);
+        from = group - from;
+        sums[from + at] = sum;
     }
+    barrier();
+    total = sums[from + group - 1u];
     return sum - own;
-}
-
-/** This invocation's run of `count` elements: first and end. */
-uvec2 ownRun(uint count)
-{
-    uint size = (count + GROUP - 1u) / GROUP;
-    return min(uvec2(gl_LocalInvocationIndex, gl_LocalInvocationIndex + 1u) * size, uvec2(count));
 }
 
 void scanSegments()
 {
-    uvec2 run = ownRun(params.segmentCount);
-    uvec2 sum = uvec2(0u);
-    for (uint i = run.x; i < run.y; i++)
-        sum += scratch.sums[i];
-    sum = sumBefore(sum);
-    for (uint i = run.x; i < run.y; i++) {
-        uvec2 own = scratch.sums[i];
-        scratch.sums[i] = sum;
-        sum += own;
+    uvec2 carry = uvec2(0u), total;
+    for (uint first = 0u; first < params.segmentCount; first += group) {
+        uint i = first + gl_LocalInvocationIndex;
+        bool inside = i < params.segmentCount;
+        uvec2 before = sumBefore(inside ? scratch.sums[i] : uvec2(0u), total);
+        if (inside)
+            scratch.sums[i] = carry + before;
+        carry += total;
     }
-    if (gl_LocalInvocationIndex == GROUP - 1u)
-        scratch.sums[params.segmentCount] = sum;
+    if (gl_LocalInvocationIndex == 0u)
+        scratch.sums[params.segmentCount] = carry;
 }
 
 /** Changes, or the whole map where that is smaller or asked for. `count`: words. */
@@ -72,24 +65,32 @@ SluiceResolveResult measure(uint index, out uint firstChange)
                                whole ? mapSize : sum.x, 0u, sum.y);
 }
 
+/** `at`: words of all items before. */
+void placeItem(uint index, SluiceResolveResult result, uint firstChange, uint at)
+{
+    result.offset = result.count > 0u ? at : 0u;
+    if (result.count > 0u && at + result.count > params.capacity)
+        result = SluiceResolveResult(SLUICE_RESOLVED_NOTHING, 0u, 0u, 0u);
+    readback.results[params.resultOffset / 4u + index] =
+        uvec4(result.state, result.count, result.offset, result.checksum);
+    /* so that write.comp only has to add a segment's place to it */
+    uint base = result.state == SLUICE_RESOLVED_CHANGES ? result.offset - firstChange : result.offset;
+    scratch.sums[params.scratchItem + index] = uvec2(base, result.state);
+}
+
 void placeItems()
 {
-    uvec2 run = ownRun(params.itemCount);
-    uint firstChange, size = 0u;
-    for (uint i = run.x; i < run.y; i++)
-        size += measure(i, firstChange).count;
-    uint at = sumBefore(uvec2(size, 0u)).x;
-    for (uint i = run.x; i < run.y; i++) {
-        SluiceResolveResult result = measure(i, firstChange);
-        result.offset = result.count > 0u ? at : 0u;
-        at += result.count;
-        if (result.count > 0u && at > params.capacity)
-            result = SluiceResolveResult(SLUICE_RESOLVED_NOTHING, 0u, 0u, 0u);
-        readback.results[params.resultOffset / 4u + i] =
-            uvec4(result.state, result.count, result.offset, result.checksum);
-        /* so that write.comp only has to add a segment's place to it */
-        uint base = result.state == SLUICE_RESOLVED_CHANGES ? result.offset - firstChange : result.offset;
-        scratch.sums[params.scratchItem + i] = uvec2(base, result.state);
+    uvec2 carry = uvec2(0u), total;
+    for (uint first = 0u; first < params.itemCount; first += group) {
+        uint i = first + gl_LocalInvocationIndex, firstChange = 0u;
+        bool inside = i < params.itemCount;
+        SluiceResolveResult result = SluiceResolveResult(0u, 0u, 0u, 0u);
+        if (inside)
+            result = measure(i, firstChange);
+        uvec2 before = sumBefore(uvec2(result.count, 0u), total);
+        if (inside)
+            placeItem(i, result, firstChange, carry.x + before.x);
+        carry += total;
     }
 }
 

@@ -8,13 +8,20 @@ layout(local_size_x = SLUICE_RESOLVE_GROUP_SIZE) in;
 layout(std430, binding = 3) readonly buffer Scratch { uvec2 sums[]; } scratch;
 layout(std430, binding = 4) writeonly buffer Readback { uint words[]; } readback;
 
-void writeChanges(SluiceQuad quad, uint region, uint at)
+shared uint changes[SLUICE_RESOLVE_SEGMENT_SIZE];
+
+/* Neighbours write neighbours: words that go to the host one by one are as slow as lines of them. */
+void writeChanges(SluiceQuad quad, uint region, uint to, uint count)
 {
     uvec4 levels = sluiceUnpackLevels(quad.levels);
     bvec4 changed = sluiceChanged(quad);
+    uint place = gl_LocalInvocationIndex, at = sluiceCountChangesBefore(place);
     for (uint i = 0u; i < 4u; i++)
         if (changed[i])
-            readback.words[at++] = region + i << 8 | levels[i];
+            changes[at++] = region + i << 8 | levels[i];
+    barrier();
+    for (uint i = place; i < count; i += SLUICE_RESOLVE_GROUP_SIZE)
+        readback.words[to + i] = changes[i];
 }
 
 void clear(SluiceQuad quad)
@@ -35,12 +42,11 @@ void main()
     if (item.y == SLUICE_RESOLVED_NOTHING)
         return;
     uint place = gl_LocalInvocationIndex;
-    uint first = scratch.sums[index].x;
+    uint first = scratch.sums[index].x, count = scratch.sums[index + 1u].x - first;
     SluiceQuad quad = sluiceLoadQuad(segment, place);
-    if (item.y == SLUICE_RESOLVED_CHANGES && scratch.sums[index + 1u].x != first) {
+    if (item.y == SLUICE_RESOLVED_CHANGES && count > 0u) {
         sluiceShareChanges(quad);
-        writeChanges(quad, segment.offset + place * 4u,
-                     params.dataOffset + item.x + first + sluiceCountChangesBefore(place));
+        writeChanges(quad, segment.offset + place * 4u, params.dataOffset + item.x + first, count);
     }
     if (place * 4u >= segment.regionCount)
         return;

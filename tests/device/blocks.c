@@ -118,11 +118,25 @@ static float bc6h_value(SluiceFormat format, uint32_t seed)
     return half_value((((q << 16) + 0x8000) >> 10) * 31 >> 6);
 }
 
-static void set_colour(uint32_t seed, float rgba[4])
+static void set_exact(struct block_range *range, uint32_t channel, float value)
 {
-    rgba[0] = (float)(seed & 31) / 31.0f;
-    rgba[1] = (float)(seed >> 8 & 63) / 63.0f;
-    rgba[2] = (float)(seed >> 16 & 31) / 31.0f;
+    range->low[channel] = range->high[channel] = value;
+}
+
+/* The fraction, or 8 bits that repeat the bits of the code: for 28 of 31, 231 of 255. */
+static void set_code(struct block_range *range, uint32_t channel, uint32_t code, uint32_t bits)
+{
+    float fraction = (float)code / (float)((1u << bits) - 1);
+    float widened = (float)(code << (8 - bits) | code >> (2 * bits - 8)) / 255.0f;
+    range->low[channel] = fminf(fraction, widened);
+    range->high[channel] = fmaxf(fraction, widened);
+}
+
+static void set_colour(uint32_t seed, struct block_range *range)
+{
+    set_code(range, 0, seed & 31, 5);
+    set_code(range, 1, seed >> 8 & 63, 6);
+    set_code(range, 2, seed >> 16 & 31, 5);
 }
 
 static float decode_srgb(float c)
@@ -130,31 +144,52 @@ static float decode_srgb(float c)
     return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
 }
 
-void block_texel(SluiceFormat format, uint32_t level, uint32_t x, uint32_t y, float rgba[4])
+static void decode_range(struct block_range *range)
+{
+    const float half = 0.5f / 255.0f;
+    for (uint32_t c = 0; c < 3; c++) {
+        range->low[c] = decode_srgb(fmaxf(range->low[c] - half, 0));
+        range->high[c] = decode_srgb(fminf(range->high[c] + half, 1));
+    }
+}
+
+static void set_bc1_to_3(SluiceFormat format, uint32_t seed, struct block_range *range)
+{
+    set_colour(seed, range);
+    if (format >= SLUICE_FORMAT_BC3_UNORM_BLOCK)
+        set_exact(range, 3, (float)(seed >> 24) / 255.0f);
+    else if (format >= SLUICE_FORMAT_BC2_UNORM_BLOCK)
+        set_code(range, 3, seed >> 24 & 15, 4);
+}
+
+/* Half a step of a 16-bit float near 1, which a decoder may hand on: an eighth of a code's step. */
+#define ROUNDING (1.0f / 2048)
+
+struct block_range block_texel(SluiceFormat format, uint32_t level, uint32_t x, uint32_t y)
 {
     uint32_t seed = seed_of(level, x, y);
     float one = is_signed(format) ? 127.0f : 255.0f;
-    rgba[0] = rgba[1] = rgba[2] = 0.0f;
-    rgba[3] = 1.0f;
+    struct block_range range = {{0, 0, 0, 1}, {0, 0, 0, 1}};
     if (format <= SLUICE_FORMAT_BC3_SRGB_BLOCK) {
-        set_colour(seed, rgba);
-        if (format >= SLUICE_FORMAT_BC2_UNORM_BLOCK)
-            rgba[3] = format <= SLUICE_FORMAT_BC2_SRGB_BLOCK ? (float)(seed >> 24 & 15) / 15.0f
-                                                             : (float)(seed >> 24) / 255.0f;
+        set_bc1_to_3(format, seed, &range);
     } else if (format <= SLUICE_FORMAT_BC5_SNORM_BLOCK) {
-        rgba[0] = (float)channel_value(format, seed) / one;
+        set_exact(&range, 0, (float)channel_value(format, seed) / one);
         if (format >= SLUICE_FORMAT_BC5_UNORM_BLOCK)
-            rgba[1] = (float)channel_value(format, seed >> 8) / one;
+            set_exact(&range, 1, (float)channel_value(format, seed >> 8) / one);
     } else if (format <= SLUICE_FORMAT_BC6H_SFLOAT_BLOCK) {
         for (uint32_t c = 0; c < 3; c++)
-            rgba[c] = bc6h_value(format, seed >> (8 * c));
+            set_exact(&range, c, bc6h_value(format, seed >> (8 * c)));
     } else {
         for (uint32_t c = 0; c < 4; c++)
-            rgba[c] = (float)((seed >> (8 * c) & 127) * 2 + 1) / 255.0f;
+            set_exact(&range, c, (float)((seed >> (8 * c) & 127) * 2 + 1) / 255.0f);
     }
     if (strstr(sluiceFormatString(format), "SRGB"))
-        for (uint32_t c = 0; c < 3; c++)
-            rgba[c] = decode_srgb(rgba[c]);
+        decode_range(&range);
+    for (uint32_t c = 0; c < 4; c++) {
+        range.low[c] -= ROUNDING * fmaxf(1, range.low[c]);
+        range.high[c] += ROUNDING * fmaxf(1, range.high[c]);
+    }
+    return range;
 }
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)

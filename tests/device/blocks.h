@@ -7,10 +7,13 @@
 /** A source whose texels are block_texel's. `format` is a BLOCK one. */
 SluiceImageSource *block_source(uint32_t width, uint32_t height, SluiceFormat format);
 
-/** What a decoder makes of a texel, with linear colour. */
-void block_texel(SluiceFormat format, uint32_t level, uint32_t x, uint32_t y, float rgba[4]);
-
-/** Decoders may expand endpoints to 8 bits only. */
-#define BLOCK_TOLERANCE 0.006f
+/**
+ * What decoders may make of a texel, with linear colour: endpoints as fractions or widened to 8
+ * bits first, sRGB decoded to within half a step of its 8 bits.
+ */
+struct block_range {
+    float low[4], high[4];
+};
+struct block_range block_texel(SluiceFormat format, uint32_t level, uint32_t x, uint32_t y);
 
 #endif /* TESTS_DEVICE_BLOCKS_H */

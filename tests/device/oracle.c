@@ -8,6 +8,7 @@
 /* What docs/feedback.md promises not to exceed. */
 #define LOD_MARGIN 0.125
 #define LOD_MARGIN_ANISOTROPIC 0.1875
+#define LOD_MARGIN_COARSER 0.125
 #define TEXEL_MARGIN 0.0625
 #define FLOAT_ERROR 2e-3
 #define STEPS 33 /* along an anisotropic footprint */
@@ -66,25 +67,46 @@ static double lod_of(double major, double minor, double anisotropy, double bias)
     return log2(fmax(minor, major / anisotropy)) + bias;
 }
 
+/* In texels per pixel. */
+struct derivatives {
+    double ax, ay, bx, by;
+};
+
+static struct derivatives derivatives_of(const struct SluiceTextureEntry *e,
+                                         const struct ConformInput *in)
+{
+    return (struct derivatives){(double)in->dx[0] * e->width, (double)in->dx[1] * e->height,
+                                (double)in->dy[0] * e->width, (double)in->dy[1] * e->height};
+}
+
+/* Singular values: their squares sum up to a2 + b2, their product is the determinant. */
+static double major_axis(struct derivatives d)
+{
+    double sum = d.ax * d.ax + d.ay * d.ay + d.bx * d.bx + d.by * d.by;
+    double area = d.ax * d.by - d.ay * d.bx;
+    return sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
+}
+
+static double minor_axis(struct derivatives d)
+{
+    double major = major_axis(d);
+    return major > 0 ? fabs(d.ax * d.by - d.ay * d.bx) / major : 0;
+}
+
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in)
 {
     if (!is_finite_input(in))
-        return (struct oracle_lod){NAN, NAN, NAN};
+        return (struct oracle_lod){NAN, NAN, NAN, NAN, NAN};
     if (in->mode == CONFORM_LOD)
-        return (struct oracle_lod){in->lod, in->lod, in->lod};
-    double ax = (double)in->dx[0] * entry->width, ay = (double)in->dx[1] * entry->height;
-    double bx = (double)in->dy[0] * entry->width, by = (double)in->dy[1] * entry->height;
-    double a = hypot(ax, ay), b = hypot(bx, by), n = anisotropy_of(in), bias = in->lodBias;
-    double isotropic = lod_of(fmax(a, b), 0, 1, bias);
-    if (n == 1)
-        return (struct oracle_lod){isotropic, isotropic, isotropic};
-    struct oracle_lod lod = {.lengths = lod_of(fmax(a, b), fmin(a, b), n, bias),
-                             .isotropic = isotropic};
-    /* singular values: their squares sum up to a2 + b2, their product is the determinant */
-    double sum = a * a + b * b, area = fabs(ax * by - ay * bx);
-    double major = sqrt(0.5 * (sum + sqrt(fmax(sum * sum - 4 * area * area, 0))));
-    lod.finest = lod_of(fmax(a, b), major > 0 ? area / major : 0, n, bias);
-    return lod;
+        return (struct oracle_lod){in->lod, in->lod, in->lod, in->lod, in->lod};
+    struct derivatives d = derivatives_of(entry, in);
+    double a = hypot(d.ax, d.ay), b = hypot(d.bx, d.by), n = anisotropy_of(in), bias = in->lodBias;
+    double longer = fmax(a, b), shorter = fmin(a, b), major = major_axis(d), minor = minor_axis(d);
+    return (struct oracle_lod){.lengths = lod_of(longer, shorter, n, bias),
+                               .ellipse = lod_of(major, minor, n, bias),
+                               .finest = lod_of(longer, minor, n, bias),
+                               .coarsest = lod_of(major, shorter, n, bias),
+                               .isotropic = lod_of(major, 0, 1, bias)};
 }
 
 static double clamp(double x, double low, double high)
@@ -153,6 +175,22 @@ static void require_tap(struct oracle_tiles *t, uint32_t level, double u, double
             *oracle_tile(t, level, xs[x], ys[y]) = true;
 }
 
+/* Along which an anisotropic footprint lies, in uv. */
+static void footprint_axis(const struct SluiceTextureEntry *e, const struct ConformInput *in,
+                           bool by_ellipse, double axis[2])
+{
+    struct derivatives d = derivatives_of(e, in);
+    const float *longer = hypot(d.ax, d.ay) >= hypot(d.bx, d.by) ? in->dx : in->dy;
+    axis[0] = (double)longer[0];
+    axis[1] = (double)longer[1];
+    if (!by_ellipse)
+        return;
+    double angle = 0.5 * atan2(2 * (d.ax * d.ay + d.bx * d.by),
+                               d.ax * d.ax + d.bx * d.bx - d.ay * d.ay - d.by * d.by);
+    axis[0] = major_axis(d) * cos(angle) / e->width;
+    axis[1] = major_axis(d) * sin(angle) / e->height;
+}
+
 static void require_level(struct oracle_tiles *t, uint32_t level, const struct ConformInput *in,
                           struct oracle_filter filter)
 {
@@ -163,13 +201,11 @@ static void require_level(struct oracle_tiles *t, uint32_t level, const struct C
         require_tap(t, level, u, v, filter);
         return;
     }
-    double a = hypot((double)in->dx[0] * e->width, (double)in->dx[1] * e->height);
-    double b = hypot((double)in->dy[0] * e->width, (double)in->dy[1] * e->height);
-    const float *axis = a >= b ? in->dx : in->dy;
-    double scale = filter.bias_scales ? exp2(in->lodBias) : 1;
+    double axis[2], scale = filter.bias_scales ? exp2(in->lodBias) : 1;
+    footprint_axis(e, in, filter.by_ellipse, axis);
     for (int i = 0; i < STEPS; i++) {
         double at = scale * ((double)i / (STEPS - 1) - 0.5);
-        require_tap(t, level, u + at * (double)axis[0], v + at * (double)axis[1], filter);
+        require_tap(t, level, u + at * axis[0], v + at * axis[1], filter);
     }
 }
 
@@ -177,7 +213,8 @@ void oracle_require(struct oracle_tiles *t, const struct ConformInput *in,
                     struct oracle_filter filter)
 {
     double last = t->entry.mipLevelCount - 1;
-    double lod = oracle_lod(&t->entry, in).lengths;
+    struct oracle_lod lods = oracle_lod(&t->entry, in);
+    double lod = filter.by_ellipse ? lods.ellipse : lods.lengths;
     if (isnan(lod))
         return; /* a sample of nothing known needs nothing */
     lod = clamp(lod + filter.lod_offset, 0, last);
@@ -305,7 +342,10 @@ void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
     if (anisotropy_of(in) > 1)
         for (int i = 0; i < 2; i++)
             box[i] = 0.5 * hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
-    allow_box(a->x, a->y, e, in, box, coarser_level(lod.lengths + FLOAT_ERROR, last));
+    double coarser = in->mode == CONFORM_LOD ? 0 : LOD_MARGIN_COARSER;
+    lod.coarsest += coarser;
+    lod.isotropic += coarser;
+    allow_box(a->x, a->y, e, in, box, coarser_level(lod.coarsest + FLOAT_ERROR, last));
     allow_box(a->wide_x, a->wide_y, e, in, box, coarser_level(lod.isotropic + FLOAT_ERROR, last));
-    a->wide_level = coarser_level(lod.lengths - FLOAT_ERROR, last) + 1;
+    a->wide_level = coarser_level(lod.coarsest - FLOAT_ERROR, last) + 1;
 }

@@ -27,13 +27,15 @@ void oracle_tiles_init(struct oracle_tiles *t, const struct SluiceTextureEntry *
 bool *oracle_tile(struct oracle_tiles *t, uint32_t level, uint32_t x, uint32_t y);
 
 /**
- * Levels of detail that a device may choose: Vulkan's, by the lengths of the derivatives; and the
- * finest, where some devices take the ellipse that the derivatives span, which is narrower than
- * either is short. -INFINITY for no derivatives, NAN where an argument is not finite.
+ * Levels of detail that a device may choose: Vulkan's, by the lengths of the derivatives, or by the
+ * axes of the ellipse that they span, which is narrower than either is short and longer than either
+ * is long; and the finest and the coarsest that come of mixing both. -INFINITY for no derivatives,
+ * NAN where an argument is not finite.
  */
 struct oracle_lod {
-    double lengths, finest;
-    double isotropic; ///< by the longer derivative, whatever the anisotropy: the coarsest
+    double lengths, ellipse;
+    double finest, coarsest;
+    double isotropic; ///< by the longer axis, whatever the anisotropy: the coarsest of all
 };
 struct oracle_lod oracle_lod(const struct SluiceTextureEntry *entry, const struct ConformInput *in);
 
@@ -44,6 +46,7 @@ struct oracle_filter {
     double lod_offset;  ///< added to the level of detail
     double lod_quantum; ///< a fraction below it shows no second level
     bool bias_scales;   ///< a LOD bias makes an anisotropic footprint longer or shorter
+    bool by_ellipse;    ///< level and footprint follow the ellipse, not the lengths
 };
 
 /** Adds the tiles of the texels that a sample reads. */

@@ -5,6 +5,7 @@
 #include "picture_codes_frag.h"
 #include "picture_frag.h"
 #include "picture_query_frag.h"
+#include "picture_query_late_frag.h"
 #include "picture_vert.h"
 
 static VkShaderModule module(struct harness *h, const uint32_t *code, size_t size)
@@ -34,10 +35,23 @@ static void create_target(struct painter *p)
                      VK_SUCCESS);
 }
 
-static void create_pipeline(struct painter *p, bool query)
+static VkShaderModule fragment_module(struct painter *p, enum painter_feedback feedback)
 {
     struct harness *h = p->prober->h;
-    bool codes = p->prober->codes;
+    switch (feedback) {
+    case PAINTER_QUERY: return module(h, picture_query_frag, sizeof picture_query_frag);
+    case PAINTER_QUERY_LATE:
+        return module(h, picture_query_late_frag, sizeof picture_query_late_frag);
+    case PAINTER_COMPUTE: break;
+    }
+    if (p->prober->codes)
+        return module(h, picture_codes_frag, sizeof picture_codes_frag);
+    return module(h, picture_frag, sizeof picture_frag);
+}
+
+static void create_pipeline(struct painter *p, enum painter_feedback feedback)
+{
+    struct harness *h = p->prober->h;
     struct prober_specialization specialization;
     const VkSpecializationInfo *constants = prober_specialize(p->prober, &specialization);
     VkPipelineShaderStageCreateInfo stages[2] = {
@@ -47,9 +61,7 @@ static void create_pipeline(struct painter *p, bool query)
          .pName = "main"},
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-         .module = query   ? module(h, picture_query_frag, sizeof picture_query_frag)
-                   : codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
-                           : module(h, picture_frag, sizeof picture_frag),
+         .module = fragment_module(p, feedback),
          .pName = "main",
          .pSpecializationInfo = constants}};
     VkPipelineVertexInputStateCreateInfo input = {
@@ -87,21 +99,17 @@ static void create_pipeline(struct painter *p, bool query)
     h->DestroyShaderModule(h->device, stages[1].module, NULL);
 }
 
-static void init(struct painter *p, struct prober *prober, struct probe_texture texture, bool query)
+void painter_init_as(struct painter *p, struct prober *prober, struct probe_texture texture,
+                     enum painter_feedback feedback)
 {
     *p = (struct painter){.prober = prober, .texture = texture};
     create_target(p);
-    create_pipeline(p, query);
+    create_pipeline(p, feedback);
 }
 
 void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture)
 {
-    init(p, prober, texture, false);
-}
-
-void painter_init_query(struct painter *p, struct prober *prober, struct probe_texture texture)
-{
-    init(p, prober, texture, true);
+    painter_init_as(p, prober, texture, PAINTER_COMPUTE);
 }
 
 void painter_finish(struct painter *p)

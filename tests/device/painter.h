@@ -14,9 +14,16 @@ struct painter {
     bool lattice;
 };
 
+/** Where the feedback has its level from. */
+enum painter_feedback {
+    PAINTER_COMPUTE,    ///< the formula
+    PAINTER_QUERY,      ///< textureQueryLod before all else
+    PAINTER_QUERY_LATE, ///< textureQueryLod behind branches
+};
+
 void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture);
-/** The same, but the feedback is what textureQueryLod says. */
-void painter_init_query(struct painter *p, struct prober *prober, struct probe_texture texture);
+void painter_init_as(struct painter *p, struct prober *prober, struct probe_texture texture,
+                     enum painter_feedback feedback);
 void painter_finish(struct painter *p);
 
 /** For harness_frame; user is the painter. */

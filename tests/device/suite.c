@@ -46,11 +46,12 @@ void suite_describe(const struct conform_sample *sample, const char *what, uint3
     const struct ConformInput *in = &sample->in;
     struct oracle_lod lod = oracle_lod(e, in);
     fail_msg("%s: level %u (%u, %u) of %ux%u in regions of %ux%u, mode %u; uv %.9g %.9g dx %g %g "
-             "dy %g %g bias %g anisotropy %g lod %g as %u; %g by lengths, %g at the finest",
+             "dy %g %g bias %g anisotropy %g lod %g as %u; %g by lengths, %g to %g",
              what, level, x, y, e->width, e->height, e->regionWidth, e->regionHeight,
              e->addressModeU, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
              (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
-             (double)in->maxAnisotropy, (double)in->lod, in->mode, lod.lengths, lod.finest);
+             (double)in->maxAnisotropy, (double)in->lod, in->mode, lod.lengths, lod.finest,
+             lod.coarsest);
 }
 
 static void check_allowed(struct suite *s, const struct conform_sample *sample, const uint32_t *map)

@@ -202,10 +202,10 @@ static void anisotropic_footprints_that_grow_with_a_bias_find_their_tiles(void *
     suite_end(s, "anisotropic_bias_scaled");
 }
 
-/* Derivatives that are nearly parallel: the ellipse is narrow, the lengths say it is wide. */
-static void skewed_footprints_find_their_tiles_by_either_rule(void **state)
+/* Derivatives that are nearly parallel: the ellipse is narrow and long, the lengths say it is wide.
+ */
+static void add_skewed(struct suite *s)
 {
-    struct suite *s = suite_begin(*state);
     srand(71);
     for (uint32_t i = 0; i < 8192; i++) {
         struct SluiceTextureEntry e = conform_entry(512, 512, 64, 64, suite_modes[i % SUITE_MODES]);
@@ -215,12 +215,35 @@ static void skewed_footprints_find_their_tiles_by_either_rule(void **state)
             .dx = {(float)(cos(angle) * length), (float)(sin(angle) * length)},
             .dy = {(float)(cos(angle + turn) * length * ratio),
                    (float)(sin(angle + turn) * length * ratio)},
-            .maxAnisotropy = (float)(2 << rand() % 4)};
+            .maxAnisotropy = (float)(1 << rand() % 5)};
         double border = 64.0 * (rand() % 9) / 512,
                away = 3 * length * (2.0 * rand() / RAND_MAX - 1);
         suite_add(s, e, in, border + away, (double)rand() / RAND_MAX);
     }
+}
+
+static void skewed_footprints_find_their_tiles_by_the_lengths(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    add_skewed(s);
     suite_end(s, "skewed");
+}
+
+static void skewed_footprints_find_their_tiles_by_the_ellipse(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    s->filter.by_ellipse = true;
+    add_skewed(s);
+    suite_end(s, "skewed_ellipse");
+}
+
+static void samplers_a_little_coarser_find_their_tiles_by_the_ellipse(void **state)
+{
+    struct suite *s = suite_begin(*state);
+    s->filter.by_ellipse = true;
+    s->filter.lod_offset = 0.12;
+    add_skewed(s);
+    suite_end(s, "skewed_coarser");
 }
 
 /* Without derivatives the sample is of level 0; with large ones of the last, which is one texel. */
@@ -376,7 +399,9 @@ int main(void)
         cmocka_unit_test(biases_at_both_ends_of_the_chain_are_clamped),
         cmocka_unit_test(anisotropic_footprints_with_a_bias_find_their_tiles),
         cmocka_unit_test(anisotropic_footprints_that_grow_with_a_bias_find_their_tiles),
-        cmocka_unit_test(skewed_footprints_find_their_tiles_by_either_rule),
+        cmocka_unit_test(skewed_footprints_find_their_tiles_by_the_lengths),
+        cmocka_unit_test(skewed_footprints_find_their_tiles_by_the_ellipse),
+        cmocka_unit_test(samplers_a_little_coarser_find_their_tiles_by_the_ellipse),
         cmocka_unit_test(levels_beyond_the_chain_are_its_ends),
         cmocka_unit_test(sizes_that_do_not_halve_evenly_find_their_tiles),
         cmocka_unit_test(level_1_of_odd_sizes_finds_its_tiles_at_every_border),

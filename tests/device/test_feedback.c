@@ -89,13 +89,13 @@ static void random_input(struct ProbeInput *in, const struct SluiceTextureEntry 
 }
 
 static struct slc_twin_wants twin_of(const struct SluiceTextureEntry *e,
-                                     const struct ProbeInput *in, float *lod)
+                                     const struct ProbeInput *in, struct slc_twin_vec2 *lods)
 {
     struct slc_twin_vec2 uv = {in->uv[0], in->uv[1]}, dx = {in->dx[0], in->dx[1]};
     struct slc_twin_vec2 dy = {in->dy[0], in->dy[1]};
     struct slc_twin_vec2 tx = {dx.x * (float)e->width, dx.y * (float)e->height};
     struct slc_twin_vec2 ty = {dy.x * (float)e->width, dy.y * (float)e->height};
-    *lod = slc_twin_compute_lod(tx, ty, in->lodBias, in->maxAnisotropy);
+    *lods = slc_twin_compute_lods(tx, ty, in->lodBias, in->maxAnisotropy);
     return slc_twin_wants(e, uv, dx, dy, in->lodBias, in->maxAnisotropy);
 }
 
@@ -108,13 +108,14 @@ static bool is_close_to_a_step(float x)
 static void check_finite_twin(const struct SluiceTextureEntry *e, const struct ProbeInput *in,
                               const struct ProbeOutput *out, uint32_t *compared)
 {
-    float lod;
-    struct slc_twin_wants wants = twin_of(e, in, &lod);
-    assert_float_equal(out->lod, lod, 2e-3f);
-    if (is_close_to_a_step(lod) || is_close_to_a_step(lod - slc_twin_lod_margin(in->maxAnisotropy)))
+    struct slc_twin_vec2 lods;
+    struct slc_twin_wants wants = twin_of(e, in, &lods);
+    assert_float_equal(out->lod, lods.x, 2e-3f);
+    if (is_close_to_a_step(lods.y) ||
+        is_close_to_a_step(lods.x - slc_twin_lod_margin(in->maxAnisotropy)))
         return;
     assert_int_equal(out->wantedLevel, wants.level);
-    assert_int_equal(out->level, slc_twin_coarsest_level(lod, e->mipLevelCount));
+    assert_int_equal(out->level, slc_twin_coarsest_level(lods.y, e->mipLevelCount));
     /* an index may differ by one where an end of the box is on a border */
     for (int i = 0; i < 3; i++) {
         *compared += out->footprint[i] == wants.regions.x[i];
@@ -251,9 +252,9 @@ static bool is_asked_for(const struct ProbeOutput *marked, const struct SluiceTe
 static void check_required(const struct ProbeOutput *marked, const struct SluiceTextureEntry *e,
                            const struct ProbeInput *in)
 {
-    float lod;
-    twin_of(e, in, &lod);
-    uint32_t level = (uint32_t)slc_twin_clamp(lod, 0, (float)(e->mipLevelCount - 1));
+    struct slc_twin_vec2 lods;
+    twin_of(e, in, &lods);
+    uint32_t level = (uint32_t)slc_twin_clamp(lods.x, 0, (float)(e->mipLevelCount - 1));
     if (level >= e->regularMipCount)
         return; /* packed levels are always wanted */
     int64_t x = texel_of(in->uv[0], slc_mip_size(e->width, level), e->addressModeU);
@@ -273,11 +274,11 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
     memset(allowed, SLUICE_MIP_UNTOUCHED, sizeof allowed);
     for (uint32_t i = 0; i < count; i++) {
         const struct ProbeInput *in = &prober_inputs(&scene->prober)[i];
-        float lod;
-        struct slc_twin_wants wants = twin_of(&e, in, &lod);
+        struct slc_twin_vec2 lods;
+        struct slc_twin_wants wants = twin_of(&e, in, &lods);
         /* rounding may go one level or one texel further than the twin */
         float margin = slc_twin_lod_margin(in->maxAnisotropy) + 2e-3f;
-        wants.level = slc_twin_finest_level(lod, margin, e.mipLevelCount);
+        wants.level = slc_twin_finest_level(lods.x, margin, e.mipLevelCount);
         struct slc_twin_vec2 axis = slc_twin_half_box((struct slc_twin_vec2){in->dx[0], in->dx[1]},
                                                       (struct slc_twin_vec2){in->dy[0], in->dy[1]},
                                                       in->lodBias, in->maxAnisotropy);
@@ -285,10 +286,10 @@ static void check_map(struct scene *scene, uint32_t t, uint32_t count)
         axis.y = fabsf(axis.y) + 0.01f / (float)e.height;
         wants.regions =
             slc_twin_compute_footprint(&e, (struct slc_twin_vec2){in->uv[0], in->uv[1]}, axis,
-                                       slc_twin_coarsest_level(lod + 2e-3f, e.mipLevelCount));
+                                       slc_twin_coarsest_level(lods.y + 2e-3f, e.mipLevelCount));
         paint(allowed, &e, &wants.regions, wants.level);
-        wants = twin_of(&e, in, &lod);
-        paint(allowed, &e, &wants.regions, slc_twin_finest_level(lod, margin, e.mipLevelCount));
+        wants = twin_of(&e, in, &lods);
+        paint(allowed, &e, &wants.regions, slc_twin_finest_level(lods.x, margin, e.mipLevelCount));
         if (wants.wide_level != UINT32_MAX)
             paint(allowed, &e, &wants.wide_regions, wants.wide_level);
     }

@@ -15,7 +15,7 @@ struct result {
     uint64_t tiles;
 };
 
-enum way { EVERYTHING, COMPUTED, QUERIED };
+enum way { EVERYTHING, COMPUTED, QUERIED, QUERIED_LATE };
 
 /* A floor, until each pixel had its turn to write. */
 static void draw(struct harness *h, enum way way, uint32_t width, uint32_t height, float anisotropy,
@@ -30,10 +30,10 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, anisotropy,
         SLUICE_NO_TEXTURE);
     struct painter painter;
-    if (way == QUERIED)
-        painter_init_query(&painter, &scene.prober, scene.textures[t].probe);
-    else
-        painter_init(&painter, &scene.prober, scene.textures[t].probe);
+    painter_init_as(&painter, &scene.prober, scene.textures[t].probe,
+                    way == QUERIED        ? PAINTER_QUERY
+                    : way == QUERIED_LATE ? PAINTER_QUERY_LATE
+                                          : PAINTER_COMPUTE);
     painter.lattice = true;
     prober_inputs(&scene.prober)[0] = (struct ProbeInput){
         .uv = {0.2f, 0.1f}, .dx = {0.3f, 0.01f}, .lodBias = bias, .maxAnisotropy = anisotropy};
@@ -51,12 +51,13 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
  * A sample that has exactly the levels it touches is clamped where the computed level lies up to
  * its margin below the device's, so the picture may be that much coarser, and never finer.
  */
-static void check(struct harness *h, uint32_t width, uint32_t height, float anisotropy, float bias)
+static void check(struct harness *h, uint32_t width, uint32_t height, float anisotropy, float bias,
+                  enum way way)
 {
     static struct result truth, computed, queried;
     draw(h, EVERYTHING, width, height, anisotropy, bias, &truth);
     draw(h, COMPUTED, width, height, anisotropy, bias, &computed);
-    draw(h, QUERIED, width, height, anisotropy, bias, &queried);
+    draw(h, way, width, height, anisotropy, bias, &queried);
     const float margin = anisotropy > 1 ? 0.1875f : 0.125f;
     uint32_t different = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -76,8 +77,14 @@ static void check(struct harness *h, uint32_t width, uint32_t height, float anis
 
 static void queried_feedback_is_enough_for_a_trilinear_picture(void **state)
 {
-    check(*state, 2048, 2048, 1, 0);
-    check(*state, 1500, 1999, 1, -0.5f);
+    check(*state, 2048, 2048, 1, 0, QUERIED);
+    check(*state, 1500, 1999, 1, -0.5f, QUERIED);
+}
+
+/* In uniform control flow all the same, so the device still has all of each quad. */
+static void a_query_behind_branches_is_enough_for_a_trilinear_picture(void **state)
+{
+    check(*state, 2048, 2048, 1, 0, QUERIED_LATE);
 }
 
 static void queried_feedback_is_enough_for_an_anisotropic_picture(void **state)
@@ -85,7 +92,7 @@ static void queried_feedback_is_enough_for_an_anisotropic_picture(void **state)
     struct harness *h = *state;
     if (!h->anisotropy)
         SKIP_TEST("the device has no anisotropic filtering");
-    check(h, 2048, 2048, 8, 0);
+    check(h, 2048, 2048, 8, 0, QUERIED);
 }
 
 int main(void)
@@ -96,6 +103,7 @@ int main(void)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(queried_feedback_is_enough_for_a_trilinear_picture),
+        cmocka_unit_test(a_query_behind_branches_is_enough_for_a_trilinear_picture),
         cmocka_unit_test(queried_feedback_is_enough_for_an_anisotropic_picture),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

@@ -22,7 +22,7 @@ struct look {
     double skew;               /* of u per row */
     double farther;            /* growth of `across` from the first row to the last, 0: none */
     double texels_x, texels_y; /* instead of across and down: texels of level 0 per pixel */
-    bool magnified;
+    bool magnified, skewed;
 };
 
 struct picture_case {
@@ -64,11 +64,19 @@ static void aim(struct session *s, const struct picture_case *c, const struct lo
         }
 }
 
+#define MAX_LOOKS 5u
+
+struct pictures {
+    struct ProbeOutput pixels[MAX_LOOKS * PIXELS];
+    uint32_t packed_level; ///< this level and all coarser ones are always resident
+};
+
 /* All of the looks in turn, each into a picture. The first pixels of each write feedback. */
 static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct picture_case *c,
                     enum pattern_kind kind, const struct look *looks, uint32_t look_count,
-                    uint32_t feedback_count, struct ProbeOutput *pictures)
+                    uint32_t feedback_count, struct pictures *out)
 {
+    struct ProbeOutput *pictures = out->pixels;
     struct session s = {.feedback_count = feedback_count};
     scene_init(&s.scene, h,
                (SluiceVulkanStreamerCreateInfo){.residencyMode = mode, .feedbackTimeout = 1000});
@@ -83,21 +91,47 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
             assert_int_equal(picture[i].missingLevels, 0);
     }
     assert_int_equal(scene_non_resident(&s.scene), 0);
+    SluiceStreamedTextureLayout layout;
+    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(s.scene.streamer),
+                                    s.scene.textures[s.texture].texture.textureId, &layout));
+    out->packed_level = layout.desc.regularMipCount;
     scene_finish(&s.scene);
 }
 
-static double psnr(const struct ProbeOutput *a, const struct ProbeOutput *b)
+/*
+ * The same is resident, but for packed levels, which are always: a driver's mip tail may begin
+ * with a finer level than dense residency packs.
+ */
+static bool is_comparable(const struct ProbeOutput *a, uint32_t a_packed,
+                          const struct ProbeOutput *b, uint32_t b_packed)
 {
+    if (a->level == b->level)
+        return true;
+    bool packed = a->level < b->level ? a->level >= a_packed : b->level >= b_packed;
+    if (!packed)
+        fail_msg("level %u is sampled (packed from %u), not %u (packed from %u)", a->level,
+                 a_packed, b->level, b_packed);
+    return false;
+}
+
+static double psnr(const struct pictures *pictures, const struct pictures *truth, uint32_t look)
+{
+    const struct ProbeOutput *a = &pictures->pixels[(size_t)look * PIXELS];
+    const struct ProbeOutput *b = &truth->pixels[(size_t)look * PIXELS];
     double sum = 0;
+    uint32_t count = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
-        assert_int_equal(a[i].level, b[i].level); /* the same is resident */
+        if (!is_comparable(&a[i], pictures->packed_level, &b[i], truth->packed_level))
+            continue;
+        count++;
         for (uint32_t k = 0; k < 4; k++) {
             double d = (double)a[i].color[k] - (double)b[i].color[k];
             assert_true(isfinite(d));
             sum += d * d;
         }
     }
-    double mean = sum / (PIXELS * 4.0);
+    assert_true(count >= PIXELS / 4);
+    double mean = sum / (count * 4.0);
     return mean > 0 ? -10 * log10(mean) : 999;
 }
 
@@ -107,10 +141,11 @@ static const struct look looks[] = {
     {"corner of the texture, wrapped", 0.003, -0.05, .texels_x = 0.7, .texels_y = 0.8,
      .magnified = true},
     {"seam, magnified", 1.0, 0.999, .texels_x = 0.02, .texels_y = 0.02, .magnified = true},
-    {"whole, minified and skewed", 0.4, -0.3, 0.011, 0.013, .skew = 0.004},
+    {"whole, minified and skewed", 0.4, -0.3, 0.011, 0.013, .skew = 0.004, .skewed = true},
     {"floor", 0.3, 0.1, .texels_x = 0.6, .texels_y = 1.3, .farther = 7},
 };
 #define LOOKS (sizeof looks / sizeof looks[0])
+static_assert(LOOKS <= MAX_LOOKS, "pictures");
 
 static const struct picture_case cases[] = {
     {512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM, VK_SAMPLER_ADDRESS_MODE_REPEAT,
@@ -144,11 +179,14 @@ static uint32_t compare(struct harness *h, const struct picture_case *c, enum pa
                         const struct look *look, uint32_t look_count, uint32_t feedback_count,
                         const double *at_least)
 {
-    static struct ProbeOutput truth[LOOKS * PIXELS], pictures[LOOKS * PIXELS];
-    draw_in(h, SLUICE_RESIDENCY_MODE_DENSE, c, kind, look, look_count, feedback_count, truth);
-    draw_in(h, h->mode, c, kind, look, look_count, feedback_count, pictures);
+    static struct pictures truth, pictures;
+    draw_in(h, SLUICE_RESIDENCY_MODE_DENSE, c, kind, look, look_count, feedback_count, &truth);
+    draw_in(h, h->mode, c, kind, look, look_count, feedback_count, &pictures);
     for (uint32_t l = 0; l < look_count; l++) {
-        double db = psnr(&pictures[(size_t)l * PIXELS], &truth[(size_t)l * PIXELS]);
+        double db = psnr(&pictures, &truth, l);
+        fprintf(stderr, "# %s, %s, %ux%u %s: %.1f dB of %.0f\n",
+                kind == PATTERN_HASH ? "noise" : "waves", look[l].name, c->width, c->height,
+                sluiceFormatString(c->format), db, at_least[l]);
         if (db < at_least[l])
             fail_msg("%s, %s, %ux%u %s, modes %d %d, anisotropy %g, feedback of %u pixels: %.1f dB",
                      kind == PATTERN_HASH ? "noise" : "waves", look[l].name, c->width, c->height,
@@ -157,16 +195,32 @@ static uint32_t compare(struct harness *h, const struct picture_case *c, enum pa
     }
     uint32_t missing = 0;
     for (uint32_t i = 0; i < look_count * PIXELS; i++)
-        missing += pictures[i].missingLevels != 0;
+        missing += pictures.pixels[i].missingLevels != 0;
     return missing;
 }
 
-/* A device's levels may be 0.12 off the formula, which noise shows; a CPU's are not. */
-static bool levels_are_exact(struct harness *h)
+static bool is_cpu(struct harness *h)
 {
     VkPhysicalDeviceProperties properties;
     h->GetPhysicalDeviceProperties(h->physical_device, &properties);
     return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+
+/*
+ * In decibels. A GPU samples sparse images as others; lavapipe with floats in place of 8 bits.
+ * Pages are sampled at the formula's level, from which a GPU's own is up to 0.12 off, as noise
+ * shows, and up to half a level coarser where the derivatives are not at right angles
+ * (docs/drivers.md). No shader but a fragment shader can ask for it.
+ */
+static double least_psnr(struct harness *h, enum pattern_kind kind, const struct look *look)
+{
+    if (is_cpu(h))
+        return 45;
+    if (h->mode == SLUICE_RESIDENCY_MODE_SPARSE)
+        return 55;
+    if (look->magnified)
+        return 45;
+    return kind == PATTERN_HASH ? 25 : look->skewed ? 30 : 45;
 }
 
 static void settled_pictures_are_those_of_dense_residency(void **state)
@@ -174,8 +228,8 @@ static void settled_pictures_are_those_of_dense_residency(void **state)
     struct harness *h = *state;
     double noise[LOOKS], waves[LOOKS];
     for (size_t l = 0; l < LOOKS; l++) {
-        noise[l] = levels_are_exact(h) || looks[l].magnified ? 45 : 25;
-        waves[l] = 45;
+        noise[l] = least_psnr(h, PATTERN_HASH, &looks[l]);
+        waves[l] = least_psnr(h, PATTERN_WAVES, &looks[l]);
     }
     for (size_t c = 0; c < CASES; c++) {
         compare(h, &cases[c], PATTERN_HASH, looks, LOOKS, PIXELS, noise);
@@ -187,14 +241,13 @@ static void settled_pictures_are_those_of_dense_residency(void **state)
 static void half_resident_pictures_are_those_of_dense_residency(void **state)
 {
     struct harness *h = *state;
-    const double at_least = 45;
     uint32_t missing = 0;
     for (size_t c = 0; c < 3; c++)
-        for (size_t l = 0; l < LOOKS; l++)
-            missing +=
-                compare(h, &cases[c],
-                        levels_are_exact(h) || looks[l].magnified ? PATTERN_HASH : PATTERN_WAVES,
-                        &looks[l], 1, PIXELS / 2, &at_least);
+        for (size_t l = 0; l < LOOKS; l++) {
+            enum pattern_kind kind = is_cpu(h) || looks[l].magnified ? PATTERN_HASH : PATTERN_WAVES;
+            double at_least = least_psnr(h, kind, &looks[l]);
+            missing += compare(h, &cases[c], kind, &looks[l], 1, PIXELS / 2, &at_least);
+        }
     assert_true(missing > PIXELS / 4);
 }
 

@@ -78,7 +78,7 @@ void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float
         return;
     /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
     vec2 size = vec2(entry.width, entry.height);
-    uint widest = sluiceCoarsestLevel(sluiceComputeLod(dx * size, dy * size, lodBias, 1.0),
+    uint widest = sluiceCoarsestLevel(sluiceComputeLods(dx * size, dy * size, lodBias, 1.0).y,
                                       entry.mipLevelCount);
     if (widest > coarsest)
         sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, widest),
@@ -122,42 +122,65 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
 #define SLUICE_QUERY_MARGIN (1.0 / 256.0)
 
 /**
- * The same with the level that the device itself says it will take, for comparison: it needs no
- * margin for other formulas, but a texture and derivatives, so that it costs every pixel what
- * sluiceWriteFeedback costs the selected ones. Fragment shaders only, in uniform control flow, with
- * `selected` in place of a branch around it. `tex` must be the whole texture that is streamed, with
- * the sampler that it is sampled with. In paged residency no device takes the level: there it is the
- * computed one. Define SLUICE_FEEDBACK_QUERY to have it.
+ * The level that the device itself says it will take, for sluiceWriteFeedbackQueried: neither
+ * clamped nor rounded. Fragment shaders only, in uniform control flow, and best before any branch.
+ *
+ * Where the pixels of a quad disagree the finest of a pixel and its two neighbours counts. Mostly
+ * they agree, and the differences are there for compilers: a query that only a branch uses must not
+ * be moved into that branch, where the neighbours are missing.
+ */
+float sluiceQueryLod(sampler2D tex, vec2 uv)
+{
+    float lod = textureQueryLod(tex, uv).y;
+    float spread = abs(dFdxFine(lod)) + abs(dFdyFine(lod));
+    return spread > 0.0 ? lod - spread : lod; /* NaN stays what it is in this pixel alone */
+}
+
+/**
+ * The same as sluiceWriteFeedback with the level that the device itself says it will take, for
+ * comparison: it needs no margin for other formulas, but a texture and derivatives, so that it costs
+ * every pixel what sluiceWriteFeedback costs the selected ones. `lod` is what sluiceQueryLod
+ * said before the pixel was selected, with the whole texture that is streamed and the sampler that
+ * it is sampled with. In paged residency no device takes the level: there it is the computed one.
+ * Define SLUICE_FEEDBACK_QUERY to have it.
  *
  * With anisotropy the finer of this level and the computed one counts: where derivatives exceed
  * maxAnisotropy, a widely used driver names levels half of its logarithm coarser than it samples.
  */
-void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
-                              float maxAnisotropy, bool selected)
+void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                                float maxAnisotropy)
 {
-    float lod = textureQueryLod(tex, uv).y; /* neither clamped nor rounded */
-    vec2 dx = dFdx(uv), dy = dFdy(uv);
-    if (!selected || !sluiceTakesPart(tableIndex))
-        return;
 #ifdef SLUICE_PAGED
     if (SLUICE_PAGED) {
         sluiceWriteFeedback(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
         return;
     }
 #endif
+    if (!sluiceTakesPart(tableIndex))
+        return;
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);
     vec2 lods = sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
     bool known = lod == lod && sluiceIsFinite(uv);
     lod = known ? sluiceClampLod(lod + sluiceClampLodBias(lodBias)) : SLUICE_LOD_LIMIT;
-    float finest = lod - SLUICE_QUERY_MARGIN, widest = lod + SLUICE_QUERY_MARGIN;
-    if (known && maxAnisotropy > 1.0) {
+    float finest = lod - SLUICE_QUERY_MARGIN;
+    if (known && maxAnisotropy > 1.0)
         finest = min(finest, lods.x - sluiceLodMargin(maxAnisotropy));
-        widest = max(widest, lods.y);
-    }
+    /* sample.glsl looks as far around as the computed level may reach */
+    float widest = known ? max(lod + SLUICE_QUERY_MARGIN, lods.y) : lod;
     sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy,
                      sluiceFinestLevel(finest, 0.0, entry.mipLevelCount),
                      sluiceCoarsestLevel(widest, entry.mipLevelCount));
+}
+
+/** Both in one, in uniform control flow, with `selected` in place of a branch around it. */
+void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
+                              float maxAnisotropy, bool selected)
+{
+    float lod = sluiceQueryLod(tex, uv);
+    vec2 dx = dFdx(uv), dy = dFdy(uv);
+    if (selected)
+        sluiceWriteFeedbackQueried(lod, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
 }
 #endif
 

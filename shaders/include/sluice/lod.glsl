@@ -2,10 +2,10 @@
  * The level of detail that a sampler will choose, computed from derivatives.
  *
  * Vulkan lets implementations approximate; docs/drivers.md has what was measured: up to 0.12 finer
- * than the formula. Whoever must not miss a level subtracts
- * sluiceLodMargin. With anisotropy some devices take the lengths of the two derivatives, and some the
- * axes of the ellipse that they span, whose shorter axis is shorter where the derivatives are not
- * at right angles; here the finer of the two counts. C twin: lib/vulkan/shader_twins.h.
+ * than the formula. Whoever must not miss a level subtracts sluiceLodMargin. Some devices take the
+ * lengths of the two derivatives, and some the axes of the ellipse that they span: where the
+ * derivatives are not at right angles its shorter axis is shorter, and its longer one up to half a
+ * level longer. Here the finer and the coarser of the two count. C twin: lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_LOD_GLSL
 #define SLUICE_LOD_GLSL
@@ -37,6 +37,9 @@ float sluiceClampLodBias(float lodBias)
     return sluiceClampLod(lodBias);
 }
 
+/* How far the sampler's level may lie above the coarser rule: as far as below the other. */
+#define SLUICE_LOD_COARSER_MARGIN 0.125
+
 /** How far the sampler's level may lie below the computed one. */
 float sluiceLodMargin(float maxAnisotropy)
 {
@@ -44,9 +47,9 @@ float sluiceLodMargin(float maxAnisotropy)
 }
 
 /**
- * The LOD that a sampler will choose, the finest (x) and the coarsest (y) that devices come to.
- * `dx` and `dy` in texels of level 0 per pixel. Both are finite, -32 to 32, whatever the arguments:
- * no derivative gives -32, an infinite one or NaN gives 32.
+ * The LOD that a sampler will choose, the finest (x, without sluiceLodMargin) and the coarsest (y,
+ * margin included) that devices come to. `dx` and `dy` in texels of level 0 per pixel. Both are
+ * finite, -32 to 32, whatever the arguments: no derivative gives -32, an infinite one or NaN 32.
  */
 vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
@@ -55,17 +58,18 @@ vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     if (!(x2 >= 0.0 && y2 >= 0.0)) /* NaN */
         return vec2(SLUICE_LOD_LIMIT);
     float n = sluiceClampAnisotropy(maxAnisotropy);
-    float major2 = max(x2, y2);
+    vec2 major2 = vec2(max(x2, y2));
     vec2 minor2 = vec2(min(x2, y2));
     float sum = x2 + y2;
-    if (n > 1.0 && sum > 1.0e-30 && sum < 1.0e30) { /* beyond, the squares leave the range */
+    if (sum > 1.0e-30 && sum < 1.0e30) { /* beyond, the squares leave the range */
         float area = (dx.x * dy.y - dx.y * dy.x) / sum; /* -1/2 to 1/2 */
-        minor2.x = min(minor2.x,
-                       2.0 * area * area * sum / (1.0 + sqrt(max(1.0 - 4.0 * area * area, 0.0))));
+        float root = 1.0 + sqrt(max(1.0 - 4.0 * area * area, 0.0));
+        minor2.x = min(minor2.x, 2.0 * area * area * sum / root);
+        major2.y = max(major2.y, 0.5 * root * sum);
     }
-    minor2 = max(minor2, vec2(major2 / (n * n)));
+    minor2 = max(minor2, major2 / (n * n));
     vec2 lods = 0.5 * log2(clamp(minor2, 5.4e-20, 1.8e19)); /* 2^-64 to 2^64 */
-    lods += sluiceClampLodBias(lodBias);
+    lods += sluiceClampLodBias(lodBias) + vec2(0.0, SLUICE_LOD_COARSER_MARGIN);
     return clamp(lods, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT);
 }
 

@@ -45,6 +45,9 @@ void main()
     vec2 uv = vec2(inputs[0].uv[0], inputs[0].uv[1]) + vec2(screen.x, 1.0) * distance;
     float bias = inputs[0].lodBias, anisotropy = inputs[0].maxAnisotropy;
     vec2 dx = dFdx(uv), dy = dFdy(uv);
+#if defined(SLUICE_FEEDBACK_QUERY) && !defined(PICTURE_QUERY_LATE)
+    float lod = sluiceQueryLod(tex, uv);
+#endif
 
     uint missing;
     vec4 color = sluiceSample(tex, params.tableIndex, uv, bias, anisotropy, missing);
@@ -64,10 +67,14 @@ void main()
     bool selected = (params.flags & PICTURE_LATTICE) != 0u
                         ? sluiceSelectLattice(pixel, params.first)
                         : sluiceSelectRandomQuad(pixel, params.first, 1.0 / 16.0);
-#ifdef SLUICE_FEEDBACK_QUERY
+#ifdef PICTURE_QUERY_LATE /* behind branches in which the pixels of a quad parted */
     sluiceWriteFeedbackQuery(tex, params.tableIndex, uv, bias, anisotropy, selected);
 #else
     if (selected)
+#ifdef SLUICE_FEEDBACK_QUERY
+        sluiceWriteFeedbackQueried(lod, params.tableIndex, uv, dx, dy, bias, anisotropy);
+#else
         sluiceWriteFeedback(params.tableIndex, uv, dx, dy, bias, anisotropy);
+#endif
 #endif
 }

@@ -51,14 +51,14 @@ void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotr
 {
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(params.tableIndex);
     vec2 size = vec2(entry.width, entry.height);
-    float lod = sluiceComputeLod(dx * size, dy * size, bias, anisotropy);
+    vec2 lods = sluiceComputeLods(dx * size, dy * size, bias, anisotropy);
+    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     SluiceFootprint f =
-        sluiceComputeFootprint(entry, uv, sluiceHalfBox(dx, dy, bias, anisotropy),
-                               sluiceCoarsestLevel(lod, entry.mipLevelCount));
-    outputs[at].lod = lod;
+        sluiceComputeFootprint(entry, uv, sluiceHalfBox(dx, dy, bias, anisotropy), coarsest);
+    outputs[at].lod = lods.x;
     outputs[at].wantedLevel =
-        sluiceFinestLevel(lod, sluiceLodMargin(anisotropy), entry.mipLevelCount);
-    outputs[at].level = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+        sluiceFinestLevel(lods.x, sluiceLodMargin(anisotropy), entry.mipLevelCount);
+    outputs[at].level = coarsest;
     for (uint i = 0u; i < 3u; i++) {
         outputs[at].footprint[i] = f.x[i];
         outputs[at].footprint[3u + i] = f.y[i];

@@ -13,7 +13,8 @@
 
 #define SLUICE_RESOLVE_GROUP_SIZE 64
 #define SLUICE_RESOLVE_SEGMENT_SIZE 256
-#define SLUICE_RESOLVE_SCAN_GROUP_SIZE 128
+/* At most; the scan takes what the device allows, a power of two. */
+#define SLUICE_RESOLVE_SCAN_GROUP_SIZE 1024
 /* Workgroups in a row of a dispatch; what every device can do is just below the double. */
 #define SLUICE_RESOLVE_ROW 32768
 
@@ -28,7 +29,8 @@
 /* A change has 24 bits for the region; larger maps come whole. */
 #define SLUICE_RESOLVE_MAX_LISTED_REGIONS 0x1000000
 
-/* Specialization constant 0 of the passes is the encoding, see feedback.h. */
+/* Specialization constant 0 of the passes is the encoding, see feedback.h; 1 the size of the scan's
+ * workgroup. */
 
 struct SluiceResolveSegment {
     uint firstRegion; /* in the buffers, a multiple of 4 */
