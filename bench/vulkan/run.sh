@@ -179,6 +179,9 @@ if [ "$json" = yes ]; then
     run "${arguments[@]}" --json || status=$?
     exit "$status"
 fi
+case " ${arguments[*]-} " in
+*" --quick "*) say "quick: a tenth of the textures and of the repetitions, small pictures; not what the table says" ;;
+esac
 status=0
 run "${arguments[@]}" >"$scratch/lines" || status=$?
 print_tables "$scratch/lines"

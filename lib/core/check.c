@@ -1,6 +1,7 @@
 #include "core/check.h"
 
 #include "core/internal.h"
+#include "core/wants.h"
 
 /* Each function answers NULL or the first thing that is wrong. */
 #define REQUIRE(condition)                                                                         \
@@ -180,6 +181,26 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
     return check_resident(t);
 }
 
+/** Who shares a history got the same maps; `t` is one of its users. */
+static const char *check_users(const slc_manager *m, const struct slc_texture *t)
+{
+    uint32_t users = 0;
+    if (!t->history)
+        return NULL;
+    for (uint32_t i = 0; i < m->texture_end; i++) {
+        const struct slc_texture *other = slc_texture_at(m, i);
+        if (!other->live || other->history != t->history)
+            continue;
+        users++;
+        REQUIRE(slc_have_same_shape(t, other));
+        REQUIRE(t->held_regions == other->held_regions);
+        REQUIRE(t->hits == other->hits && t->returns == other->returns);
+    }
+    REQUIRE(users == t->history->users);
+    REQUIRE(users == 1 || t->history->bias == 0); /* it is dithered by the texture */
+    return NULL;
+}
+
 static const char *check_visited(const slc_manager *m)
 {
     uint32_t count = 0, previous = SLC_NONE;
@@ -191,6 +212,29 @@ static const char *check_visited(const slc_manager *m)
         count++;
     }
     REQUIRE(previous == m->visit_last && count == m->visited_count);
+    return NULL;
+}
+
+/** Every living heap is in the bucket of its free slots, or loose; none has fewer than the open
+ * one. */
+static const char *check_buckets(const struct slc_tile_heaps *h)
+{
+    uint32_t count = 0, fewest = UINT32_MAX;
+    for (uint32_t i = h->loose; i != UINT32_MAX && count <= h->end; i = h->heaps[i].next, count++)
+        REQUIRE(h->heaps[i].loose);
+    for (uint32_t b = 0; b <= h->capacity; b++) {
+        REQUIRE((h->buckets[b] != UINT32_MAX) == (h->bits[b / 64] >> b % 64 & 1));
+        for (uint32_t i = h->buckets[b]; i != UINT32_MAX; i = h->heaps[i].next, count++) {
+            REQUIRE(count <= h->end);
+            REQUIRE(!h->heaps[i].loose && h->heaps[i].free_count == b);
+        }
+    }
+    REQUIRE(count == h->live_count);
+    for (uint32_t i = 0; i < h->end; i++)
+        if (h->heaps[i].free_count > 0 && h->heaps[i].free_count < fewest)
+            fewest = h->heaps[i].free_count;
+    if (h->open != UINT32_MAX && h->heaps[h->open].free_count > 0)
+        REQUIRE(h->heaps[h->open].loose && h->heaps[h->open].free_count == fewest);
     return NULL;
 }
 
@@ -218,7 +262,7 @@ static const char *check_heaps(const slc_manager *m)
     }
     REQUIRE(free_total == m->heaps.free_total);
     REQUIRE(live == m->heaps.live_count);
-    return NULL;
+    return check_buckets(&m->heaps);
 }
 
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
@@ -236,6 +280,8 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         if (!t->live)
             continue;
         wrong = check_texture(m, t, &nodes);
+        if (!wrong)
+            wrong = check_users(m, t);
         tiles += t->shape->tile_count;
         textures++;
     }

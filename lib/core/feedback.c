@@ -54,13 +54,16 @@ static uint32_t users_of_history(const slc_manager *m, const struct slc_texture 
     return users;
 }
 
-/** Whether the follower, which has no history, will never differ from its primary's new one. */
+/**
+ * Whether the follower, which has no history, will never differ from its primary's new one. An
+ * empty map is none for a follower without a state, though the primary may have one.
+ */
 static bool may_share(const slc_manager *m, const struct slc_texture *t,
                       const struct slc_texture *follower)
 {
-    return t->history && !follower->history && m->bias.value == 0 && t->hits == follower->hits &&
-           t->returns == follower->returns && t->shape->regular_tile_count <= MAX_SHARED_TILES &&
-           slc_have_same_shape(t, follower);
+    return t->history && (t->history->next || follower->nodes) && !follower->history &&
+           m->bias.value == 0 && t->hits == follower->hits && t->returns == follower->returns &&
+           t->shape->regular_tile_count <= MAX_SHARED_TILES && slc_have_same_shape(t, follower);
 }
 
 static SluiceResult prepare_followers(slc_manager *m, struct slc_texture *t, bool is_new,

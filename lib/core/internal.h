@@ -97,7 +97,7 @@ struct slc_history {
 struct slc_shape {
     uint32_t users;
     uint32_t hash;
-    struct slc_shape *next; ///< in its bucket
+    struct slc_shape *next, **link; ///< in its bucket; `link` is what points to it
     SluiceStreamedTextureDesc desc;
     uint32_t regular_tile_count, tile_count;
     uint32_t feedback_width, feedback_height, region_count;

@@ -421,11 +421,11 @@ static void restore(slc_manager *m, uint32_t node)
     m->restored_total++;
 }
 
+/** A packed tile: regular ones go in runs. */
 static void park(slc_manager *m, uint32_t node)
 {
     struct slc_node *n = slc_node_at(m, node);
-    if (is_regular(m, n))
-        slc_list_remove(m, &m->mapped[n->level], node);
+    assert(!is_regular(m, n));
     slc_list_append(m, &m->standby, node);
     count_move(m, n, SLUICE_TILE_STATE_STANDBY);
     if (m->standby.count > m->config.numExtraStandbyTiles)

@@ -58,6 +58,9 @@ SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *des
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     *s = layout;
     s->next = *bucket;
+    s->link = bucket;
+    if (s->next)
+        s->next->link = &s->next;
     *bucket = *shape = s;
     return SLUICE_SUCCESS;
 }
@@ -66,9 +69,8 @@ void slc_shape_give(slc_manager *m, struct slc_shape *shape)
 {
     if (--shape->users > 0)
         return;
-    struct slc_shape **link = &m->shapes[shape->hash % SLC_SHAPE_BUCKETS];
-    while (*link != shape)
-        link = &(*link)->next;
-    *link = shape->next;
+    *shape->link = shape->next; /* not searched for: a bucket may be long */
+    if (shape->next)
+        shape->next->link = shape->link;
     slc_free(&m->cb, shape, 1, sizeof *shape);
 }

@@ -545,6 +545,4 @@ void slc_wants_forget(slc_manager *m, struct slc_texture *t)
     packed_after(m, t, true);
     slc_history_drop(m, t);
     slc_state_release(m, t);
-    if (m->standby.count > m->config.numExtraStandbyTiles)
-        slc_list_standby(m, m->config.numExtraStandbyTiles);
 }

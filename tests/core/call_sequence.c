@@ -83,6 +83,11 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->time = choice_once_in(c, 3) ? choice_u64(c) : times[choice_below(c, COUNT_OF(times))];
     s->timeout = timeouts[choice_below(c, COUNT_OF(timeouts))];
     s->next_heap = choice_once_in(c, 2) ? 0 : (uint32_t)choice_u64(c);
+    s->sets = s->visibility % 3 == 0; /* no choice of its own: files keep their meaning */
+    if (s->sets) {
+        s->weights[CALL_SET_PRIMARY] *= 6;
+        s->max_textures = s->max_textures < 3 ? 3 : s->max_textures;
+    }
 }
 
 static uint32_t count_textures(const struct naive_manager *n, uint32_t *tile_count)
@@ -129,6 +134,22 @@ static SluiceTextureId any_id(struct call_sequence *s, struct naive_manager *n)
     case 3: return (t ? t->id : 0) + choice_range(c, 1, 20);
     default: return n->removed_count ? n->removed[choice_below(c, n->removed_count)] : 1;
     }
+}
+
+/* The first texture that follows none: of most sets of a sequence that has some. */
+static const struct naive_texture *head_of_sets(const struct naive_manager *n)
+{
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        if (n->textures[i] && n->textures[i]->primary == SLUICE_NO_TEXTURE)
+            return n->textures[i];
+    return NULL;
+}
+
+/* NULL where the sequence has no sets, and now and then. */
+static const struct naive_texture *usual_primary(struct call_sequence *s,
+                                                 const struct naive_manager *n)
+{
+    return s->sets && choice_below(&s->choice, 5) > 0 ? head_of_sets(n) : NULL;
 }
 
 static uint32_t any_room(struct call_sequence *s)
@@ -223,6 +244,9 @@ static void make_add(struct call_sequence *s, const struct naive_manager *n, str
         call_sequence_bad_desc(s, &call->desc);
     else
         call_sequence_desc(s, &call->desc);
+    const struct naive_texture *head = usual_primary(s, n);
+    if (head)
+        call->desc = head->layout.desc;
     const bool full = count_textures(n, &tiles) >= s->max_textures;
     if (naive_layout(&call->desc, &l) != SLUICE_SUCCESS)
         return;
@@ -363,6 +387,9 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
     call->texture = any_id(s, n);
     if (choice_below(c, 4) < s->favouring && naive_find(n, s->favourite, &ignored))
         call->texture = s->favourite;
+    const struct naive_texture *head = usual_primary(s, n);
+    if (head)
+        call->texture = head->id;
     call->time = any_time(s, n);
     call->timeout = any_timeout(s);
     const struct naive_texture *t = naive_find(n, call->texture, &ignored);
@@ -393,6 +420,16 @@ static uint32_t any_tile(struct call_sequence *s, struct naive_manager *n, Sluic
     return choice_below(&s->choice, count);
 }
 
+static void use_usual_primary(struct call_sequence *s, struct naive_manager *n, struct call *call)
+{
+    const struct naive_texture *head = usual_primary(s, n);
+    if (!head)
+        return;
+    call->primary = head->id;
+    for (int i = 0; i < 4 && call->texture == head->id; i++)
+        call->texture = any_id(s, n);
+}
+
 static void fill_in(struct call_sequence *s, struct naive_manager *n, struct call *call)
 {
     struct choice *c = &s->choice;
@@ -407,8 +444,10 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
         call->primary = any_id(s, n);
         for (int i = 0; i < 4 && call->primary == call->texture && !mistake(s); i++)
             call->primary = any_id(s, n);
-        if (call->kind == CALL_SET_PRIMARY && choice_once_in(c, 6))
+        if (call->kind == CALL_SET_PRIMARY && choice_once_in(c, s->sets ? 20 : 6))
             call->primary = SLUICE_NO_TEXTURE;
+        else if (call->kind == CALL_SET_PRIMARY)
+            use_usual_primary(s, n, call);
         call->time = any_time(s, n);
         call->timeout = any_timeout(s);
         break;

@@ -519,6 +519,7 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_DISPLACED] = "displaced",
     [NAIVE_UNSEEN_DISPLACED] = "displaced as no longer seen",
     [NAIVE_SEEN_DISPLACED] = "displaced although seen",
+    [NAIVE_LONG_WAITED] = "displaced for a request of the next level that waited long",
     [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",
     [NAIVE_DISPLACED_UNWANTED] = "displaced and no longer wanted",
 };

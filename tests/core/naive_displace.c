@@ -115,6 +115,7 @@ static struct naive_tile *find_for(struct naive_manager *n, struct looks *looks,
     struct naive_tile *tile =
         request->level >= gap ? finest_mapped(n, request->level - gap + 1) : NULL;
     n->events[NAIVE_SEEN_DISPLACED] += tile != NULL;
+    n->events[NAIVE_LONG_WAITED] += tile && tile->level + 1 == request->level;
     return tile;
 }
 

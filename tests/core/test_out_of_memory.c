@@ -365,6 +365,36 @@ static void a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request(vo
     }
 }
 
+/* A slot that retires needs a node: 1024 without an allocation, of which the first is none. */
+static void unmapping_ends_where_memory_does_and_goes_on_later(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 850, false);
+    f.heaps.limit = 1;
+    SluiceStreamedTextureDesc fine = {850 * 16, 16, 1, 1, 0, 16, 16, 0, 0};
+    SluiceStreamedTextureDesc packed = {1, 1, 1, 0, 160, 1, 1, 0, 0};
+    SluiceTextureId a = fixture_add(&f, &fine), b = fixture_add(&f, &packed);
+    fixture_feed(&f, a, 0, 1, 100);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    assert_int_equal(f.count, 850 - 53); /* the reserve is a sixteenth */
+    fixture_answer_mapped(&f);
+    fixture_feed(&f, b, 0, 1, 100);
+    CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+    const uint32_t left = 1023 - 850 - 160;
+    f.memory.refuse_from = f.memory.calls;
+    CHECK_RESULT(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 1), SLUICE_INCOMPLETE);
+    assert_int_equal(f.count, left);
+    assert_null(slc_manager_check(f.manager));
+    CHECK_RESULT(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 2), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    f.memory.refuse_from = UINT64_MAX;
+    CHECK_OK(fixture_to_unmap(&f, SLUICE_ALL_TEXTURES, 1)); /* the refused call brought no value */
+    assert_int_equal(f.count, 160 - left);
+    assert_int_equal(fixture_statistics(&f).retiringSlotCount, 160);
+    assert_int_equal(fixture_statistics(&f).unmappedTotal, 160);
+    fixture_close(&f);
+}
+
 /* Memory that the nodes of a texture too large for it took is not kept for ever. */
 static void a_texture_that_is_too_large_leaves_nothing_behind(void **state)
 {
@@ -391,6 +421,7 @@ int main(void)
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(a_heap_is_never_lost_for_lack_of_memory),
         cmocka_unit_test(a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request),
+        cmocka_unit_test(unmapping_ends_where_memory_does_and_goes_on_later),
         cmocka_unit_test(a_texture_that_is_too_large_leaves_nothing_behind),
     };
     return RUN_TESTS(tests);

@@ -1,0 +1,77 @@
+/* How long a request waits until a finer tile that is seen makes room for it. */
+#include "core/fixture.h"
+
+enum { FINE = 4 }; /* slots that there are, all taken by tiles of level 0 */
+
+/* Square, `levels` of them, all regular; the coarsest is one tile, or four if it is alone. */
+static SluiceTextureId add_square(struct fixture *f, uint32_t levels)
+{
+    const uint32_t size = levels > 1 ? 128u << (levels - 1) : 256;
+    const SluiceStreamedTextureDesc desc = {size, size, levels, levels, 0, 128, 128, 0, 0};
+    return fixture_add(f, &desc);
+}
+
+/* Every texture that holds something gets a map, then what can be is handed out: that is a round.
+ */
+static bool displaced_in_round(struct fixture *f, SluiceTextureId fine, SluiceTextureId coarse,
+                               uint32_t level, uint64_t time)
+{
+    uint32_t count = 0;
+    fixture_feed(f, fine, 0, time, 100);
+    if (coarse)
+        fixture_feed(f, coarse, (uint8_t)level, time, 100);
+    SluiceResult result = fixture_to_map(f, SLUICE_ALL_TEXTURES);
+    CHECK_RESULT(result, coarse ? SLUICE_BUDGET_REACHED : SLUICE_SUCCESS);
+    fixture_answer_mapped(f);
+    CHECK_OK(sluiceGetTilesToUnmap(f->manager, SLUICE_ALL_TEXTURES, 0, &count, NULL));
+    return count > 0;
+}
+
+/* The round in which a tile of level 0 makes room for a request that is made in the given one. */
+static uint32_t round_of_displacing(uint32_t level, uint32_t requested)
+{
+    struct fixture f;
+    fixture_open(&f, FINE, false);
+    f.heaps.limit = 1;
+    SluiceTextureId fine = add_square(&f, 1), coarse = add_square(&f, level + 1);
+    uint32_t round = 1;
+    while (!displaced_in_round(&f, fine, round < requested ? SLUICE_NO_TEXTURE : coarse, level,
+                               round)) {
+        assert_int_equal(fixture_statistics(&f).mappedTileCount, FINE);
+        assert_true(++round < 100);
+    }
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, FINE - 1);
+    fixture_close(&f);
+    return round;
+}
+
+static void three_levels_are_worth_an_upload_at_once(void **state)
+{
+    (void)state;
+    for (uint32_t requested = 2; requested <= 12; requested++)
+        assert_int_equal(round_of_displacing(3, requested), requested);
+}
+
+static void two_levels_are_once_the_request_has_waited_for_a_whole_round(void **state)
+{
+    (void)state;
+    for (uint32_t requested = 2; requested <= 12; requested++)
+        assert_int_equal(round_of_displacing(2, requested), requested + 1);
+}
+
+static void one_level_is_after_four_rounds_that_end_with_a_fourth(void **state)
+{
+    (void)state;
+    for (uint32_t requested = 2; requested <= 20; requested++)
+        assert_int_equal(round_of_displacing(1, requested), (requested + 3) / 4 * 4 + 4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_levels_are_worth_an_upload_at_once),
+        cmocka_unit_test(two_levels_are_once_the_request_has_waited_for_a_whole_round),
+        cmocka_unit_test(one_level_is_after_four_rounds_that_end_with_a_fourth),
+    };
+    return RUN_TESTS(tests);
+}
