@@ -355,6 +355,19 @@ bool slc_texture_is_ragged(const struct slc_texture *texture)
            desc->height % desc->feedbackRegionHeight;
 }
 
+static uint32_t quick_shape(const struct slc_texture *texture)
+{
+    const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
+    const VkSamplerAddressMode *modes = texture->address_modes;
+    bool repeats =
+        modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT && modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    /* where all levels are packed the only region need not be as wide as a power of two */
+    bool one_region = !slc_texture_is_ragged(texture) && desc->regularMipCount > 0;
+    return log2_of(desc->feedbackRegionWidth) | log2_of(desc->feedbackRegionHeight) << 8 |
+           (repeats ? SLUICE_QUICK_REPEATS : 0u) | (one_region ? SLUICE_QUICK_ONE_REGION : 0u) |
+           (desc->mipLevelCount - 1) << SLUICE_QUICK_LAST_LEVEL_SHIFT;
+}
+
 /* Regions are tiles, and where all levels are packed there is one. */
 static float quick_reach2(const SluiceStreamedTextureDesc *desc)
 {
@@ -371,6 +384,11 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
     (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
     return (struct SluiceTextureEntry){
+        .sizeX = (float)desc->width,
+        .sizeY = (float)desc->height,
+        .quickShape = quick_shape(texture),
+        .regionLastX = texture->layout.feedbackWidth - 1,
+        .regionLastY = texture->layout.feedbackHeight - 1,
         .width = desc->width,
         .height = desc->height,
         .mipLevelCount = desc->mipLevelCount,
@@ -387,7 +405,6 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .quickReach2 = quick_reach2(desc),
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
-                 (slc_texture_is_ragged(texture) ? SLUICE_TEXTURE_FLAG_RAGGED : 0u) |
                  format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
 }

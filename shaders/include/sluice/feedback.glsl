@@ -32,9 +32,9 @@
 #endif
 
 /* Most writes change nothing, and a load is far cheaper than an atomic. */
-void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
+/** `at` is the number of the region in the feedback buffer. */
+void sluiceMarkRegionAt(uint at, uint level)
 {
-    uint at = entry.feedbackOffset + y * entry.regionCountX + x;
 #if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
     uint shift = (at & 1u) * 16u;
     uint bit = 1u << min(level, SLUICE_FEEDBACK_MASK_LEVELS - 1u);
@@ -45,6 +45,11 @@ void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
     if (level < SLUICE_FEEDBACK_WORD(at))
         atomicMin(SLUICE_FEEDBACK_WORD(at), level);
 #endif
+}
+
+void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
+{
+    sluiceMarkRegionAt(entry.feedbackOffset + y * entry.regionCountX + x, level);
 }
 
 /** Whether what is written for this texture in this frame is asked for. */
@@ -74,11 +79,6 @@ void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float
                       float maxAnisotropy, uint level, uint coarsest)
 {
     vec2 size = vec2(entry.width, entry.height);
-    uvec2 region;
-    if (sluiceStaysInRegion(entry, uv, dx * size, dy * size, lodBias, region)) {
-        sluiceMarkRegion(entry, region.x, region.y, level);
-        return;
-    }
     vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
     sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, coarsest), level);
     if (!(maxAnisotropy > 1.0))
@@ -91,6 +91,35 @@ void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float
                             coarsest + 1u);
 }
 
+/** Marks the region of a sample that surely stays inside it; false if that is not sure. */
+bool sluiceMarkOneRegion(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                         float maxAnisotropy)
+{
+    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    dx *= size;
+    dy *= size;
+    float x2 = dot(dx, dx), y2 = dot(dy, dy);
+    float reach2 = (x2 + y2) * sluiceBiasScale2(lodBias);
+    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
+    uvec2 shift = sluiceQuickShift(shape);
+    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
+    vec2 before = texel - vec2(region << shift);
+    vec2 room = min(before, vec2(uvec2(1u) << shift) - before);
+    if (!(min(room.x, room.y) > SLUICE_REACH * sqrt(max(reach2, 1.0)) &&
+          reach2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
+          (shape & SLUICE_QUICK_ONE_REGION) != 0u))
+        return false;
+    float lod = maxAnisotropy > 1.0 ? sluiceComputeLod(dx, dy, lodBias, maxAnisotropy)
+                                    : 0.5 * log2(max(x2, y2)) + lodBias;
+    uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy),
+                                   (shape >> SLUICE_QUICK_LAST_LEVEL_SHIFT) + 1u);
+    sluiceMarkRegionAt(SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset +
+                           region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) + region.x,
+                       level);
+    return true;
+}
+
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
  * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
@@ -101,6 +130,8 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
                          float maxAnisotropy)
 {
     if (!sluiceTakesPart(tableIndex))
+        return;
+    if (sluiceMarkOneRegion(tableIndex, uv, dx, dy, lodBias, maxAnisotropy))
         return;
     SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
     vec2 size = vec2(entry.width, entry.height);

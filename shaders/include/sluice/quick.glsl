@@ -2,17 +2,20 @@
  * What one load says about most samples.
  *
  * Beside its own texel a word of the MinMip buffer holds the largest one of the regions around: no
- * sample in a region that reaches into no more than those can touch anything coarser. And a sample
- * that stays inside its region marks only that. Where neither is sure the whole footprint is walked,
- * which says the same and costs several times as much. C twin: lib/vulkan/shader_twins.h.
+ * sample that reaches into no more than those can touch anything coarser. And a sample that stays
+ * inside its region marks only that. Where neither is sure the whole footprint is walked, which says
+ * the same and costs several times as much.
+ *
+ * Members of the texture table are read one by one here: the whole entry would be loaded before the
+ * branch that most samples do not take.
  */
 #ifndef SLUICE_QUICK_GLSL
 #define SLUICE_QUICK_GLSL
 
 #include "buffers.glsl"
-#include "footprint.glsl"
+#include "lod.glsl"
 
-/** A coordinate inside the image: 0 to 1, and something in between for what is not finite. */
+/** A coordinate inside the image: 0 to 1; 0 for NaN. */
 float sluiceFoldCoordinate(float coordinate, uint addressMode)
 {
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT)
@@ -26,45 +29,36 @@ float sluiceFoldCoordinate(float coordinate, uint addressMode)
     return coordinate > 0.0 ? min(coordinate, 1.0) : 0.0;
 }
 
-/** Where a sample is, in texels of level 0. */
-vec2 sluiceFoldTexel(SluiceTextureEntry entry, vec2 uv)
+/** Where a sample is, in texels of level 0; not >= 0 where `uv` is not finite. */
+vec2 sluiceQuickTexel(uint tableIndex, vec2 uv, uint shape)
 {
-    return vec2(sluiceFoldCoordinate(uv.x, entry.addressModeU) * float(entry.width),
-                sluiceFoldCoordinate(uv.y, entry.addressModeV) * float(entry.height));
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    if ((shape & SLUICE_QUICK_REPEATS) != 0u)
+        return (uv - floor(uv)) * size;
+    if (!sluiceIsFinite(uv))
+        return vec2(-1.0);
+    return vec2(sluiceFoldCoordinate(uv.x, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeU),
+                sluiceFoldCoordinate(uv.y, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeV)) *
+           size;
 }
 
-uvec2 sluiceRegionOfTexel(SluiceTextureEntry entry, vec2 texel)
+uvec2 sluiceQuickShift(uint shape)
 {
-    return min(uvec2(max(texel, vec2(0.0))) >> uvec2(entry.tileShift & 255u, entry.tileShift >> 8u),
-               uvec2(entry.regionCountX, entry.regionCountY) - 1u);
+    return uvec2(shape & 255u, (shape >> 8u) & 255u);
 }
 
-/**
- * A bound for how far a sample reaches to each side, squared, in units of SLUICE_REACH texels of level
- * 0: half the ellipse that the derivatives span, and the filter on the coarsest level that they can
- * lead to. `dx` and `dy` in texels. NaN where they are not finite.
- */
-float sluiceReach2(vec2 dx, vec2 dy, float lodBias)
+/** The region of such a place: one of the texture, whatever the place. */
+uvec2 sluiceQuickRegion(uint tableIndex, vec2 texel, uint shape)
 {
-    float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
-    return (dot(dx, dx) + dot(dy, dy)) * scale * scale;
+    return min(uvec2(texel) >> sluiceQuickShift(shape),
+               uvec2(SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX,
+                     SLUICE_TEXTURE_ENTRY(tableIndex).regionLastY));
 }
 
-/** True if a sample surely touches one region, and which. */
-bool sluiceStaysInRegion(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                         out uvec2 region)
+/** How much a LOD bias widens what a sample touches, squared. */
+float sluiceBiasScale2(float lodBias)
 {
-    region = uvec2(0u);
-    float reach2 = sluiceReach2(dx, dy, lodBias);
-    if (!(reach2 < entry.quickReach2) || !sluiceIsFinite(uv) ||
-        (entry.flags & SLUICE_TEXTURE_FLAG_RAGGED) != 0u)
-        return false;
-    vec2 texel = sluiceFoldTexel(entry, uv);
-    region = sluiceRegionOfTexel(entry, texel);
-    vec2 inside = texel - vec2(region << uvec2(entry.tileShift & 255u, entry.tileShift >> 8u));
-    float reach = SLUICE_REACH * sqrt(max(reach2, 1.0));
-    vec2 left = vec2(entry.regionWidth, entry.regionHeight) - inside;
-    return min(min(inside.x, inside.y), min(left.x, left.y)) > reach;
+    return lodBias > 0.0 ? exp2(2.0 * min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
 }
 
 #endif

@@ -132,20 +132,35 @@ uint sluiceMaxShown(SluiceTextureEntry entry, SluiceSampling s, vec2 halfBox, ui
 }
 
 /**
- * True if all levels that a sample touches are resident for sure. `dx` and `dy` in texels, `lod` is
- * the finest of sluiceComputeLods.
+ * True if texture() surely touches only what is resident. `dx` and `dy` are the derivatives of `uv`
+ * per pixel. Where it is false sluiceResolveSampling looks closer.
  */
-bool sluiceIsSurelyThere(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lod, float lodBias,
+bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
-    if (!(sluiceReach2(dx, dy, lodBias) < entry.quickReach2) || !sluiceIsFinite(uv))
-        return false;
-    uvec2 region = sluiceRegionOfTexel(entry, sluiceFoldTexel(entry, uv));
-    uint around =
-        SLUICE_MIN_MIP_WORD(entry.minMipOffset + region.y * entry.regionCountX + region.x) >> 16u;
-    float allowed = (lod - sluiceLodMargin(maxAnisotropy)) * float(SLUICE_SHOWN_STEPS) +
-                    float(SLUICE_SHOWN_MARGIN);
-    return float(around) <= max(allowed, 0.0);
+    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
+    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
+    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
+    uint around = SLUICE_MIN_MIP_WORD(SLUICE_TEXTURE_ENTRY(tableIndex).minMipOffset +
+                                      region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) +
+                                      region.x) >>
+                  16u;
+    dx *= size;
+    dy *= size;
+    float x2 = dot(dx, dx), y2 = dot(dy, dy), sum = x2 + y2;
+    float finest2 = max(x2, y2); /* 4 to the power of the LOD, at most */
+    if (maxAnisotropy > 1.0) {
+        float n = sluiceClampAnisotropy(maxAnisotropy);
+        float area = dx.x * dy.y - dx.y * dy.x;
+        finest2 = max(area * area / sum, finest2 / (n * n));
+        if (!(finest2 > exp2(2.0 * SLUICE_LOD_POINT)))
+            return false;
+    }
+    float limit = (float(around) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) +
+                  sluiceLodMargin(maxAnisotropy) - lodBias;
+    return sum * sluiceBiasScale2(lodBias) < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
+           min(texel.x, texel.y) >= 0.0 && (around == 0u || finest2 >= exp2(2.0 * limit));
 }
 
 /**
@@ -173,9 +188,6 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.dy = clamped ? vec2(0.0) : dy * biasScale;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
     s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
-    if (s.plain &&
-        sluiceIsSurelyThere(entry, uv, dx * size, dy * size, s.lod, lodBias, maxAnisotropy))
-        return s;
     float width = exp2(SLUICE_LOD_POINT);
 
     vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
@@ -232,6 +244,20 @@ uint sluiceMissingLevels(SluiceSampling s)
     return s.missing;
 }
 
+#ifdef SLUICE_PAGED
+/** In paged mode, where all is there. */
+vec4 sluiceSampleAsPages(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                         float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    vec2 size = vec2(entry.sizeX, entry.sizeY);
+    float scale = exp2(sluiceClampLodBias(lodBias));
+    return sluiceSamplePaged(tex, entry, uv, dx * scale, dy * scale,
+                             sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy),
+                             maxAnisotropy);
+}
+#endif
+
 /**
  * Samples with explicit derivatives of `uv` per pixel; any stage. `missingLevels` as
  * sluiceMissingLevels: 0 once the texture is as sharp as wanted.
@@ -239,6 +265,15 @@ uint sluiceMissingLevels(SluiceSampling s)
 vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, out uint missingLevels)
 {
+    if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
+        float scale = exp2(sluiceClampLodBias(lodBias));
+        missingLevels = 0u;
+#ifdef SLUICE_PAGED
+        if (SLUICE_PAGED)
+            return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+#endif
+        return textureGrad(tex, uv, dx * scale, dy * scale);
+    }
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
     if (s.level == SLUICE_MIP_UNTOUCHED)
@@ -282,6 +317,16 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
 {
     vec2 dx = dFdx(uv);
     vec2 dy = dFdy(uv);
+    bool sure = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
+                sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = 0u;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED && sure)
+        return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+#endif
+    /* The quad decides as one, because implicit derivatives need all of it. */
+    if (!sluiceAnyInQuad(!sure))
+        return texture(tex, uv, lodBias);
     SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
     missingLevels = sluiceMissingLevels(s);
 #ifdef SLUICE_PAGED
@@ -292,7 +337,6 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
                                  maxAnisotropy);
     }
 #endif
-    /* The quad decides as one, because implicit derivatives need all of it. */
     if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
         return texture(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)

@@ -1,9 +1,9 @@
 /*
  * One streamed texture, as shaders see it: an element of the texture table, a std430 array.
  *
- * A region is the area of a tile of level 0. The feedback buffer has one word per region, and so has
- * the MinMip buffer: its own texel in the low half, the largest one of the regions around it in the
- * high half. Both row by row.
+ * A region is the area of a tile of level 0. The feedback buffer has one word per region, and so
+ * has the MinMip buffer: its own texel in the low half, the largest one of the regions around it in
+ * the high half. Both row by row.
  */
 #ifndef SLUICE_SHARED_TEXTURE_TABLE_H
 #define SLUICE_SHARED_TEXTURE_TABLE_H
@@ -44,8 +44,6 @@
 
 /* A level's size is not the next finer one's halved, so tiles do not cover regions exactly. */
 #define SLUICE_TEXTURE_FLAG_UNEVEN 1
-/* Regions at the edge are narrower than the others, or the texture is uneven. */
-#define SLUICE_TEXTURE_FLAG_RAGGED 2
 /* Among the flags: how many components the format has, in three bits. */
 #define SLUICE_TEXTURE_COMPONENTS_SHIFT 8
 
@@ -55,7 +53,24 @@
  */
 #define SLUICE_PAGE_NONE 0xFFFFFFFFu
 
+/* In SluiceTextureEntry.quickShape, with the log2 of a region's width and of its height << 8. */
+#define SLUICE_QUICK_REPEATS 0x10000u /* along both axes */
+#define SLUICE_QUICK_ONE_REGION                                                                    \
+    0x20000u /* samples inside a region mark only that: it is not ragged */
+#define SLUICE_QUICK_LAST_LEVEL_SHIFT 24
+
 struct SluiceTextureEntry {
+    /* What quick.glsl reads: */
+    float sizeX; /* width */
+    float sizeY;
+    float quickReach2; /* samples of a smaller sum of squared derivatives touch regions around alone
+                        */
+    uint minMipOffset; /* first word in the MinMip buffer */
+    uint feedbackOffset; /* first word in the feedback buffer */
+    uint quickShape;
+    uint regionLastX; /* regionCountX - 1 */
+    uint regionLastY;
+
     uint width; /* texels of level 0; level l has max(1, size >> l) */
     uint height;
     uint mipLevelCount;
@@ -64,15 +79,13 @@ struct SluiceTextureEntry {
     uint regionHeight;
     uint regionCountX;
     uint regionCountY;
-    uint feedbackOffset; /* first word in the feedback buffer */
-    uint minMipOffset;   /* first texel in the MinMip buffer, a multiple of 4 */
-    uint addressModeU;   /* of the samplers that it is sampled with */
+    uint addressModeU; /* of the samplers that it is sampled with */
     uint addressModeV;
     uint flags;
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
-    float quickReach2;    /* bound of sluiceReach2 up to which samples stay in regions next to theirs */
+    uint reserved[3];
 };
-SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 64)
+SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)
 
 #endif
