@@ -4,6 +4,8 @@
 
 #include "picture_codes_frag.h"
 #include "picture_frag.h"
+#include "picture_min_lod_codes_frag.h"
+#include "picture_min_lod_frag.h"
 #include "picture_query_frag.h"
 #include "picture_vert.h"
 
@@ -34,10 +36,23 @@ static void create_target(struct painter *p)
                      VK_SUCCESS);
 }
 
+static VkShaderModule fragment_module(const struct painter *p, bool query)
+{
+    struct harness *h = p->prober->h;
+    if (query)
+        return module(h, picture_query_frag, sizeof picture_query_frag);
+    if (h->min_lod && p->prober->codes)
+        return module(h, picture_min_lod_codes_frag, sizeof picture_min_lod_codes_frag);
+    if (h->min_lod)
+        return module(h, picture_min_lod_frag, sizeof picture_min_lod_frag);
+    if (p->prober->codes)
+        return module(h, picture_codes_frag, sizeof picture_codes_frag);
+    return module(h, picture_frag, sizeof picture_frag);
+}
+
 static void create_pipeline(struct painter *p, bool query)
 {
     struct harness *h = p->prober->h;
-    bool codes = p->prober->codes;
     struct prober_specialization specialization;
     const VkSpecializationInfo *constants = prober_specialize(p->prober, &specialization);
     VkPipelineShaderStageCreateInfo stages[2] = {
@@ -47,9 +62,7 @@ static void create_pipeline(struct painter *p, bool query)
          .pName = "main"},
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-         .module = query   ? module(h, picture_query_frag, sizeof picture_query_frag)
-                   : codes ? module(h, picture_codes_frag, sizeof picture_codes_frag)
-                           : module(h, picture_frag, sizeof picture_frag),
+         .module = fragment_module(p, query),
          .pName = "main",
          .pSpecializationInfo = constants}};
     VkPipelineVertexInputStateCreateInfo input = {
