@@ -48,6 +48,10 @@
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
+/* Longer derivatives, in texels, have squares whose products leave the range of float: samplers that
+ * compute with those come to any level. They are as good as infinite. */
+#define SLUICE_MAX_TEXELS 1.0e9
+
 /* A footprint this much smaller than a texel is a point. */
 #define SLUICE_LOD_POINT -16.0
 
@@ -165,7 +169,10 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     vec2 size = vec2(entry.width, entry.height);
     float margin = sluiceLodMargin(maxAnisotropy);
     SluiceSampling s;
-    bool finite = sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy);
+    float biasScale = exp2(sluiceClampLodBias(lodBias));
+    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (size * max(biasScale, 1.0));
+    bool finite = sluiceIsFinite(uv) && all(lessThanEqual(abs(dx), largest)) &&
+                  all(lessThanEqual(abs(dy), largest));
     s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
     vec2 lods = finite ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
                        : vec2(SLUICE_LOD_LIMIT);
@@ -175,7 +182,6 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     s.level = s.wantedLevel;
     s.missing = 0u;
     s.plain = false;
-    float biasScale = exp2(sluiceClampLodBias(lodBias));
     s.dx = finite ? dx * biasScale : vec2(0.0);
     s.dy = finite ? dy * biasScale : vec2(0.0);
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
