@@ -214,10 +214,11 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         s.missing = max(uint(ceil(max(limit - margin, 0.0))) - s.wantedLevel, 1u);
         if (sluiceSamplerClamps()) {
             s.minLod = min(limit, float(entry.mipLevelCount - 1u));
-            coarsest = sluiceCoarsestLevel(max(limit, lods.y), entry.mipLevelCount);
+            coarsest = sluiceCoarsestLevel(max(limit, lods.y), entry.mipLevelCount); /* exactly */
         } else {
             widened = true;
-            coarsest = sluiceCoarsestLevel(limit, entry.mipLevelCount);
+            /* samplers may come out coarser by as much as finer */
+            coarsest = sluiceCoarsestLevel(limit + margin, entry.mipLevelCount);
             if (maxAnisotropy > 1.0)
                 halfBox = max(halfBox, vec2(exp2(limit - margin)) / size);
         }
