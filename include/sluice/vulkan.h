@@ -54,7 +54,7 @@ typedef enum SluiceFeedbackEncoding {
 typedef struct SluiceVulkanDeviceCapabilities {
     bool sparse;                     ///< sparse residency 2D images and a queue that binds them
     bool shaderResourceResidency;    ///< residency codes exist
-    bool shaderResourceMinLod;       ///< the LOD clamp operand exists
+    bool shaderResourceMinLod;       ///< samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl
     bool residencyNonResidentStrict; ///< reads of unbound texels are 0
     bool nonUniformIndexing;         ///< of arrays of images; else shaders define SLUICE_PAGE_LOOP
     /** The best that binds: without graphics if possible, perhaps useless for anything else. */

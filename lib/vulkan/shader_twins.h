@@ -133,6 +133,19 @@ static inline uint32_t slc_twin_coarsest_level(float lod, uint32_t count)
     return level < count - 1 ? level : count - 1;
 }
 
+static inline float slc_twin_lod_limit(uint32_t shown, float margin)
+{
+    return shown == 0
+               ? -SLC_TWIN_LOD_LIMIT
+               : ((float)shown - (float)SLUICE_SHOWN_MARGIN) / (float)SLUICE_SHOWN_STEPS + margin;
+}
+
+static inline uint32_t slc_twin_shown_level(uint32_t shown)
+{
+    return ((shown > SLUICE_SHOWN_MARGIN ? shown : SLUICE_SHOWN_MARGIN) - SLUICE_SHOWN_MARGIN) /
+           SLUICE_SHOWN_STEPS;
+}
+
 /* footprint.glsl */
 
 #define SLC_TWIN_APRON 0.5625f

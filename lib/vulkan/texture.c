@@ -372,7 +372,7 @@ static uint32_t quick_shape(const struct slc_texture *texture)
 static float quick_reach2(const SluiceStreamedTextureDesc *desc)
 {
     if (desc->regularMipCount == 0)
-        return 1e30f;
+        return 1e17f; /* samplers are not trusted with derivatives beyond 1e9 texels */
     float reach =
         (float)slc_min_u32(desc->feedbackRegionWidth, desc->feedbackRegionHeight) / SLUICE_REACH;
     return reach * reach;

@@ -192,6 +192,7 @@ static bool create_device(struct harness *h, const struct extras *extras)
                                        .pNext = &there12};
     h->GetPhysicalDeviceFeatures2(h->physical_device, &there);
     features.features.shaderResourceResidency = there.features.shaderResourceResidency;
+    features.features.shaderResourceMinLod = there.features.shaderResourceMinLod;
     /* The test shaders sample pages in no other way, and are the same in all modes. */
     features.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
     vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;

@@ -59,6 +59,7 @@ struct harness {
     SluiceVulkanDeviceCapabilities caps;
     SluiceResidencyMode mode; ///< never AUTO
     const char *mode_name;
+    bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
     bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
     VkCommandPool pool;

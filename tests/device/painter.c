@@ -4,6 +4,8 @@
 
 #include "picture_codes_frag.h"
 #include "picture_frag.h"
+#include "picture_min_lod_codes_frag.h"
+#include "picture_min_lod_frag.h"
 #include "picture_query_frag.h"
 #include "picture_query_late_frag.h"
 #include "picture_vert.h"
@@ -35,7 +37,7 @@ static void create_target(struct painter *p)
                      VK_SUCCESS);
 }
 
-static VkShaderModule fragment_module(struct painter *p, enum painter_feedback feedback)
+static VkShaderModule fragment_module(const struct painter *p, enum painter_feedback feedback)
 {
     struct harness *h = p->prober->h;
     switch (feedback) {
@@ -44,6 +46,10 @@ static VkShaderModule fragment_module(struct painter *p, enum painter_feedback f
         return module(h, picture_query_late_frag, sizeof picture_query_late_frag);
     case PAINTER_COMPUTE: break;
     }
+    if (h->min_lod && p->prober->codes)
+        return module(h, picture_min_lod_codes_frag, sizeof picture_min_lod_codes_frag);
+    if (h->min_lod)
+        return module(h, picture_min_lod_frag, sizeof picture_min_lod_frag);
     if (p->prober->codes)
         return module(h, picture_codes_frag, sizeof picture_codes_frag);
     return module(h, picture_frag, sizeof picture_frag);

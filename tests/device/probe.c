@@ -5,6 +5,8 @@
 #include "probe_codes_comp.h"
 #include "probe_comp.h"
 #include "probe_loop_comp.h"
+#include "probe_min_lod_codes_comp.h"
+#include "probe_min_lod_comp.h"
 
 #define BUFFERS 5u
 #define BINDINGS 7u
@@ -123,6 +125,10 @@ static void create_pipeline(struct prober *p)
     if (h->page_loop) {
         module_info.codeSize = sizeof probe_loop_comp;
         module_info.pCode = probe_loop_comp;
+    }
+    if (h->min_lod) {
+        module_info.codeSize = codes ? sizeof probe_min_lod_codes_comp : sizeof probe_min_lod_comp;
+        module_info.pCode = codes ? probe_min_lod_codes_comp : probe_min_lod_comp;
     }
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);

@@ -159,8 +159,9 @@ double scene_ellipse_lod(const struct ProbeOutput *out, const struct scene_textu
     double sum = ax * ax + ay * ay + bx * bx + by * by, det = fabs(ax * by - ay * bx);
     double major2 = 0.5 * (sum + sqrt(fmax(sum * sum - 4 * det * det, 0)));
     double n = texture->anisotropy;
-    return n > 1 ? log2(fmax(det / sqrt(major2), sqrt(major2) / n))
-                 : 0.5 * log2(fmax(ax * ax + ay * ay, bx * bx + by * by));
+    double lod = n > 1 ? log2(fmax(det / sqrt(major2), sqrt(major2) / n))
+                       : 0.5 * log2(fmax(ax * ax + ay * ay, bx * bx + by * by));
+    return out->minLod > 0 ? fmax(lod, (double)out->minLod) : lod;
 }
 
 void scene_check_levels(const struct scene *scene)

@@ -60,7 +60,8 @@ void scene_settle(struct scene *scene, uint32_t frame_count);
 void scene_clear_outputs(struct scene *scene);
 /** Waits for the device; samples of all textures that touched what is not resident. */
 uint64_t scene_non_resident(struct scene *scene);
-/** The level that a device would begin with which takes the axes of the ellipse of dx and dy. */
+/** The level that a device would begin with which takes the axes of the ellipse of dx and dy, and
+ *  clamps where samplers do. */
 double scene_ellipse_lod(const struct ProbeOutput *out, const struct scene_texture *texture);
 
 /**

@@ -237,7 +237,7 @@ static void aim_at_truth(struct scene *scene, uint32_t round, bool paged)
             memcpy(in->dy, &s->out.footprint[2], sizeof in->dy);
             /* packed levels are sampled by the sampler in every mode */
             bool row = paged && s->out.lod < (float)regular_levels[t];
-            in->lodBias = row ? fmaxf(s->out.lod, 0) : -1;
+            in->lodBias = row ? fmaxf(s->out.lod, 0) : -1 - s->out.minLod;
         }
 }
 
@@ -324,6 +324,18 @@ static void compare(struct harness *h, aim_function *aim)
     assert_in_range(clamped, SAMPLES / 16, SAMPLES - SAMPLES / 16);
 }
 
+static void make_islands(const struct harness *h)
+{
+    const float anisotropies[] = {1, 2, 4, 8, 16};
+    for (uint32_t t = 0; t < TEXTURES; t++)
+        kinds[t] = (struct kind){1024,
+                                 1024,
+                                 SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                                 address_mode(h),
+                                 address_mode(h),
+                                 h->anisotropy ? anisotropies[t % 5] : 1};
+}
+
 static void random_residency_shows_no_texel_that_is_not_there(void **state)
 {
     srand(31);
@@ -340,19 +352,27 @@ static void random_residency_that_fades_shows_no_texel_that_is_not_there(void **
     fade_time = 0;
 }
 
-static void what_reaches_over_an_edge_of_residency_finds_it(void **state)
+static void residency_that_the_sampler_clamps_shows_no_texel_that_is_not_there(void **state)
 {
     struct harness *h = *state;
-    const float anisotropies[] = {1, 2, 4, 8, 16};
-    srand(32);
-    for (uint32_t t = 0; t < TEXTURES; t++)
-        kinds[t] = (struct kind){1024,
-                                 1024,
-                                 SLUICE_FORMAT_R32G32B32A32_SFLOAT,
-                                 address_mode(h),
-                                 address_mode(h),
-                                 h->anisotropy ? anisotropies[t % 5] : 1};
+    if (!h->caps.shaderResourceMinLod)
+        SKIP_TEST("the device has no shaderResourceMinLod");
+    h->min_lod = true;
+    srand(34);
+    make_kinds(h);
+    fade_time = 7;
+    compare(h, aim_anywhere);
+    fade_time = 0;
+    make_islands(h);
     compare(h, aim_at_islands);
+    h->min_lod = false;
+}
+
+static void what_reaches_over_an_edge_of_residency_finds_it(void **state)
+{
+    srand(32);
+    make_islands(*state);
+    compare(*state, aim_at_islands);
 }
 
 int main(void)
@@ -364,6 +384,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(random_residency_shows_no_texel_that_is_not_there),
         cmocka_unit_test(random_residency_that_fades_shows_no_texel_that_is_not_there),
+        cmocka_unit_test(residency_that_the_sampler_clamps_shows_no_texel_that_is_not_there),
         cmocka_unit_test(what_reaches_over_an_edge_of_residency_finds_it),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

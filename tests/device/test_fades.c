@@ -15,6 +15,7 @@
 #define FADE_TIME 16u /* frames per level */
 #define STEP (1.0f / FADE_TIME)
 #define QUANTUM (1.0f / SLUICE_SHOWN_STEPS)
+#define COMPARED_FRAMES 70u
 #define MAX_FRAMES 160u /* seven levels of fading, and the loads before */
 
 struct kind {
@@ -151,6 +152,59 @@ static void what_arrives_is_shown_step_by_step_and_settles_exactly(void **state)
     scene_finish(&scene);
 }
 
+/* The frames of a fade, in which samplers clamp or derivatives do. */
+static struct ProbeOutput *draw_fade(struct harness *h, bool min_lod)
+{
+    const size_t picture = sizeof shown / sizeof(struct ProbeOutput);
+    struct ProbeOutput *frames = malloc(COMPARED_FRAMES * sizeof shown);
+    struct scene scene;
+    assert_non_null(frames);
+    h->min_lod = min_lod;
+    begin(&scene, h, FADE_TIME);
+    for (uint32_t i = 0; i < COMPARED_FRAMES; i++) {
+        scene_settle(&scene, 1);
+        take_picture(&scene, shown);
+        memcpy(frames + i * picture, shown, sizeof shown);
+    }
+    assert_int_equal(scene_non_resident(&scene), 0);
+    scene_finish(&scene);
+    h->min_lod = false;
+    return frames;
+}
+
+static void samplers_that_clamp_show_what_wider_derivatives_show(void **state)
+{
+    struct harness *h = *state;
+    if (!h->caps.shaderResourceMinLod)
+        SKIP_TEST("the device has no shaderResourceMinLod");
+    struct ProbeOutput *frames[2] = {draw_fade(h, false), draw_fade(h, true)};
+    const float error = level_error(h);
+    float worst = 0;
+    uint32_t clamped = 0;
+    for (uint32_t i = 0; i < COMPARED_FRAMES * TEXTURES * SCENE_SAMPLES; i++) {
+        const struct ProbeOutput *wide = &frames[0][i], *clamp = &frames[1][i];
+        const struct kind *k = &kinds[i / SCENE_SAMPLES % TEXTURES];
+        if (wide->level == SLUICE_MIP_UNTOUCHED)
+            continue;
+        assert_true(clamp->color[3] > 0.99f);
+        /* the footprints of anisotropic samples differ, and 8-bit textures tell 16 steps a level */
+        if (k->anisotropy > 1 || k->format == SLUICE_FORMAT_R8G8B8A8_UNORM)
+            continue;
+        assert_true(wide->lod == clamp->lod);
+        clamped += clamp->minLod > 0;
+        float apart = fabsf(pattern_level(wide->color) - pattern_level(clamp->color));
+        worst = fmaxf(worst, apart);
+        if (apart > QUANTUM + 0.002f + error) /* sixteen-bit floats: 0.002 levels */
+            fail_msg("clamped at %g: level %g, by derivatives %g", (double)clamp->minLod,
+                     (double)pattern_level(clamp->color), (double)pattern_level(wide->color));
+    }
+    print_message("# %u clamped samples, at most %g levels apart\n", clamped, (double)worst);
+    if (h->mode != SLUICE_RESIDENCY_MODE_PAGED) /* pages are filtered in the shader */
+        assert_true(clamped > 1000);
+    free(frames[0]);
+    free(frames[1]);
+}
+
 /* A camera that looks elsewhere all the time, with memory for a part of it. */
 static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
 {
@@ -233,6 +287,7 @@ int main(void)
         return status;
     struct CMUnitTest tests[] = {
         cmocka_unit_test(what_arrives_is_shown_step_by_step_and_settles_exactly),
+        cmocka_unit_test(samplers_that_clamp_show_what_wider_derivatives_show),
         cmocka_unit_test(tiles_that_come_and_go_while_fading_are_not_missed),
         cmocka_unit_test(a_texture_that_goes_while_fading_takes_its_fade_along),
         cmocka_unit_test(a_fade_that_would_not_end_is_refused),

@@ -157,6 +157,17 @@ static void moving_camera_never_shows_what_is_not_there(void **state)
     }
 }
 
+static void samplers_that_clamp_show_only_what_is_there(void **state)
+{
+    struct harness *h = *state;
+    if (!h->caps.shaderResourceMinLod)
+        SKIP_TEST("the device has no shaderResourceMinLod");
+    h->min_lod = true;
+    compare_with_truth(h, 1500, 1999, h->anisotropy ? 8 : 1, false, 60);
+    moving_camera_never_shows_what_is_not_there(state);
+    h->min_lod = false;
+}
+
 int main(void)
 {
     struct harness h;
@@ -169,6 +180,7 @@ int main(void)
         cmocka_unit_test(lattice_settles_a_picture_in_seventy_frames),
         cmocka_unit_test(any_lod_bias_shows_only_what_is_there),
         cmocka_unit_test(moving_camera_never_shows_what_is_not_there),
+        cmocka_unit_test(samplers_that_clamp_show_only_what_is_there),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;

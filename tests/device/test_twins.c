@@ -119,6 +119,8 @@ static void call_twin(uint32_t function, const uint32_t *a, uint32_t *out)
         out[0] = bits(slc_twin_compute_lod(real2(a, 0), real2(a, 2), real(a, 4), real(a, 5)));
         break;
     case TWIN_FINEST_LEVEL: out[0] = slc_twin_finest_level(real(a, 0), real(a, 1), a[2]); break;
+    case TWIN_LOD_LIMIT: out[0] = bits(slc_twin_lod_limit(a[0], real(a, 1))); break;
+    case TWIN_SHOWN_LEVEL: out[0] = slc_twin_shown_level(a[0]); break;
     case TWIN_COARSEST_LEVEL: out[0] = slc_twin_coarsest_level(real(a, 0), a[1]); break;
     default: call_footprint_twin(function, a, out);
     }
@@ -157,8 +159,8 @@ static uint32_t random_count(void)
 
 /*
  * Kinds of arguments: u any number, f any float, F any but NaN, P any that is positive or 0 or NaN,
- * t a count of levels, l a level, m an address mode, M a margin, s regions per unit and their
- * count.
+ * t a count of levels, l a level, m an address mode, M a margin, S a texel of the MinMip buffer, s
+ * regions per unit and their count.
  */
 static void random_argument(char kind, uint32_t *a)
 {
@@ -168,6 +170,7 @@ static void random_argument(char kind, uint32_t *a)
     case 't': a[0] = 1 + (uint32_t)rand() % 15; break;
     case 'l': a[0] = (uint32_t)rand() % 15; break;
     case 'm': a[0] = (uint32_t)rand() % 5; break;
+    case 'S': a[0] = random_bits() & 0xFFFF; break;
     case 'M': a[0] = bits(rand() % 2 ? 0.125f : 0.1875f); break;
     case 's':
         a[0] = bits((float)size / (float)region);
@@ -207,6 +210,8 @@ static const struct function functions[TWIN_COUNT] = {
     [TWIN_COMPUTE_LOD] = {"compute_lod", "ffffff", "l"},
     [TWIN_FINEST_LEVEL] = {"finest_level", "FMt", "u"},
     [TWIN_COARSEST_LEVEL] = {"coarsest_level", "Ft", "u"},
+    [TWIN_LOD_LIMIT] = {"lod_limit", "SM", "x"},
+    [TWIN_SHOWN_LEVEL] = {"shown_level", "S", "u"},
     [TWIN_REGION_INDEX] = {"region_index", "fs", "u"},
     [TWIN_REGION_RANGE] = {"region_range", "fPPms", "uuu"},
     [TWIN_HALF_BOX] = {"half_box", "ffffff", "hh"},

@@ -58,7 +58,7 @@ uvec2 sluiceQuickRegion(uint tableIndex, vec2 texel, uint shape)
 /** How much a LOD bias widens what a sample touches, squared. */
 float sluiceBiasScale2(float lodBias)
 {
-    return lodBias > 0.0 ? exp2(2.0 * min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
+    return lodBias <= 0.0 ? 1.0 : exp2(2.0 * sluiceClampLodBias(lodBias));
 }
 
 #endif

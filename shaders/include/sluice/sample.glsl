@@ -20,6 +20,15 @@
 #include "paged.glsl"
 #endif
 
+/*
+ * Define SLUICE_MIN_LOD where the device has the feature shaderResourceMinLod, and it is enabled: samples
+ * are clamped by textureGradClampARB then, and keep their own footprint and their own derivatives. Without
+ * it clamped samples get explicit derivatives that are as wide. Either shows the same level.
+ */
+#ifdef SLUICE_MIN_LOD
+#extension GL_ARB_sparse_texture_clamp : require
+#endif
+
 /* What a sample is where not even the packed levels are resident. Define it before to change it. */
 #ifndef SLUICE_FALLBACK_COLOR
 #define SLUICE_FALLBACK_COLOR vec4(0.5, 0.5, 0.5, 1.0)
@@ -40,6 +49,10 @@
 /* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
 #define SLUICE_CLAMP_STEPS 4
 
+/* Longer derivatives, in texels, have squares whose products leave the range of float: samplers that
+ * compute with those come to any level. They are as good as infinite. */
+#define SLUICE_MAX_TEXELS 1.0e9
+
 /* A footprint this much smaller than a texel is a point. */
 #define SLUICE_LOD_POINT -16.0
 
@@ -51,6 +64,7 @@ struct SluiceSampling {
     uint wantedLevel;   /* the finest level that would be touched if all were there */
     uint level;         /* the finest level that may be touched; SLUICE_MIP_UNTOUCHED: none */
     uint missing;       /* levels that it is coarser than it should be, rounded up */
+    float minLod;       /* for textureGradClampARB, with SLUICE_MIN_LOD; else 0 */
     bool plain;         /* texture() touches only what is there, and may be used instead */
 };
 
@@ -115,6 +129,18 @@ float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     return overreaches ? sluiceComputeLod(dx, dy, lodBias, 1.0) : -SLUICE_LOD_LIMIT;
 }
 
+/** Whether the sampler gets the finest level that it may take along with the sample. */
+bool sluiceSamplerClamps()
+{
+#if defined(SLUICE_MIN_LOD) && defined(SLUICE_PAGED)
+    return !SLUICE_PAGED;
+#elif defined(SLUICE_MIN_LOD)
+    return true;
+#else
+    return false;
+#endif
+}
+
 /**
  * The largest MinMip texel that counts for a sample of s.lod: what coarser levels alone touch, at
  * the rim of the footprint, must be there of those levels, and does not make the sample coarser.
@@ -165,8 +191,9 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 
 /**
  * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
- * with a non-uniform index of an array of textures: textureGrad(tex[i], s.uv, s.dx, s.dy) unless
- * s.level is SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of `uv` per pixel.
+ * with a non-uniform index of an array of textures: sluiceTextureGrad(tex[i], s), unless s.level is
+ * SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of
+ * `uv` per pixel.
  */
 SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                      float maxAnisotropy)
@@ -175,31 +202,34 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     vec2 size = vec2(entry.width, entry.height);
     float margin = sluiceLodMargin(maxAnisotropy);
     SluiceSampling s;
-    bool clamped = !(sluiceIsFinite(uv) && sluiceIsFinite(dx) && sluiceIsFinite(dy));
+    float biasScale = exp2(sluiceClampLodBias(lodBias));
+    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (size * max(biasScale, 1.0));
+    bool finite = sluiceIsFinite(uv) && all(lessThanEqual(abs(dx), largest)) &&
+                  all(lessThanEqual(abs(dy), largest));
     s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
-    vec2 lods = clamped ? vec2(SLUICE_LOD_LIMIT)
-                        : sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
+    vec2 lods = finite ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
+                       : vec2(SLUICE_LOD_LIMIT);
     s.lod = lods.x;
+    s.minLod = 0.0;
     s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
     s.level = s.wantedLevel;
     s.missing = 0u;
-    float biasScale = exp2(sluiceClampLodBias(lodBias));
-    s.dx = clamped ? vec2(0.0) : dx * biasScale;
-    s.dy = clamped ? vec2(0.0) : dy * biasScale;
+    s.plain = false;
+    s.dx = finite ? dx * biasScale : vec2(0.0);
+    s.dy = finite ? dy * biasScale : vec2(0.0);
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
-    s.plain = !clamped && (s.lod > SLUICE_LOD_POINT || !(maxAnisotropy > 1.0));
-    float width = exp2(SLUICE_LOD_POINT);
+    bool point = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
+    bool widened = !finite;
 
-    vec2 halfBox = clamped ? vec2(0.0) : sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
-    float reach = clamped ? -SLUICE_LOD_LIMIT
-                          : sluiceOverreachedLod(dx * size, dy * size, lodBias, maxAnisotropy);
+    vec2 halfBox = finite ? sluiceHalfBox(dx, dy, lodBias, maxAnisotropy) : vec2(0.0);
+    float reach = finite ? sluiceOverreachedLod(dx * size, dy * size, lodBias, maxAnisotropy)
+                         : -SLUICE_LOD_LIMIT;
     bool round = false;
     uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
     for (uint tries = 0u;; tries++) {
         uint shown = sluiceMaxShown(entry, s, halfBox, coarsest, margin);
         if (shown >= SLUICE_SHOWN_NOTHING) {
             s.level = s.missing = SLUICE_MIP_UNTOUCHED;
-            s.plain = false;
             return s;
         }
         float limit = sluiceLodLimit(shown, margin);
@@ -210,32 +240,45 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
             halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)) / size);
             continue;
         }
-        clamped = true;
         if (tries >= SLUICE_CLAMP_STEPS)
             limit = max(limit, float(entry.regularMipCount) + margin);
         s.lod = limit;
         s.level = sluiceFinestLevel(limit, margin, entry.mipLevelCount);
         s.missing = max(uint(ceil(max(limit - margin, 0.0))) - s.wantedLevel, 1u);
-        coarsest = sluiceCoarsestLevel(limit, entry.mipLevelCount);
+        if (sluiceSamplerClamps()) {
+            s.minLod = min(limit, float(entry.mipLevelCount - 1u));
+            coarsest = sluiceCoarsestLevel(max(limit, lods.y), entry.mipLevelCount); /* exactly */
+        } else {
+            widened = true;
+            /* samplers may come out coarser by as much as finer */
+            coarsest = sluiceCoarsestLevel(limit + margin, entry.mipLevelCount);
+            if (maxAnisotropy > 1.0)
+                halfBox = max(halfBox, vec2(exp2(limit - margin)) / size);
+        }
         if (tries >= SLUICE_CLAMP_STEPS)
             break;
-        if (maxAnisotropy > 1.0)
-            halfBox = max(halfBox, vec2(exp2(limit - margin)) / size);
     }
-    if (clamped) {
-        s.plain = false;
-        s.lod = min(s.lod, float(s.level + 1u) + margin); /* not finite: the last level */
-        width = exp2(s.lod);
-    }
+    s.plain = finite && !point && !round && s.missing == 0u;
+    if (!finite)
+        s.lod = min(s.lod, float(s.level) + margin);
+    float width = exp2(widened || round ? max(s.lod, SLUICE_LOD_POINT) : SLUICE_LOD_POINT);
     if (round) {
-        s.plain = false;
-        width = exp2(max(s.lod, SLUICE_LOD_POINT));
         s.dx = vec2(width, 0.0) / size;
         s.dy = vec2(0.0, width) / size;
-    } else if (!s.plain) {
+    } else if (widened || point) {
         sluiceWiden(s.dx, s.dy, size, width);
     }
     return s;
+}
+
+/** The sample that was resolved, in sparse and dense mode. Its level must not be SLUICE_MIP_UNTOUCHED. */
+vec4 sluiceTextureGrad(sampler2D tex, SluiceSampling s)
+{
+#ifdef SLUICE_MIN_LOD
+    return textureGradClampARB(tex, s.uv, s.dx, s.dy, s.minLod);
+#else
+    return textureGrad(tex, s.uv, s.dx, s.dy);
+#endif
 }
 
 /** How many levels a sample is coarser than it should be; SLUICE_MIP_UNTOUCHED if it is nothing. */
@@ -283,7 +326,7 @@ vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
                                  maxAnisotropy);
 #endif
-    return textureGrad(tex, s.uv, s.dx, s.dy);
+    return sluiceTextureGrad(tex, s);
 }
 
 /** One texel, which must be resident: sluiceResolveSampling says what is. */
@@ -341,7 +384,7 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
         return texture(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
-    return textureGrad(tex, s.uv, s.dx, s.dy);
+    return sluiceTextureGrad(tex, s);
 }
 
 #endif

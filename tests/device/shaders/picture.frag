@@ -62,6 +62,7 @@ void main()
     outputs[at].footprint[1] = floatBitsToUint(s.dx.y);
     outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
     outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
+    outputs[at].minLod = s.minLod;
     outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                       bias, anisotropy);
     bool selected = (params.flags & PICTURE_LATTICE) != 0u

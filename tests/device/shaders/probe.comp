@@ -80,6 +80,15 @@ vec4 sampleRow(vec2 uv, vec2 dx, vec2 dy, float lod, float anisotropy)
     return sum / count;
 }
 
+vec4 sampleGrad(vec2 uv, vec2 dx, vec2 dy, float minLod)
+{
+#ifdef SLUICE_MIN_LOD
+    return textureGradClampARB(tex, uv, dx, dy, minLod);
+#else
+    return textureGrad(tex, uv, dx, dy);
+#endif
+}
+
 void main()
 {
     if (gl_GlobalInvocationID.x >= params.count)
@@ -101,7 +110,7 @@ void main()
     }
     if ((params.flags & PROBE_TRUTH) != 0u)
         writeColor(at, bias >= 0.0 ? sampleRow(uv, dx, dy, bias, anisotropy)
-                                   : textureGrad(tex, uv, dx, dy));
+                                   : sampleGrad(uv, dx, dy, -1.0 - bias));
     if ((params.flags & PROBE_FETCH) != 0u)
         writeColor(at, sluiceTexelFetch(tex, params.tableIndex, ivec2(uv), uint(bias)));
     if ((params.flags & PROBE_SAMPLE) != 0u) {
@@ -116,6 +125,7 @@ void main()
         outputs[at].footprint[1] = floatBitsToUint(s.dx.y);
         outputs[at].footprint[2] = floatBitsToUint(s.dy.x);
         outputs[at].footprint[3] = floatBitsToUint(s.dy.y);
+        outputs[at].minLod = s.minLod;
     }
     if ((params.flags & PROBE_RESIDENCY) != 0u)
         outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,

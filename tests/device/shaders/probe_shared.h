@@ -14,8 +14,9 @@
 #define PROBE_FETCH 8u  /* uv are texel coordinates, lodBias the level */
 #define PROBE_WORDS 16u /* copies feedback words instead */
 #define PROBE_TWINS 32u /* evaluates the functions that have C twins */
-/* textureGrad of the whole texture instead; where lodBias >= 0 that many levels coarse, in a row of
- * samples along the longer derivative, as paged residency takes them */
+/* textureGrad of the whole texture instead, clamped at -1 - lodBias if the sampler does that; where
+ * lodBias >= 0 that many levels coarse, in a row of samples along the longer
+ * derivative, as paged residency takes them */
 #define PROBE_TRUTH 64u
 
 #define PROBE_PAGE_CHUNKS 64 /* descriptors of page images */
@@ -41,7 +42,7 @@ struct ProbeOutput {
     uint wantedLevel;
     float lod;
     uint footprint[6]; /* of samples: the bits of dx and dy that textureGrad gets */
-    uint reserved;
+    float minLod;
 };
 SLUICE_SHARED_SIZE(struct ProbeOutput, 64)
 

@@ -56,6 +56,8 @@ void callLod()
         result(0u, sluiceComputeLod(real2(0u), real2(2u), real(4u), real(5u)));
         break;
     case TWIN_FINEST_LEVEL: result(0u, sluiceFinestLevel(real(0u), real(1u), argument(2u))); break;
+    case TWIN_LOD_LIMIT: result(0u, sluiceLodLimit(argument(0u), real(1u))); break;
+    case TWIN_SHOWN_LEVEL: result(0u, sluiceShownLevel(argument(0u))); break;
     case TWIN_COARSEST_LEVEL: result(0u, sluiceCoarsestLevel(real(0u), argument(1u))); break;
     }
 }
