@@ -106,7 +106,8 @@ bool sluiceMarkOneRegion(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
     vec2 before = texel - vec2(region << shift);
     vec2 room = min(before, vec2(uvec2(1u) << shift) - before);
-    if (!(min(room.x, room.y) > SLUICE_REACH * sqrt(max(reach2, 1.0)) &&
+    float reach = SLUICE_REACH * sqrt(max(reach2, 1.0));
+    if (!(room.x > reach && room.y > reach && abs(lodBias) <= SLUICE_QUICK_BIAS &&
           reach2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
           (shape & SLUICE_QUICK_ONE_REGION) != 0u))
         return false;

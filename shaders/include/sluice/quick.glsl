@@ -15,6 +15,9 @@
 #include "buffers.glsl"
 #include "lod.glsl"
 
+/* Beyond it nothing is quick. */
+#define SLUICE_QUICK_BIAS 16.0
+
 /** A coordinate inside the image: 0 to 1; 0 for NaN. */
 float sluiceFoldCoordinate(float coordinate, uint addressMode)
 {

@@ -186,7 +186,7 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     float limit = (float(around) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) +
                   sluiceLodMargin(maxAnisotropy) - lodBias;
     return sum * sluiceBiasScale2(lodBias) < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
-           min(texel.x, texel.y) >= 0.0 && (around == 0u || finest2 >= exp2(2.0 * limit));
+           abs(lodBias) <= SLUICE_QUICK_BIAS && texel.x >= 0.0 && texel.y >= 0.0 && (around == 0u || finest2 >= exp2(2.0 * limit));
 }
 
 /**
