@@ -7,6 +7,7 @@
 #include "vulkan/format.h"
 
 #include <assert.h>
+#include <math.h>
 
 /* The first of `count` free ones side by side. */
 static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
@@ -355,6 +356,12 @@ bool slc_texture_is_ragged(const struct slc_texture *texture)
            desc->height % desc->feedbackRegionHeight;
 }
 
+/* 4 to the power of the first packed level, and a margin for samplers that come out finer. */
+static float quick_packed2(const SluiceStreamedTextureDesc *desc)
+{
+    return ldexpf(1.5f, 2 * (int)desc->regularMipCount);
+}
+
 static uint32_t quick_shape(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -387,6 +394,7 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .sizeX = (float)desc->width,
         .sizeY = (float)desc->height,
         .quickShape = quick_shape(texture),
+        .quickPacked2 = quick_packed2(desc),
         .regionLastX = texture->layout.feedbackWidth - 1,
         .regionLastY = texture->layout.feedbackHeight - 1,
         .width = desc->width,

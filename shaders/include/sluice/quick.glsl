@@ -36,10 +36,10 @@ float sluiceFoldCoordinate(float coordinate, uint addressMode)
 vec2 sluiceQuickTexel(uint tableIndex, vec2 uv, uint shape)
 {
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
-    if ((shape & SLUICE_QUICK_REPEATS) != 0u)
-        return (uv - floor(uv)) * size;
     if (!sluiceIsFinite(uv))
         return vec2(-1.0);
+    if ((shape & SLUICE_QUICK_REPEATS) != 0u)
+        return (uv - floor(uv)) * size;
     return vec2(sluiceFoldCoordinate(uv.x, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeU),
                 sluiceFoldCoordinate(uv.y, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeV)) *
            size;

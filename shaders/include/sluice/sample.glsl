@@ -183,10 +183,15 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
         if (!(finest2 > exp2(2.0 * SLUICE_LOD_POINT)))
             return false;
     }
+    if (!(abs(lodBias) <= SLUICE_QUICK_BIAS && texel.x >= 0.0 && texel.y >= 0.0))
+        return false;
     float limit = (float(around) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) +
                   sluiceLodMargin(maxAnisotropy) - lodBias;
-    return sum * sluiceBiasScale2(lodBias) < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
-           abs(lodBias) <= SLUICE_QUICK_BIAS && texel.x >= 0.0 && texel.y >= 0.0 && (around == 0u || finest2 >= exp2(2.0 * limit));
+    float scale2 = sluiceBiasScale2(lodBias);
+    if (sum * scale2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2)
+        return around == 0u || finest2 >= exp2(2.0 * limit);
+    return around < SLUICE_SHOWN_NOTHING && sum * scale2 < SLUICE_MAX_TEXELS * SLUICE_MAX_TEXELS &&
+           finest2 * exp2(2.0 * lodBias) >= SLUICE_TEXTURE_ENTRY(tableIndex).quickPacked2;
 }
 
 /**

@@ -84,7 +84,8 @@ struct SluiceTextureEntry {
     uint flags;
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
-    uint reserved[3];
+    float quickPacked2; /* samples of squared derivatives from there on touch packed levels alone */
+    uint reserved[2];
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)
 
