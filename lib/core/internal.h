@@ -75,7 +75,6 @@ struct slc_span {
  * that have the same shape and have always got the same maps have one together.
  */
 struct slc_history {
-    size_t size;                          ///< bytes of the allocation
     uint32_t users;                       ///< textures
     struct slc_span spans[SLC_MAX_SPANS]; ///< [0, span_count) live, oldest first
     uint32_t span_count;
@@ -93,6 +92,13 @@ struct slc_history {
     uint32_t hits, returns; ///< what slc_texture's will grow by
 };
 
+/** Blocks of one size that textures gave back and others will take: links lie in the blocks. */
+struct slc_spares {
+    void *first;
+    uint32_t count;
+    uint32_t used; ///< that textures have
+};
+
 /** What textures of one description have in common; counted references. See shape.c. */
 struct slc_shape {
     uint32_t users;
@@ -102,8 +108,9 @@ struct slc_shape {
     uint32_t regular_tile_count, tile_count;
     uint32_t feedback_width, feedback_height, region_count;
     uint32_t min_mip_width, min_mip_height;
-    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
-    size_t work_size;                       ///< see wants.h
+    uint8_t region_shift_x, region_shift_y;    ///< regions per tile, log2; SLC_UNALIGNED
+    size_t work_size;                          ///< see wants.h
+    struct slc_spares states, histories, maps; ///< see history.c
     struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
 };
 
@@ -276,6 +283,10 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
 SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *desc,
                             struct slc_shape **shape);
 void slc_shape_give(slc_manager *m, struct slc_shape *shape);
+/** Memory of `size` bytes, always the same for these spares, and at least that of a pointer. */
+void *slc_spares_take(slc_manager *m, struct slc_spares *spares, size_t size);
+/** NULL is allowed. */
+void slc_spares_give(slc_manager *m, struct slc_spares *spares, void *memory, size_t size);
 
 /* layout.c */
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);
