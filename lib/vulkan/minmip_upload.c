@@ -9,6 +9,7 @@
 #include "vulkan/around.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 #define BATCH 64u
@@ -83,6 +84,25 @@ static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *tex
     return (VkBufferCopy){(slot + first) * sizeof *words, first * sizeof *words, size};
 }
 
+/* What shaders look at before they look at the map. */
+static void publish_whole(SluiceVulkanStreamer *s, uint32_t index, VkCommandBuffer commands)
+{
+    struct slc_texture *texture = &s->textures[index];
+    const uint16_t *texels = s->min_mip_texels + texture->region_first;
+    uint32_t count = texture->layout.minMipWidth * texture->layout.minMipHeight;
+    uint16_t most = 0;
+    for (uint32_t i = 0; i < count; i++)
+        most = texels[i] > most ? texels[i] : most;
+    if (most == texture->whole_shown)
+        return;
+    texture->whole_shown = most;
+    uint32_t word = most;
+    s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer,
+                          (uint64_t)index * sizeof(struct SluiceTextureEntry) +
+                              offsetof(struct SluiceTextureEntry, wholeShown),
+                          sizeof word, &word);
+}
+
 /* One step of all that moves in a texture; the rectangle shrinks to the rows that move on. */
 static VkBufferCopy move(SluiceVulkanStreamer *s, struct slc_texture *texture, uint16_t steps)
 {
@@ -122,6 +142,7 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
             continue;
         }
         copies[copy_count++] = move(s, texture, steps);
+        publish_whole(s, s->fades[i], commands);
         if (texture->fade.y1)
             s->fades[kept++] = s->fades[i];
         if (copy_count == BATCH)

@@ -54,6 +54,7 @@ struct slc_texture {
     VkSamplerAddressMode address_modes[2];
     uint32_t region_first, region_count;
     struct slc_fade_rect fade;
+    uint16_t whole_shown; ///< the largest texel of its MinMip map, as the texture table has it
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place;           ///< in primaries; SLC_NONE for followers

@@ -166,6 +166,7 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
     for (uint32_t i = 0; i < count; i++)
         s->textures[first + i] =
             (struct slc_texture){.source = info->source,
+                                 .whole_shown = slc_settled_texel(SLUICE_MIP_UNTOUCHED),
                                  .primary_id = info->primaryId,
                                  .info = *image,
                                  .image = residency_image,
@@ -395,6 +396,7 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .sizeY = (float)desc->height,
         .quickShape = quick_shape(texture),
         .quickPacked2 = quick_packed2(desc),
+        .wholeShown = texture->whole_shown,
         .regionLastX = texture->layout.feedbackWidth - 1,
         .regionLastY = texture->layout.feedbackHeight - 1,
         .width = desc->width,

@@ -164,17 +164,11 @@ uint sluiceMaxShown(SluiceTextureEntry entry, SluiceSampling s, vec2 halfBox, ui
 bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
-    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
     vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
-    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
-    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
-    uint around = SLUICE_MIN_MIP_WORD(SLUICE_TEXTURE_ENTRY(tableIndex).minMipOffset +
-                                      region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) +
-                                      region.x) >>
-                  16u;
     dx *= size;
     dy *= size;
     float x2 = dot(dx, dx), y2 = dot(dy, dy), sum = x2 + y2;
+    float scale2 = sluiceBiasScale2(lodBias);
     float finest2 = max(x2, y2); /* 4 to the power of the LOD, at most */
     if (maxAnisotropy > 1.0) {
         float n = sluiceClampAnisotropy(maxAnisotropy);
@@ -183,14 +177,23 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
         if (!(finest2 > exp2(2.0 * SLUICE_LOD_POINT)))
             return false;
     }
-    if (!(abs(lodBias) <= SLUICE_QUICK_BIAS && texel.x >= 0.0 && texel.y >= 0.0))
+    if (!(sum * scale2 < SLUICE_MAX_TEXELS * SLUICE_MAX_TEXELS && abs(lodBias) <= SLUICE_QUICK_BIAS &&
+          sluiceIsFinite(uv)))
         return false;
+    if (SLUICE_TEXTURE_ENTRY(tableIndex).wholeShown == 0u)
+        return true;
+    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
+    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
+    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
+    uint around = SLUICE_MIN_MIP_WORD(SLUICE_TEXTURE_ENTRY(tableIndex).minMipOffset +
+                                      region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) +
+                                      region.x) >>
+                  16u;
     float limit = (float(around) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) +
                   sluiceLodMargin(maxAnisotropy) - lodBias;
-    float scale2 = sluiceBiasScale2(lodBias);
     if (sum * scale2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2)
         return around == 0u || finest2 >= exp2(2.0 * limit);
-    return around < SLUICE_SHOWN_NOTHING && sum * scale2 < SLUICE_MAX_TEXELS * SLUICE_MAX_TEXELS &&
+    return around < SLUICE_SHOWN_NOTHING &&
            finest2 * exp2(2.0 * lodBias) >= SLUICE_TEXTURE_ENTRY(tableIndex).quickPacked2;
 }
 
@@ -350,6 +353,17 @@ vec4 sluiceTexelFetch(sampler2D tex, uint tableIndex, ivec2 texel, uint level)
 
 #ifdef GL_FRAGMENT_SHADER
 
+/** True if all of a texture may be shown, and texture() makes something of any derivatives. */
+bool sluiceIsWhole(uint tableIndex, float lodBias, float maxAnisotropy)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return false;
+#endif
+    return !(maxAnisotropy > 1.0) && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
+           SLUICE_TEXTURE_ENTRY(tableIndex).wholeShown == 0u;
+}
+
 /** True in all four pixels of a quad if it is in one. */
 bool sluiceAnyInQuad(bool value)
 {
@@ -363,11 +377,16 @@ bool sluiceAnyInQuad(bool value)
 vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
                   out uint missingLevels)
 {
+    missingLevels = 0u;
+    if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
+        bool finite = sluiceIsFinite(uv);
+        vec4 color = texture(tex, finite ? uv : vec2(0.0), lodBias);
+        return finite ? color : textureLod(tex, vec2(0.0), SLUICE_LOD_LIMIT);
+    }
     vec2 dx = dFdx(uv);
     vec2 dy = dFdy(uv);
     bool sure = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
                 sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-    missingLevels = 0u;
 #ifdef SLUICE_PAGED
     if (SLUICE_PAGED && sure)
         return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);

@@ -85,7 +85,8 @@ struct SluiceTextureEntry {
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
     float quickPacked2; /* samples of squared derivatives from there on touch packed levels alone */
-    uint reserved[2];
+    uint wholeShown;    /* the largest texel of its MinMip map: 0 while all of it may be shown */
+    uint reserved;
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)
 
