@@ -14,16 +14,12 @@
 
 /* stochastic.glsl */
 
-static inline uint32_t slc_twin_hash_step(uint32_t h)
-{
-    h = h * 747796405u + 2891336453u;
-    h = ((h >> ((h >> 28) + 4)) ^ h) * 277803737u;
-    return (h >> 22) ^ h;
-}
-
 static inline uint32_t slc_twin_hash(uint32_t x, uint32_t y, uint32_t z)
 {
-    return slc_twin_hash_step(slc_twin_hash_step(slc_twin_hash_step(x) + y) + z);
+    uint32_t h = (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ (z * 0xC2B2AE3Du);
+    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
+    h = (h ^ (h >> 12)) * 0x297A2D39u;
+    return h ^ (h >> 15);
 }
 
 static inline bool slc_twin_select_random_quad(uint32_t x, uint32_t y, uint32_t frame_seed,

@@ -6,18 +6,13 @@
 #ifndef SLUICE_STOCHASTIC_GLSL
 #define SLUICE_STOCHASTIC_GLSL
 
-/** Mixes all bits of three words; a PCG-style permutation. */
+/** Mixes all bits of three words. Every pixel pays for it, so it is short. */
 uint sluiceHash(uvec3 v)
 {
-    uint h = v.x * 747796405u + 2891336453u;
-    h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
-    h = (h >> 22u) ^ h;
-    h = (h + v.y) * 747796405u + 2891336453u;
-    h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
-    h = (h >> 22u) ^ h;
-    h = (h + v.z) * 747796405u + 2891336453u;
-    h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
-    return (h >> 22u) ^ h;
+    uint h = (v.x * 0x9E3779B1u) ^ (v.y * 0x85EBCA77u) ^ (v.z * 0xC2B2AE3Du);
+    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+    h = (h ^ (h >> 12u)) * 0x297A2D39u;
+    return h ^ (h >> 15u);
 }
 
 /**
