@@ -9,7 +9,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Table { SluiceTextureEntry 
 layout(std430, set = 0, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
 layout(std430, set = 0, binding = 2) buffer Feedback { uint words[]; } feedback;
 layout(std430, set = 0, binding = 3) readonly buffer PageTable { uint words[]; } pageTable;
-layout(set = 0, binding = 4) uniform sampler2DArray pages[8]; /* PAGE_CHUNKS in minimal.c */
+layout(set = 0, binding = 4) uniform sampler2DArray pages[8]; /* PAGE_CHUNKS in vulkan_drawing.h */
 layout(constant_id = 0) const bool paged = false;
 #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
 #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]

@@ -19,7 +19,7 @@ walk() { # name, options
 
 walk whole --residency dense --everything
 [ "$status" -eq 0 ] || exit "$status"
-for mode in sparse paged dense; do
+for mode in sparse paged dense auto; do
     walk "$mode" --residency "$mode" --frames 40
     if [ "$status" -ne 0 ]; then
         echo "$mode: status $status"
@@ -27,7 +27,11 @@ for mode in sparse paged dense; do
     fi
     ran=$((ran + 1))
     echo "$mode: $(cat "$folder/$mode.txt")"
-    grep -q "^$mode: " "$folder/$mode.txt" || failed=1
+    case $mode in
+    auto) used='sparse|paged' ;;
+    *) used=$mode ;;
+    esac
+    grep -q -E "^($used): " "$folder/$mode.txt" || failed=1
     python3 "$psnr" "$folder/whole.png" "$folder/$mode.png" 45 || failed=1
     awk '{ exit !($2 > 0 && $2 < $4 / 2) }' "$folder/$mode.txt" || failed=1
 done

@@ -3,10 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "room_frag.h" /* SPIR-V */
-#include "room_vert.h"
-
 #define PICTURE_FORMAT VK_FORMAT_R8G8B8A8_SRGB
+#define MAX_DEVICES 16
 
 void check(bool good, const char *what, const char *why)
 {
@@ -16,37 +14,49 @@ void check(bool good, const char *what, const char *why)
     exit(1);
 }
 
-uint32_t find_devices(struct gpu *gpu, VkPhysicalDevice devices[16])
+void check_vulkan(VkResult result, const char *call)
 {
-    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                     .apiVersion = VK_API_VERSION_1_2};
-    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                 .pApplicationInfo = &application};
-    VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
+    char why[32];
+    snprintf(why, sizeof why, "VkResult %d", result);
+    check(result == VK_SUCCESS, call, why);
+}
+
+static void create_instance(struct gpu *gpu)
+{
+    const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                           .apiVersion = VK_API_VERSION_1_2};
+    const VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                       .pApplicationInfo = &application};
+    const VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
         fprintf(stderr, "there is no Vulkan driver\n");
         exit(77);
     }
-    check(result == VK_SUCCESS, "vkCreateInstance", "is there a layer that cannot be loaded?");
-    uint32_t count = 16;
-    check(vkEnumeratePhysicalDevices(gpu->instance, &count, devices) >= 0, "looking for devices",
-          "the driver does not say why");
-    return count;
+    check_vulkan(result, "vkCreateInstance");
 }
 
-uint32_t find_queue_family(VkPhysicalDevice physical_device, VkQueueFlags flags)
+/* One that draws and computes, or VK_QUEUE_FAMILY_IGNORED. */
+static uint32_t find_drawing_family(VkPhysicalDevice physical_device)
 {
+    const VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
     VkQueueFamilyProperties families[32];
     uint32_t count = 32;
     vkGetPhysicalDeviceQueueFamilyProperties(physical_device, &count, families);
     for (uint32_t i = 0; i < count; i++)
-        if ((families[i].queueFlags & flags) == flags)
+        if ((families[i].queueFlags & wanted) == wanted)
             return i;
-    return UINT32_MAX;
+    return VK_QUEUE_FAMILY_IGNORED;
 }
 
-void open_device(struct gpu *gpu, const VkPhysicalDeviceFeatures2 *features)
+/* Returns false if the device lacks a feature. */
+static bool create_device(struct gpu *gpu, const struct device_needs *needs)
 {
+    VkPhysicalDeviceVulkan12Features vulkan12 = needs->vulkan12;
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    const VkPhysicalDeviceFeatures2 features = {.sType =
+                                                    VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                                .pNext = &vulkan12,
+                                                .features = needs->features};
     const float priority = 1.0f;
     const uint32_t families[] = {gpu->family, gpu->sparse_family};
     VkDeviceQueueCreateInfo queues[2];
@@ -55,13 +65,44 @@ void open_device(struct gpu *gpu, const VkPhysicalDeviceFeatures2 *features)
                                               .queueFamilyIndex = families[i],
                                               .queueCount = 1,
                                               .pQueuePriorities = &priority};
-    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                               .pNext = features,
-                               .queueCreateInfoCount = gpu->family == gpu->sparse_family ? 1 : 2,
-                               .pQueueCreateInfos = queues};
-    VK(vkCreateDevice(gpu->physical_device, &info, NULL, &gpu->device));
+    const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                     .pNext = &features,
+                                     .queueCreateInfoCount =
+                                         gpu->family == gpu->sparse_family ? 1 : 2,
+                                     .pQueueCreateInfos = queues};
+    const VkResult result = vkCreateDevice(gpu->physical_device, &info, NULL, &gpu->device);
+    if (result == VK_ERROR_FEATURE_NOT_PRESENT)
+        return false;
+    check_vulkan(result, "vkCreateDevice");
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
     vkGetDeviceQueue(gpu->device, gpu->sparse_family, 0, &gpu->sparse_queue);
+    return true;
+}
+
+void open_device(struct gpu *gpu, device_test *test, const void *user)
+{
+    create_instance(gpu);
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = MAX_DEVICES;
+    const VkResult result = vkEnumeratePhysicalDevices(gpu->instance, &count, devices);
+    check_vulkan(result == VK_INCOMPLETE ? VK_SUCCESS : result, "vkEnumeratePhysicalDevices");
+    for (uint32_t i = 0; i < count; i++) {
+        struct device_needs needs = {.sparse_family = VK_QUEUE_FAMILY_IGNORED};
+        /* Of room.frag, which is compiled once for all modes and finds pages like this. */
+        needs.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+        needs.vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
+        gpu->physical_device = devices[i];
+        gpu->family = find_drawing_family(devices[i]);
+        if (gpu->family == VK_QUEUE_FAMILY_IGNORED ||
+            !test(gpu->instance, devices[i], user, &needs))
+            continue;
+        gpu->sparse_family =
+            needs.sparse_family == VK_QUEUE_FAMILY_IGNORED ? gpu->family : needs.sparse_family;
+        if (create_device(gpu, &needs))
+            return;
+    }
+    fprintf(stderr, "no device can be used\n");
+    exit(77);
 }
 
 void close_device(const struct gpu *gpu)
@@ -188,213 +229,4 @@ void copy_picture(VkCommandBuffer commands, const struct picture *picture)
                                .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
     vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                          &to_host, 0, NULL, 0, NULL);
-}
-
-static VkDescriptorSetLayout create_set_layout(const struct gpu *gpu, uint32_t binding_count,
-                                               const VkDescriptorSetLayoutBinding *bindings)
-{
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = binding_count,
-                                            .pBindings = bindings};
-    VkDescriptorSetLayout layout;
-    VK(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &layout));
-    return layout;
-}
-
-static VkPipelineShaderStageCreateInfo
-create_stage(const struct gpu *gpu, VkShaderStageFlagBits flags, const uint32_t *words, size_t size)
-{
-    VkShaderModuleCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = words};
-    VkPipelineShaderStageCreateInfo stage = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = flags,
-        .pName = "main"};
-    VK(vkCreateShaderModule(gpu->device, &info, NULL, &stage.module));
-    return stage;
-}
-
-static VkPipeline create_pipeline(const struct gpu *gpu, VkPipelineLayout layout,
-                                  const struct picture *target, VkBool32 paged)
-{
-    VkPipelineShaderStageCreateInfo stages[2] = {
-        create_stage(gpu, VK_SHADER_STAGE_VERTEX_BIT, room_vert, sizeof room_vert),
-        create_stage(gpu, VK_SHADER_STAGE_FRAGMENT_BIT, room_frag, sizeof room_frag)};
-    const VkSpecializationMapEntry constant = {0, 0, sizeof paged};
-    const VkSpecializationInfo constants = {1, &constant, sizeof paged, &paged};
-    stages[1].pSpecializationInfo = &constants;
-    VkPipelineVertexInputStateCreateInfo vertices = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    VkPipelineInputAssemblyStateCreateInfo assembly = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    VkViewport viewport = {0, 0, (float)target->width, (float)target->height, 0, 1};
-    VkRect2D scissor = {.extent = {target->width, target->height}};
-    VkPipelineViewportStateCreateInfo view = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1,
-        .pViewports = &viewport,
-        .scissorCount = 1,
-        .pScissors = &scissor};
-    VkPipelineRasterizationStateCreateInfo raster = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1.0f};
-    VkPipelineMultisampleStateCreateInfo samples = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-    VkPipelineColorBlendAttachmentState attachment = {.colorWriteMask = 0xf};
-    VkPipelineColorBlendStateCreateInfo blend = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 1,
-        .pAttachments = &attachment};
-    VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                         .stageCount = 2,
-                                         .pStages = stages,
-                                         .pVertexInputState = &vertices,
-                                         .pInputAssemblyState = &assembly,
-                                         .pViewportState = &view,
-                                         .pRasterizationState = &raster,
-                                         .pMultisampleState = &samples,
-                                         .pColorBlendState = &blend,
-                                         .layout = layout,
-                                         .renderPass = target->render_pass};
-    VkPipeline pipeline;
-    VK(vkCreateGraphicsPipelines(gpu->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline));
-    for (int i = 0; i < 2; i++)
-        vkDestroyShaderModule(gpu->device, stages[i].module, NULL);
-    return pipeline;
-}
-
-static void create_set_layouts(const struct gpu *gpu, VkDescriptorSetLayout layouts[2])
-{
-    VkDescriptorSetLayoutBinding bindings[5]; /* as room.frag has them */
-    for (uint32_t i = 0; i < 4; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                                     VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    bindings[4] = (VkDescriptorSetLayoutBinding){4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                                 PAGE_CHUNKS, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    layouts[0] = create_set_layout(gpu, 5, bindings);
-    const VkDescriptorSetLayoutBinding albedo = {0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                                 VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    layouts[1] = create_set_layout(gpu, 1, &albedo);
-}
-
-/* What sample.glsl asks of a sampler: no bias of its own, all levels, the texture's address modes.
- */
-static VkSampler create_sampler(const struct gpu *gpu)
-{
-    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                .magFilter = VK_FILTER_LINEAR,
-                                .minFilter = VK_FILTER_LINEAR,
-                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                .maxLod = VK_LOD_CLAMP_NONE};
-    VkSampler sampler;
-    VK(vkCreateSampler(gpu->device, &info, NULL, &sampler));
-    return sampler;
-}
-
-void create_drawing(const struct gpu *gpu, const struct picture *target, bool paged,
-                    uint32_t constant_size, struct drawing *drawing)
-{
-    create_set_layouts(gpu, drawing->set_layouts);
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 64},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 64}};
-    VkDescriptorPoolCreateInfo set_pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                           .maxSets = 16,
-                                           .poolSizeCount = 2,
-                                           .pPoolSizes = sizes};
-    VK(vkCreateDescriptorPool(gpu->device, &set_pool, NULL, &drawing->set_pool));
-    drawing->sampler = create_sampler(gpu);
-    const VkPushConstantRange constants = {
-        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, constant_size};
-    VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 2,
-                                         .pSetLayouts = drawing->set_layouts,
-                                         .pushConstantRangeCount = 1,
-                                         .pPushConstantRanges = &constants};
-    VK(vkCreatePipelineLayout(gpu->device, &layout, NULL, &drawing->layout));
-    drawing->pipeline = create_pipeline(gpu, drawing->layout, target, paged);
-    VkCommandPoolCreateInfo command_pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                            .flags =
-                                                VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                            .queueFamilyIndex = gpu->family};
-    VK(vkCreateCommandPool(gpu->device, &command_pool, NULL, &drawing->command_pool));
-}
-
-void destroy_drawing(const struct gpu *gpu, const struct drawing *drawing)
-{
-    vkDestroyCommandPool(gpu->device, drawing->command_pool, NULL);
-    vkDestroyPipeline(gpu->device, drawing->pipeline, NULL);
-    vkDestroyPipelineLayout(gpu->device, drawing->layout, NULL);
-    vkDestroySampler(gpu->device, drawing->sampler, NULL);
-    vkDestroyDescriptorPool(gpu->device, drawing->set_pool, NULL);
-    for (int i = 0; i < 2; i++)
-        vkDestroyDescriptorSetLayout(gpu->device, drawing->set_layouts[i], NULL);
-}
-
-VkDescriptorSet allocate_set(const struct gpu *gpu, const struct drawing *drawing, uint32_t index)
-{
-    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                        .descriptorPool = drawing->set_pool,
-                                        .descriptorSetCount = 1,
-                                        .pSetLayouts = &drawing->set_layouts[index]};
-    VkDescriptorSet set;
-    VK(vkAllocateDescriptorSets(gpu->device, &info, &set));
-    return set;
-}
-
-VkCommandBuffer allocate_commands(const struct gpu *gpu, const struct drawing *drawing)
-{
-    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                        .commandPool = drawing->command_pool,
-                                        .commandBufferCount = 1};
-    VkCommandBuffer commands;
-    VK(vkAllocateCommandBuffers(gpu->device, &info, &commands));
-    return commands;
-}
-
-void write_buffers(const struct gpu *gpu, VkDescriptorSet set, uint32_t count,
-                   const VkBuffer *buffers)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        const VkDescriptorBufferInfo buffer = {buffers[i], 0, VK_WHOLE_SIZE};
-        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                            .dstSet = set,
-                                            .dstBinding = i,
-                                            .descriptorCount = 1,
-                                            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                            .pBufferInfo = &buffer};
-        vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
-    }
-}
-
-void write_images(const struct gpu *gpu, VkDescriptorSet set, uint32_t binding, uint32_t count,
-                  const VkImageView *views, VkSampler sampler)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        const VkDescriptorImageInfo image = {sampler, views[i], VK_IMAGE_LAYOUT_GENERAL};
-        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                            .dstSet = set,
-                                            .dstBinding = binding,
-                                            .dstArrayElement = i,
-                                            .descriptorCount = 1,
-                                            .descriptorType =
-                                                VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                            .pImageInfo = &image};
-        vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
-    }
-}
-
-void begin_drawing(VkCommandBuffer commands, const struct drawing *drawing,
-                   const struct picture *target)
-{
-    const VkClearValue sky = {.color = {.float32 = {0.30f, 0.45f, 0.65f, 1.0f}}};
-    VkRenderPassBeginInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                  .renderPass = target->render_pass,
-                                  .framebuffer = target->framebuffer,
-                                  .renderArea = {.extent = {target->width, target->height}},
-                                  .clearValueCount = 1,
-                                  .pClearValues = &sky};
-    vkCmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing->pipeline);
 }

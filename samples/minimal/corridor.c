@@ -1,0 +1,89 @@
+#include "corridor.h"
+
+#include "../common/options.h"
+#include "../common/png_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define REST_FRAMES 80u /* the lattice of room.frag needs 64 to reach every pixel */
+
+struct settings read_settings(int argc, char **argv)
+{
+    struct settings settings = {.size = {960, 540}, .walk_frames = 120, .output = "minimal.png"};
+    int mode = SLUICE_RESIDENCY_MODE_AUTO;
+    const struct option options[] = {
+        {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", &mode, "how tiles get memory", 0,
+         0},
+        {OPTION_UINT, "frames", "N", &settings.walk_frames, "to walk, before the eye rests", 1,
+         100000},
+        {OPTION_SIZE, "size", "WxH", settings.size, "of the picture in pixels", 1, 4096},
+        {OPTION_FLAG, "everything", NULL, &settings.everything, "have every tile, wanted or not", 0,
+         0},
+        {OPTION_TEXT, "output", "FILE", &settings.output, "the last picture, as PNG", 0, 0}};
+    const char *usage = "minimal: walks along a corridor of streamed textures\n\n";
+    const enum option_outcome outcome =
+        options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
+    if (outcome != OPTIONS_RUN)
+        exit(outcome == OPTIONS_HELP ? 0 : 2);
+    settings.mode = (SluiceResidencyMode)mode;
+    settings.frames = settings.walk_frames + REST_FRAMES;
+    return settings;
+}
+
+uint32_t texture_of_surface(uint32_t surface)
+{
+    static const uint32_t textures[SURFACES] = {0, 1, 1, 2};
+    return textures[surface];
+}
+
+float eye_in_frame(const struct settings *settings, uint32_t frame)
+{
+    const uint32_t step = frame < settings->walk_frames ? frame : settings->walk_frames;
+    return 1.0f - 4.0f * (float)step / (float)settings->walk_frames;
+}
+
+/* Waves of ever finer scale, as far as the level can show them; any thread calls this. */
+static void paint(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    const float *color = pUserData;
+    const float u = ((float)x + 0.5f) / (float)width, v = ((float)y + 0.5f) / (float)height;
+    const float least = (float)(width < height ? width : height);
+    float value = 0.5f, strength = 0.25f;
+    (void)mipLevel;
+    for (float waves = 4.0f; 4.0f * waves <= least; waves *= 4.0f) {
+        value += strength * sinf(6.2831853f * waves * u) * sinf(6.2831853f * waves * v);
+        strength *= 0.8f;
+    }
+    for (int c = 0; c < 4; c++)
+        rgba[c] = c < 3 ? color[c] * value : 1.0f;
+}
+
+SluiceResult create_source(uint32_t texture, SluiceImageSource **source)
+{
+    static float colors[TEXTURES][3] = {{0.9f, 0.6f, 0.3f}, {0.4f, 0.8f, 0.5f}, {0.9f, 0.4f, 0.5f}};
+    const SluiceProceduralImage image = {colors[texture], paint};
+    const SluiceImageInfo info = {.width = 4096u >> texture, /* a different size for each */
+                                  .height = 2048,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                  .pName = "waves"};
+    return sluiceCreateProceduralImageSource(&image, &info, NULL, source);
+}
+
+void print_statistics(const SluiceVulkanStreamer *streamer)
+{
+    static const char *const modes[] = {"auto", "sparse", "paged", "dense"};
+    SluiceVulkanStreamerStatistics now;
+    sluiceGetVulkanStreamerStatistics(streamer, &now);
+    printf("%s: %u of %u tiles mapped, %.1f MB of texels read, %.1f MB of device memory\n",
+           modes[sluiceGetVulkanResidencyMode(streamer)], now.manager.mappedTileCount,
+           (unsigned)now.manager.tileCount, (double)now.bytesRead * 1e-6,
+           (double)now.deviceMemorySize * 1e-6);
+}
+
+bool write_picture(const struct settings *settings, const uint8_t *texels)
+{
+    return png_file_write(settings->output, texels, settings->size[0], settings->size[1]);
+}
