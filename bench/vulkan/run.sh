@@ -110,12 +110,18 @@ budget.uploads_per_frame|... uploads after 100 frames|at most 1
 resolve.still.gpu|resolve, 1 000 textures, still|at most 30
 resolve.moving.gpu|resolve, 1 000 textures, 1 region in 20 new|at most 30
 resolve.all_changed.gpu|resolve, 1 000 textures, all regions new|at most 30
-host.moving.library|host, library itself, camera moving|at most 60
+host.moving.library|host, 1 000 maps a frame, camera moving: library itself|at most 60
 host.moving.driver|... driver calls|
 host.moving.allocations|... allocations per frame|0
-host.still.library|host, library itself, camera still|at most 10
+host.still.library|host, 1 000 maps a frame, camera still: library itself|at most 10
 host.still.driver|... driver calls|
 host.still.allocations|... allocations per frame|0
+host_share_10.moving.library|host, 10 maps a frame, camera moving: library itself|
+host_share_10.moving.driver|... driver calls|
+host_share_10.moving.allocations|... allocations per frame|0
+host_share_10.still.library|host, 10 maps a frame, camera still: library itself|
+host_share_10.still.driver|... driver calls|
+host_share_10.still.allocations|... allocations per frame|0
 sharp.all.frames|first visible to sharp, p = 1|at most 4
 sharp.quads_16.frames_99|first visible to sharp, p = 1/16, 99 % of regions|at most 8
 END
