@@ -110,11 +110,11 @@ static bool fill_run(struct fill *fill, struct fill_times *times)
 static const char *bound_of(const struct fill_times *times)
 {
     if (times->gpu_seconds > 0.7 * times->seconds)
-        return "copies on the device";
+        return "bound by copies on the device";
     if (times->host_seconds > 0.7 * times->seconds)
-        return "begin and end on the host";
-    return isnan(times->gpu_seconds) ? "what is not known without time stamps"
-                                     : "reads, bindings and frames in flight";
+        return "bound by begin and end on the host";
+    return isnan(times->gpu_seconds) ? "without time stamps it is not known what bounds it"
+                                     : "bound by reads, bindings and frames in flight";
 }
 
 static bool fill_with(const struct bench *bench, uint32_t tiles_per_frame, double *best,
@@ -136,7 +136,7 @@ static bool fill_with(const struct bench *bench, uint32_t tiles_per_frame, doubl
         return false;
     double rate = (double)*tile_count / times.seconds;
     *best = rate > *best ? rate : *best;
-    fprintf(stderr, "%s: %u tiles per frame: bound by %s\n", bench->mode_name, tiles_per_frame,
+    fprintf(stderr, "%s: %u tiles per frame: %s\n", bench->mode_name, tiles_per_frame,
             bound_of(&times));
     report(bench, rate, "tiles/s", "fill.%u_per_frame.rate", tiles_per_frame);
     report(bench, (double)times.frames, "frames", "fill.%u_per_frame.frames", tiles_per_frame);

@@ -152,9 +152,11 @@ print_tables() {
                 printf "%s%-62s %12s %-18s %s\n", (m > 1 ? "\n" : ""), modes[m], "figure", "unit",
                     "should be, on an H200"
                 for (i = 1; i <= NR; i++)
-                    if ((modes[m], names[i]) in value)
-                        printf "%-62s %12.5g %-18s %s\n", what[i], value[modes[m], names[i]],
-                            unit[modes[m], names[i]], goal[i]
+                    if ((modes[m], names[i]) in value) {
+                        number = value[modes[m], names[i]]
+                        printf "%-62s " (number < 1e5 ? "%12.5g" : "%12.0f") " %-18s %s\n", what[i],
+                            number, unit[modes[m], names[i]], goal[i]
+                    }
             }
         }'
 }
