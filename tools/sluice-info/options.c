@@ -63,17 +63,22 @@ bool parse_options(struct options *o, int argc, char **argv)
 
 void print_help(void)
 {
-    printf("usage: sluice-info [options]\n"
-           "\n"
-           "Says what the Vulkan devices of this machine can do for Sluice.\n"
-           "\n"
-           "  --device INDEX|NAME  one device, by its number or a part of its name (all)\n"
-           "  --device             only the devices' numbers and names\n"
-           "  --image WxH          size of the image whose layout is shown (%ux%u)\n"
-           "  --json               one JSON object per line and device\n"
-           "  --help               this text\n"
-           "\n"
-           "Exit status: 0 all is shown; 1 there is no Vulkan, no device or none of that name;\n"
-           "2 wrong usage.\n",
-           defaults.width, defaults.height);
+    printf(
+        "usage: sluice-info [options]\n"
+        "\n"
+        "Says what the Vulkan devices of this machine can do for Sluice.\n"
+        "\n"
+        "  --device INDEX|NAME  one device, by its number or a part of its name (all)\n"
+        "  --device             only the devices' numbers and names\n"
+        "  --image WxH          size of the image whose layout is shown (%ux%u)\n"
+        "  --json               one JSON object per line and device\n"
+        "  --help               this text\n"
+        "\n"
+        "Of each format: whether it can be streamed, sampled and filtered; the tile as the driver\n"
+        "says it, and as it is; how many of the image's levels have tiles that come and go one by\n"
+        "one, and how many pages hold the others, in the driver's own mip tail or one by one.\n"
+        "\n"
+        "Exit status: 0 all is shown; 1 there is no Vulkan, no device or none of that name;\n"
+        "2 wrong usage.\n",
+        defaults.width, defaults.height);
 }

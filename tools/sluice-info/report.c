@@ -44,8 +44,8 @@ static void print_bytes(uint64_t size)
 
 static void print_queue(const SluiceVulkanDeviceCapabilities *c)
 {
-    printf("  sparse binding queue    family %u, %u queues, %s\n", c->sparseQueueFamilyIndex,
-           c->sparseQueueCount,
+    printf("  sparse binding queue    family %u, %u %s, %s\n", c->sparseQueueFamilyIndex,
+           c->sparseQueueCount, c->sparseQueueCount == 1 ? "queue" : "queues",
            c->dedicatedSparseQueue ? "neither draws nor computes" : "shared with other work");
 }
 
