@@ -62,6 +62,7 @@ static void print_help(const struct option *options, size_t option_count, const 
         print_default(option);
         printf("\n");
     }
+    printf("%-*sthis text\n", HELP_COLUMN, "  --help");
 }
 
 /** A number, or two with a slash between them. */

@@ -22,7 +22,10 @@ struct settings read_settings(int argc, char **argv)
         {OPTION_FLAG, "everything", NULL, &settings.everything, "have every tile, wanted or not", 0,
          0},
         {OPTION_TEXT, "output", "FILE", &settings.output, "the last picture, as PNG", 0, 0}};
-    const char *usage = "minimal: walks along a corridor of streamed textures\n\n";
+    const char *usage = "Usage: minimal [options]\n"
+                        "Walks along a corridor of streamed textures, without a window.\n"
+                        "Exit status: 0; 1 if something failed; 2 for wrong usage; 77 if no device "
+                        "can stream.\n\n";
     const enum option_outcome outcome =
         options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
     if (outcome != OPTIONS_RUN)
