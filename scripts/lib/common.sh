@@ -20,12 +20,26 @@ die() {
 # The usage text of a script is the comment at its top.
 usage_of() { sed -n '2,/^$/s/^# \{0,1\}//p' "$1"; }
 
-# logged LOG COMMAND...: runs quietly; on failure shows the end of the log. Returns its status.
+# Every 15 seconds the last line of a log, until it is killed or the script is gone.
+watch_log() {
+    local from=$SECONDS
+    while sleep 15 >/dev/null 2>&1 && kill -0 $$ 2>/dev/null; do
+        printf '    %3s s: %.100s\n' $((SECONDS - from)) "$(tail -n 1 "$1")"
+    done
+}
+
+# logged LOG COMMAND...: shows of its output only how far it is, and on failure the end of it.
+# Returns its status.
 logged() {
-    local log=$1 status=0
+    local log=$1 status=0 watcher
     shift
     mkdir -p "$(dirname "$log")"
+    : >"$log"
+    watch_log "$log" &
+    watcher=$!
     "$@" >"$log" 2>&1 </dev/null || status=$?
+    kill "$watcher" 2>/dev/null || true
+    wait "$watcher" 2>/dev/null || true
     if [ "$status" -ne 0 ]; then
         printf 'failed (%s): %s\n' "$status" "$*"
         tail -n 60 "$log" | sed 's/^/    /'
