@@ -11,7 +11,7 @@
 
 struct settings read_settings(int argc, char **argv)
 {
-    struct settings settings = {.size = {960, 540}, .walk_frames = 120, .output = "minimal.png"};
+    struct settings settings = {.size = {640, 360}, .walk_frames = 120, .output = "minimal.png"};
     int mode = SLUICE_RESIDENCY_MODE_AUTO;
     const struct option options[] = {
         {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", &mode, "how tiles get memory", 0,
@@ -75,15 +75,17 @@ SluiceResult create_source(uint32_t texture, SluiceImageSource **source)
     return sluiceCreateProceduralImageSource(&image, &info, NULL, source);
 }
 
-void print_statistics(const SluiceVulkanStreamer *streamer)
+void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames)
 {
     static const char *const modes[] = {"auto", "sparse", "paged", "dense"};
     SluiceVulkanStreamerStatistics now;
     sluiceGetVulkanStreamerStatistics(streamer, &now);
-    printf("%s: %u of %u tiles mapped, %.1f MB of texels read, %.1f MB of device memory\n",
-           modes[sluiceGetVulkanResidencyMode(streamer)], now.manager.mappedTileCount,
-           (unsigned)now.manager.tileCount, (double)now.bytesRead * 1e-6,
-           (double)now.deviceMemorySize * 1e-6);
+    printf(
+        "%s, frame %u: %u of %u tiles mapped, %.1f MB of texels read, %.1f MB of device memory\n",
+        modes[sluiceGetVulkanResidencyMode(streamer)], frames, now.manager.mappedTileCount,
+        (unsigned)now.manager.tileCount, (double)now.bytesRead * 1e-6,
+        (double)now.deviceMemorySize * 1e-6);
+    fflush(stdout);
 }
 
 bool write_picture(const struct settings *settings, const uint8_t *texels)

@@ -135,8 +135,9 @@ int main(int argc, char **argv)
         if (number >= settings.walk_frames) /* only so that each run ends with the same picture */
             SLUICE(sluiceWaitVulkanStreamerIdle(r.streamer));
         draw_frame(&r, number, eye_in_frame(&settings, number));
+        if ((number + 1) % 40 == 0 || number + 1 == settings.frames)
+            print_statistics(r.streamer, number + 1);
     }
-    print_statistics(r.streamer);
 
     sluiceDestroyVulkanStreamer(r.streamer); /* waits for the device, and for reads of sources */
     for (uint32_t i = 0; i < TEXTURES; i++)
