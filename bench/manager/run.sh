@@ -334,8 +334,11 @@ ROWS
 
 print_table() {
     [ "$only" != clairvoyant ] || return 0
-    echo "traces: of 3 runs the one with the least median; times without, quality with quality=1"
-    [ "$quick" = no ] || echo "--quick: each trace once, few repetitions, memory with 1 M tiles"
+    if [ "$quick" = yes ]; then
+        echo "--quick: each trace once, few repetitions, memory with 1 M tiles"
+    elif [ "$have_harness" = yes ]; then
+        echo "traces: of 3 runs the one with the least median; times without, quality with quality=1"
+    fi
     rows | awk -F ' *[|] *' -v figures="$figures" '
         function short(x) { return x >= 1000 ? sprintf("%.0f", x) : sprintf("%.3g", x) }
         function line(a, b, c, d, e, f) {
