@@ -67,6 +67,8 @@ done
 
 title "Streaming the gallery"
 mkdir -p "$output" "$cache"
+# Pictures of an earlier run, which may have had other frames.
+[ ! -e "$output/report.html" ] || rm -f "$output"/{frame,truth}-[0-9][0-9][0-9][0-9].png
 "$folder/samples/streaming/streaming" --output "$output" --cache "$cache" --compare --json "$@" |
     tee "$output/summary.txt" || die "the demo did not end well"
 

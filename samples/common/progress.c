@@ -25,6 +25,19 @@ static const char *metric_prefix(double *value)
     return prefixes[i];
 }
 
+/* "42 ktexels/s  3 s left"; nothing before anything is done. */
+static void write_estimate(const struct progress *progress, uint64_t done, double seconds,
+                           char *text, size_t size)
+{
+    text[0] = '\0';
+    if (done == 0)
+        return;
+    double rate = (double)done / seconds;
+    double left = (double)(progress->total - done) / rate;
+    const char *prefix = metric_prefix(&rate);
+    snprintf(text, size, "%.3g %s%s/s  %.0f s left", rate, prefix, progress->unit, left);
+}
+
 void progress_update(struct progress *progress, uint64_t done)
 {
     double now = clock_seconds();
@@ -35,16 +48,14 @@ void progress_update(struct progress *progress, uint64_t done)
         done = progress->total;
 
     double share = (double)done / (double)progress->total;
-    double rate = (double)done / (now - progress->start);
-    double left = rate > 0.0 ? (double)(progress->total - done) / rate : 0.0;
-    const char *prefix = metric_prefix(&rate);
+    char estimate[64];
+    write_estimate(progress, done, now - progress->start, estimate, sizeof estimate);
     char bar[BAR_WIDTH + 1];
     for (int i = 0; i < BAR_WIDTH; i++)
         bar[i] = i < (int)(share * BAR_WIDTH) ? '#' : '.';
     bar[BAR_WIDTH] = '\0';
-    fprintf(stderr, "%s%s [%s] %3.0f %%  %.3g %s%s/s  %.0f s left   %s",
-            progress->terminal ? "\r" : "", progress->what, bar, 100.0 * share, rate, prefix,
-            progress->unit, left, progress->terminal ? "" : "\n");
+    fprintf(stderr, "%s%s [%s] %3.0f %%  %s   %s", progress->terminal ? "\r" : "", progress->what,
+            bar, 100.0 * share, estimate, progress->terminal ? "" : "\n");
     fflush(stderr);
 }
 
