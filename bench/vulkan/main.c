@@ -130,6 +130,7 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
     for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
         if (!chosen(arguments->only, measurements[i].name))
             continue;
+        fprintf(stderr, "%s: %s\n", bench.mode_name, measurements[i].name);
         if (!measurements[i].measure(&bench)) {
             fprintf(stderr, "%s: %s failed\n", bench.mode_name, measurements[i].name);
             status = 1;
