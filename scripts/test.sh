@@ -43,6 +43,8 @@ select_lavapipe
 begin_stages
 
 # As users get it, and everything that is not about the build: headers, packages, examples, device.
+# shellcheck disable=SC2034 # read by meson_stage
+test_options=(--no-suite short)
 meson_stage gcc CC=gcc CXX=g++ -- -Dbuildtype=debugoptimized -Ddefault_library=both
 tap_stage style scripts/dev/check-style.sh
 if [ "$quick" = no ]; then
@@ -53,14 +55,12 @@ if [ "$quick" = no ]; then
     # Every feature off, both kinds of library; replays must decide the same in all of them.
     # What is slow has run twice by now and depends on none of this.
     # shellcheck disable=SC2034 # read by meson_stage
-    test_options=(--no-suite slow)
+    test_options=(--no-suite slow --no-suite short)
     off='-Dexr=disabled -Dvulkan=disabled -Dsamples=disabled'
     # shellcheck disable=SC2086 # lists of words
     {
-        meson_stage gcc-O0-static CC=gcc -- $off -Doptimization=0 -Ddefault_library=static
-        meson_stage gcc-O3-shared CC=gcc -- $off -Doptimization=3 -Ddefault_library=shared
+        meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static
         meson_stage clang-O0-shared CC=clang -- $off -Doptimization=0 -Ddefault_library=shared
-        meson_stage clang-O3-static CC=clang -- $off -Doptimization=3 -Ddefault_library=static
     }
 fi
 
