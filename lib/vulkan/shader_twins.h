@@ -9,26 +9,34 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <sluice/shared/texture_table.h>
 
 /* stochastic.glsl */
 
+static inline uint32_t slc_twin_mix(uint32_t x, uint32_t y, uint32_t z)
+{
+    uint32_t h = x * 0x9E3779B1u + y * 0x85EBCA77u + z * 0xC2B2AE3Du;
+    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
+    return (h ^ (h >> 13)) * 0x297A2D39u;
+}
+
 static inline uint32_t slc_twin_hash(uint32_t x, uint32_t y, uint32_t z)
 {
-    uint32_t h = (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u) ^ (z * 0xC2B2AE3Du);
-    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
-    h = (h ^ (h >> 12)) * 0x297A2D39u;
+    uint32_t h = slc_twin_mix(x, y, z);
     return h ^ (h >> 15);
 }
+
+/* 2^23 as a float's bits: what adding to a whole number leaves of it */
+#define SLC_TWIN_FLOAT_ORIGIN 0x4B000000u
 
 static inline bool slc_twin_select_random_quad(uint32_t x, uint32_t y, uint32_t frame_seed,
                                                float probability)
 {
-    if (probability >= 1.0f)
-        return true;
-    float draw = (float)(slc_twin_hash(x >> 1, y >> 1, frame_seed) >> 8) * (1.0f / 16777216.0f);
-    return draw < probability;
+    uint32_t mix = slc_twin_mix((x >> 1) + SLC_TWIN_FLOAT_ORIGIN, (y >> 1) + SLC_TWIN_FLOAT_ORIGIN,
+                                frame_seed);
+    return (float)(mix >> 9) * (1.0f / 8388608.0f) < probability;
 }
 
 static inline bool slc_twin_select_lattice(uint32_t pixel_x, uint32_t pixel_y, uint32_t frame_index)
@@ -129,6 +137,45 @@ static inline uint32_t slc_twin_coarsest_level(float lod, uint32_t count)
     return level < count - 1 ? level : count - 1;
 }
 
+/* 4 to the power of LODs, without bias and margins */
+
+struct slc_twin_squares {
+    float fine, coarse, widest, sum;
+};
+
+#define SLC_TWIN_QUICK_SQUARES 1.0e14f
+#define SLC_TWIN_QUICK_BIAS 16.0f
+
+static inline struct slc_twin_squares
+slc_twin_square_lods(struct slc_twin_vec2 dx, struct slc_twin_vec2 dy, float max_anisotropy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    float area = dx.x * dy.y - dx.y * dy.x;
+    float major = fmaxf(x2, y2);
+    struct slc_twin_squares s;
+    s.sum = x2 + y2;
+    s.widest =
+        fmaxf(0.5f * (s.sum + sqrtf(fmaxf(s.sum * s.sum - 4.0f * area * area, 0.0f))), major);
+    s.fine = major;
+    s.coarse = s.widest;
+    if (max_anisotropy > 1.0f) {
+        float n = slc_twin_clamp_anisotropy(max_anisotropy);
+        float minor = fminf(x2, y2);
+        s.fine = fmaxf(fminf(minor, area * area / fmaxf(s.widest, 1.0e-30f)), major / (n * n));
+        s.coarse = fmaxf(minor, s.widest / (n * n));
+    }
+    return s;
+}
+
+static inline uint32_t slc_twin_floor_log4(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int32_t exponent = (int32_t)(bits >> 23) - 127;
+    return (uint32_t)(exponent > 0 ? exponent : 0) >> 1;
+}
+
 static inline float slc_twin_lod_limit(uint32_t shown, float margin)
 {
     return shown == 0
@@ -149,73 +196,89 @@ static inline uint32_t slc_twin_shown_level(uint32_t shown)
 
 #define SLC_TWIN_FOOTPRINT_STEPS_LOG2 6
 
-/* From the first to the second; where the third is another, on from 0 to the third. */
+/* x, then y: where the first is behind the last, it goes on at 0. */
 struct slc_twin_footprint {
-    uint32_t x[3], y[3];
+    uint32_t first[2], last[2];
 };
 
-static inline uint32_t slc_twin_region_index(float coordinate, float regions_per_unit,
-                                             uint32_t region_count)
+static inline uint32_t slc_twin_region_index(float texel, float size, uint32_t shift, uint32_t last)
 {
-    float at = coordinate > 0.0f ? fminf(coordinate, 1.0f) * regions_per_unit : 0.0f;
-    uint32_t index = (uint32_t)at;
-    return index < region_count - 1 ? index : region_count - 1;
+    uint32_t index = (uint32_t)(texel > 0.0f ? fminf(texel, size) : 0.0f) >> shift;
+    return index < last ? index : last;
 }
 
 static inline void slc_twin_region_range(float coordinate, float below, float above,
-                                         uint32_t address_mode, float regions_per_unit,
-                                         uint32_t region_count, uint32_t out[3])
+                                         uint32_t address_mode, float size, uint32_t shift,
+                                         uint32_t last, uint32_t out[2])
 {
-    if (address_mode == SLUICE_ADDRESS_MODE_REPEAT) {
-        below = below < 0.5f ? below : 0.5f;
-        above = above < 0.5f ? above : 0.5f;
-        float middle = coordinate - floorf(coordinate);
-        middle = middle >= 0.0f ? fminf(middle, 1.0f) : 0.0f;
-        float low = middle - below, high = middle + above;
-        bool wraps = low < 0.0f || high >= 1.0f;
-        out[0] =
-            slc_twin_region_index(low < 0.0f ? low + 1.0f : low, regions_per_unit, region_count);
-        out[2] = slc_twin_region_index(high >= 1.0f ? high - 1.0f : high, regions_per_unit,
-                                       region_count);
-        out[1] = wraps ? region_count - 1 : out[2];
-        if (wraps && out[2] == region_count - 1)
-            out[0] = 0;
+    bool repeats = address_mode == SLUICE_ADDRESS_MODE_REPEAT;
+    float low, high;
+    out[0] = 0;
+    out[1] = last;
+    if (repeats) {
+        if (!(below + above < size))
+            return;
+        float middle = (coordinate - floorf(coordinate)) * size;
+        low = middle - below;
+        high = middle + above;
+        low += low < 0.0f ? size : 0.0f;
+        high -= high >= size ? size : 0.0f;
+    } else {
+        float middle = coordinate;
+        if (address_mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
+            middle = coordinate - 2.0f * floorf(coordinate * 0.5f);
+            middle = middle > 1.0f ? 2.0f - middle : middle;
+            below = above = fmaxf(below, above);
+        } else if (address_mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
+            middle = fabsf(coordinate);
+            below = above = fmaxf(below, above);
+        }
+        low = middle * size - below;
+        high = middle * size + above;
+    }
+    uint32_t first = slc_twin_region_index(low, size, shift, last);
+    uint32_t end = slc_twin_region_index(high, size, shift, last);
+    bool wraps = repeats && low > high;
+    if (wraps && first == end)
         return;
-    }
-    float middle = coordinate;
-    if (address_mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
-        middle = coordinate - 2.0f * floorf(coordinate * 0.5f);
-        middle = middle > 1.0f ? 2.0f - middle : middle;
-        below = above = fmaxf(below, above);
-    } else if (address_mode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
-        middle = fabsf(coordinate);
-        below = above = fmaxf(below, above);
-    }
-    out[0] = slc_twin_region_index(middle - below, regions_per_unit, region_count);
-    out[1] = slc_twin_region_index(middle + above, regions_per_unit, region_count);
-    out[1] = out[1] > out[0] ? out[1] : out[0]; /* NaN */
-    out[2] = out[1];
+    out[0] = first;
+    out[1] = wraps || end > first ? end : first; /* NaN */
 }
 
+static inline uint32_t slc_twin_shift(uint32_t power)
+{
+    uint32_t shift = 0;
+    while (power >>= 1)
+        shift++;
+    return shift;
+}
+
+/* What is in the box around `uv`; half_box in texels. */
 static inline struct slc_twin_footprint
 slc_twin_compute_footprint(const struct SluiceTextureEntry *entry, struct slc_twin_vec2 uv,
                            struct slc_twin_vec2 half_box, uint32_t coarsest_level)
 {
-    float below =
-        entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
-    uint32_t width = entry->width >> coarsest_level, height = entry->height >> coarsest_level;
-    float texel_x = 1.0f / (float)(width ? width : 1);
-    float texel_y = 1.0f / (float)(height ? height : 1);
+    bool uneven = entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN;
+    float below = uneven ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
     struct slc_twin_footprint footprint;
-    slc_twin_region_range(uv.x, below * texel_x + half_box.x, SLC_TWIN_APRON * texel_x + half_box.x,
-                          entry->addressModeU, (float)entry->width / (float)entry->regionWidth,
-                          entry->regionCountX, footprint.x);
-    slc_twin_region_range(uv.y, below * texel_y + half_box.y, SLC_TWIN_APRON * texel_y + half_box.y,
-                          entry->addressModeV, (float)entry->height / (float)entry->regionHeight,
-                          entry->regionCountY, footprint.y);
+    for (int axis = 0; axis < 2; axis++) {
+        uint32_t size = axis ? entry->height : entry->width, level_size = size >> coarsest_level;
+        float texel = uneven ? (float)size / (float)(level_size ? level_size : 1)
+                             : fminf(ldexpf(1.0f, (int)coarsest_level), (float)size);
+        float half = axis ? half_box.y : half_box.x;
+        uint32_t range[2];
+        slc_twin_region_range(axis ? uv.y : uv.x, below * texel + half,
+                              SLC_TWIN_APRON * texel + half,
+                              axis ? entry->addressModeV : entry->addressModeU, (float)size,
+                              slc_twin_shift(axis ? entry->regionHeight : entry->regionWidth),
+                              (axis ? entry->regionCountY : entry->regionCountX) - 1, range);
+        footprint.first[axis] = range[0];
+        footprint.last[axis] = range[1];
+    }
     return footprint;
 }
 
+/* In texels, as the derivatives are. */
 static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
                                                      struct slc_twin_vec2 dy, float lod_bias,
                                                      float max_anisotropy)
@@ -223,48 +286,64 @@ static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
     if (!(max_anisotropy > 1.0f))
         return (struct slc_twin_vec2){0.0f, 0.0f};
     float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
-    return (struct slc_twin_vec2){0.5f * scale * sqrtf(dx.x * dx.x + dy.x * dy.x),
-                                  0.5f * scale * sqrtf(dx.y * dx.y + dy.y * dy.y)};
+    return (struct slc_twin_vec2){scale * sqrtf(dx.x * dx.x + dy.x * dy.x),
+                                  scale * sqrtf(dx.y * dx.y + dy.y * dy.y)};
 }
 
-static inline bool slc_twin_footprint_is_one_region(const struct slc_twin_footprint *f)
+static inline uint32_t slc_twin_range_step(uint32_t first, uint32_t last, uint32_t axis_last,
+                                           uint32_t level)
 {
-    return f->x[0] == f->x[1] && f->x[0] == f->x[2] && f->y[0] == f->y[1] && f->y[0] == f->y[2];
+    uint32_t length = last - first + (last < first ? axis_last + 1 : 0);
+    uint32_t step = (length >> SLC_TWIN_FOOTPRINT_STEPS_LOG2) + 1;
+    return step > 1u << level ? step : 1u << level;
 }
 
-static inline uint32_t slc_twin_range_shift(const uint32_t range[3], uint32_t level)
+static inline uint32_t slc_twin_next_region(uint32_t at, uint32_t last, uint32_t axis_last,
+                                            uint32_t step)
 {
-    uint32_t distance = range[1] - range[0] + (range[2] == range[1] ? 0 : range[2]);
-    uint32_t bits = 0;
-    while (bits < 32 && distance >> bits)
-        bits++;
-    uint32_t shift =
-        bits > SLC_TWIN_FOOTPRINT_STEPS_LOG2 ? bits - SLC_TWIN_FOOTPRINT_STEPS_LOG2 : 0;
-    return level > shift ? level : shift;
-}
-
-static inline uint32_t slc_twin_count_steps(uint32_t distance, uint32_t shift)
-{
-    return ((distance + (1u << shift) - 1) >> shift) + 1;
-}
-
-static inline uint32_t slc_twin_range_steps(const uint32_t range[3], uint32_t level)
-{
-    uint32_t shift = slc_twin_range_shift(range, level);
-    uint32_t count = slc_twin_count_steps(range[1] - range[0], shift);
-    return range[2] == range[1] ? count : count + slc_twin_count_steps(range[2], shift);
-}
-
-static inline uint32_t slc_twin_range_region(const uint32_t range[3], uint32_t level, uint32_t i)
-{
-    uint32_t shift = slc_twin_range_shift(range, level);
-    uint32_t count = slc_twin_count_steps(range[1] - range[0], shift);
-    uint32_t at = i < count ? range[0] + (i << shift) : (i - count) << shift;
-    uint32_t end = i < count ? range[1] : range[2];
-    return at < end ? at : end;
+    uint32_t end = at < last ? last : axis_last;
+    if (at >= end)
+        return 0;
+    return at + step < end ? at + step : end;
 }
 
 /* feedback.glsl: what one sample marks */
+
+struct slc_twin_levels {
+    uint32_t level, coarsest, widest;
+};
+
+static inline uint32_t slc_twin_min(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static inline struct slc_twin_levels slc_twin_quick_levels(struct slc_twin_squares s,
+                                                           float lod_bias, float max_anisotropy,
+                                                           uint32_t count)
+{
+    float scale = exp2f(2.0f * lod_bias);
+    float margin = max_anisotropy > 1.0f ? 0.77110541f : 0.84089642f;
+    return (struct slc_twin_levels){
+        slc_twin_min(slc_twin_floor_log4(s.fine * scale * margin), count - 1),
+        slc_twin_min(slc_twin_floor_log4(s.coarse * scale * 1.1892071f) + 1, count - 1),
+        slc_twin_min(slc_twin_floor_log4(s.widest * scale * 1.1892071f) + 1, count - 1)};
+}
+
+/* Derivatives in texels. */
+static inline struct slc_twin_levels slc_twin_safe_levels(struct slc_twin_vec2 uv,
+                                                          struct slc_twin_vec2 dx,
+                                                          struct slc_twin_vec2 dy, float lod_bias,
+                                                          float max_anisotropy, uint32_t count)
+{
+    if (!slc_twin_is_finite(uv))
+        return (struct slc_twin_levels){count - 1, count - 1, count - 1};
+    struct slc_twin_vec2 lods = slc_twin_compute_lods(dx, dy, lod_bias, max_anisotropy);
+    return (struct slc_twin_levels){
+        slc_twin_finest_level(lods.x, slc_twin_lod_margin(max_anisotropy), count),
+        slc_twin_coarsest_level(lods.y, count),
+        slc_twin_coarsest_level(slc_twin_compute_lods(dx, dy, lod_bias, 1.0f).y, count)};
+}
 
 struct slc_twin_wants {
     uint32_t level;
@@ -280,24 +359,21 @@ static inline struct slc_twin_wants slc_twin_wants(const struct SluiceTextureEnt
 {
     float w = (float)entry->width, h = (float)entry->height;
     struct slc_twin_vec2 tx = {dx.x * w, dx.y * h}, ty = {dy.x * w, dy.y * h};
-    struct slc_twin_vec2 lods = {SLC_TWIN_LOD_LIMIT, SLC_TWIN_LOD_LIMIT};
-    if (slc_twin_is_finite(uv))
-        lods = slc_twin_compute_lods(tx, ty, lod_bias, max_anisotropy);
-    struct slc_twin_wants wants;
-    wants.level =
-        slc_twin_finest_level(lods.x, slc_twin_lod_margin(max_anisotropy), entry->mipLevelCount);
-    uint32_t coarsest = slc_twin_coarsest_level(lods.y, entry->mipLevelCount);
-    struct slc_twin_vec2 half_box = slc_twin_half_box(dx, dy, lod_bias, max_anisotropy);
-    wants.regions = slc_twin_compute_footprint(entry, uv, half_box, coarsest);
-    wants.wide_level = UINT32_MAX;
+    struct slc_twin_squares squares = slc_twin_square_lods(tx, ty, max_anisotropy);
+    bool quick = squares.sum < SLC_TWIN_QUICK_SQUARES && fabsf(lod_bias) <= SLC_TWIN_QUICK_BIAS &&
+                 slc_twin_is_finite(uv);
+    struct slc_twin_levels levels =
+        quick ? slc_twin_quick_levels(squares, lod_bias, max_anisotropy, entry->mipLevelCount)
+              : slc_twin_safe_levels(uv, tx, ty, lod_bias, max_anisotropy, entry->mipLevelCount);
+    struct slc_twin_vec2 half_box = slc_twin_half_box(tx, ty, lod_bias, max_anisotropy);
+    struct slc_twin_wants wants = {
+        .level = levels.level,
+        .regions = slc_twin_compute_footprint(entry, uv, half_box, levels.coarsest),
+        .wide_level = UINT32_MAX};
     wants.wide_regions = wants.regions;
-    if (!(max_anisotropy > 1.0f))
-        return wants;
-    uint32_t widest = slc_twin_coarsest_level(slc_twin_compute_lods(tx, ty, lod_bias, 1.0f).y,
-                                              entry->mipLevelCount);
-    if (widest > coarsest) {
-        wants.wide_level = coarsest + 1;
-        wants.wide_regions = slc_twin_compute_footprint(entry, uv, half_box, widest);
+    if (max_anisotropy > 1.0f && levels.widest > levels.coarsest) {
+        wants.wide_level = levels.coarsest + 1;
+        wants.wide_regions = slc_twin_compute_footprint(entry, uv, half_box, levels.widest);
     }
     return wants;
 }

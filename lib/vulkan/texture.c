@@ -1,5 +1,6 @@
 /* Streamed textures of a streamer: adding, removing, and what their first frame records. */
 #include "vulkan/streamer.h"
+#include "vulkan/texture_entry.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"
@@ -363,19 +364,6 @@ static float quick_packed2(const SluiceStreamedTextureDesc *desc)
     return ldexpf(1.5f, 2 * (int)desc->regularMipCount);
 }
 
-static uint32_t quick_shape(const struct slc_texture *texture)
-{
-    const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
-    const VkSamplerAddressMode *modes = texture->address_modes;
-    bool repeats =
-        modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT && modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT;
-    /* where all levels are packed the only region need not be as wide as a power of two */
-    bool one_region = !slc_texture_is_ragged(texture) && desc->regularMipCount > 0;
-    return log2_of(desc->feedbackRegionWidth) | log2_of(desc->feedbackRegionHeight) << 8 |
-           (repeats ? SLUICE_QUICK_REPEATS : 0u) | (one_region ? SLUICE_QUICK_ONE_REGION : 0u) |
-           (desc->mipLevelCount - 1) << SLUICE_QUICK_LAST_LEVEL_SHIFT;
-}
-
 /* Regions are tiles, and where all levels are packed there is one. */
 static float quick_reach2(const SluiceStreamedTextureDesc *desc)
 {
@@ -391,14 +379,8 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
     SluiceFormatInfo format = {.channelCount = 4};
     (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
-    return (struct SluiceTextureEntry){
-        .sizeX = (float)desc->width,
-        .sizeY = (float)desc->height,
-        .quickShape = quick_shape(texture),
-        .quickPacked2 = quick_packed2(desc),
+    struct SluiceTextureEntry entry = {
         .wholeShown = texture->whole_shown,
-        .regionLastX = texture->layout.feedbackWidth - 1,
-        .regionLastY = texture->layout.feedbackHeight - 1,
         .width = desc->width,
         .height = desc->height,
         .mipLevelCount = desc->mipLevelCount,
@@ -414,9 +396,12 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .pageTableOffset = texture->image.page_table_offset,
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .quickReach2 = quick_reach2(desc),
+        .quickPacked2 = quick_packed2(desc),
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |
                  format.channelCount << SLUICE_TEXTURE_COMPONENTS_SHIFT,
     };
+    slc_texture_entry_complete(&entry);
+    return entry;
 }
 
 void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)

@@ -31,6 +31,6 @@ void main()
     vec2 dx = dFdx(uv), dy = dFdy(uv); /* before the branch: they need all of the quad */
     uint missing;
     color = sluiceSample(albedo, draw.tableIndex, uv, 0.0, 1.0, missing);
-    if (sluiceSelectLattice(uvec2(gl_FragCoord.xy), draw.frame))
+    if (sluiceSelectFragmentLattice(gl_FragCoord.xy, draw.frame))
         sluiceWriteFeedback(draw.tableIndex, uv, dx, dy, 0.0, 1.0);
 }

@@ -21,10 +21,10 @@ layout(location = 0) out vec4 outColor;
 
 bool selectedForFeedback()
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
     if (frame.latticeFrame != GALLERY_NO_TEXTURE)
-        return sluiceSelectLattice(pixel, frame.latticeFrame);
-    return sluiceSelectRandomQuad(pixel, frame.feedbackSeed, frame.feedbackProbability);
+        return sluiceSelectFragmentLattice(gl_FragCoord.xy, frame.latticeFrame);
+    return sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, frame.feedbackSeed,
+                                          frame.feedbackProbability);
 }
 
 /** The normal as the relief bends it: its height changes along the surface. */

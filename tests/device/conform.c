@@ -1,6 +1,7 @@
 #include "device/conform.h"
 
 #include "support/test.h"
+#include "vulkan/texture_entry.h"
 
 #include "conform_comp.h"
 #include "conform_frag.h"
@@ -272,7 +273,9 @@ static uint32_t lay_out(struct conform *c, struct conform_sample *samples, uint3
         samples[i].in.tableIndex = i;
         for (uint32_t r = 0; r < regions; r++)
             words[at + r] = SLUICE_MIP_UNTOUCHED;
-        ((struct SluiceTextureEntry *)c->table.mapped)[i] = samples[i].entry;
+        struct SluiceTextureEntry *entry = &((struct SluiceTextureEntry *)c->table.mapped)[i];
+        *entry = samples[i].entry;
+        slc_texture_entry_complete(entry);
         ((struct ConformInput *)c->inputs.mapped)[i] = samples[i].in;
         at += regions + CONFORM_GUARD_COUNT;
     }
@@ -339,5 +342,6 @@ struct SluiceTextureEntry conform_entry(uint32_t width, uint32_t height, uint32_
     e.regularMipCount = e.mipLevelCount;
     if (!halves_evenly(width) || !halves_evenly(height))
         e.flags |= SLUICE_TEXTURE_FLAG_UNEVEN;
+    slc_texture_entry_complete(&e);
     return e;
 }

@@ -438,3 +438,10 @@ void harness_check_silence(const struct harness *h)
 {
     assert_int_equal(h->message_count, 0);
 }
+
+float harness_level_error(struct harness *h)
+{
+    VkPhysicalDeviceProperties properties;
+    h->GetPhysicalDeviceProperties(h->physical_device, &properties);
+    return properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 0 : 0.125f;
+}

@@ -113,4 +113,7 @@ void harness_run(struct harness *h, void (*record)(void *user, VkCommandBuffer c
 /** Fails the test if validation has said anything. */
 void harness_check_silence(const struct harness *h);
 
+/** How far a device's levels may be off the formula; a CPU's are not. */
+float harness_level_error(struct harness *h);
+
 #endif /* TESTS_DEVICE_HARNESS_H */

@@ -341,7 +341,7 @@ void oracle_allow(struct oracle_allowed *a, const struct SluiceTextureEntry *e,
     double box[2] = {0, 0};
     if (anisotropy_of(in) > 1)
         for (int i = 0; i < 2; i++)
-            box[i] = 0.5 * hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
+            box[i] = hypot(in->dx[i], in->dy[i]) * exp2(fmax(in->lodBias, 0));
     double coarser = in->mode == CONFORM_LOD ? 0 : LOD_MARGIN_COARSER;
     lod.coarsest += coarser;
     lod.isotropic += coarser;

@@ -275,13 +275,25 @@ static void check_sample(const struct kind *k, const struct sample *s, const flo
     }
 }
 
+/*
+ * Packed levels of paged textures are an image of their own, from which no sampler takes the level
+ * before, as devices that are off the formula do from the whole image.
+ */
+static bool is_beside_packed(const struct scene *truth, uint32_t t, float lod)
+{
+    float first = (float)regular_levels[t], error = harness_level_error(truth->h) * 1.5f;
+    return lod >= first && lod < first + error;
+}
+
 static void check_round(struct scene *truth, uint32_t round, SluiceResidencyMode mode, float *worst)
 {
+    bool paged = mode == SLUICE_RESIDENCY_MODE_PAGED;
     aim_at_truth(truth, round, mode == SLUICE_RESIDENCY_MODE_PAGED);
     harness_settle(truth->h, truth->streamer, 1, record_truth, truth);
     for (uint32_t t = 0; t < TEXTURES; t++)
         for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
-            if (samples[round][t][i].out.level != SLUICE_MIP_UNTOUCHED)
+            if (samples[round][t][i].out.level != SLUICE_MIP_UNTOUCHED &&
+                !(paged && is_beside_packed(truth, t, samples[round][t][i].out.lod)))
                 check_sample(&kinds[t], &samples[round][t][i], scene_outputs(truth, t)[i].color,
                              tolerance(mode), worst);
 }

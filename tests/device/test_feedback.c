@@ -117,9 +117,9 @@ static void check_finite_twin(const struct SluiceTextureEntry *e, const struct P
     assert_int_equal(out->wantedLevel, wants.level);
     assert_int_equal(out->level, slc_twin_coarsest_level(lods.y, e->mipLevelCount));
     /* an index may differ by one where an end of the box is on a border */
-    for (int i = 0; i < 3; i++) {
-        *compared += out->footprint[i] == wants.regions.x[i];
-        *compared += out->footprint[3 + i] == wants.regions.y[i];
+    for (int i = 0; i < 2; i++) {
+        *compared += out->footprint[i] == wants.regions.first[i];
+        *compared += out->footprint[2 + i] == wants.regions.last[i];
     }
 }
 
@@ -153,7 +153,7 @@ static void glsl_and_c_twins_agree(void **state)
                 (slc_twin_select_lattice(i % 128, i / 128, i / 5) ? 2u : 0);
             assert_int_equal(out->nonResident, selected);
         }
-        assert_true(compared > SAMPLES * 6 * 98 / 100);
+        assert_true(compared > SAMPLES * 4 * 98 / 100);
     }
     scene_finish(&scene);
 }
@@ -177,9 +177,9 @@ static void extremes_stay_inside_the_map(void **state)
             const struct ProbeOutput *out = &prober_outputs(&scene.prober)[i];
             assert_true(out->lod >= -32 && out->lod <= 32);
             assert_true(out->level < e.mipLevelCount && out->wantedLevel <= out->level);
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < 4; k += 2) {
                 assert_true(out->footprint[k] < e.regionCountX);
-                assert_true(out->footprint[3 + k] < e.regionCountY);
+                assert_true(out->footprint[k + 1] < e.regionCountY);
             }
         }
         scene_clear_outputs(&scene);
@@ -203,14 +203,23 @@ static void extremes_stay_inside_the_map(void **state)
 static void paint(uint8_t *map, const struct SluiceTextureEntry *e,
                   const struct slc_twin_footprint *regions, uint32_t level)
 {
-    const uint32_t *xs = regions->x, *ys = regions->y;
-    for (uint32_t y = 0; y < slc_twin_range_steps(ys, level); y++)
-        for (uint32_t x = 0; x < slc_twin_range_steps(xs, level); x++) {
-            uint8_t *at = &map[slc_twin_range_region(ys, level, y) * e->regionCountX +
-                               slc_twin_range_region(xs, level, x)];
-            if (level < *at)
-                *at = (uint8_t)level;
+    const uint32_t last[2] = {e->regionCountX - 1, e->regionCountY - 1};
+    uint32_t step[2], at[2];
+    for (int i = 0; i < 2; i++)
+        step[i] = slc_twin_range_step(regions->first[i], regions->last[i], last[i], level);
+    for (at[1] = regions->first[1];;) {
+        for (at[0] = regions->first[0];;) {
+            uint8_t *word = &map[at[1] * e->regionCountX + at[0]];
+            if (level < *word)
+                *word = (uint8_t)level;
+            if (at[0] == regions->last[0])
+                break;
+            at[0] = slc_twin_next_region(at[0], regions->last[0], last[0], step[0]);
         }
+        if (at[1] == regions->last[1])
+            break;
+        at[1] = slc_twin_next_region(at[1], regions->last[1], last[1], step[1]);
+    }
 }
 
 /* Texel of one axis that a sample reads for certain; -1 for the border's. */

@@ -48,8 +48,8 @@ static struct SluiceTextureEntry entry_of(const uint32_t *a)
 {
     return (struct SluiceTextureEntry){.width = a[5],
                                        .height = a[6],
-                                       .regionWidth = a[7],
-                                       .regionHeight = a[8],
+                                       .regionWidth = 1u << a[7],
+                                       .regionHeight = 1u << a[8],
                                        .regionCountX = a[9],
                                        .regionCountY = a[10],
                                        .addressModeU = a[11],
@@ -62,38 +62,45 @@ static void call_footprint_twin(uint32_t function, const uint32_t *a, uint32_t *
     struct slc_twin_footprint f;
     struct slc_twin_vec2 box;
     struct SluiceTextureEntry e;
-    memcpy(f.x, a, sizeof f.x);
-    memcpy(f.y, a + 3, sizeof f.y);
     switch (function) {
-    case TWIN_REGION_INDEX: out[0] = slc_twin_region_index(real(a, 0), real(a, 1), a[2]); break;
+    case TWIN_REGION_INDEX:
+        out[0] = slc_twin_region_index(real(a, 0), real(a, 1), a[2], a[3]);
+        break;
     case TWIN_REGION_RANGE:
-        slc_twin_region_range(real(a, 0), real(a, 1), real(a, 2), a[3], real(a, 4), a[5], out);
+        slc_twin_region_range(real(a, 0), real(a, 1), real(a, 2), a[3], real(a, 4), a[5], a[6],
+                              out);
         break;
     case TWIN_HALF_BOX:
         box = slc_twin_half_box(real2(a, 0), real2(a, 2), real(a, 4), real(a, 5));
         out[0] = bits(box.x);
         out[1] = bits(box.y);
         break;
-    case TWIN_RANGE_SHIFT: out[0] = slc_twin_range_shift(a, a[3]); break;
-    case TWIN_COUNT_STEPS: out[0] = slc_twin_count_steps(a[0], a[3]); break;
-    case TWIN_RANGE_STEPS: out[0] = slc_twin_range_steps(a, a[3]); break;
-    case TWIN_RANGE_REGION: out[0] = slc_twin_range_region(a, a[3], a[4]); break;
+    case TWIN_RANGE_STEP: out[0] = slc_twin_range_step(a[0], a[1], a[2], a[3]); break;
+    case TWIN_NEXT_REGION: out[0] = slc_twin_next_region(a[0], a[1], a[2], a[3]); break;
     case TWIN_COMPUTE_FOOTPRINT:
         e = entry_of(a);
         f = slc_twin_compute_footprint(&e, real2(a, 0), real2(a, 2), a[4]);
-        memcpy(out, f.x, sizeof f.x);
-        memcpy(out + 3, f.y, sizeof f.y);
-        break;
-    case TWIN_IS_ONE_REGION: out[0] = slc_twin_footprint_is_one_region(&f); break;
-    case TWIN_FOOTPRINT_STEPS:
-        out[0] = slc_twin_range_steps(f.x, a[6]);
-        out[1] = slc_twin_range_steps(f.y, a[6]);
-        break;
-    case TWIN_FOOTPRINT_REGION:
-        out[0] = slc_twin_range_region(f.x, a[6], a[7]);
-        out[1] = slc_twin_range_region(f.y, a[6], a[8]);
+        memcpy(out, f.first, sizeof f.first);
+        memcpy(out + 2, f.last, sizeof f.last);
         break;
     }
+}
+
+static void call_levels_twin(uint32_t function, const uint32_t *a, uint32_t *out)
+{
+    struct slc_twin_squares s = {real(a, 0), real(a, 1), real(a, 2), 0};
+    struct slc_twin_levels levels;
+    if (function == TWIN_SQUARE_LODS) {
+        s = slc_twin_square_lods(real2(a, 0), real2(a, 2), real(a, 4));
+        memcpy(out, &s, sizeof s);
+        return;
+    }
+    if (function == TWIN_QUICK_LEVELS)
+        levels = slc_twin_quick_levels(s, real(a, 3), real(a, 4), a[5]);
+    else
+        levels = slc_twin_safe_levels(real2(a, 0), real2(a, 2), real2(a, 4), real(a, 6), real(a, 7),
+                                      a[8]);
+    memcpy(out, &levels, sizeof levels);
 }
 
 static void call_twin(uint32_t function, const uint32_t *a, uint32_t *out)
@@ -122,6 +129,10 @@ static void call_twin(uint32_t function, const uint32_t *a, uint32_t *out)
     case TWIN_LOD_LIMIT: out[0] = bits(slc_twin_lod_limit(a[0], real(a, 1))); break;
     case TWIN_SHOWN_LEVEL: out[0] = slc_twin_shown_level(a[0]); break;
     case TWIN_COARSEST_LEVEL: out[0] = slc_twin_coarsest_level(real(a, 0), a[1]); break;
+    case TWIN_FLOOR_LOG4: out[0] = slc_twin_floor_log4(real(a, 0)); break;
+    case TWIN_SQUARE_LODS:
+    case TWIN_QUICK_LEVELS:
+    case TWIN_SAFE_LEVELS: call_levels_twin(function, a, out); break;
     default: call_footprint_twin(function, a, out);
     }
 }
@@ -139,19 +150,6 @@ static uint32_t random_bits(void)
     return (uint32_t)rand() << 20 ^ (uint32_t)rand() << 10 ^ (uint32_t)rand();
 }
 
-/* A range of regions of a texture that has `count` of them, as sluiceRegionRange returns them. */
-static void random_range(uint32_t *a, uint32_t count)
-{
-    a[0] = (uint32_t)rand() % count;
-    a[1] = a[0] + (uint32_t)rand() % (count - a[0]);
-    a[2] = a[1];
-    if (rand() % 3 == 0) {
-        a[1] = count - 1;
-        a[2] = (uint32_t)rand() % count;
-        a[0] = a[2] == a[1] ? 0 : a[0];
-    }
-}
-
 static uint32_t random_count(void)
 {
     return 1 + (uint32_t)rand() % (1u << rand() % 12);
@@ -160,11 +158,11 @@ static uint32_t random_count(void)
 /*
  * Kinds of arguments: u any number, f any float, F any but NaN, P any that is positive or 0 or NaN,
  * t a count of levels, l a level, m an address mode, M a margin, S a texel of the MinMip buffer, s
- * regions per unit and their count.
+ * a size, log2 of a region's and the last region, B a LOD bias that is quick, Q a square.
  */
 static void random_argument(char kind, uint32_t *a)
 {
-    uint32_t size = random_count() * 4 + (uint32_t)rand() % 4, region = 4u << rand() % 6;
+    uint32_t size = random_count() * 4 + (uint32_t)rand() % 4, shift = 2 + (uint32_t)rand() % 6;
     switch (kind) {
     case 'u': a[0] = random_bits(); break;
     case 't': a[0] = 1 + (uint32_t)rand() % 15; break;
@@ -173,9 +171,12 @@ static void random_argument(char kind, uint32_t *a)
     case 'S': a[0] = random_bits() & 0xFFFF; break;
     case 'M': a[0] = bits(rand() % 2 ? 0.125f : 0.1875f); break;
     case 's':
-        a[0] = bits((float)size / (float)region);
-        a[1] = (size + region - 1) / region;
+        a[0] = bits((float)size);
+        a[1] = shift;
+        a[2] = ((size + (1u << shift) - 1) >> shift) - 1;
         break;
+    case 'B': a[0] = bits((float)(rand() % 257 - 128) / 8.0f); break;
+    case 'Q': a[0] = bits((float)ldexp(1 + (double)rand() / RAND_MAX, rand() % 160 - 110)); break;
     case 'P': a[0] = bits(fabsf(random_float())); break;
     default: a[0] = bits(random_float());
     }
@@ -194,7 +195,9 @@ static void special_argument(char kind, uint32_t *a, uint32_t number)
 
 struct function {
     const char *name, *arguments;
-    const char *results; ///< u number, x exact float, l LOD, h length
+    /// u number, x exact float, l LOD, h length, q square beside a sum, L level that rounding
+    /// decides
+    const char *results;
 };
 
 static const struct function functions[TWIN_COUNT] = {
@@ -212,39 +215,33 @@ static const struct function functions[TWIN_COUNT] = {
     [TWIN_COARSEST_LEVEL] = {"coarsest_level", "Ft", "u"},
     [TWIN_LOD_LIMIT] = {"lod_limit", "SM", "x"},
     [TWIN_SHOWN_LEVEL] = {"shown_level", "S", "u"},
+    [TWIN_FLOOR_LOG4] = {"floor_log4", "P", "u"},
+    [TWIN_SQUARE_LODS] = {"square_lods", "fffff", "qqqq"},
+    [TWIN_QUICK_LEVELS] = {"quick_levels", "QQQBft", "LLL"},
+    [TWIN_SAFE_LEVELS] = {"safe_levels", "fffffffft", "LLL"},
     [TWIN_REGION_INDEX] = {"region_index", "fs", "u"},
-    [TWIN_REGION_RANGE] = {"region_range", "fPPms", "uuu"},
+    [TWIN_REGION_RANGE] = {"region_range", "fPPms", "uu"},
     [TWIN_HALF_BOX] = {"half_box", "ffffff", "hh"},
-    [TWIN_RANGE_SHIFT] = {"range_shift", "", "u"},
-    [TWIN_COUNT_STEPS] = {"count_steps", "", "u"},
-    [TWIN_RANGE_STEPS] = {"range_steps", "", "u"},
-    [TWIN_RANGE_REGION] = {"range_region", "", "u"},
-    [TWIN_COMPUTE_FOOTPRINT] = {"compute_footprint", "ffPPl", "uuuuuu"},
-    [TWIN_IS_ONE_REGION] = {"is_one_region", "", "u"},
-    [TWIN_FOOTPRINT_STEPS] = {"footprint_steps", "", "uu"},
-    [TWIN_FOOTPRINT_REGION] = {"footprint_region", "", "uu"},
+    [TWIN_RANGE_STEP] = {"range_step", "", "u"},
+    [TWIN_NEXT_REGION] = {"next_region", "", "u"},
+    [TWIN_COMPUTE_FOOTPRINT] = {"compute_footprint", "ffPPl", "uuuu"},
 };
 
 /* Arguments that only make sense together. */
 static void dependent_arguments(uint32_t function, uint32_t *a)
 {
-    if (function >= TWIN_RANGE_SHIFT && function <= TWIN_RANGE_REGION) {
-        random_range(a, random_count());
-        a[3] = (uint32_t)rand() % 15;
-        a[4] = (uint32_t)rand() % slc_twin_range_steps(a, a[3]);
-    }
-    if (function >= TWIN_IS_ONE_REGION) {
-        random_range(a, random_count());
-        random_range(a + 3, random_count());
-        a[6] = (uint32_t)rand() % 15;
-        a[7] = (uint32_t)rand() % slc_twin_range_steps(a, a[6]);
-        a[8] = (uint32_t)rand() % slc_twin_range_steps(a + 3, a[6]);
+    uint32_t count = random_count();
+    if (function == TWIN_RANGE_STEP || function == TWIN_NEXT_REGION) {
+        a[0] = (uint32_t)rand() % count;
+        a[1] = (uint32_t)rand() % count;
+        a[2] = count - 1;
+        a[3] = function == TWIN_RANGE_STEP ? (uint32_t)rand() % 15 : 1u << rand() % 12;
     }
     if (function == TWIN_COMPUTE_FOOTPRINT) {
         for (uint32_t i = 0; i < 2; i++) {
             a[5 + i] = 1 + (uint32_t)rand() % (1u << rand() % 15);
-            a[7 + i] = 4u << rand() % 7;
-            a[9 + i] = (a[5 + i] + a[7 + i] - 1) / a[7 + i];
+            a[7 + i] = 2 + (uint32_t)rand() % 7;
+            a[9 + i] = (a[5 + i] + (1u << a[7 + i]) - 1) >> a[7 + i];
             a[11 + i] = (uint32_t)rand() % 5;
         }
         a[13] = (uint32_t)rand() % 2;
@@ -258,7 +255,7 @@ static void make_call(uint32_t function, uint32_t i, struct TwinCall *call)
     uint32_t count = (uint32_t)strlen(kinds);
     uint32_t pair = i % (SPECIALS * SPECIALS), turn = i / (SPECIALS * SPECIALS);
     *call = (struct TwinCall){0};
-    for (uint32_t k = 0, slot = 0; k < count; slot += kinds[k++] == 's' ? 2 : 1)
+    for (uint32_t k = 0, slot = 0; k < count; slot += kinds[k++] == 's' ? 3 : 1)
         random_argument(kinds[k], &call->arguments[slot]);
     if (count && turn < 10) {
         uint32_t first = turn % count, second = (first + 1 + turn / count) % count;
@@ -279,7 +276,11 @@ static double length_error(const uint32_t *a)
     return (8 + 2 * fmax(bias, 0)) * (double)FLT_EPSILON;
 }
 
+/* As a part of the sum of both squares. */
+#define SQUARE_ERROR 1e-6
+
 static double largest_error[TWIN_COUNT];
+static uint32_t rounded_levels; ///< that differ by one: few, as rounding seldom decides
 
 /* Squares of what is smaller or larger leave the range of float, on some devices sooner. */
 static bool squares_are_ordinary(const uint32_t *a)
@@ -303,6 +304,17 @@ static bool results_agree(uint32_t function, const struct TwinCall *call, const 
                 continue;
             error /= fmax((double)cpu, 1e-30);
             break;
+        case 'q': /* of nearly parallel derivatives little is left of the area between them */
+            if (!squares_are_ordinary(call->arguments) || !(real(twin, 3) < SLC_TWIN_QUICK_SQUARES))
+                continue;
+            if (!(error <= SQUARE_ERROR * (double)real(twin, 3)))
+                return false;
+            continue;
+        case 'L':
+            rounded_levels += call->results[i] != twin[i];
+            if (call->results[i] + 1 - twin[i] > 2)
+                return false;
+            continue;
         case 'x': /* a denormal may be 0 */
             if (!(error < (double)FLT_MIN))
                 return false;
@@ -329,28 +341,48 @@ static float nudged(float x, int by)
     return x * (1.0f + (float)by * 4 * FLT_EPSILON);
 }
 
-/* Whether the twin agrees once reciprocals and products are off by a little more or less. */
+/* Whether a range agrees once reciprocals and products are off by a little more or less. */
+static bool range_agrees_nearly(const struct SluiceTextureEntry *e, uint32_t axis, float at,
+                                const float sizes[2], const uint32_t range[2])
+{
+    uint32_t size = axis ? e->height : e->width, out[2];
+    for (int k = 0; k < 27; k++) {
+        slc_twin_region_range(nudged(at, k / 9 - 1), nudged(sizes[0], k % 3 - 1),
+                              nudged(sizes[1], k / 3 % 3 - 1),
+                              axis ? e->addressModeV : e->addressModeU, (float)size,
+                              slc_twin_shift(axis ? e->regionHeight : e->regionWidth),
+                              (axis ? e->regionCountY : e->regionCountX) - 1, out);
+        if (out[0] == range[0] && out[1] == range[1])
+            return true;
+    }
+    return false;
+}
+
 static bool footprint_agrees_nearly(const struct TwinCall *call, const uint32_t *arguments)
 {
     const struct SluiceTextureEntry e = entry_of(arguments);
+    bool uneven = e.flags & SLUICE_TEXTURE_FLAG_UNEVEN;
     for (uint32_t axis = 0; axis < 2; axis++) {
         uint32_t size = axis ? e.height : e.width, level_size = size >> arguments[4];
-        uint32_t region = axis ? e.regionHeight : e.regionWidth, out[3];
-        float texel = 1.0f / (float)(level_size ? level_size : 1), box = real(arguments, 2 + axis);
-        float apron = e.flags & SLUICE_TEXTURE_FLAG_UNEVEN ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON;
-        bool found = false;
-        for (int k = 0; k < 9 && !found; k++) {
-            slc_twin_region_range(real(arguments, axis), nudged(apron * texel + box, k % 3 - 1),
-                                  nudged(SLC_TWIN_APRON * texel + box, k / 3 - 1),
-                                  axis ? e.addressModeV : e.addressModeU,
-                                  (float)size / (float)region,
-                                  axis ? e.regionCountY : e.regionCountX, out);
-            found = memcmp(out, call->results + 3 * axis, sizeof out) == 0;
-        }
-        if (!found)
+        float texel = uneven ? (float)size / (float)(level_size ? level_size : 1)
+                             : fminf(ldexpf(1, (int)arguments[4]), (float)size);
+        float box = real(arguments, 2 + axis);
+        const float sizes[2] = {(uneven ? SLC_TWIN_APRON_UNEVEN : SLC_TWIN_APRON) * texel + box,
+                                SLC_TWIN_APRON * texel + box};
+        const uint32_t range[2] = {call->results[axis], call->results[2 + axis]};
+        if (!range_agrees_nearly(&e, axis, real(arguments, axis), sizes, range))
             return false;
     }
     return true;
+}
+
+static bool region_range_agrees_nearly(const struct TwinCall *call, const uint32_t *a)
+{
+    const struct SluiceTextureEntry e = {.width = (uint32_t)real(a, 4),
+                                         .regionWidth = 1u << a[5],
+                                         .regionCountX = a[6] + 1,
+                                         .addressModeU = a[3]};
+    return range_agrees_nearly(&e, 0, real(a, 0), (float[]){real(a, 1), real(a, 2)}, call->results);
 }
 
 /*
@@ -362,7 +394,8 @@ static bool place_is_unknown(float at, const float sizes[2], uint32_t mode)
     bool wraps = mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
     if (isnan(at) || isnan(sizes[0]) || isnan(sizes[1]))
         return true;
-    return isinf(at) && (wraps || isinf(sizes[0]) || isinf(sizes[1]));
+    /* in texels it may be infinite */
+    return !(fabsf(at) <= 1e33f) && (wraps || isinf(sizes[0]) || isinf(sizes[1]));
 }
 
 /* Then only the range of the results is known. */
@@ -390,8 +423,11 @@ static bool call_agrees(uint32_t function, const struct TwinCall *call)
     call_twin(function, arguments, twin);
     if (results_agree(function, call, twin))
         return true;
-    return function == TWIN_COMPUTE_FOOTPRINT && (footprint_agrees_nearly(call, call->arguments) ||
-                                                  footprint_agrees_nearly(call, arguments));
+    if (function == TWIN_COMPUTE_FOOTPRINT)
+        return footprint_agrees_nearly(call, call->arguments) ||
+               footprint_agrees_nearly(call, arguments);
+    return function == TWIN_REGION_RANGE && (region_range_agrees_nearly(call, call->arguments) ||
+                                             region_range_agrees_nearly(call, arguments));
 }
 
 static bool lod_is_in_range(float lod)
@@ -413,14 +449,14 @@ static bool call_is_in_range(uint32_t function, const struct TwinCall *call)
     case TWIN_COMPUTE_LOD: return lod_is_in_range(real(r, 0));
     case TWIN_FINEST_LEVEL: return r[0] < a[2];
     case TWIN_COARSEST_LEVEL: return r[0] < a[1];
-    case TWIN_REGION_INDEX: return r[0] < a[2];
-    case TWIN_REGION_RANGE: return r[0] <= r[1] && r[1] < a[5] && r[2] < a[5];
+    case TWIN_QUICK_LEVELS: return r[0] < a[5] && r[1] < a[5] && r[2] < a[5];
+    case TWIN_SAFE_LEVELS: return r[0] < a[8] && r[0] <= r[1] && r[1] <= r[2] && r[2] < a[8];
+    case TWIN_REGION_INDEX: return r[0] <= a[3];
+    case TWIN_REGION_RANGE: return r[0] <= a[6] && r[1] <= a[6];
     case TWIN_HALF_BOX: return !(real(r, 0) < 0) && !(real(r, 1) < 0);
-    case TWIN_RANGE_REGION: return r[0] <= a[1] && (r[0] >= a[0] || a[2] != a[1]);
-    case TWIN_COMPUTE_FOOTPRINT:
-        return r[0] <= r[1] && r[1] < a[9] && r[2] < a[9] && r[3] <= r[4] && r[4] < a[10] &&
-               r[5] < a[10];
-    case TWIN_FOOTPRINT_REGION: return r[0] <= a[1] && r[1] <= a[4];
+    case TWIN_RANGE_STEP: return r[0] >= 1;
+    case TWIN_NEXT_REGION: return r[0] <= a[2] && (r[0] > a[0] || r[0] == 0);
+    case TWIN_COMPUTE_FOOTPRINT: return r[0] < a[9] && r[1] < a[10] && r[2] < a[9] && r[3] < a[10];
     default: return true;
     }
 }
@@ -482,6 +518,8 @@ static void check_function(struct caller *c, uint32_t function)
         if (!call_agrees(function, &calls[i]))
             fail_call(function, &calls[i], "differs from its twin");
     }
+    assert_true(rounded_levels < CAPACITY / 100);
+    rounded_levels = 0;
     if (largest_error[function] > 0)
         print_message("# error.%s %.3g %s\n", functions[function].name, largest_error[function],
                       function == TWIN_HALF_BOX ? "relative" : "levels");

@@ -12,10 +12,6 @@ void main()
 {
     Place p = scenePlace(gl_FragCoord.xy);
     uint missing;
-    if (feedbackKind != BENCH_FEEDBACK_NONE) {
-        p.dx = dFdx(p.uv);
-        p.dy = dFdy(p.uv);
-    }
     if (streamed)
         outColor = sluiceSample(streamedTexture, params.tableIndex, p.uv, 0.0, anisotropy, missing);
     else

@@ -55,9 +55,24 @@ void writeSceneFeedback(uvec2 pixel, Place p)
 {
     if (feedbackKind == BENCH_FEEDBACK_NONE)
         return;
+#ifdef GL_FRAGMENT_SHADER
+    bool lattice = feedbackKind == BENCH_FEEDBACK_LATTICE;
+    if (lattice) { /* pixels of a quad do not decide alike */
+        p.dx = dFdx(p.uv);
+        p.dy = dFdy(p.uv);
+    }
+    bool selected = lattice ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.seed)
+                            : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.seed,
+                                                             params.probability);
+    if (selected && !lattice) {
+        p.dx = dFdx(p.uv);
+        p.dy = dFdy(p.uv);
+    }
+#else
     bool selected = feedbackKind == BENCH_FEEDBACK_LATTICE
                         ? sluiceSelectLattice(pixel, params.seed)
                         : sluiceSelectRandomQuad(pixel, params.seed, params.probability);
+#endif
     if (selected)
         sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
 }

@@ -1,10 +1,11 @@
 /*
  * Writes down which level a sample wants, whether it is resident or not.
  *
- * Select few pixels first (stochastic.glsl), and take the derivatives before that branch:
+ * Select few pixels first (stochastic.glsl), and take the derivatives before that branch; behind it
+ * only if all of a quad takes it, as with sluiceSelectRandomFragmentQuad:
  *
  *     vec2 dx = dFdx(uv), dy = dFdy(uv);
- *     if (sluiceSelectRandomQuad(uvec2(gl_FragCoord.xy), seed, 1.0 / 16.0))
+ *     if (sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, seed, 1.0 / 16.0))
  *         sluiceWriteFeedback(tableIndex, uv, dx, dy, 0.0, 8.0);
  *
  * A texture set writes once, with the primary's index. In compute and ray tracing shaders the
@@ -24,27 +25,39 @@
 #include "buffers.glsl"
 #include "footprint.glsl"
 #include "lod.glsl"
-#include "quick.glsl"
 #include "shared/feedback.h"
 
 #ifndef SLUICE_FEEDBACK_ENCODING
 #define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_LEVELS
 #endif
 
-/* Most writes change nothing, and a load is far cheaper than an atomic. */
+/** What the feedback buffer says of the region `at`. */
+uint sluiceReadFeedback(uint at)
+{
+#if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
+    return SLUICE_FEEDBACK_WORD(at >> 1u) >> ((at & 1u) * 16u);
+#else
+    return SLUICE_FEEDBACK_WORD(at);
+#endif
+}
+
+/** The same, unless `known`, what was read there, says as much: loads are far cheaper than atomics. */
+void sluiceMarkUnlessKnown(uint at, uint level, uint known)
+{
+#if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
+    uint bit = 1u << min(level, SLUICE_FEEDBACK_MASK_LEVELS - 1u);
+    if ((known & (bit | (bit - 1u))) == 0u)
+        atomicOr(SLUICE_FEEDBACK_WORD(at >> 1u), bit << ((at & 1u) * 16u));
+#else
+    if (level < known)
+        atomicMin(SLUICE_FEEDBACK_WORD(at), level);
+#endif
+}
+
 /** `at` is the number of the region in the feedback buffer. */
 void sluiceMarkRegionAt(uint at, uint level)
 {
-#if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
-    uint shift = (at & 1u) * 16u;
-    uint bit = 1u << min(level, SLUICE_FEEDBACK_MASK_LEVELS - 1u);
-    uint asFine = bit | (bit - 1u);
-    if ((SLUICE_FEEDBACK_WORD(at >> 1u) >> shift & asFine) == 0u)
-        atomicOr(SLUICE_FEEDBACK_WORD(at >> 1u), bit << shift);
-#else
-    if (level < SLUICE_FEEDBACK_WORD(at))
-        atomicMin(SLUICE_FEEDBACK_WORD(at), level);
-#endif
+    sluiceMarkUnlessKnown(at, level, sluiceReadFeedback(at));
 }
 
 void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
@@ -62,63 +75,79 @@ bool sluiceTakesPart(uint tableIndex)
 #endif
 }
 
-void sluiceMarkFootprint(SluiceTextureEntry entry, SluiceFootprint at, uint level)
+/** Each tile of `level` and coarser ones that a footprint lies over; the map begins at `first`. */
+void sluiceMarkFootprint(uint first, SluiceGrid grid, SluiceFootprint footprint, uint level)
 {
-    sluiceMarkRegion(entry, at.x.x, at.y.x, level);
-    if (sluiceFootprintIsOneRegion(at))
-        return;
-    uvec2 steps = sluiceFootprintSteps(at, level);
-    for (uint i = 1u; i < steps.x * steps.y; i++) {
-        uvec2 region = sluiceFootprintRegion(at, level, uvec2(i % steps.x, i / steps.x));
-        sluiceMarkRegion(entry, region.x, region.y, level);
+    uvec2 step = uvec2(
+        sluiceRangeStep(footprint.first.x, footprint.last.x, grid.last.x, level),
+        sluiceRangeStep(footprint.first.y, footprint.last.y, grid.last.y, level));
+    uvec2 at = footprint.first;
+    for (;;) {
+        sluiceMarkRegionAt(first + at.y * (grid.last.x + 1u) + at.x, level);
+        if (at.x != footprint.last.x) {
+            at.x = sluiceNextRegion(at.x, footprint.last.x, grid.last.x, step.x);
+            continue;
+        }
+        if (at.y == footprint.last.y)
+            return;
+        at = uvec2(footprint.first.x,
+                   sluiceNextRegion(at.y, footprint.last.y, grid.last.y, step.y));
     }
 }
 
-/** What a sample touches if its finest and its coarsest level are these. */
-void sluiceMarkSample(SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                      float maxAnisotropy, uint level, uint coarsest)
+/** Marks the corners of a box of texels, of a texture of SLUICE_SHAPE_QUICK. */
+void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint level)
 {
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
-    sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, coarsest), level);
-    if (!(maxAnisotropy > 1.0))
+    if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u) {
+        low = clamp(low, vec2(0.0), grid.size - 0.5);
+        high = clamp(high, vec2(0.0), grid.size - 0.5);
+    }
+    ivec2 shift = ivec2(sluiceRegionShift(grid));
+    uvec2 from = uvec2(ivec2(floor(low)) >> shift) & grid.last;
+    uvec2 to = uvec2(ivec2(floor(high)) >> shift) & grid.last;
+    uint upper = first + from.y * (grid.last.x + 1u);
+    sluiceMarkRegionAt(upper + from.x, level);
+    if (from == to)
         return;
-    /* Some devices read levels up to those without anisotropy, which reach further: docs/feedback.md. */
-    uint widest = sluiceCoarsestLevel(sluiceComputeLods(dx * size, dy * size, lodBias, 1.0).y,
-                                      entry.mipLevelCount);
-    if (widest > coarsest)
-        sluiceMarkFootprint(entry, sluiceComputeFootprint(entry, uv, halfBox, widest),
-                            coarsest + 1u);
+    /* loads first, because they take long */
+    uint lower = first + to.y * (grid.last.x + 1u);
+    uint right = sluiceReadFeedback(upper + to.x), below = sluiceReadFeedback(lower + from.x),
+         across = sluiceReadFeedback(lower + to.x);
+    if (to.x != from.x)
+        sluiceMarkUnlessKnown(upper + to.x, level, right);
+    if (to.y != from.y)
+        sluiceMarkUnlessKnown(lower + from.x, level, below);
+    if (to.x != from.x && to.y != from.y)
+        sluiceMarkUnlessKnown(lower + to.x, level, across);
 }
 
-/** Marks the region of a sample that surely stays inside it; false if that is not sure. */
-bool sluiceMarkOneRegion(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                         float maxAnisotropy)
+/** What a sample of `level` to `coarsest` touches. A `halfBox` of 0 is no wider than a tile. */
+void sluiceMarkBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest)
 {
-    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
-    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
-    dx *= size;
-    dy *= size;
-    float x2 = dot(dx, dx), y2 = dot(dy, dy);
-    float reach2 = (x2 + y2) * sluiceBiasScale2(lodBias);
-    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
-    uvec2 shift = sluiceQuickShift(shape);
-    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
-    vec2 before = texel - vec2(region << shift);
-    vec2 room = min(before, vec2(uvec2(1u) << shift) - before);
-    float reach = SLUICE_REACH * sqrt(max(reach2, 1.0));
-    if (!(room.x > reach && room.y > reach && abs(lodBias) <= SLUICE_QUICK_BIAS &&
-          reach2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2 &&
-          (shape & SLUICE_QUICK_ONE_REGION) != 0u))
-        return false;
-    float lod = maxAnisotropy > 1.0 ? sluiceComputeLod(dx, dy, lodBias, maxAnisotropy)
-                                    : 0.5 * log2(max(x2, y2)) + lodBias;
-    uint level = sluiceFinestLevel(lod, sluiceLodMargin(maxAnisotropy),
-                                   (shape >> SLUICE_QUICK_LAST_LEVEL_SHIFT) + 1u);
-    sluiceMarkRegionAt(SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset +
-                           region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) + region.x,
-                       level);
-    return true;
+    bool quick = (grid.shape & SLUICE_SHAPE_QUICK) != 0u;
+    vec2 reach = halfBox + SLUICE_APRON * min(vec2(uintBitsToFloat((coarsest + 127u) << 23u)), grid.size);
+    if (halfBox.x > 0.0 || halfBox.y > 0.0)
+        quick = quick && all(lessThanEqual(2.0 * reach, sluiceRegionSize(grid) * exp2(float(level))));
+    if (!quick) {
+        sluiceMarkFootprint(first, grid, sluiceComputeFootprint(grid, uv, halfBox, coarsest), level);
+        return;
+    }
+    vec2 at = (grid.shape & SLUICE_SHAPE_REPEATS) != 0u ? uv - floor(uv) : uv;
+    sluiceMarkCorners(first, grid, at * grid.size - reach, at * grid.size + reach, level);
+}
+
+/**
+ * The same for derivatives. Some devices read levels up to `widest`, which they would take without
+ * anisotropy, and which reach further: docs/feedback.md. `dx` and `dy` in texels.
+ */
+void sluiceMarkSample(uint tableIndex, SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                      float maxAnisotropy, uint level, uint coarsest, uint widest)
+{
+    uint first = SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset;
+    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    sluiceMarkBox(first, grid, uv, halfBox, level, coarsest);
+    if (maxAnisotropy > 1.0 && widest > coarsest)
+        sluiceMarkBox(first, grid, uv, halfBox, coarsest + 1u, widest);
 }
 
 /**
@@ -132,15 +161,16 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 {
     if (!sluiceTakesPart(tableIndex))
         return;
-    if (sluiceMarkOneRegion(tableIndex, uv, dx, dy, lodBias, maxAnisotropy))
-        return;
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 lods = sluiceIsFinite(uv) ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
-                                   : vec2(SLUICE_LOD_LIMIT);
-    uint level = sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), entry.mipLevelCount);
-    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
-    sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy, level, coarsest);
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    dx *= grid.size;
+    dy *= grid.size;
+    SluiceSquares squares = sluiceSquareLods(dx, dy, maxAnisotropy);
+    uvec3 levels = squares.sum < SLUICE_QUICK_SQUARES && abs(lodBias) <= SLUICE_QUICK_BIAS &&
+                           sluiceIsFinite(uv)
+                       ? sluiceQuickLevels(squares, lodBias, maxAnisotropy, sluiceMipCount(grid))
+                       : sluiceSafeLevels(uv, dx, dy, lodBias, maxAnisotropy, sluiceMipCount(grid));
+    sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, levels.x, levels.y,
+                     levels.z);
 }
 
 /** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */
@@ -148,11 +178,11 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
 {
     if (!sluiceTakesPart(tableIndex))
         return;
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint count = sluiceMipCount(grid);
     lod = sluiceIsFinite(uv) ? sluiceClampLod(lod) : SLUICE_LOD_LIMIT;
-    SluiceFootprint at = sluiceComputeFootprint(entry, uv, vec2(0.0),
-                                                sluiceCoarsestLevel(lod, entry.mipLevelCount));
-    sluiceMarkFootprint(entry, at, sluiceFinestLevel(lod, 0.0, entry.mipLevelCount));
+    sluiceMarkBox(SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset, grid, uv, vec2(0.0),
+                  sluiceFinestLevel(lod, 0.0, count), sluiceCoarsestLevel(lod, count));
 }
 
 #ifdef SLUICE_FEEDBACK_QUERY
@@ -196,19 +226,20 @@ void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, ve
 #endif
     if (!sluiceTakesPart(tableIndex))
         return;
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 lods = sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy);
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint count = sluiceMipCount(grid);
+    dx *= grid.size;
+    dy *= grid.size;
+    uvec3 levels = sluiceSafeLevels(uv, dx, dy, lodBias, maxAnisotropy, count);
     bool known = lod == lod && sluiceIsFinite(uv);
     lod = known ? sluiceClampLod(lod + sluiceClampLodBias(lodBias)) : SLUICE_LOD_LIMIT;
-    float finest = lod - SLUICE_QUERY_MARGIN;
+    uint level = sluiceFinestLevel(lod - SLUICE_QUERY_MARGIN, 0.0, count);
+    uint coarsest = sluiceCoarsestLevel(known ? lod + SLUICE_QUERY_MARGIN : lod, count);
     if (known && maxAnisotropy > 1.0)
-        finest = min(finest, lods.x - sluiceLodMargin(maxAnisotropy));
-    /* sample.glsl looks as far around as the computed level may reach */
-    float widest = known ? max(lod + SLUICE_QUERY_MARGIN, lods.y) : lod;
-    sluiceMarkSample(entry, uv, dx, dy, lodBias, maxAnisotropy,
-                     sluiceFinestLevel(finest, 0.0, entry.mipLevelCount),
-                     sluiceCoarsestLevel(widest, entry.mipLevelCount));
+        level = min(level, levels.x);
+    if (known) /* sample.glsl looks as far around as the computed level may reach */
+        coarsest = max(coarsest, levels.y);
+    sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, level, coarsest, levels.z);
 }
 
 /** Both in one, in uniform control flow, with `selected` in place of a branch around it. */

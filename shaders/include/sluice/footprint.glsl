@@ -6,7 +6,8 @@
  * level before its regions: the box around a sample reaches that much further down.
  *
  * Along an axis it suffices to look at one region of each tile of the finest level that is sampled,
- * and at the last region, which may be narrow. C twin: lib/vulkan/shader_twins.h.
+ * and at the last region, which may be narrow. Everything is in texels of level 0. C twin:
+ * lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_FOOTPRINT_GLSL
 #define SLUICE_FOOTPRINT_GLSL
@@ -22,139 +23,139 @@
  * takes a LOD bias below -6 and anisotropy. */
 #define SLUICE_FOOTPRINT_STEPS_LOG2 6
 
-/**
- * Columns x and rows y, each from the first to the second region, and where the third is another,
- * the box wraps: on from 0 to the third.
- */
-struct SluiceFootprint {
-    uvec3 x;
-    uvec3 y;
+/** The regions of a texture, as footprints need them. */
+struct SluiceGrid {
+    vec2 size;  /* texels of level 0 */
+    uint shape; /* SluiceTextureEntry.shape */
+    uvec2 last; /* column and row */
 };
 
-/** Region of a coordinate in [0, 1]; always below `regionCount`, also for NaN. */
-uint sluiceRegionIndex(float coordinate, float regionsPerUnit, uint regionCount)
+SluiceGrid sluiceReadGrid(uint tableIndex)
 {
-    float at = coordinate > 0.0 ? min(coordinate, 1.0) * regionsPerUnit : 0.0;
-    return min(uint(at), regionCount - 1u);
+    SluiceGrid grid;
+    grid.size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
+    grid.shape = SLUICE_TEXTURE_ENTRY(tableIndex).shape;
+    grid.last = uvec2(SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX,
+                      SLUICE_TEXTURE_ENTRY(tableIndex).regionLastY);
+    return grid;
+}
+
+uint sluiceMipCount(SluiceGrid grid)
+{
+    return ((grid.shape >> SLUICE_SHAPE_LAST_LEVEL_SHIFT) & 31u) + 1u;
+}
+
+/** log2 of a region's width and height. */
+uvec2 sluiceRegionShift(SluiceGrid grid)
+{
+    return uvec2(grid.shape & 31u, (grid.shape >> SLUICE_SHAPE_HEIGHT_SHIFT) & 31u);
+}
+
+/** Texels of level 0 that a region is wide and high. */
+vec2 sluiceRegionSize(SluiceGrid grid)
+{
+    return vec2(uvec2(1u) << sluiceRegionShift(grid));
+}
+
+uvec2 sluiceAddressModes(SluiceGrid grid)
+{
+    return uvec2(grid.shape >> SLUICE_SHAPE_MODE_U_SHIFT, grid.shape >> SLUICE_SHAPE_MODE_V_SHIFT) & 7u;
+}
+
+/** Columns and rows; where the first is behind the last, it goes on at 0. */
+struct SluiceFootprint {
+    uvec2 first, last;
+};
+
+/** Region of a place in texels; always up to `last`, also for NaN. */
+uint sluiceRegionIndex(float texel, float size, uint shift, uint last)
+{
+    return min(uint(texel > 0.0 ? min(texel, size) : 0.0) >> shift, last);
 }
 
 /**
- * One axis: the regions from `below` before to `above` behind the coordinate, both in units of uv.
+ * One axis: the first and the last region from `below` before to `above` behind the coordinate.
  */
-uvec3 sluiceRegionRange(float coordinate, float below, float above, uint addressMode,
-                        float regionsPerUnit, uint regionCount)
+uvec2 sluiceRegionRange(float coordinate, float below, float above, uint addressMode, float size,
+                        uint shift, uint last)
 {
+    float low, high;
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
-        below = below < 0.5 ? below : 0.5; /* all of the image, and NaN */
-        above = above < 0.5 ? above : 0.5;
+        if (!(below + above < size)) /* all of the image, and NaN */
+            return uvec2(0u, last);
         /* fract first: far from 0 the ends of the box would round to its middle */
-        float middle = coordinate - floor(coordinate);
-        middle = middle >= 0.0 ? min(middle, 1.0) : 0.0;
-        float low = middle - below;
-        float high = middle + above;
-        bool wraps = low < 0.0 || high >= 1.0;
-        uint first = sluiceRegionIndex(low < 0.0 ? low + 1.0 : low, regionsPerUnit, regionCount);
-        uint last = sluiceRegionIndex(high >= 1.0 ? high - 1.0 : high, regionsPerUnit, regionCount);
-        if (!wraps)
-            return uvec3(first, last, last);
-        return uvec3(last == regionCount - 1u ? 0u : first, regionCount - 1u, last);
+        float middle = (coordinate - floor(coordinate)) * size;
+        low = middle - below;
+        high = middle + above;
+        low += low < 0.0 ? size : 0.0;
+        high -= high >= size ? size : 0.0;
+    } else {
+        float middle = coordinate;
+        if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
+            middle = coordinate - 2.0 * floor(coordinate * 0.5);
+            middle = middle > 1.0 ? 2.0 - middle : middle;
+            below = above = max(below, above);
+        } else if (addressMode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
+            middle = abs(coordinate);
+            below = above = max(below, above);
+        }
+        /* the ends are clamped, not the middle: a box outside touches no more than the edge */
+        low = middle * size - below;
+        high = middle * size + above;
     }
-    float middle = coordinate;
-    if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
-        middle = coordinate - 2.0 * floor(coordinate * 0.5);
-        middle = middle > 1.0 ? 2.0 - middle : middle;
-        below = above = max(below, above);
-    } else if (addressMode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) {
-        middle = abs(coordinate);
-        below = above = max(below, above);
+    uvec2 range = uvec2(sluiceRegionIndex(low, size, shift, last),
+                        sluiceRegionIndex(high, size, shift, last));
+    bool wraps = addressMode == SLUICE_ADDRESS_MODE_REPEAT && low > high;
+    if (wraps && range.x == range.y) /* around the image, back into the same region */
+        return uvec2(0u, last);
+    return wraps ? range : uvec2(range.x, max(range.x, range.y)); /* NaN */
+}
+
+/** Around `uv`, for samples of levels up to `coarsestLevel`; `halfBox` as sluiceHalfBox. */
+SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
+{
+    vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
+    float below = SLUICE_APRON;
+    if ((grid.shape & SLUICE_SHAPE_UNEVEN) != 0u) {
+        texel = grid.size / vec2(max(uvec2(grid.size) >> coarsestLevel, 1u));
+        below = SLUICE_APRON_UNEVEN;
     }
-    /* the ends are clamped, not the middle: a box outside touches no more than the edge */
-    uint first = sluiceRegionIndex(middle - below, regionsPerUnit, regionCount);
-    uint last = sluiceRegionIndex(middle + above, regionsPerUnit, regionCount);
-    last = max(first, last); /* NaN */
-    return uvec3(first, last, last);
+    uvec2 shift = sluiceRegionShift(grid), modes = sluiceAddressModes(grid);
+    uvec2 x = sluiceRegionRange(uv.x, below * texel.x + halfBox.x, SLUICE_APRON * texel.x + halfBox.x,
+                                modes.x, grid.size.x, shift.x, grid.last.x);
+    uvec2 y = sluiceRegionRange(uv.y, below * texel.y + halfBox.y, SLUICE_APRON * texel.y + halfBox.y,
+                                modes.y, grid.size.y, shift.y, grid.last.y);
+    return SluiceFootprint(uvec2(x.x, y.x), uvec2(x.y, y.y));
+}
+
+/** The step between regions of an axis that sees every tile of `level`. */
+uint sluiceRangeStep(uint first, uint last, uint axisLast, uint level)
+{
+    uint length = last - first + (last < first ? axisLast + 1u : 0u);
+    return max(1u << level, (length >> SLUICE_FOOTPRINT_STEPS_LOG2) + 1u);
+}
+
+/** The region to look at after `at`, which is not `last`. */
+uint sluiceNextRegion(uint at, uint last, uint axisLast, uint step)
+{
+    if (at < last)
+        return min(at + step, last);
+    return at < axisLast ? min(at + step, axisLast) : 0u;
 }
 
 /**
- * Around `uv`, for samples of levels up to `coarsestLevel`; `halfBox` as sluiceHalfBox.
- */
-SluiceFootprint sluiceComputeFootprint(SluiceTextureEntry entry, vec2 uv, vec2 halfBox,
-                                       uint coarsestLevel)
-{
-    float below = (entry.flags & SLUICE_TEXTURE_FLAG_UNEVEN) != 0u ? SLUICE_APRON_UNEVEN : SLUICE_APRON;
-    float texelX = 1.0 / float(max(entry.width >> coarsestLevel, 1u));
-    float texelY = 1.0 / float(max(entry.height >> coarsestLevel, 1u));
-    SluiceFootprint footprint;
-    footprint.x = sluiceRegionRange(uv.x, below * texelX + halfBox.x, SLUICE_APRON * texelX + halfBox.x,
-                                    entry.addressModeU,
-                                    float(entry.width) / float(entry.regionWidth),
-                                    entry.regionCountX);
-    footprint.y = sluiceRegionRange(uv.y, below * texelY + halfBox.y, SLUICE_APRON * texelY + halfBox.y,
-                                    entry.addressModeV,
-                                    float(entry.height) / float(entry.regionHeight),
-                                    entry.regionCountY);
-    return footprint;
-}
-
-bool sluiceFootprintIsOneRegion(SluiceFootprint footprint)
-{
-    return all(equal(footprint.x.xx, footprint.x.yz)) && all(equal(footprint.y.xx, footprint.y.yz));
-}
-
-/** The step between regions of an axis that sees every tile of `level`, as a power of two. */
-uint sluiceRangeShift(uvec3 range, uint level)
-{
-    int bits = findMSB(range.y - range.x + (range.z == range.y ? 0u : range.z)) + 1;
-    return max(level, uint(max(bits - SLUICE_FOOTPRINT_STEPS_LOG2, 0)));
-}
-
-/* How many steps lead from one region to another, both included. */
-uint sluiceCountSteps(uint distance, uint shift)
-{
-    return ((distance + (1u << shift) - 1u) >> shift) + 1u;
-}
-
-uint sluiceRangeSteps(uvec3 range, uint level)
-{
-    uint shift = sluiceRangeShift(range, level);
-    uint count = sluiceCountSteps(range.y - range.x, shift);
-    return range.z == range.y ? count : count + sluiceCountSteps(range.z, shift);
-}
-
-uint sluiceRangeRegion(uvec3 range, uint level, uint i)
-{
-    uint shift = sluiceRangeShift(range, level);
-    uint count = sluiceCountSteps(range.y - range.x, shift);
-    return i < count ? min(range.x + (i << shift), range.y) : min((i - count) << shift, range.z);
-}
-
-/**
- * How many columns and rows to look at so as to see every tile of `level`, the finest that is
- * sampled, and of coarser levels; and which regions those are.
- */
-uvec2 sluiceFootprintSteps(SluiceFootprint footprint, uint level)
-{
-    return uvec2(sluiceRangeSteps(footprint.x, level), sluiceRangeSteps(footprint.y, level));
-}
-
-uvec2 sluiceFootprintRegion(SluiceFootprint footprint, uint level, uvec2 step)
-{
-    return uvec2(sluiceRangeRegion(footprint.x, level, step.x),
-                 sluiceRangeRegion(footprint.y, level, step.y));
-}
-
-/**
- * Half the size of the box around the ellipse that the derivatives span, 0 without anisotropy:
- * whichever of its axes a device takes its samples along, they are inside. A positive LOD bias makes
- * it larger: some devices scale the footprint with it, and so do explicit derivatives that hold the
- * bias.
+ * Half the size of the box around all that an anisotropic sampler may read besides its apron, 0 without
+ * anisotropy: twice the ellipse that the derivatives span, whichever of its axes a device takes its
+ * samples along, because some devices round their number up to a power of two and keep the distance. A
+ * positive LOD bias makes it larger: some scale the footprint with it, and so do explicit derivatives
+ * that hold the bias. Derivatives and result in texels.
  */
 vec2 sluiceHalfBox(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
         return vec2(0.0);
     float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
-    return 0.5 * scale * vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
+    return scale * vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
 }
 
 #endif

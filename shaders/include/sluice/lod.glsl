@@ -81,6 +81,49 @@ float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     return sluiceComputeLods(dx, dy, lodBias, maxAnisotropy).x;
 }
 
+/*
+ * The same, 4 to the power of LODs, without bias and margins: so levels are found by exponents alone.
+ * `widest` is the coarsest LOD without anisotropy. Where `sum`, of the squared lengths of both
+ * derivatives, is not below SLUICE_QUICK_SQUARES they are not to be used.
+ */
+struct SluiceSquares {
+    float fine, coarse, widest, sum;
+};
+
+#define SLUICE_QUICK_SQUARES 1.0e14
+/* Beyond it nothing is quick. */
+#define SLUICE_QUICK_BIAS 16.0
+/* 4 to the power of the margins: -1/8 and, with anisotropy, -3/16; and of the coarser one. */
+#define SLUICE_MARGIN_4 0.84089642
+#define SLUICE_MARGIN_ANISOTROPIC_4 0.77110541
+#define SLUICE_MARGIN_COARSER_4 1.1892071
+
+SluiceSquares sluiceSquareLods(vec2 dx, vec2 dy, float maxAnisotropy)
+{
+    float x2 = dx.x * dx.x + dx.y * dx.y;
+    float y2 = dy.x * dy.x + dy.y * dy.y;
+    float area = dx.x * dy.y - dx.y * dy.x;
+    float major = max(x2, y2);
+    SluiceSquares s;
+    s.sum = x2 + y2;
+    s.widest = max(0.5 * (s.sum + sqrt(max(s.sum * s.sum - 4.0 * area * area, 0.0))), major);
+    s.fine = major;
+    s.coarse = s.widest;
+    if (maxAnisotropy > 1.0) {
+        float n = sluiceClampAnisotropy(maxAnisotropy);
+        float minor = min(x2, y2);
+        s.fine = max(min(minor, area * area / max(s.widest, 1.0e-30)), major / (n * n));
+        s.coarse = max(minor, s.widest / (n * n));
+    }
+    return s;
+}
+
+/** floor(log4(x)) of a number that is not negative, 0 below 4; by its exponent alone. */
+uint sluiceFloorLog4(float x)
+{
+    return uint(max(int(floatBitsToUint(x) >> 23u) - 127, 0)) >> 1u;
+}
+
 /** The finest LOD that a texel of the MinMip buffer allows to samplers of that margin. */
 float sluiceLodLimit(uint shown, float margin)
 {
@@ -104,6 +147,31 @@ uint sluiceFinestLevel(float lod, float margin, uint count)
 uint sluiceCoarsestLevel(float lod, uint count)
 {
     return min(uint(clamp(lod, 0.0, float(count - 1u))) + 1u, count - 1u);
+}
+
+/**
+ * The levels that a sample marks, of `count`, by exponents: the finest, the coarsest, and that without
+ * anisotropy.
+ */
+uvec3 sluiceQuickLevels(SluiceSquares squares, float lodBias, float maxAnisotropy, uint count)
+{
+    float scale = exp2(2.0 * lodBias);
+    float margin = maxAnisotropy > 1.0 ? SLUICE_MARGIN_ANISOTROPIC_4 : SLUICE_MARGIN_4;
+    return min(uvec3(sluiceFloorLog4(squares.fine * scale * margin),
+                     sluiceFloorLog4(squares.coarse * scale * SLUICE_MARGIN_COARSER_4) + 1u,
+                     sluiceFloorLog4(squares.widest * scale * SLUICE_MARGIN_COARSER_4) + 1u),
+               uvec3(count - 1u));
+}
+
+/** The same by logarithms, whatever the arguments. */
+uvec3 sluiceSafeLevels(vec2 uv, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy, uint count)
+{
+    if (!sluiceIsFinite(uv))
+        return uvec3(count - 1u);
+    vec2 lods = sluiceComputeLods(dx, dy, lodBias, maxAnisotropy);
+    return uvec3(sluiceFinestLevel(lods.x, sluiceLodMargin(maxAnisotropy), count),
+                 sluiceCoarsestLevel(lods.y, count),
+                 sluiceCoarsestLevel(sluiceComputeLods(dx, dy, lodBias, 1.0).y, count));
 }
 
 #endif

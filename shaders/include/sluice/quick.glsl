@@ -2,9 +2,8 @@
  * What one load says about most samples.
  *
  * Beside its own texel a word of the MinMip buffer holds the largest one of the regions around: no
- * sample that reaches into no more than those can touch anything coarser. And a sample that stays
- * inside its region marks only that. Where neither is sure the whole footprint is walked, which says
- * the same and costs several times as much.
+ * sample that reaches into no more than those can touch anything coarser. Where that is not enough
+ * the footprint itself is looked at, which costs several times as much.
  *
  * Members of the texture table are read one by one here: the whole entry would be loaded before the
  * branch that most samples do not take.
@@ -12,11 +11,7 @@
 #ifndef SLUICE_QUICK_GLSL
 #define SLUICE_QUICK_GLSL
 
-#include "buffers.glsl"
-#include "lod.glsl"
-
-/* Beyond it nothing is quick. */
-#define SLUICE_QUICK_BIAS 16.0
+#include "footprint.glsl"
 
 /** A coordinate inside the image: 0 to 1; 0 for NaN. */
 float sluiceFoldCoordinate(float coordinate, uint addressMode)
@@ -32,30 +27,15 @@ float sluiceFoldCoordinate(float coordinate, uint addressMode)
     return coordinate > 0.0 ? min(coordinate, 1.0) : 0.0;
 }
 
-/** Where a sample is, in texels of level 0; not >= 0 where `uv` is not finite. */
-vec2 sluiceQuickTexel(uint tableIndex, vec2 uv, uint shape)
+/** The region that a sample lies in; for `uv` that is not finite some region. */
+uvec2 sluiceQuickRegion(SluiceGrid grid, vec2 uv)
 {
-    vec2 size = vec2(SLUICE_TEXTURE_ENTRY(tableIndex).sizeX, SLUICE_TEXTURE_ENTRY(tableIndex).sizeY);
-    if (!sluiceIsFinite(uv))
-        return vec2(-1.0);
-    if ((shape & SLUICE_QUICK_REPEATS) != 0u)
-        return (uv - floor(uv)) * size;
-    return vec2(sluiceFoldCoordinate(uv.x, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeU),
-                sluiceFoldCoordinate(uv.y, SLUICE_TEXTURE_ENTRY(tableIndex).addressModeV)) *
-           size;
-}
-
-uvec2 sluiceQuickShift(uint shape)
-{
-    return uvec2(shape & 255u, (shape >> 8u) & 255u);
-}
-
-/** The region of such a place: one of the texture, whatever the place. */
-uvec2 sluiceQuickRegion(uint tableIndex, vec2 texel, uint shape)
-{
-    return min(uvec2(texel) >> sluiceQuickShift(shape),
-               uvec2(SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX,
-                     SLUICE_TEXTURE_ENTRY(tableIndex).regionLastY));
+    vec2 at = uv - floor(uv);
+    if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u) {
+        uvec2 modes = sluiceAddressModes(grid);
+        at = vec2(sluiceFoldCoordinate(uv.x, modes.x), sluiceFoldCoordinate(uv.y, modes.y));
+    }
+    return min(uvec2(at * grid.size) >> sluiceRegionShift(grid), grid.last);
 }
 
 /** How much a LOD bias widens what a sample touches, squared. */

@@ -46,9 +46,6 @@
 #define SLUICE_ANISOTROPY_OVERREACHES true
 #endif
 
-/* Coarsening moves the box's ends, which may ask for more of it; then the packed levels are taken. */
-#define SLUICE_CLAMP_STEPS 4
-
 /* Longer derivatives, in texels, have squares whose products leave the range of float: samplers that
  * compute with those come to any level. They are as good as infinite. */
 #define SLUICE_MAX_TEXELS 1.0e9
@@ -68,25 +65,35 @@ struct SluiceSampling {
     bool plain;         /* texture() touches only what is there, and may be used instead */
 };
 
-/** A texel of the MinMip buffer: see SLUICE_SHOWN_STEPS. */
-uint sluiceReadMinMip(SluiceTextureEntry entry, uint x, uint y)
+/** The larger of two words, half by half. */
+uint sluiceMaxHalves(uint a, uint b)
 {
-    uint at = entry.minMipOffset + y * entry.regionCountX + x;
-    return SLUICE_MIN_MIP_WORD(at) & 0xFFFFu;
+    return max(a & 0xFFFFu, b & 0xFFFFu) | (max(a >> 16u, b >> 16u) << 16u);
 }
 
-/** The largest of the MinMip texels over a footprint of samples of `finestLevel` and coarser. */
-uint sluiceMaxMinMip(SluiceTextureEntry entry, SluiceFootprint at, uint finestLevel)
+/**
+ * The words of the MinMip buffer over a footprint of samples of `finestLevel` and coarser, the
+ * largest low and the largest high half: what is shown there, and there and around it.
+ */
+uint sluiceMaxMinMip(uint first, SluiceGrid grid, SluiceFootprint footprint, uint finestLevel)
 {
-    uint shown = sluiceReadMinMip(entry, at.x.x, at.y.x);
-    if (sluiceFootprintIsOneRegion(at))
-        return shown;
-    uvec2 steps = sluiceFootprintSteps(at, finestLevel);
-    for (uint i = 1u; i < steps.x * steps.y; i++) {
-        uvec2 region = sluiceFootprintRegion(at, finestLevel, uvec2(i % steps.x, i / steps.x));
-        shown = max(shown, sluiceReadMinMip(entry, region.x, region.y));
+    uvec2 step = uvec2(
+        sluiceRangeStep(footprint.first.x, footprint.last.x, grid.last.x, finestLevel),
+        sluiceRangeStep(footprint.first.y, footprint.last.y, grid.last.y, finestLevel));
+    uvec2 at = footprint.first;
+    uint words = 0u;
+    for (;;) {
+        words = sluiceMaxHalves(
+            words, SLUICE_MIN_MIP_WORD(first + at.y * (grid.last.x + 1u) + at.x));
+        if (at.x != footprint.last.x) {
+            at.x = sluiceNextRegion(at.x, footprint.last.x, grid.last.x, step.x);
+            continue;
+        }
+        if (at.y == footprint.last.y)
+            return words;
+        at = uvec2(footprint.first.x,
+                   sluiceNextRegion(at.y, footprint.last.y, grid.last.y, step.y));
     }
-    return shown;
 }
 
 /**
@@ -110,13 +117,14 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
  * Whether levels beyond `coarsest` are there as well, if a sampler reads them: up to those that it
  * would take without anisotropy, `lod`. They reach further to the sides, over other tiles.
  */
-bool sluiceReachIsThere(SluiceTextureEntry entry, vec2 uv, vec2 halfBox, uint coarsest, float lod)
+bool sluiceReachIsThere(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsest, float lod)
 {
-    uint widest = sluiceCoarsestLevel(lod, entry.mipLevelCount);
+    uint widest = sluiceCoarsestLevel(lod, sluiceMipCount(grid));
     if (widest <= coarsest)
         return true;
-    SluiceFootprint at = sluiceComputeFootprint(entry, uv, halfBox, widest);
-    return sluiceShownLevel(sluiceMaxMinMip(entry, at, coarsest + 1u)) <= coarsest + 1u;
+    SluiceFootprint at = sluiceComputeFootprint(grid, uv, halfBox, widest);
+    uint shown = sluiceMaxMinMip(first, grid, at, coarsest + 1u) & 0xFFFFu;
+    return sluiceShownLevel(shown) <= coarsest + 1u;
 }
 
 /** The LOD without anisotropy, where samplers may come near it; else so fine that it never counts. */
@@ -142,19 +150,54 @@ bool sluiceSamplerClamps()
 }
 
 /**
- * The largest MinMip texel that counts for a sample of s.lod: what coarser levels alone touch, at
- * the rim of the footprint, must be there of those levels, and does not make the sample coarser.
+ * The words (see sluiceMaxMinMip) that count for a sample of `lod`, `finest` and up to `coarsest`:
+ * what coarser levels alone touch, at the rim of its box, must be there of those levels, and does not
+ * make the sample coarser.
  */
-uint sluiceMaxShown(SluiceTextureEntry entry, SluiceSampling s, vec2 halfBox, uint coarsest,
-                    float margin)
+uint sluiceReadBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, float lod, float margin,
+                   uint finest, uint coarsest)
 {
-    for (uint level = coarsest;; level--) {
-        uint shown = sluiceMaxMinMip(
-            entry, sluiceComputeFootprint(entry, s.uv, halfBox, level), s.level);
-        if (level <= s.level || sluiceLodLimit(shown, margin) <= s.lod ||
-            sluiceShownLevel(shown) > level)
-            return shown;
+    for (;;) {
+        uint words =
+            sluiceMaxMinMip(first, grid, sluiceComputeFootprint(grid, uv, halfBox, coarsest), finest);
+        if (sluiceLodLimit(words & 0xFFFFu, margin) <= lod ||
+            sluiceShownLevel(words & 0xFFFFu) > finest + 1u || coarsest <= finest)
+            return words;
+        coarsest = finest;
     }
+}
+
+/** The coarsest level of a sample that is clamped to `lod`, and half its box, where that grows. */
+uint sluiceClampedBox(float lod, float margin, float coarsestLod, float maxAnisotropy, uint count,
+                      inout vec2 halfBox)
+{
+    if (maxAnisotropy > 1.0)
+        halfBox = max(halfBox, vec2(exp2(lod - margin)));
+    if (sluiceSamplerClamps())
+        return sluiceCoarsestLevel(max(lod, coarsestLod), count); /* exactly */
+    return sluiceCoarsestLevel(lod + margin, count); /* coarser by as much as finer */
+}
+
+/**
+ * The LOD of a sample that, clamped to what its box shows, touches something coarser still. `words`
+ * are those of its box then, of samples up to `coarsest`: if what they show needs no larger box, that;
+ * else what is shown all around, if it reaches no further; else that of packed levels.
+ */
+float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarsest, float margin,
+                      float coarsestLod, float maxAnisotropy, vec2 halfBox)
+{
+    uint count = sluiceMipCount(grid);
+    float packed = float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin;
+    float lod = min(sluiceLodLimit(words & 0xFFFFu, margin), packed);
+    vec2 grown = halfBox;
+    if (sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown) <= coarsest &&
+        grown == halfBox)
+        return lod;
+    lod = min(sluiceLodLimit(words >> 16u, margin), packed);
+    uint level = sluiceClampedBox(lod, margin, coarsestLod, maxAnisotropy, count, grown);
+    bool uneven = (grid.shape & SLUICE_SHAPE_UNEVEN) != 0u;
+    vec2 more = grown - halfBox + (uneven ? SLUICE_APRON_UNEVEN : SLUICE_APRON) * exp2(float(level));
+    return all(lessThan(more, sluiceRegionSize(grid))) ? lod : packed;
 }
 
 /**
@@ -182,13 +225,10 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
         return false;
     if (SLUICE_TEXTURE_ENTRY(tableIndex).wholeShown == 0u)
         return true;
-    uint shape = SLUICE_TEXTURE_ENTRY(tableIndex).quickShape;
-    vec2 texel = sluiceQuickTexel(tableIndex, uv, shape);
-    uvec2 region = sluiceQuickRegion(tableIndex, texel, shape);
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uvec2 region = sluiceQuickRegion(grid, uv);
     uint around = SLUICE_MIN_MIP_WORD(SLUICE_TEXTURE_ENTRY(tableIndex).minMipOffset +
-                                      region.y * (SLUICE_TEXTURE_ENTRY(tableIndex).regionLastX + 1u) +
-                                      region.x) >>
-                  16u;
+                                      region.y * (grid.last.x + 1u) + region.x) >> 16u;
     float limit = (float(around) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) +
                   sluiceLodMargin(maxAnisotropy) - lodBias;
     if (sum * scale2 < SLUICE_TEXTURE_ENTRY(tableIndex).quickReach2)
@@ -206,75 +246,73 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                      float maxAnisotropy)
 {
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    vec2 size = vec2(entry.width, entry.height);
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint first = SLUICE_TEXTURE_ENTRY(tableIndex).minMipOffset;
+    uint count = sluiceMipCount(grid);
     float margin = sluiceLodMargin(maxAnisotropy);
     SluiceSampling s;
     float biasScale = exp2(sluiceClampLodBias(lodBias));
-    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (size * max(biasScale, 1.0));
+    vec2 largest = vec2(SLUICE_MAX_TEXELS) / (grid.size * max(biasScale, 1.0));
     bool finite = sluiceIsFinite(uv) && all(lessThanEqual(abs(dx), largest)) &&
                   all(lessThanEqual(abs(dy), largest));
     s.uv = sluiceIsFinite(uv) ? uv : vec2(0.0);
-    vec2 lods = finite ? sluiceComputeLods(dx * size, dy * size, lodBias, maxAnisotropy)
-                       : vec2(SLUICE_LOD_LIMIT);
+    vec2 lods = finite
+                    ? sluiceComputeLods(dx * grid.size, dy * grid.size, lodBias, maxAnisotropy)
+                    : vec2(SLUICE_LOD_LIMIT);
     s.lod = lods.x;
     s.minLod = 0.0;
-    s.wantedLevel = sluiceFinestLevel(s.lod, margin, entry.mipLevelCount);
+    s.wantedLevel = sluiceFinestLevel(s.lod, margin, count);
     s.level = s.wantedLevel;
     s.missing = 0u;
     s.plain = false;
     s.dx = finite ? dx * biasScale : vec2(0.0);
     s.dy = finite ? dy * biasScale : vec2(0.0);
+    dx *= grid.size;
+    dy *= grid.size;
     /* An anisotropic footprint of length 0 has no ratio: some samplers divide by it. */
     bool point = !(s.lod > SLUICE_LOD_POINT) && maxAnisotropy > 1.0;
     bool widened = !finite;
 
     vec2 halfBox = finite ? sluiceHalfBox(dx, dy, lodBias, maxAnisotropy) : vec2(0.0);
-    float reach = finite ? sluiceOverreachedLod(dx * size, dy * size, lodBias, maxAnisotropy)
-                         : -SLUICE_LOD_LIMIT;
-    bool round = false;
-    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
-    for (uint tries = 0u;; tries++) {
-        uint shown = sluiceMaxShown(entry, s, halfBox, coarsest, margin);
-        if (shown >= SLUICE_SHOWN_NOTHING) {
-            s.level = s.missing = SLUICE_MIP_UNTOUCHED;
-            return s;
-        }
-        float limit = sluiceLodLimit(shown, margin);
-        if (limit <= s.lod) {
-            if (round || sluiceReachIsThere(entry, s.uv, halfBox, coarsest, reach))
-                break;
-            round = true; /* such a footprint has but one level */
-            halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)) / size);
-            continue;
-        }
-        if (tries >= SLUICE_CLAMP_STEPS)
-            limit = max(limit, float(entry.regularMipCount) + margin);
-        s.lod = limit;
-        s.level = sluiceFinestLevel(limit, margin, entry.mipLevelCount);
-        s.missing = max(uint(ceil(max(limit - margin, 0.0))) - s.wantedLevel, 1u);
-        if (sluiceSamplerClamps()) {
-            s.minLod = min(limit, float(entry.mipLevelCount - 1u));
-            coarsest = sluiceCoarsestLevel(max(limit, lods.y), entry.mipLevelCount); /* exactly */
+    float reach = finite ? sluiceOverreachedLod(dx, dy, lodBias, maxAnisotropy) : -SLUICE_LOD_LIMIT;
+    uint coarsest = sluiceCoarsestLevel(lods.y, count);
+    uint shown = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin, s.level, coarsest) & 0xFFFFu;
+    bool round = sluiceLodLimit(shown, margin) <= s.lod &&
+                 !sluiceReachIsThere(first, grid, s.uv, halfBox, coarsest, reach);
+    if (round) { /* such a footprint has but one level */
+        halfBox = max(halfBox, vec2(0.5 * exp2(s.lod)));
+        shown = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin, s.level, coarsest) & 0xFFFFu;
+    }
+    if (shown >= SLUICE_SHOWN_NOTHING) {
+        s.level = s.missing = SLUICE_MIP_UNTOUCHED;
+        return s;
+    }
+    if (sluiceLodLimit(shown, margin) > s.lod) {
+        s.lod = sluiceLodLimit(shown, margin);
+        coarsest = sluiceClampedBox(s.lod, margin, lods.y, maxAnisotropy, count, halfBox);
+        uint words = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin,
+                                   sluiceFinestLevel(s.lod, margin, count), coarsest);
+        if (sluiceLodLimit(words & 0xFFFFu, margin) > s.lod) {
+            s.lod = sluiceLodAround(tableIndex, grid, words, coarsest, margin, lods.y, maxAnisotropy,
+                                    halfBox);
+            round = round || reach > -SLUICE_LOD_LIMIT;
         } else {
-            widened = true;
-            /* samplers may come out coarser by as much as finer */
-            coarsest = sluiceCoarsestLevel(limit + margin, entry.mipLevelCount);
-            if (maxAnisotropy > 1.0)
-                halfBox = max(halfBox, vec2(exp2(limit - margin)) / size);
+            round = round || !sluiceReachIsThere(first, grid, s.uv, halfBox, coarsest, reach);
         }
-        if (tries >= SLUICE_CLAMP_STEPS)
-            break;
+        s.level = sluiceFinestLevel(s.lod, margin, count);
+        s.missing = max(uint(ceil(max(s.lod - margin, 0.0))) - s.wantedLevel, 1u);
+        s.minLod = sluiceSamplerClamps() ? min(s.lod, float(count - 1u)) : 0.0;
+        widened = widened || !sluiceSamplerClamps();
     }
     s.plain = finite && !point && !round && s.missing == 0u;
     if (!finite)
         s.lod = min(s.lod, float(s.level) + margin);
     float width = exp2(widened || round ? max(s.lod, SLUICE_LOD_POINT) : SLUICE_LOD_POINT);
     if (round) {
-        s.dx = vec2(width, 0.0) / size;
-        s.dy = vec2(0.0, width) / size;
+        s.dx = vec2(width, 0.0) / grid.size;
+        s.dy = vec2(0.0, width) / grid.size;
     } else if (widened || point) {
-        sluiceWiden(s.dx, s.dy, size, width);
+        sluiceWiden(s.dx, s.dy, grid.size, width);
     }
     return s;
 }
@@ -408,6 +446,10 @@ vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float 
         return texture(tex, uv, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
+#ifndef SLUICE_MIN_LOD
+    if (!(maxAnisotropy > 1.0)) /* derivatives need not be kept until here */
+        return textureLod(tex, s.uv, s.lod);
+#endif
     return sluiceTextureGrad(tex, s);
 }
 

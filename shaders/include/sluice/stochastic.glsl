@@ -6,13 +6,30 @@
 #ifndef SLUICE_STOCHASTIC_GLSL
 #define SLUICE_STOCHASTIC_GLSL
 
-/** Mixes all bits of three words. Every pixel pays for it, so it is short. */
+/** Mixes three words; the upper bits are the better ones. Every pixel pays for it, so it is short. */
+uint sluiceMix(uvec3 v)
+{
+    uint h = v.x * 0x9E3779B1u + v.y * 0x85EBCA77u + v.z * 0xC2B2AE3Du;
+    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+    return (h ^ (h >> 13u)) * 0x297A2D39u;
+}
+
+/** The same with good lower bits. */
 uint sluiceHash(uvec3 v)
 {
-    uint h = (v.x * 0x9E3779B1u) ^ (v.y * 0x85EBCA77u) ^ (v.z * 0xC2B2AE3Du);
-    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
-    h = (h ^ (h >> 12u)) * 0x297A2D39u;
+    uint h = sluiceMix(v);
     return h ^ (h >> 15u);
+}
+
+/* Bits of 2^23: whole numbers that are added to it are in the lower bits of the sum. */
+#define SLUICE_FLOAT_ORIGIN 0x4B000000u
+/* The same number, less the half of a pixel's centre. */
+#define SLUICE_PIXEL_ORIGIN 8388607.5
+
+bool sluiceSelectRandom(uvec2 place, uint frameSeed, float probability)
+{
+    uint draw = sluiceMix(uvec3(place, frameSeed)) >> 9u;
+    return uintBitsToFloat(draw | 0x3F800000u) - 1.0 < probability;
 }
 
 /**
@@ -21,10 +38,17 @@ uint sluiceHash(uvec3 v)
  */
 bool sluiceSelectRandomQuad(uvec2 pixel, uint frameSeed, float probability)
 {
-    if (probability >= 1.0)
-        return true;
-    float draw = float(sluiceHash(uvec3(pixel >> 1u, frameSeed)) >> 8u) * (1.0 / 16777216.0);
-    return draw < probability;
+    return sluiceSelectRandom((pixel >> 1u) + SLUICE_FLOAT_ORIGIN, frameSeed, probability);
+}
+
+/**
+ * The same decision for gl_FragCoord.xy, the centre of a pixel below 2^22, without the conversion to
+ * whole numbers, which is slow. As all of a quad decides alike, derivatives may be taken behind it.
+ */
+bool sluiceSelectRandomFragmentQuad(vec2 fragCoord, uint frameSeed, float probability)
+{
+    return sluiceSelectRandom(floatBitsToUint(fragCoord * 0.5 + SLUICE_PIXEL_ORIGIN), frameSeed,
+                              probability);
 }
 
 /**
@@ -36,7 +60,13 @@ bool sluiceSelectLattice(uvec2 pixel, uint frameIndex)
     uint f = frameIndex & 63u;
     uint x = ((f & 1u) << 2u) | ((f & 4u) >> 1u) | ((f & 16u) >> 4u);
     uint y = ((f & 2u) << 1u) | ((f & 8u) >> 2u) | ((f & 32u) >> 5u);
-    return (pixel.x & 7u) == (x ^ y) && (pixel.y & 7u) == y;
+    return (((pixel.x ^ x ^ y) | (pixel.y ^ y)) & 7u) == 0u;
+}
+
+/** The same for gl_FragCoord.xy. Pixels of a quad do not decide alike: derivatives come before it. */
+bool sluiceSelectFragmentLattice(vec2 fragCoord, uint frameIndex)
+{
+    return sluiceSelectLattice(floatBitsToUint(fragCoord + SLUICE_PIXEL_ORIGIN), frameIndex);
 }
 
 #endif

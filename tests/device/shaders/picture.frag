@@ -66,8 +66,8 @@ void main()
     outputs[at].nonResident += sluiceCountNonResident(nearestMipTex, params.tableIndex, uv, dx, dy,
                                                       bias, anisotropy);
     bool selected = (params.flags & PICTURE_LATTICE) != 0u
-                        ? sluiceSelectLattice(pixel, params.first)
-                        : sluiceSelectRandomQuad(pixel, params.first, 1.0 / 16.0);
+                        ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.first)
+                        : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.first, 1.0 / 16.0);
 #ifdef PICTURE_QUERY_LATE /* behind branches in which the pixels of a quad parted */
     sluiceWriteFeedbackQuery(tex, params.tableIndex, uv, bias, anisotropy, selected);
 #else

@@ -49,19 +49,19 @@ void writeColor(uint at, vec4 color)
 /* Bits of pixel and frame in uv, dx: what stochastic.glsl selects. */
 void evaluateTwins(uint at, vec2 uv, vec2 dx, vec2 dy, float bias, float anisotropy)
 {
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(params.tableIndex);
-    vec2 size = vec2(entry.width, entry.height);
-    vec2 lods = sluiceComputeLods(dx * size, dy * size, bias, anisotropy);
-    uint coarsest = sluiceCoarsestLevel(lods.y, entry.mipLevelCount);
+    SluiceGrid grid = sluiceReadGrid(params.tableIndex);
+    vec2 tx = dx * grid.size, ty = dy * grid.size;
+    vec2 lods = sluiceComputeLods(tx, ty, bias, anisotropy);
+    uint coarsest = sluiceCoarsestLevel(lods.y, sluiceMipCount(grid));
     SluiceFootprint f =
-        sluiceComputeFootprint(entry, uv, sluiceHalfBox(dx, dy, bias, anisotropy), coarsest);
+        sluiceComputeFootprint(grid, uv, sluiceHalfBox(tx, ty, bias, anisotropy), coarsest);
     outputs[at].lod = lods.x;
     outputs[at].wantedLevel =
-        sluiceFinestLevel(lods.x, sluiceLodMargin(anisotropy), entry.mipLevelCount);
+        sluiceFinestLevel(lods.x, sluiceLodMargin(anisotropy), sluiceMipCount(grid));
     outputs[at].level = coarsest;
-    for (uint i = 0u; i < 3u; i++) {
-        outputs[at].footprint[i] = f.x[i];
-        outputs[at].footprint[3u + i] = f.y[i];
+    for (uint i = 0u; i < 2u; i++) {
+        outputs[at].footprint[i] = f.first[i];
+        outputs[at].footprint[2u + i] = f.last[i];
     }
     uvec2 pixel = uvec2(at % 128u, at / 128u);
     outputs[at].missingLevels = sluiceHash(uvec3(pixel, floatBitsToUint(bias)));

@@ -9,11 +9,12 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Calls { TwinCall calls[]; };
 layout(push_constant) uniform Push { TwinParams params; };
 
-#include "sluice/footprint.glsl"
-#include "sluice/lod.glsl"
-#include "sluice/stochastic.glsl"
-
 uint at;
+
+SluiceTextureEntry entryOfArguments();
+#define SLUICE_TEXTURE_ENTRY(i) entryOfArguments()
+#include "sluice/stochastic.glsl"
+#include "sluice/footprint.glsl"
 
 uint argument(uint i) { return calls[at].arguments[i]; }
 float real(uint i) { return uintBitsToFloat(argument(i)); }
@@ -23,19 +24,24 @@ uvec3 range(uint i) { return uvec3(argument(i), argument(i + 1u), argument(i + 2
 void result(uint i, uint value) { calls[at].results[i] = value; }
 void result(uint i, float value) { result(i, floatBitsToUint(value)); }
 
+/* Regions are given as log2 of their sizes. */
 SluiceTextureEntry entryOfArguments()
 {
     SluiceTextureEntry e;
-    e.width = argument(5u);
-    e.height = argument(6u);
-    e.regionWidth = argument(7u);
-    e.regionHeight = argument(8u);
-    e.regionCountX = argument(9u);
-    e.regionCountY = argument(10u);
-    e.addressModeU = argument(11u);
-    e.addressModeV = argument(12u);
-    e.flags = argument(13u);
+    e.sizeX = float(argument(5u));
+    e.sizeY = float(argument(6u));
+    e.regionLastX = argument(9u) - 1u;
+    e.regionLastY = argument(10u) - 1u;
+    e.shape = argument(7u) | argument(8u) << SLUICE_SHAPE_HEIGHT_SHIFT |
+              argument(11u) << SLUICE_SHAPE_MODE_U_SHIFT | argument(12u) << SLUICE_SHAPE_MODE_V_SHIFT |
+              (argument(13u) != 0u ? SLUICE_SHAPE_UNEVEN : 0u);
     return e;
+}
+
+void results(uvec3 values)
+{
+    for (uint i = 0u; i < 3u; i++)
+        result(i, values[i]);
 }
 
 void callLod()
@@ -59,48 +65,57 @@ void callLod()
     case TWIN_LOD_LIMIT: result(0u, sluiceLodLimit(argument(0u), real(1u))); break;
     case TWIN_SHOWN_LEVEL: result(0u, sluiceShownLevel(argument(0u))); break;
     case TWIN_COARSEST_LEVEL: result(0u, sluiceCoarsestLevel(real(0u), argument(1u))); break;
+    case TWIN_FLOOR_LOG4: result(0u, sluiceFloorLog4(real(0u))); break;
+    case TWIN_SQUARE_LODS: {
+        SluiceSquares s = sluiceSquareLods(real2(0u), real2(2u), real(4u));
+        result(0u, s.fine);
+        result(1u, s.coarse);
+        result(2u, s.widest);
+        result(3u, s.sum);
+        break;
+    }
+    case TWIN_QUICK_LEVELS:
+        results(sluiceQuickLevels(SluiceSquares(real(0u), real(1u), real(2u), 0.0), real(3u), real(4u),
+                                  argument(5u)));
+        break;
+    case TWIN_SAFE_LEVELS:
+        results(sluiceSafeLevels(real2(0u), real2(2u), real2(4u), real(6u), real(7u), argument(8u)));
+        break;
     }
 }
 
 void callFootprint()
 {
-    SluiceFootprint f = SluiceFootprint(range(0u), range(3u));
-    uvec3 r = range(0u);
-    vec2 box;
     switch (params.function) {
-    case TWIN_REGION_INDEX: result(0u, sluiceRegionIndex(real(0u), real(1u), argument(2u))); break;
-    case TWIN_REGION_RANGE:
-        r = sluiceRegionRange(real(0u), real(1u), real(2u), argument(3u), real(4u), argument(5u));
-        for (uint i = 0u; i < 3u; i++)
-            result(i, r[i]);
+    case TWIN_REGION_INDEX:
+        result(0u, sluiceRegionIndex(real(0u), real(1u), argument(2u), argument(3u)));
         break;
-    case TWIN_HALF_BOX:
-        box = sluiceHalfBox(real2(0u), real2(2u), real(4u), real(5u));
+    case TWIN_REGION_RANGE: {
+        uvec2 r = sluiceRegionRange(real(0u), real(1u), real(2u), argument(3u), real(4u), argument(5u),
+                                    argument(6u));
+        result(0u, r.x);
+        result(1u, r.y);
+        break;
+    }
+    case TWIN_HALF_BOX: {
+        vec2 box = sluiceHalfBox(real2(0u), real2(2u), real(4u), real(5u));
         result(0u, box.x);
         result(1u, box.y);
         break;
-    case TWIN_RANGE_SHIFT: result(0u, sluiceRangeShift(r, argument(3u))); break;
-    case TWIN_COUNT_STEPS: result(0u, sluiceCountSteps(argument(0u), argument(3u))); break;
-    case TWIN_RANGE_STEPS: result(0u, sluiceRangeSteps(r, argument(3u))); break;
-    case TWIN_RANGE_REGION: result(0u, sluiceRangeRegion(r, argument(3u), argument(4u))); break;
-    case TWIN_COMPUTE_FOOTPRINT:
-        f = sluiceComputeFootprint(entryOfArguments(), real2(0u), real2(2u), argument(4u));
-        for (uint i = 0u; i < 3u; i++) {
-            result(i, f.x[i]);
-            result(3u + i, f.y[i]);
-        }
-        break;
-    case TWIN_IS_ONE_REGION: result(0u, sluiceFootprintIsOneRegion(f) ? 1u : 0u); break;
-    case TWIN_FOOTPRINT_STEPS: {
-        uvec2 steps = sluiceFootprintSteps(f, argument(6u));
-        result(0u, steps.x);
-        result(1u, steps.y);
-        break;
     }
-    case TWIN_FOOTPRINT_REGION: {
-        uvec2 region = sluiceFootprintRegion(f, argument(6u), uvec2(argument(7u), argument(8u)));
-        result(0u, region.x);
-        result(1u, region.y);
+    case TWIN_RANGE_STEP:
+        result(0u, sluiceRangeStep(argument(0u), argument(1u), argument(2u), argument(3u)));
+        break;
+    case TWIN_NEXT_REGION:
+        result(0u, sluiceNextRegion(argument(0u), argument(1u), argument(2u), argument(3u)));
+        break;
+    case TWIN_COMPUTE_FOOTPRINT: {
+        SluiceFootprint f =
+            sluiceComputeFootprint(sluiceReadGrid(0u), real2(0u), real2(2u), argument(4u));
+        for (uint i = 0u; i < 2u; i++) {
+            result(i, f.first[i]);
+            result(2u + i, f.last[i]);
+        }
         break;
     }
     }

@@ -27,10 +27,10 @@
 
 /*
  * Texels of level 0 that a sample reaches to each side, as a multiple of the root of the sum of its
- * squared derivatives, at least 1: half of it for an anisotropic footprint, and 0.5625 texels of a
+ * squared derivatives, at least 1: all of it for an anisotropic footprint, and 0.5625 texels of a
  * level up to one and an eighth coarser than it leads to.
  */
-#define SLUICE_REACH 1.75
+#define SLUICE_REACH 2.25
 /* How far "around" goes, in regions, and where regions are ragged. */
 #define SLUICE_AROUND 1
 #define SLUICE_AROUND_RAGGED 2
@@ -53,23 +53,28 @@
  */
 #define SLUICE_PAGE_NONE 0xFFFFFFFFu
 
-/* In SluiceTextureEntry.quickShape, with the log2 of a region's width and of its height << 8. */
-#define SLUICE_QUICK_REPEATS 0x10000u /* along both axes */
-#define SLUICE_QUICK_ONE_REGION                                                                    \
-    0x20000u /* samples inside a region mark only that: it is not ragged */
-#define SLUICE_QUICK_LAST_LEVEL_SHIFT 24
+/*
+ * SluiceTextureEntry.shape, all that footprints need in a word: log2 of a region's width and
+ * height, 5 bits each; the address modes, 3 bits each; the last level, 5 bits; and flags.
+ */
+#define SLUICE_SHAPE_HEIGHT_SHIFT 5
+#define SLUICE_SHAPE_MODE_U_SHIFT 10
+#define SLUICE_SHAPE_MODE_V_SHIFT 13
+#define SLUICE_SHAPE_LAST_LEVEL_SHIFT 16
+#define SLUICE_SHAPE_UNEVEN 0x200000u  /* as SLUICE_TEXTURE_FLAG_UNEVEN */
+#define SLUICE_SHAPE_REPEATS 0x400000u /* along both axes */
+#define SLUICE_SHAPE_QUICK 0x800000u   /* powers of two, which repeat or clamp along both axes */
 
 struct SluiceTextureEntry {
-    /* What quick.glsl reads: */
+    /* What most samples read: */
     float sizeX; /* width */
     float sizeY;
-    float quickReach2; /* samples of a smaller sum of squared derivatives touch regions around alone
-                        */
-    uint minMipOffset; /* first word in the MinMip buffer */
-    uint feedbackOffset; /* first word in the feedback buffer */
-    uint quickShape;
+    uint shape;
+    uint wholeShown;  /* the largest texel of its MinMip map: 0 while all of it may be shown */
     uint regionLastX; /* regionCountX - 1 */
     uint regionLastY;
+    uint minMipOffset;   /* first word in the MinMip buffer */
+    uint feedbackOffset; /* first word in the feedback buffer */
 
     uint width; /* texels of level 0; level l has max(1, size >> l) */
     uint height;
@@ -84,8 +89,9 @@ struct SluiceTextureEntry {
     uint flags;
     uint pageTableOffset; /* paged: first word in the page table */
     uint tileShift;       /* log2 of a tile's width, and of its height << 8; paged */
+    float quickReach2; /* samples of a smaller sum of squared derivatives touch regions around alone
+                        */
     float quickPacked2; /* samples of squared derivatives from there on touch packed levels alone */
-    uint wholeShown;    /* the largest texel of its MinMip map: 0 while all of it may be shown */
     uint reserved;
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)

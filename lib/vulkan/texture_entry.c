@@ -1,0 +1,36 @@
+#include "vulkan/texture_entry.h"
+
+#include <stdbool.h>
+
+static uint32_t log2_of(uint32_t power)
+{
+    uint32_t log = 0;
+    while (power >>= 1)
+        log++;
+    return log;
+}
+
+/* A border's texels are none, and footprints count them as the edge's. */
+static bool clamps_to_edge(uint32_t mode)
+{
+    return mode == SLUICE_ADDRESS_MODE_CLAMP_TO_EDGE || mode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER;
+}
+
+void slc_texture_entry_complete(struct SluiceTextureEntry *entry)
+{
+    entry->sizeX = (float)entry->width;
+    entry->sizeY = (float)entry->height;
+    entry->regionLastX = entry->regionCountX - 1;
+    entry->regionLastY = entry->regionCountY - 1;
+    entry->shape = log2_of(entry->regionWidth) |
+                   log2_of(entry->regionHeight) << SLUICE_SHAPE_HEIGHT_SHIFT |
+                   entry->addressModeU << SLUICE_SHAPE_MODE_U_SHIFT |
+                   entry->addressModeV << SLUICE_SHAPE_MODE_V_SHIFT |
+                   (entry->mipLevelCount - 1) << SLUICE_SHAPE_LAST_LEVEL_SHIFT;
+    bool even = !(entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN);
+    bool repeats = entry->addressModeU == SLUICE_ADDRESS_MODE_REPEAT &&
+                   entry->addressModeV == SLUICE_ADDRESS_MODE_REPEAT;
+    bool clamps = clamps_to_edge(entry->addressModeU) && clamps_to_edge(entry->addressModeV);
+    entry->shape |= (even ? 0 : SLUICE_SHAPE_UNEVEN) | (repeats ? SLUICE_SHAPE_REPEATS : 0) |
+                    (even && (repeats || clamps) ? SLUICE_SHAPE_QUICK : 0);
+}
