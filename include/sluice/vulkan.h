@@ -285,8 +285,11 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
  * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
  * each other, and all are layers of one image. They are removed together, with any of their ids.
  *
+ * In paged mode the image, and so arrayView, has the packed levels of all layers; every layer's
+ * tiles are pages of its own. shaders/include/sluice/sample_array.glsl samples arrayView.
+ *
  * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
- * device or the residency mode cannot stream arrays, or the device binds all layers of so small an
+ * device has no arrays of so many layers, or, in sparse mode, if it binds all layers of so small an
  * array as one.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(

@@ -467,7 +467,6 @@ static void destroy(struct slc_residency *residency)
 }
 
 static const struct slc_residency_interface sparse_interface = {
-    .has_arrays = true,
     .destroy = destroy,
     .create_image = create_image,
     .destroy_image = destroy_image,
