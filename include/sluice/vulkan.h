@@ -38,7 +38,7 @@ typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< sparse where the device has it, else paged
     SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< sparse residency images
     /** A page table that shaders read and tiles as layers of array images: see SluiceVulkanPages.
-     */
+     *  A texture may be larger than images of the device. */
     SLUICE_RESIDENCY_MODE_PAGED = 2,
     /** Ordinary images that have all their memory from the start: what streams is the texels. */
     SLUICE_RESIDENCY_MODE_DENSE = 3

@@ -1,4 +1,4 @@
-/* Sparse images of all kinds of sizes, and what a device says of them and can bear. */
+/* What a device says of sparse images, and what it can bear of them. */
 #include "device/scene.h"
 
 #include "support/test.h"
@@ -13,79 +13,6 @@ static SluiceVulkanStreamerCreateInfo sparse_info(void)
 }
 
 static const SluiceFormat rgba8 = SLUICE_FORMAT_R8G8B8A8_UNORM;
-
-/* A corner and the opposite one, so that first and last tiles of the finest levels come. */
-static void aim_at_corners(struct scene *scene, uint32_t t, const SluiceImageInfo *info)
-{
-    struct ProbeInput *inputs = scene_inputs(scene, t);
-    double width = 60.0 / info->width, height = 60.0 / info->height;
-    struct scene_aim aim = {0, 0, width < 1 ? width : 1, height < 1 ? height : 1, 0, 1, 0, 0};
-    scene_aim(scene, t, 32, &aim);
-    struct ProbeInput near[16];
-    for (uint32_t i = 0; i < 16; i++)
-        near[i] = inputs[i];
-    aim.left = 1 - aim.width;
-    aim.top = 1 - aim.height;
-    scene_aim(scene, t, 32, &aim);
-    for (uint32_t i = 0; i < 16; i++)
-        inputs[i] = near[i];
-}
-
-static void check_sizes(struct harness *h, const uint32_t (*sizes)[2], uint32_t count,
-                        SluiceFormat format)
-{
-    struct scene scene;
-    SluiceVulkanStreamerCreateInfo info = sparse_info();
-    info.tilesPerFrame = 64;
-    scene_init(&scene, h, info);
-    srand(5);
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t t =
-            scene_add(&scene, pattern_source(PATTERN_LEVEL, sizes[i][0], sizes[i][1], format));
-        aim_at_corners(&scene, t, &scene.textures[t].info);
-    }
-    scene_settle(&scene, 20);
-    scene_check_levels(&scene);
-    assert_int_equal(scene_missing(&scene), 0);
-    assert_int_equal(scene_non_resident(&scene), 0);
-    scene_finish(&scene);
-}
-
-static void smallest_and_odd_sizes_are_streamed(void **state)
-{
-    static const uint32_t sizes[][2] = {{1, 1},     {2, 1},       {1, 3},       {127, 129},
-                                        {128, 128}, {129, 127},   {255, 1023},  {1000, 1000},
-                                        {1, 5000},  {4097, 3001}, {16384, 128}, {64, 8192}};
-    check_sizes(*state, sizes, sizeof sizes / sizeof sizes[0], rgba8);
-}
-
-static void sizes_up_to_the_limit_are_streamed(void **state)
-{
-    struct harness *h = *state;
-    SluiceVulkanFormatCapabilities format;
-    CHECK_OK(sluiceGetVulkanFormatCapabilities(h->instance, h->physical_device, h->get,
-                                               SLUICE_FORMAT_R8_UNORM, &format));
-    uint32_t width = format.maxWidth, height = format.maxHeight;
-    const uint32_t sizes[][2] = {
-        {width, height}, {width, 1}, {1, height}, {width - 1, height / 2 + 3}};
-    check_sizes(h, sizes, 4, SLUICE_FORMAT_R8_UNORM);
-    struct scene scene;
-    scene_init(&scene, h, sparse_info());
-    h->quiet = true;
-    const uint32_t beyond[][2] = {{width + 1, 1}, {1, height + 1}, {2 * width, 2 * height}};
-    for (uint32_t i = 0; i < 3; i++) {
-        SluiceImageSource *source =
-            pattern_source(PATTERN_LEVEL, beyond[i][0], beyond[i][1], SLUICE_FORMAT_R8_UNORM);
-        SluiceVulkanTexture texture;
-        CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer,
-                                            &(SluiceVulkanTextureCreateInfo){.source = source},
-                                            &texture),
-                     SLUICE_ERROR_UNSUPPORTED);
-        sluiceDestroyImageSource(source);
-    }
-    h->quiet = false;
-    scene_finish(&scene);
-}
 
 /* What the format says is what an image gets; and the arithmetic of tails holds everywhere. */
 static void layouts_agree_with_formats(void **state)
@@ -216,8 +143,6 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(capabilities_make_sense),
         cmocka_unit_test(layouts_agree_with_formats),
-        cmocka_unit_test(smallest_and_odd_sizes_are_streamed),
-        cmocka_unit_test(sizes_up_to_the_limit_are_streamed),
         cmocka_unit_test(textures_stay_coarse_where_no_more_tiles_are_borne),
         cmocka_unit_test(tiles_that_come_back_to_their_pages_need_no_unbind),
     };
