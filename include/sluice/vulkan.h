@@ -381,6 +381,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
     uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
     uint32_t fadingTextures;    ///< that still get sharper, see residencyFadeTime
+    uint64_t tilesRevived;      ///< mapped again without being read: their texels were still there
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

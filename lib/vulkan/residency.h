@@ -40,6 +40,10 @@ struct slc_residency_interface {
     /** True when no change of it is pending or under way. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
 
+    /** True: the texels of a tile that was unmapped are still there, and it is mapped again; shown
+     *  by this frame at the earliest. Asked before its texels are read. NULL: they never are. */
+    bool (*revive)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+
     /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 

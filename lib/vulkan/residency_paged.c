@@ -20,6 +20,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* In `pages`: the tile was unmapped, and may still be on that page. Also a bit of SLUICE_PAGE_NONE.
+ */
+#define PAGE_GIVEN 0x8000u
 #define COPY_BATCH 64u
 #define STORE_BATCH 256u /* words */
 
@@ -52,7 +55,8 @@ struct paged_residency {
 
     struct slc_buffer table;
     struct slc_region_arena arena; ///< its words
-    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not
+    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not;
+                                   ///< or, with PAGE_GIVEN, that was given back
     struct store *stores;          ///< owned
     uint32_t store_count, store_capacity, upload_reserve;
     uint64_t completed_frame;
@@ -105,11 +109,16 @@ static SluiceResult take_words(struct paged_residency *p, struct paged_image *im
     return SLUICE_SUCCESS;
 }
 
+static bool is_taken(uint32_t page)
+{
+    return !(page & PAGE_GIVEN);
+}
+
 static void give_words(struct paged_residency *p, const struct paged_image *image)
 {
     for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
-        if (p->pages[image->first_word + i] != SLUICE_PAGE_NONE)
-            slc_page_cache_give(&p->cache, p->pages[image->first_word + i]);
+        if (is_taken(p->pages[image->first_word + i]))
+            slc_page_cache_give(&p->cache, p->pages[image->first_word + i], SLC_NO_OWNER);
     if (image->word_count)
         slc_region_arena_give(&p->arena, image->first_word, image->word_count);
 }
@@ -216,7 +225,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     if (tile->mipLevel >= image->desc.regularMipCount)
         return SLUICE_SUCCESS; /* the packed levels have their own image */
     uint32_t *page = &p->pages[tile_word(image, tile->mipLevel, tile->x, tile->y)];
-    assert(*page == SLUICE_PAGE_NONE);
+    assert(!is_taken(*page));
     *page = slc_page_cache_take(&p->cache, image->format);
     count_memory(p);
     return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
@@ -238,10 +247,26 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     if (tile->mipLevel >= image->desc.regularMipCount)
         return;
     uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
-    assert(p->pages[word] != SLUICE_PAGE_NONE);
-    slc_page_cache_give(&p->cache, p->pages[word]);
-    p->pages[word] = SLUICE_PAGE_NONE;
+    assert(is_taken(p->pages[word]));
+    slc_page_cache_give(&p->cache, p->pages[word], word);
+    p->pages[word] |= PAGE_GIVEN;
     store(p, word, SLUICE_PAGE_NONE);
+}
+
+/* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
+static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t word = tile_word(&p->images[index], tile->mipLevel, tile->x, tile->y);
+    assert(!is_taken(p->pages[word]));
+    if (p->pages[word] == SLUICE_PAGE_NONE)
+        return false;
+    uint32_t page = p->pages[word] & ~PAGE_GIVEN;
+    bool there = slc_page_cache_retake(&p->cache, page, word);
+    p->pages[word] = there ? page : SLUICE_PAGE_NONE;
+    if (there)
+        store(p, word, page);
+    return there;
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
@@ -316,7 +341,7 @@ static VkImage place_copy(struct paged_residency *p, const struct paged_image *i
     uint32_t word = tile_word(image, level, (uint32_t)copy->imageOffset.x / desc->tileWidth,
                               (uint32_t)copy->imageOffset.y / desc->tileHeight);
     uint32_t page = p->pages[word];
-    assert(page != SLUICE_PAGE_NONE);
+    assert(is_taken(page));
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
@@ -419,6 +444,7 @@ static const struct slc_residency_interface paged_interface = {
     .create_image = create_image,
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
+    .revive = revive,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,
@@ -452,8 +478,8 @@ static SluiceResult create_arrays(struct paged_residency *p,
     if (result != SLUICE_SUCCESS)
         return result;
     p->max_image_count = info->max_image_count;
-    p->upload_reserve = info->max_changes;
-    p->store_capacity = 5 * info->max_changes;
+    p->upload_reserve = 2 * info->max_changes; /* copied or revived */
+    p->store_capacity = 6 * info->max_changes;
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
     p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);
