@@ -38,7 +38,7 @@ typedef enum SluiceResidencyMode {
     SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< sparse where the device has it, else paged
     SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< sparse residency images
     /** A page table that shaders read and tiles as layers of array images: see SluiceVulkanPages.
-     */
+     *  A texture may be larger than images of the device. */
     SLUICE_RESIDENCY_MODE_PAGED = 2,
     /** Ordinary images that have all their memory from the start: what streams is the texels. */
     SLUICE_RESIDENCY_MODE_DENSE = 3
@@ -285,8 +285,11 @@ SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
  * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
  * each other, and all are layers of one image. They are removed together, with any of their ids.
  *
+ * In paged mode the image, and so arrayView, has the packed levels of all layers; every layer's
+ * tiles are pages of its own. shaders/include/sluice/sample_array.glsl samples arrayView.
+ *
  * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
- * device or the residency mode cannot stream arrays, or the device binds all layers of so small an
+ * device has no arrays of so many layers, or, in sparse mode, if it binds all layers of so small an
  * array as one.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
@@ -378,6 +381,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
     uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
     uint32_t fadingTextures;    ///< that still get sharper, see residencyFadeTime
+    uint64_t tilesRevived;      ///< mapped again without being read: their texels were still there
 } SluiceVulkanStreamerStatistics;
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,

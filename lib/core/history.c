@@ -23,12 +23,10 @@ static size_t texel_count(const struct slc_texture *t)
     return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
 }
 
-/** Nodes and MinMip map; room for a link at least. */
+/** Nodes and MinMip map. */
 static size_t state_size(const struct slc_shape *s)
 {
-    size_t size =
-        s->regular_tile_count * sizeof(uint32_t) + (size_t)s->min_mip_width * s->min_mip_height;
-    return size < sizeof(void *) ? sizeof(void *) : size;
+    return s->regular_tile_count * sizeof(uint32_t) + (size_t)s->min_mip_width * s->min_mip_height;
 }
 
 static size_t history_size(const struct slc_shape *s)
@@ -46,7 +44,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
         t->shape->regular_tile_count + (uint64_t)slc_padded(slc_region_count(t)) > SIZE_MAX / 32)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     size_t nodes = t->shape->regular_tile_count * sizeof *t->nodes;
-    t->nodes = slc_spares_take(m, &t->shape->states, state_size(t->shape));
+    t->nodes = slc_spares_take(m, state_size(t->shape));
     if (!t->nodes)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     t->min_mip = (uint8_t *)(t->nodes + t->shape->regular_tile_count);
@@ -58,7 +56,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
 static struct slc_history *create_history(slc_manager *m, const struct slc_texture *t)
 {
     size_t padded = slc_padded(slc_region_count(t)), under = under_size(t);
-    struct slc_history *h = slc_spares_take(m, &t->shape->histories, history_size(t->shape));
+    struct slc_history *h = slc_spares_take(m, history_size(t->shape));
     if (!h)
         return NULL;
     *h = (struct slc_history){
@@ -75,16 +73,15 @@ static bool add_span_map(slc_manager *m, const struct slc_texture *t, struct slc
 {
     if (h->span_count == SLC_MAX_SPANS || h->spans[h->span_count].map)
         return true;
-    h->spans[h->span_count].map =
-        slc_spares_take(m, &t->shape->maps, slc_padded(slc_region_count(t)));
+    h->spans[h->span_count].map = slc_spares_take(m, slc_padded(slc_region_count(t)));
     return h->spans[h->span_count].map != NULL;
 }
 
 static void destroy_history(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
 {
     for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
-        slc_spares_give(m, &t->shape->maps, h->spans[i].map, slc_padded(slc_region_count(t)));
-    slc_spares_give(m, &t->shape->histories, h, history_size(t->shape));
+        slc_spares_give(m, h->spans[i].map, slc_padded(slc_region_count(t)));
+    slc_spares_give(m, h, history_size(t->shape));
 }
 
 /** The texture's own from now on. */
@@ -94,7 +91,7 @@ static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
     size_t padded = slc_padded(slc_region_count(t));
     for (uint32_t i = 0; h && i < from->span_count; i++) {
         h->spans[i] = from->spans[i];
-        h->spans[i].map = slc_spares_take(m, &t->shape->maps, padded);
+        h->spans[i].map = slc_spares_take(m, padded);
         if (!h->spans[i].map) {
             destroy_history(m, t, h);
             return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -149,7 +146,7 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t)
     if (!t->nodes)
         return;
     slc_history_drop(m, t);
-    slc_spares_give(m, &t->shape->states, t->nodes, state_size(t->shape));
+    slc_spares_give(m, t->nodes, state_size(t->shape));
     t->nodes = NULL;
     t->min_mip = NULL;
 }

@@ -92,10 +92,10 @@ struct slc_history {
     uint32_t hits, returns; ///< what slc_texture's will grow by
 };
 
-/** Blocks of one size that textures gave back and others will take: links lie in the blocks. */
+/** Blocks of one size class for the arrays of textures. */
 struct slc_spares {
-    void *first;
-    uint32_t count;
+    void *first;   ///< free ones, in each of which the next one stands
+    void *chunks;  ///< owned memory of all
     uint32_t used; ///< that textures have
 };
 
@@ -108,9 +108,8 @@ struct slc_shape {
     uint32_t regular_tile_count, tile_count;
     uint32_t feedback_width, feedback_height, region_count;
     uint32_t min_mip_width, min_mip_height;
-    uint8_t region_shift_x, region_shift_y;    ///< regions per tile, log2; SLC_UNALIGNED
-    size_t work_size;                          ///< see wants.h
-    struct slc_spares states, histories, maps; ///< see history.c
+    uint8_t region_shift_x, region_shift_y; ///< regions per tile, log2; SLC_UNALIGNED
+    size_t work_size;                       ///< see wants.h
     struct slc_level levels[SLUICE_MAX_MIP_LEVELS];
 };
 
@@ -147,6 +146,7 @@ struct slc_texture {
 #define SLC_TEXTURES_PER_CHUNK 64
 #define SLC_NODES_PER_CHUNK 1024
 #define SLC_SHAPE_BUCKETS 256
+#define SLC_SPARE_CLASSES 160 /* to 2^45 bytes */
 
 struct slc_given_up {
     SluiceTextureId texture_id;
@@ -181,6 +181,7 @@ struct SluiceStreamedTextureManager {
     bool used; ///< a call was made that changed something
 
     struct slc_shape *shapes[SLC_SHAPE_BUCKETS]; ///< by hash, owned lists
+    struct slc_spares spares[SLC_SPARE_CLASSES]; ///< owned blocks
     struct slc_texture **chunks;                 ///< owned, [chunk_count], owned chunks
     uint32_t chunk_count, chunk_room;
     uint32_t texture_end;   ///< indices ever used
@@ -283,10 +284,12 @@ void slc_bias_map(const slc_manager *m, const struct slc_texture *t, uint8_t *ma
 SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *desc,
                             struct slc_shape **shape);
 void slc_shape_give(slc_manager *m, struct slc_shape *shape);
-/** Memory of `size` bytes, always the same for these spares, and at least that of a pointer. */
-void *slc_spares_take(slc_manager *m, struct slc_spares *spares, size_t size);
-/** NULL is allowed. */
-void slc_spares_give(slc_manager *m, struct slc_spares *spares, void *memory, size_t size);
+
+/* spares.c: memory of textures */
+/** Bytes for a while; not cleared. NULL: there are none. All are given back before the end. */
+void *slc_spares_take(slc_manager *m, size_t size);
+/** Of the size that was taken. NULL is allowed. */
+void slc_spares_give(slc_manager *m, void *memory, size_t size);
 
 /* layout.c */
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);

@@ -69,43 +69,8 @@ void slc_shape_give(slc_manager *m, struct slc_shape *shape)
 {
     if (--shape->users > 0)
         return;
-    assert(!shape->states.first && !shape->histories.first &&
-           !shape->maps.first); /* none is used */
     *shape->link = shape->next; /* not searched for: a bucket may be long */
     if (shape->next)
         shape->next->link = shape->link;
     slc_free(&m->cb, shape, 1, sizeof *shape);
-}
-
-/*
- * Textures that come into view and leave it take the same memory again and again. A quarter of what
- * is in use is kept beside it, so that a camera that moves hardly allocates.
- */
-enum { SPARE_SHARE = 4 };
-
-static void *pop(struct slc_spares *spares)
-{
-    void *memory = spares->first;
-    memcpy(&spares->first, memory, sizeof spares->first);
-    spares->count--;
-    return memory;
-}
-
-void *slc_spares_take(slc_manager *m, struct slc_spares *spares, size_t size)
-{
-    void *memory = spares->first ? pop(spares) : slc_alloc(&m->cb, size, 1);
-    spares->used += memory != NULL;
-    return memory;
-}
-
-void slc_spares_give(slc_manager *m, struct slc_spares *spares, void *memory, size_t size)
-{
-    if (!memory)
-        return;
-    memcpy(memory, &spares->first, sizeof spares->first);
-    spares->first = memory;
-    spares->count++;
-    spares->used--;
-    while (spares->count > spares->used / SPARE_SHARE)
-        slc_free(&m->cb, pop(spares), size, 1);
 }

@@ -301,6 +301,13 @@ static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
+    if (interface->revive && interface->revive(s->residency, texture, tile)) {
+        s->counts.tilesMapped++;
+        s->counts.tilesRevived++;
+        return slc_streamer_check(
+            s, sluiceUpdateTilesMapping(s->manager, s->textures[texture].id, 1, &tile->tileIndex),
+            "sluiceUpdateTilesMapping");
+    }
     if (interface->reserve && !interface->reserve(s->residency, texture, tile))
         return refuse_tile(s, texture, tile);
     uint32_t unit = unit_take(s, texture, SLC_NONE);

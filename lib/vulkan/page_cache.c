@@ -29,7 +29,7 @@ static void destroy_chunk(struct slc_page_cache *cache, struct slc_page_chunk *c
     if (chunk->view)
         cache->vk->DestroyImageView(cache->vk->device, chunk->view, NULL);
     slc_plain_image_destroy(&chunk->image, &cache->memory, cache->vk, cache->cb);
-    slc_free(cache->cb, chunk->free_layers, chunk->layer_count, sizeof *chunk->free_layers);
+    slc_free(cache->cb, chunk->layers, chunk->layer_count + 1, sizeof *chunk->layers);
     *chunk = (struct slc_page_chunk){0};
 }
 
@@ -52,18 +52,19 @@ static SluiceResult create_chunk(struct slc_page_cache *cache, struct slc_page_c
     if (result != SLUICE_SUCCESS)
         return result;
     *chunk = (struct slc_page_chunk){.format = format, .layer_count = layer_count, .fresh = true};
-    chunk->free_layers = slc_alloc(cache->cb, layer_count, sizeof *chunk->free_layers);
-    if (!chunk->free_layers)
+    chunk->layers = slc_alloc(cache->cb, layer_count + 1, sizeof *chunk->layers);
+    if (!chunk->layers)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint32_t i = 0; i <= layer_count; i++)
+        chunk->layers[i] =
+            (struct slc_page_layer){(uint16_t)(i ? i - 1 : layer_count),
+                                    (uint16_t)(i < layer_count ? i + 1 : 0), SLC_NO_OWNER};
+    chunk->free_count = layer_count;
     result = slc_plain_image_create(&chunk->image, &cache->memory, cache->vk, cache->caps,
                                     cache->cb, &info, 0, layer_count);
     if (result == SLUICE_SUCCESS)
         result = slc_create_array_view(cache->vk, chunk->image.image, slc_vk_format(format),
                                        &chunk->view);
-    /* Descending, so that layer 0 is on top. */
-    for (uint32_t i = 0; i < layer_count; i++)
-        chunk->free_layers[i] = (uint16_t)(layer_count - 1 - i);
-    chunk->free_count = layer_count;
     return result;
 }
 
@@ -117,6 +118,15 @@ static bool find_chunk(struct slc_page_cache *cache, SluiceFormat format)
     return true;
 }
 
+static void take_layer(struct slc_page_chunk *chunk, uint32_t layer)
+{
+    struct slc_page_layer *taken = &chunk->layers[layer];
+    chunk->layers[taken->previous].next = taken->next;
+    chunk->layers[taken->next].previous = taken->previous;
+    taken->owner = SLC_NO_OWNER; /* nobody can take it again */
+    chunk->free_count--;
+}
+
 uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format)
 {
     assert((uint32_t)format < SLC_PAGE_FORMATS);
@@ -126,14 +136,33 @@ uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format)
         return SLUICE_PAGE_NONE;
     uint32_t index = cache->last_chunk[format];
     struct slc_page_chunk *chunk = &cache->chunks[index];
-    return index << 16 | chunk->free_layers[--chunk->free_count];
+    uint32_t layer = chunk->layers[chunk->layer_count].next; /* was given back longest ago */
+    take_layer(chunk, layer);
+    return index << 16 | layer;
 }
 
-void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page)
+void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page, uint32_t owner)
 {
     struct slc_page_chunk *chunk = &cache->chunks[page >> 16];
     assert(chunk->state == SLC_CHUNK_LIVE && chunk->free_count < chunk->layer_count);
-    chunk->free_layers[chunk->free_count++] = (uint16_t)(page & 0xFFFFu);
+    uint16_t layer = (uint16_t)(page & 0xFFFFu), head = (uint16_t)chunk->layer_count;
+    struct slc_page_layer *layers = chunk->layers;
+    layers[layer] = (struct slc_page_layer){layers[head].previous, head, owner};
+    layers[layers[head].previous].next = layer;
+    layers[head].previous = layer;
+    chunk->free_count++;
+}
+
+bool slc_page_cache_retake(struct slc_page_cache *cache, uint32_t page, uint32_t owner)
+{
+    struct slc_page_chunk *chunk = &cache->chunks[page >> 16];
+    uint32_t layer = page & 0xFFFFu;
+    /* another chunk may be there by now, and smaller */
+    if (chunk->state != SLC_CHUNK_LIVE || layer >= chunk->layer_count ||
+        chunk->layers[layer].owner != owner)
+        return false;
+    take_layer(chunk, layer);
+    return true;
 }
 
 static void retire(struct slc_page_cache *cache, uint32_t index)

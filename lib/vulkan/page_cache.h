@@ -1,6 +1,9 @@
 /**
  * The physical pages of paged residency: layers of array images, each as large as a tile. Images
  * ("chunks") are made when pages of a format run out and go when they have been empty for a while.
+ *
+ * A page that was given back keeps its texels until it is taken again, and those that were given
+ * back longest ago are taken first: until then its last owner can have it back as it was.
  */
 #ifndef SLC_VULKAN_PAGE_CACHE_H
 #define SLC_VULKAN_PAGE_CACHE_H
@@ -8,6 +11,7 @@
 #include "vulkan/page_views.h"
 
 #define SLC_PAGE_FORMATS 64u
+#define SLC_NO_OWNER UINT32_MAX
 
 enum slc_page_chunk_state {
     SLC_CHUNK_FREE = 0,
@@ -15,12 +19,17 @@ enum slc_page_chunk_state {
     SLC_CHUNK_RETIRING, ///< no shader of new frames sees it; waits for the others
 };
 
+struct slc_page_layer {
+    uint16_t previous, next; ///< free: in the ring
+    uint32_t owner;          ///< free: whose texels it has, SLC_NO_OWNER for nobody's
+};
+
 struct slc_page_chunk {
     enum slc_page_chunk_state state;
     SluiceFormat format;
     struct slc_plain_image image;
     VkImageView view;
-    uint16_t *free_layers; ///< owned stack
+    struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
     uint32_t free_count, layer_count;
     bool fresh;     ///< not yet in the layout in which it stays
     uint64_t frame; ///< LIVE: the last in which it was not empty; RETIRING: the first without it
@@ -51,7 +60,10 @@ bool slc_page_cache_is_refused(const struct slc_page_cache *cache);
 
 /** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
 uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format);
-void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page);
+/** `owner` may ask for it again; or SLC_NO_OWNER. */
+void slc_page_cache_give(struct slc_page_cache *cache, uint32_t page, uint32_t owner);
+/** True: nobody has taken the page since `owner` gave it, and now it is taken by him again. */
+bool slc_page_cache_retake(struct slc_page_cache *cache, uint32_t page, uint32_t owner);
 
 static inline VkImage slc_page_image(const struct slc_page_cache *cache, uint32_t page)
 {

@@ -9,7 +9,7 @@
 static struct slc_page *page_of(const struct slc_page_table *table, uint32_t heap_id, uint32_t slot)
 {
     assert(slot < table->heap_page_count);
-    return &table->pages[heap_id * table->heap_page_count + slot];
+    return &table->pages[table->pages[heap_id * table->heap_page_count + slot].page_of_slot];
 }
 
 SluiceResult slc_page_table_init(struct slc_page_table *table, const SluiceAllocationCallbacks *cb,
@@ -50,7 +50,7 @@ static SluiceResult grow(struct slc_page_table *table, const SluiceAllocationCal
         if (pages[i].image != SLC_NO_IMAGE)
             slc_tile_map_add(&places, slc_place_key(pages[i].image, pages[i].place), i);
     for (uint32_t i = table->page_count; i < page_count; i++)
-        pages[i] = (struct slc_page){.image = SLC_NO_IMAGE};
+        pages[i] = (struct slc_page){.image = SLC_NO_IMAGE, .slot = i, .page_of_slot = i};
     slc_free(cb, table->pages, table->page_count, sizeof *pages);
     slc_tile_map_finish(&table->places, cb);
     table->pages = pages;
@@ -94,7 +94,11 @@ static void remember(struct slc_page_table *table, struct slc_page *page, uint32
                      struct slc_tile_place place)
 {
     uint32_t index = (uint32_t)(page - table->pages), first = table->first_pages[image];
-    *page = (struct slc_page){image, place, true, SLC_NO_PAGE, first};
+    page->image = image;
+    page->place = place;
+    page->live = true;
+    page->previous = SLC_NO_PAGE;
+    page->next = first;
     if (first != SLC_NO_PAGE)
         table->pages[first].previous = index;
     table->first_pages[image] = index;
@@ -137,6 +141,25 @@ static void put_unbind_run(struct slc_page_table *table, struct slc_bind_list *l
     put_unbinds_beside(table, list, image, place, 1);
 }
 
+bool slc_page_table_revive(struct slc_page_table *table, uint32_t image,
+                           struct slc_tile_place place, uint32_t heap_id, uint32_t slot)
+{
+    struct slc_page *pages = table->pages;
+    uint32_t old = slc_tile_map_get(&table->places, slc_place_key(image, place));
+    if (old == SLC_TILE_MAP_NONE || pages[old].live || old / table->heap_page_count != heap_id)
+        return false;
+    uint32_t page = (uint32_t)(page_of(table, heap_id, slot) - pages);
+    assert(pages[page].image == SLC_NO_IMAGE || !pages[page].live);
+    uint32_t other = pages[old].slot, given = pages[page].slot;
+    pages[other].page_of_slot = page; /* nothing changes where both are one */
+    pages[page].slot = other;
+    pages[given].page_of_slot = old;
+    pages[old].slot = given;
+    pages[old].live = true;
+    table->unbinds_saved++;
+    return true;
+}
+
 bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *list, uint32_t image,
                          struct slc_tile_place place, uint32_t heap_id, uint32_t slot,
                          uint32_t *displaced)
@@ -144,22 +167,21 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
     *displaced = SLC_NO_IMAGE;
     if (list->capacity - list->count < 2)
         return false;
+    if (slc_page_table_revive(table, image, place, heap_id, slot))
+        return true;
     struct slc_page *page = page_of(table, heap_id, slot);
     uint32_t there = slc_tile_map_get(&table->places, slc_place_key(image, place));
-    if (there != SLC_TILE_MAP_NONE) { /* its unbind merges with the bind, or both fall away */
+    if (there != SLC_TILE_MAP_NONE) { /* in another heap; its unbind merges with the bind */
         assert(!table->pages[there].live);
         table->unbinds_saved++;
-        if (&table->pages[there] == page) {
-            page->live = true;
-            return true;
-        }
         forget(table, &table->pages[there]);
     }
     if (page->image != SLC_NO_IMAGE) {
         *displaced = page->image;
         put_unbind_run(table, list, page);
     }
-    slc_bind_list_put(list, image, place, heap_id, slot);
+    slc_bind_list_put(list, image, place, heap_id,
+                      (uint32_t)(page - table->pages) % table->heap_page_count);
     remember(table, page, image, place);
     return true;
 }

@@ -6,6 +6,9 @@
  * its heap goes; then the neighbours in its row that were given up are unbound with it, since a run
  * costs as much as one tile. Until then nothing is paid, and if the tile is bound again first, or
  * its image goes, nothing ever is. Knows nothing of Vulkan handles, frames or time.
+ *
+ * Slots are what others call pages. Which slot of a heap stands for which of its pages may change
+ * while neither is in use, so that a tile gets its old page back whatever slot it was given.
  */
 #ifndef SLC_VULKAN_PAGE_TABLE_H
 #define SLC_VULKAN_PAGE_TABLE_H
@@ -29,6 +32,8 @@ struct slc_page {
     struct slc_tile_place place;
     bool live;               ///< false: given up
     uint32_t previous, next; ///< pages of the same image
+    uint32_t slot;           ///< that stands for this page; an index, as the next
+    uint32_t page_of_slot;   ///< the page that the slot of this index stands for
 };
 
 struct slc_page_table {
@@ -56,13 +61,21 @@ SluiceResult slc_page_table_add_heap(struct slc_page_table *table,
 
 /**
  * Puts into the list what binds the tile to the page: the bind, and the unbind of the tile that had
- * given up the page and of its neighbours; nothing where that is the tile itself. `*displaced` is
- * the image of the unbind, or SLC_NO_IMAGE. No tile that has not been given up may have the page or
- * lie there. False, and nothing has changed, if the list has no room for two.
+ * given up the page and of its neighbours; nothing where slc_page_table_revive is true.
+ * `*displaced` is the image of the unbind, or SLC_NO_IMAGE. No tile that has not been given up may
+ * have the page or lie there. False, and nothing has changed, if the list has no room for two.
  */
 bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *list, uint32_t image,
                          struct slc_tile_place place, uint32_t heap_id, uint32_t slot,
                          uint32_t *displaced);
+
+/**
+ * True: the tile was given up and its page, with its texels, is one of the heap's; from now on the
+ * slot stands for that page, and the tile is bound as if it had not been given up. No tile that has
+ * not been given up may have the slot.
+ */
+bool slc_page_table_revive(struct slc_page_table *table, uint32_t image,
+                           struct slc_tile_place place, uint32_t heap_id, uint32_t slot);
 
 /** The tile is given up; it was bound. */
 void slc_page_table_give_up(struct slc_page_table *table, uint32_t image,

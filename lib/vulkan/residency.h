@@ -24,23 +24,25 @@ struct slc_residency;
 struct slc_residency_image {
     VkImage image;
     SluiceStreamedTextureDesc desc;
-    bool uneven;                ///< some level's size is not twice the next one's
-    uint32_t page_table_offset; ///< of SluiceTextureEntry
+    bool uneven; ///< some level's size is not twice the next one's
 };
 
 struct slc_residency_interface {
     /** Nothing of it is in use on the GPU. */
     void (*destroy)(struct slc_residency *residency);
 
-    /** create_image takes arrays: their layers have the indices from `index` on. */
-    bool has_arrays;
-    /** `index` is the streamer's; it names the image in the other calls. Logs what it refuses. */
+    /** `index` is the streamer's; it names the image in the other calls. The layers of an array
+     *  have the indices from `index` on. Logs what it refuses. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
                                  const SluiceImageInfo *info, struct slc_residency_image *image);
     /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
     /** True when no change of it is pending or under way. */
     bool (*image_is_idle)(const struct slc_residency *residency, uint32_t index);
+
+    /** True: the texels of a tile that was unmapped are still there, and it is mapped again; shown
+     *  by this frame at the earliest. Asked before its texels are read. NULL: they never are. */
+    bool (*revive)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
     /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
@@ -82,6 +84,8 @@ struct slc_residency_interface {
     void (*record_publish)(struct slc_residency *residency, VkCommandBuffer commands);
     /** The same for its whole life. */
     VkBuffer (*page_table)(const struct slc_residency *residency);
+    /** Of SluiceTextureEntry. */
+    uint32_t (*page_table_offset)(const struct slc_residency *residency, uint32_t index);
 };
 
 /** What is counted for the public statistics. */

@@ -8,8 +8,16 @@
 #include "vulkan/residency.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 #include "vulkan/plain_image.h"
 #include "vulkan/sparse_layout.h"
+
+/* The layers of an array share the image; the first owns it. */
+struct dense_image {
+    struct slc_plain_image own;
+    VkImage image;
+    uint32_t layer_count; ///< 0 but for the first
+};
 
 struct dense_residency {
     struct slc_residency base; ///< must be first
@@ -17,7 +25,7 @@ struct dense_residency {
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     struct slc_image_memory memory;
-    struct slc_plain_image *images; ///< owned
+    struct dense_image *images; ///< owned
     uint32_t max_image_count;
     uint32_t next_heap;
 };
@@ -31,23 +39,31 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
                                  const SluiceImageInfo *info, struct slc_residency_image *image)
 {
     struct dense_residency *d = dense(residency);
+    struct dense_image *layers = &d->images[index];
+    uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);
     struct slc_sparse_layout layout;
     SluiceResult result = slc_standard_layout_init(&layout, info);
     if (result == SLUICE_SUCCESS)
-        result = slc_plain_image_create(&d->images[index], &d->memory, d->vk, d->caps, d->cb, info,
-                                        0, 1);
+        result = slc_plain_image_create(&layers[0].own, &d->memory, d->vk, d->caps, d->cb, info, 0,
+                                        layer_count);
     d->base.counters.device_memory_size = d->memory.total_size;
     if (result != SLUICE_SUCCESS)
         return result;
+    layers[0].layer_count = layer_count;
+    for (uint32_t i = 0; i < layer_count; i++)
+        layers[i].image = layers[0].own.image;
     *image = (struct slc_residency_image){
-        .image = d->images[index].image, .desc = layout.desc, .uneven = layout.uneven};
+        .image = layers[0].image, .desc = layout.desc, .uneven = layout.uneven};
     return SLUICE_SUCCESS;
 }
 
 static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct dense_residency *d = dense(residency);
-    slc_plain_image_destroy(&d->images[index], &d->memory, d->vk, d->cb);
+    struct dense_image *layers = &d->images[index];
+    slc_plain_image_destroy(&layers[0].own, &d->memory, d->vk, d->cb);
+    for (uint32_t i = layers[0].layer_count; i-- > 0;)
+        layers[i] = (struct dense_image){0};
     d->base.counters.device_memory_size = d->memory.total_size;
 }
 
@@ -136,7 +152,7 @@ static void destroy(struct slc_residency *residency)
     const SluiceAllocationCallbacks *cb = d->cb;
     if (d->images)
         for (uint32_t i = 0; i < d->max_image_count; i++)
-            slc_plain_image_destroy(&d->images[i], &d->memory, d->vk, cb);
+            slc_plain_image_destroy(&d->images[i].own, &d->memory, d->vk, cb);
     slc_image_memory_finish(&d->memory, cb);
     slc_free(cb, d->images, d->max_image_count, sizeof *d->images);
     slc_free(cb, d, 1, sizeof *d);

@@ -20,11 +20,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* In `pages`: the tile was unmapped, and may still be on that page. Also a bit of SLUICE_PAGE_NONE.
+ */
+#define PAGE_GIVEN 0x8000u
 #define COPY_BATCH 64u
 #define STORE_BATCH 256u /* words */
 
+/* The layers of an array have parts of the table of their own and share the tail. */
 struct paged_image {
-    struct slc_plain_image tail; ///< the packed levels
+    struct slc_plain_image own_tail; ///< the packed levels; owned by layer 0, of all layers
+    VkImage tail;
+    uint32_t layer_count; ///< 0 but for layer 0
     SluiceStreamedTextureDesc desc;
     SluiceFormat format;
     uint32_t block_width, block_height; ///< texels
@@ -49,7 +55,8 @@ struct paged_residency {
 
     struct slc_buffer table;
     struct slc_region_arena arena; ///< its words
-    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not
+    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not;
+                                   ///< or, with PAGE_GIVEN, that was given back
     struct store *stores;          ///< owned
     uint32_t store_count, store_capacity, upload_reserve;
     uint64_t completed_frame;
@@ -102,41 +109,18 @@ static SluiceResult take_words(struct paged_residency *p, struct paged_image *im
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, struct slc_residency_image *out)
+static bool is_taken(uint32_t page)
 {
-    struct paged_residency *p = paged(residency);
-    struct paged_image *image = &p->images[index];
-    struct slc_sparse_layout layout;
-    SluiceResult result = slc_standard_layout_init(&layout, info);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    SluiceFormatInfo format;
-    result = sluiceGetFormatInfo(info->format, &format);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    *image = (struct paged_image){.desc = layout.desc,
-                                  .format = info->format,
-                                  .block_width = format.blockWidth,
-                                  .block_height = format.blockHeight};
-    result = take_words(p, image);
-    if (result == SLUICE_SUCCESS)
-        result = slc_plain_image_create(&image->tail, &p->memory, p->vk, p->caps, p->cb, info,
-                                        layout.desc.regularMipCount, 1);
-    if (result != SLUICE_SUCCESS) {
-        if (image->word_count)
-            slc_region_arena_give(&p->arena, image->first_word, image->word_count);
-        *image = (struct paged_image){0};
-        return result;
-    }
+    return !(page & PAGE_GIVEN);
+}
+
+static void give_words(struct paged_residency *p, const struct paged_image *image)
+{
+    for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
+        if (is_taken(p->pages[image->first_word + i]))
+            slc_page_cache_give(&p->cache, p->pages[image->first_word + i], SLC_NO_OWNER);
     if (image->word_count)
-        p->new_images[p->new_image_count++] = index;
-    count_memory(p);
-    *out = (struct slc_residency_image){.image = image->tail.image,
-                                        .desc = layout.desc,
-                                        .uneven = layout.uneven,
-                                        .page_table_offset = image->first_word};
-    return SLUICE_SUCCESS;
+        slc_region_arena_give(&p->arena, image->first_word, image->word_count);
 }
 
 static void forget_new(struct paged_residency *p, uint32_t index)
@@ -148,19 +132,63 @@ static void forget_new(struct paged_residency *p, uint32_t index)
     p->new_image_count = kept;
 }
 
+/* Also of one that was not created to the end. */
 static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct paged_residency *p = paged(residency);
-    struct paged_image *image = &p->images[index];
-    forget_new(p, index);
-    for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
-        if (p->pages[image->first_word + i] != SLUICE_PAGE_NONE)
-            slc_page_cache_give(&p->cache, p->pages[image->first_word + i]);
-    if (image->word_count)
-        slc_region_arena_give(&p->arena, image->first_word, image->word_count);
-    slc_plain_image_destroy(&image->tail, &p->memory, p->vk, p->cb);
-    *image = (struct paged_image){0};
+    struct paged_image *layers = &p->images[index];
+    slc_plain_image_destroy(&layers[0].own_tail, &p->memory, p->vk, p->cb);
+    for (uint32_t i = layers[0].layer_count; i-- > 0;) {
+        forget_new(p, index + i);
+        give_words(p, &layers[i]);
+        layers[i] = (struct paged_image){0};
+    }
     count_memory(p);
+}
+
+static SluiceResult create_layer(struct paged_residency *p, uint32_t index, SluiceFormat format,
+                                 const SluiceStreamedTextureDesc *desc, VkImage tail)
+{
+    struct paged_image *image = &p->images[index];
+    SluiceFormatInfo info;
+    SluiceResult result = sluiceGetFormatInfo(format, &info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    image->tail = tail;
+    image->desc = *desc;
+    image->format = format;
+    image->block_width = info.blockWidth;
+    image->block_height = info.blockHeight;
+    result = take_words(p, image);
+    if (result == SLUICE_SUCCESS && image->word_count)
+        p->new_images[p->new_image_count++] = index;
+    return result;
+}
+
+static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
+                                 const SluiceImageInfo *info, struct slc_residency_image *out)
+{
+    struct paged_residency *p = paged(residency);
+    struct paged_image *first = &p->images[index];
+    uint32_t layer_count = slc_max_u32(1, info->arrayLayerCount);
+    struct slc_sparse_layout layout;
+    SluiceResult result = slc_standard_layout_init(&layout, info);
+    if (result == SLUICE_SUCCESS)
+        result = slc_plain_image_create(&first->own_tail, &p->memory, p->vk, p->caps, p->cb, info,
+                                        layout.desc.regularMipCount, layer_count);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    first->layer_count = layer_count;
+    for (uint32_t i = 0; i < layer_count && result == SLUICE_SUCCESS; i++)
+        result = create_layer(p, index + i, info->format, &layout.desc, first->own_tail.image);
+    if (result != SLUICE_SUCCESS) {
+        destroy_image(residency, index);
+        return result;
+    }
+    count_memory(p);
+    *out = (struct slc_residency_image){
+        .image = first->tail, .desc = layout.desc, .uneven = layout.uneven};
+    return SLUICE_SUCCESS;
 }
 
 static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
@@ -197,7 +225,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     if (tile->mipLevel >= image->desc.regularMipCount)
         return SLUICE_SUCCESS; /* the packed levels have their own image */
     uint32_t *page = &p->pages[tile_word(image, tile->mipLevel, tile->x, tile->y)];
-    assert(*page == SLUICE_PAGE_NONE);
+    assert(!is_taken(*page));
     *page = slc_page_cache_take(&p->cache, image->format);
     count_memory(p);
     return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
@@ -219,10 +247,26 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     if (tile->mipLevel >= image->desc.regularMipCount)
         return;
     uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
-    assert(p->pages[word] != SLUICE_PAGE_NONE);
-    slc_page_cache_give(&p->cache, p->pages[word]);
-    p->pages[word] = SLUICE_PAGE_NONE;
+    assert(is_taken(p->pages[word]));
+    slc_page_cache_give(&p->cache, p->pages[word], word);
+    p->pages[word] |= PAGE_GIVEN;
     store(p, word, SLUICE_PAGE_NONE);
+}
+
+/* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
+static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t word = tile_word(&p->images[index], tile->mipLevel, tile->x, tile->y);
+    assert(!is_taken(p->pages[word]));
+    if (p->pages[word] == SLUICE_PAGE_NONE)
+        return false;
+    uint32_t page = p->pages[word] & ~PAGE_GIVEN;
+    bool there = slc_page_cache_retake(&p->cache, page, word);
+    p->pages[word] = there ? page : SLUICE_PAGE_NONE;
+    if (there)
+        store(p, word, page);
+    return there;
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
@@ -292,12 +336,12 @@ static VkImage place_copy(struct paged_residency *p, const struct paged_image *i
     uint32_t level = copy->imageSubresource.mipLevel;
     if (level >= desc->regularMipCount) {
         copy->imageSubresource.mipLevel = level - desc->regularMipCount;
-        return image->tail.image;
+        return image->tail;
     }
     uint32_t word = tile_word(image, level, (uint32_t)copy->imageOffset.x / desc->tileWidth,
                               (uint32_t)copy->imageOffset.y / desc->tileHeight);
     uint32_t page = p->pages[word];
-    assert(page != SLUICE_PAGE_NONE);
+    assert(is_taken(page));
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
@@ -372,13 +416,18 @@ static VkBuffer page_table(const struct slc_residency *residency)
     return ((const struct paged_residency *)residency)->table.buffer;
 }
 
+static uint32_t page_table_offset(const struct slc_residency *residency, uint32_t index)
+{
+    return ((const struct paged_residency *)residency)->images[index].first_word;
+}
+
 static void destroy(struct slc_residency *residency)
 {
     struct paged_residency *p = paged(residency);
     const SluiceAllocationCallbacks *cb = p->cb;
     if (p->images)
         for (uint32_t i = 0; i < p->max_image_count; i++)
-            slc_plain_image_destroy(&p->images[i].tail, &p->memory, p->vk, cb);
+            slc_plain_image_destroy(&p->images[i].own_tail, &p->memory, p->vk, cb);
     slc_image_memory_finish(&p->memory, cb);
     slc_page_cache_finish(&p->cache);
     slc_buffer_finish(&p->table, p->vk);
@@ -395,6 +444,7 @@ static const struct slc_residency_interface paged_interface = {
     .create_image = create_image,
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
+    .revive = revive,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,
@@ -409,6 +459,7 @@ static const struct slc_residency_interface paged_interface = {
     .record_uploads = record_uploads,
     .record_publish = record_publish,
     .page_table = page_table,
+    .page_table_offset = page_table_offset,
 };
 
 /* A chain has less than twice the tiles of level 0, but for rounding up at the edges. */
@@ -427,8 +478,8 @@ static SluiceResult create_arrays(struct paged_residency *p,
     if (result != SLUICE_SUCCESS)
         return result;
     p->max_image_count = info->max_image_count;
-    p->upload_reserve = info->max_changes;
-    p->store_capacity = 5 * info->max_changes;
+    p->upload_reserve = 2 * info->max_changes; /* copied or revived */
+    p->store_capacity = 6 * info->max_changes;
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
     p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);

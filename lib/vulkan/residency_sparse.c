@@ -265,6 +265,14 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return SLUICE_SUCCESS;
 }
 
+/* What was given up was shown before, so its texels are on its page. */
+static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
+    return slc_page_table_revive(&s->pages, index, place, tile->heapId, tile->slot);
+}
+
 /* Tiles that no incomplete frame reads any more: their pages may go to others. */
 static void release_pending(struct sparse_residency *s, uint64_t completed_frame)
 {
@@ -467,11 +475,11 @@ static void destroy(struct slc_residency *residency)
 }
 
 static const struct slc_residency_interface sparse_interface = {
-    .has_arrays = true,
     .destroy = destroy,
     .create_image = create_image,
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
+    .revive = revive,
     .reserve = reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,

@@ -233,8 +233,6 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
         return result;
     if (layerCount != (image.arrayLayerCount ? image.arrayLayerCount : 1))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (layerCount > 1 && !s->residency->interface->has_arrays)
-        return SLUICE_ERROR_UNSUPPORTED;
     uint32_t first = find_free(s, layerCount);
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
@@ -374,8 +372,15 @@ static float quick_reach2(const SluiceStreamedTextureDesc *desc)
     return reach * reach;
 }
 
-static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
+static uint32_t page_table_offset(const SluiceVulkanStreamer *s, uint32_t index)
 {
+    const struct slc_residency_interface *interface = s->residency->interface;
+    return interface->page_table_offset ? interface->page_table_offset(s->residency, index) : 0;
+}
+
+static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint32_t index)
+{
+    const struct slc_texture *texture = &s->textures[index];
     SluiceFormatInfo format = {.channelCount = 4};
     (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -393,7 +398,7 @@ static struct SluiceTextureEntry table_entry(const struct slc_texture *texture)
         .minMipOffset = texture->region_first,
         .addressModeU = (uint)texture->address_modes[0],
         .addressModeV = (uint)texture->address_modes[1],
-        .pageTableOffset = texture->image.page_table_offset,
+        .pageTableOffset = page_table_offset(s, index),
         .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
         .quickReach2 = quick_reach2(desc),
         .quickPacked2 = quick_packed2(desc),
@@ -409,7 +414,7 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     for (uint32_t i = 0; i < s->new_texture_count; i++) {
         uint32_t index = s->new_textures[i];
         const struct slc_texture *texture = &s->textures[index];
-        struct SluiceTextureEntry entry = table_entry(texture);
+        struct SluiceTextureEntry entry = table_entry(s, index);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
         slc_feedback_record_new(s, texture, commands);

@@ -2,6 +2,8 @@
 
 #include "support/test.h"
 
+#include "array_frag.h"
+#include "array_min_lod_frag.h"
 #include "picture_codes_frag.h"
 #include "picture_frag.h"
 #include "picture_min_lod_codes_frag.h"
@@ -44,6 +46,9 @@ static VkShaderModule fragment_module(const struct painter *p, enum painter_feed
     case PAINTER_QUERY: return module(h, picture_query_frag, sizeof picture_query_frag);
     case PAINTER_QUERY_LATE:
         return module(h, picture_query_late_frag, sizeof picture_query_late_frag);
+    case PAINTER_LAYER:
+        return h->min_lod ? module(h, array_min_lod_frag, sizeof array_min_lod_frag)
+                          : module(h, array_frag, sizeof array_frag);
     case PAINTER_COMPUTE: break;
     }
     if (h->min_lod && p->prober->codes)
@@ -141,7 +146,7 @@ void painter_record(void *user, VkCommandBuffer commands)
     struct painter *p = user;
     struct harness *h = p->prober->h;
     struct ProbeParams params = {p->texture.table_index, p->frame++, 0,
-                                 p->lattice ? PICTURE_LATTICE : 0};
+                                 p->lattice ? PICTURE_LATTICE : p->layer};
     VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                    .renderPass = p->pass,
                                    .framebuffer = p->framebuffer,

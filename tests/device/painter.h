@@ -12,6 +12,7 @@ struct painter {
     VkPipeline pipeline;
     uint32_t frame; ///< counts; the seed and the phase of the lattice
     bool lattice;
+    uint32_t layer; ///< PAINTER_LAYER: that is drawn
 };
 
 /** Where the feedback has its level from. */
@@ -19,6 +20,7 @@ enum painter_feedback {
     PAINTER_COMPUTE,    ///< the formula
     PAINTER_QUERY,      ///< textureQueryLod before all else
     PAINTER_QUERY_LATE, ///< textureQueryLod behind branches
+    PAINTER_LAYER,      ///< the formula; the picture is of shaders/array.frag, see prober_layer
 };
 
 void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture);

@@ -211,12 +211,11 @@ VkSampler prober_sampler(struct prober *p, VkSamplerAddressMode u, VkSamplerAddr
     return p->samplers[at];
 }
 
-struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,
-                                    VkSamplerAddressMode u, VkSamplerAddressMode v,
-                                    float anisotropy)
+static struct probe_texture create_set(struct prober *p, uint32_t table_index,
+                                       const VkDescriptorImageInfo images[2])
 {
     struct harness *h = p->h;
-    struct probe_texture result = {.table_index = texture->tableIndex};
+    struct probe_texture result = {.table_index = table_index};
     VkDescriptorSetAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                             .descriptorPool = p->pool,
                                             .descriptorSetCount = 1,
@@ -229,9 +228,6 @@ struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture 
                                              {buffers.feedback, 0, VK_WHOLE_SIZE},
                                              {p->inputs.buffer, 0, VK_WHOLE_SIZE},
                                              {p->outputs.buffer, 0, VK_WHOLE_SIZE}};
-    VkDescriptorImageInfo images[2] = {
-        {prober_sampler(p, u, v, anisotropy, false), texture->imageView, VK_IMAGE_LAYOUT_GENERAL},
-        {prober_sampler(p, u, v, 1.0f, true), texture->imageView, VK_IMAGE_LAYOUT_GENERAL}};
     VkWriteDescriptorSet writes[2] = {{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                        .dstSet = result.set,
                                        .descriptorCount = BUFFERS,
@@ -245,6 +241,25 @@ struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture 
                                        .pImageInfo = images}};
     h->UpdateDescriptorSets(h->device, 2, writes, 0, NULL);
     return result;
+}
+
+struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture *texture,
+                                    VkSamplerAddressMode u, VkSamplerAddressMode v,
+                                    float anisotropy)
+{
+    const VkDescriptorImageInfo images[2] = {
+        {prober_sampler(p, u, v, anisotropy, false), texture->imageView, VK_IMAGE_LAYOUT_GENERAL},
+        {prober_sampler(p, u, v, 1.0f, true), texture->imageView, VK_IMAGE_LAYOUT_GENERAL}};
+    return create_set(p, texture->tableIndex, images);
+}
+
+struct probe_texture prober_layer(struct prober *p, const SluiceVulkanTexture *layer,
+                                  VkSamplerAddressMode u, VkSamplerAddressMode v, float anisotropy)
+{
+    VkSampler sampler = prober_sampler(p, u, v, anisotropy, false);
+    const VkDescriptorImageInfo images[2] = {{sampler, layer->arrayView, VK_IMAGE_LAYOUT_GENERAL},
+                                             {sampler, layer->imageView, VK_IMAGE_LAYOUT_GENERAL}};
+    return create_set(p, layer->tableIndex, images);
 }
 
 struct ProbeInput *prober_inputs(struct prober *p)

@@ -50,6 +50,10 @@ struct probe_texture prober_texture(struct prober *p, const SluiceVulkanTexture 
                                     VkSamplerAddressMode u, VkSamplerAddressMode v,
                                     float anisotropy);
 
+/** For shaders/array.glsl: the view of all layers, and the layer's own. */
+struct probe_texture prober_layer(struct prober *p, const SluiceVulkanTexture *layer,
+                                  VkSamplerAddressMode u, VkSamplerAddressMode v, float anisotropy);
+
 /** The set may be used again; no frame uses it any more once the device was waited for. */
 void prober_release(struct prober *p, struct probe_texture texture);
 

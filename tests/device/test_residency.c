@@ -84,6 +84,8 @@ static void churn(struct harness *h, float anisotropy, uint32_t frame_count)
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_true(stats.tilesMapped > frame_count);
     assert_true(stats.tilesUnmapped > frame_count / 4);
+    if (h->mode == SLUICE_RESIDENCY_MODE_PAGED) /* and the texels of these are right, too */
+        assert_true(stats.tilesRevived > frame_count / 10);
     assert_in_range(stats.manager.heapCount, 1, 5);
     scene_finish(&scene);
 }

@@ -320,6 +320,7 @@ static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
+    assert_true(stats.tilesRevived > 100);
     /* once each, but for those that came last */
     assert_in_range(m->fake.metadata_binds, metadata_size ? m->added - 2 * TEXTURES : 0,
                     metadata_size ? m->added : 0);

@@ -252,6 +252,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
     generation = pages.generation;
     assert_true(shown > 10000);
     assert_true(stats.tilesUnmapped > 50);
+    assert_true(stats.tilesRevived > 500);
     assert_true(generation >= 6); /* images came, went, and came again */
     m->fake.destroyed_count = 0;
     sluiceDestroyVulkanStreamer(m->streamer);

@@ -137,16 +137,48 @@ static void swapped_pages_are_two_binds(void **state)
 {
     struct fixture *f = *state;
     bind(f, 0, 0, 0, 0);
-    bind(f, 1, 0, 0, 1);
+    bind(f, 1, 0, 1, 1);
     slc_bind_list_clear(&f->list);
     slc_page_table_give_up(&f->table, 0, at(0));
     slc_page_table_give_up(&f->table, 1, at(0));
-    assert_int_equal(bind(f, 0, 0, 0, 1), 1); /* the unbind of the other tile comes first */
+    assert_int_equal(bind(f, 0, 0, 1, 1), 1); /* the unbind of the other tile comes first */
     assert_int_equal(bind(f, 1, 0, 0, 0), SLC_NO_IMAGE);
     slc_bind_list_build_runs(&f->list);
     assert_int_equal(f->list.run_count, 2);
-    check_entry(f, 0, 0, 0, 0, 1);
+    check_entry(f, 0, 0, 0, 1, 1);
     check_entry(f, 1, 1, 0, 0, 0);
+}
+
+/* Each is given the slot that the other had: the slots change places, and nothing is bound. */
+static void tiles_get_their_old_pages_back_whatever_slots_they_are_given(void **state)
+{
+    struct fixture *f = *state;
+    bind(f, 0, 5, 1, 7);
+    bind(f, 2, 9, 1, 8);
+    slc_bind_list_clear(&f->list);
+    slc_page_table_give_up(&f->table, 0, at(5));
+    slc_page_table_give_up(&f->table, 2, at(9));
+    assert_true(slc_page_table_revive(&f->table, 0, at(5), 1, 8));
+    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 7)); /* it is not given up now */
+    assert_int_equal(bind(f, 2, 9, 1, 7), SLC_NO_IMAGE);
+    assert_int_equal(f->list.count, 0);
+    assert_int_equal(f->table.unbinds_saved, 2);
+    slc_page_table_give_up(&f->table, 0, at(5));
+    assert_int_equal(bind(f, 1, 3, 1, 8), 0); /* by the slot, which stands for page 7 now */
+    check_entry(f, 0, 0, 5, SLC_UNBIND, 0);
+    check_entry(f, 1, 1, 3, 1, 7);
+}
+
+static void tile_does_not_get_back_what_another_heap_or_tile_has(void **state)
+{
+    struct fixture *f = *state;
+    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 7)); /* it never was there */
+    bind(f, 0, 5, 1, 7);
+    slc_page_table_give_up(&f->table, 0, at(5));
+    assert_false(slc_page_table_revive(&f->table, 0, at(5), 2, 7));
+    assert_int_equal(bind(f, 2, 9, 1, 7), 0);
+    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 8));
+    assert_int_equal(f->table.unbinds_saved, 0);
 }
 
 static void list_without_room_for_two_changes_nothing(void **state)
@@ -235,6 +267,7 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
         for (uint32_t x = 0; x < COLUMNS; x++)
             m.device[i][x] = -1;
     int pages[IMAGES][COLUMNS];
+    uint32_t revived = 0;
     srand(11);
     for (int step = 0; step < 50000; step++) {
         uint32_t image = (uint32_t)rand() % IMAGES, x = (uint32_t)rand() % COLUMNS;
@@ -244,7 +277,14 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
             m.live[image][x] = false;
             m.taken[pages[image][x]] = false;
         } else if (!m.taken[page] && f->list.count < CAPACITY - 2) {
-            bind(f, image, x, page / HEAP, page % HEAP);
+            uint32_t count = f->list.count;
+            if (rand() % 2 &&
+                slc_page_table_revive(&f->table, image, at(x), page / HEAP, page % HEAP)) {
+                assert_int_equal(f->list.count, count);
+                revived++;
+            } else {
+                bind(f, image, x, page / HEAP, page % HEAP);
+            }
             m.live[image][x] = m.taken[page] = true;
             pages[image][x] = (int)page;
         }
@@ -252,9 +292,10 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
             execute(f, &m);
         for (uint32_t i = 0; i < IMAGES && f->list.count == 0; i++)
             for (uint32_t c = 0; c < COLUMNS; c++)
-                if (m.live[i][c])
-                    assert_int_equal(m.device[i][c], pages[i][c]);
+                if (m.live[i][c]) /* some page of the slot's heap: others go with theirs */
+                    assert_int_equal(m.device[i][c] / HEAP, pages[i][c] / HEAP);
     }
+    assert_true(revived > 100);
     assert_true(f->table.unbinds_saved > 100 && f->table.unbind_count > 100);
 }
 
@@ -287,6 +328,8 @@ int main(void)
         TEST(tile_that_gets_another_page_is_bound_over),
         TEST(tile_that_gets_its_page_again_needs_no_bind),
         TEST(swapped_pages_are_two_binds),
+        TEST(tiles_get_their_old_pages_back_whatever_slots_they_are_given),
+        TEST(tile_does_not_get_back_what_another_heap_or_tile_has),
         TEST(list_without_room_for_two_changes_nothing),
         TEST(image_that_is_gone_leaves_its_pages_free),
         TEST(heaps_have_one_size),

@@ -168,51 +168,89 @@ vec4 sluiceSampleLevel(sampler2D tail, SluiceTextureEntry entry, uint level, vec
     return sluiceSamplePages(entry, level, uv);
 }
 
+/** The tail's sampler reckons with the tail's own size: of derivatives. */
+vec2 sluiceTailScale(SluiceTextureEntry entry)
+{
+    return vec2(entry.width, entry.height) / (vec2(sluiceLevelSize(entry, entry.regularMipCount)) *
+                                              exp2(float(entry.regularMipCount)));
+}
+
 vec4 sluiceSampleTail(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy)
 {
-    /* The tail's sampler reckons with the tail's own size. */
-    vec2 scale = vec2(entry.width, entry.height) /
-                 (vec2(sluiceLevelSize(entry, entry.regularMipCount)) *
-                  exp2(float(entry.regularMipCount)));
+    vec2 scale = sluiceTailScale(entry);
     return textureGrad(tail, uv, dx * scale, dy * scale);
 }
 
-/**
- * What a trilinear or anisotropic sampler does at `lod` with derivatives that hold all bias. Of the
- * anisotropic ones it takes as many samples along the longer derivative as that is longer than a
- * pixel of the level: the customary way, which every device refines in its own.
- */
-vec4 sluiceSamplePaged(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
-                       float lod, float maxAnisotropy)
+/** What a trilinear or anisotropic sample is made of: bilinear ones in a row, each of two levels. */
+struct SluicePagedTaps {
+    uint fine, coarse; /* levels */
+    float fraction;    /* of `coarse`: 0 to 1 */
+    uint count;
+    vec2 axis; /* of the row, in uv */
+};
+
+float sluiceClampPagedLod(SluiceTextureEntry entry, float lod)
 {
-    lod = clamp(lod, 0.0, float(entry.mipLevelCount - 1u));
-    if (lod >= float(entry.regularMipCount))
-        return sluiceSampleTail(tail, entry, uv, dx, dy);
-    uint fine = uint(lod);
-    float fraction = floor((lod - float(fine)) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
-    uint coarse = min(fine + 1u, entry.mipLevelCount - 1u);
-    uint count = 1u;
-    vec2 axis = vec2(0.0);
+    return clamp(lod, 0.0, float(entry.mipLevelCount - 1u));
+}
+
+/**
+ * At `lod`, clamped, with derivatives that hold all bias. Of the anisotropic ones as many samples
+ * along the longer derivative as that is longer than a pixel of the level: the customary way, which
+ * every device refines in its own.
+ */
+SluicePagedTaps sluicePlacePagedTaps(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lod,
+                                     float maxAnisotropy)
+{
+    SluicePagedTaps taps;
+    taps.fine = uint(lod);
+    taps.coarse = min(taps.fine + 1u, entry.mipLevelCount - 1u);
+    taps.fraction =
+        floor((lod - float(taps.fine)) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
+    taps.count = 1u;
+    taps.axis = vec2(0.0);
     if (maxAnisotropy > 1.0) {
         vec2 size = vec2(entry.width, entry.height);
         float x = length(dx * size), y = length(dy * size);
-        axis = x >= y ? dx : dy;
+        taps.axis = x >= y ? dx : dy;
         float ratio = max(x, y) / exp2(lod);
-        count = uint(clamp(ceil(ratio - 0.01), 1.0, sluiceClampAnisotropy(maxAnisotropy)));
+        taps.count = uint(clamp(ceil(ratio - 0.01), 1.0, sluiceClampAnisotropy(maxAnisotropy)));
     }
+    return taps;
+}
+
+vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
+{
+    return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
+}
+
+/** A level of no weight is not looked at: it may be infinite. */
+vec4 sluiceMixLevels(SluicePagedTaps taps, vec4 fine, vec4 coarse)
+{
+    if (taps.fraction >= 1.0)
+        return coarse;
+    return taps.fraction > 0.0 ? mix(fine, coarse, taps.fraction) : fine;
+}
+
+/** What a trilinear or anisotropic sampler does at `lod` with derivatives that hold all bias. */
+vec4 sluiceSamplePaged(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
+                       float lod, float maxAnisotropy)
+{
+    lod = sluiceClampPagedLod(entry, lod);
+    if (lod >= float(entry.regularMipCount))
+        return sluiceSampleTail(tail, entry, uv, dx, dy);
+    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
     vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < count; i++) {
-        vec2 at = uv + axis * ((float(i) + 0.5) / float(count) - 0.5);
-        vec4 color = vec4(0.0);
-        if (fraction < 1.0)
-            color = sluiceSampleLevel(tail, entry, fine, at);
-        if (fraction >= 1.0)
-            color = sluiceSampleLevel(tail, entry, coarse, at);
-        else if (fraction > 0.0)
-            color = mix(color, sluiceSampleLevel(tail, entry, coarse, at), fraction);
-        sum += color;
+    for (uint i = 0u; i < taps.count; i++) {
+        vec2 at = sluicePagedTap(taps, uv, i);
+        vec4 fine = vec4(0.0), coarse = vec4(0.0);
+        if (taps.fraction < 1.0)
+            fine = sluiceSampleLevel(tail, entry, taps.fine, at);
+        if (taps.fraction > 0.0)
+            coarse = sluiceSampleLevel(tail, entry, taps.coarse, at);
+        sum += sluiceMixLevels(taps, fine, coarse);
     }
-    return sum / float(count);
+    return sum / float(taps.count);
 }
 
 /** 1 if a texel of a bilinear sample has no page. */

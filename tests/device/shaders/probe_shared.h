@@ -25,6 +25,9 @@
 #define PICTURE_SIZE 128u
 #define PICTURE_LATTICE 1u
 
+/* Of the array shaders, whose flags are the layer: each sample has another, from tableIndex on. */
+#define PROBE_ALL_LAYERS 0x80000000u
+
 struct ProbeInput {
     float uv[2];
     float dx[2];

@@ -1,0 +1,133 @@
+/*
+ * Samples the layers of a streamed array (sluiceAddVulkanTextureArray) through one sampler2DArray of
+ * SluiceVulkanTexture.arrayView: one descriptor for all layers, and a layer that may differ from pixel
+ * to pixel. Each layer is a streamed texture of its own, so every function takes two numbers:
+ *
+ *     tableIndex   of the layer's texture: SluiceVulkanTexture.tableIndex; that of layer 0, plus layer
+ *     layer        SluiceVulkanTexture.arrayLayer, below the array's number of layers
+ *
+ * What is sampled is what sample.glsl samples through the layer's own imageView, and the sampler must
+ * be as is said there. Feedback is that of the layer's texture: sluiceWriteFeedback with its tableIndex.
+ *
+ * In sparse and dense residency the view has all levels. In paged residency it has the packed ones of
+ * all layers, and the other tiles are pages as of any texture.
+ *
+ * Include it behind the definitions of buffers.glsl. Neither number need be uniform.
+ */
+#ifndef SLUICE_SAMPLE_ARRAY_GLSL
+#define SLUICE_SAMPLE_ARRAY_GLSL
+
+#include "sample.glsl"
+
+/** The sample that was resolved with the layer's tableIndex, in sparse and dense mode. Its level must
+ *  not be SLUICE_MIP_UNTOUCHED. */
+vec4 sluiceTextureArrayGrad(sampler2DArray tex, uint layer, SluiceSampling s)
+{
+    vec3 at = vec3(s.uv, float(layer));
+#ifdef SLUICE_MIN_LOD
+    return textureGradClampARB(tex, at, s.dx, s.dy, s.minLod);
+#else
+    return textureGrad(tex, at, s.dx, s.dy);
+#endif
+}
+
+#ifdef SLUICE_PAGED
+/** A bilinear sample of any level; `tail` has the packed ones of all layers. */
+vec4 sluiceSampleArrayLevel(sampler2DArray tail, uint layer, SluiceTextureEntry entry, uint level,
+                            vec2 uv)
+{
+    if (level >= entry.regularMipCount)
+        return textureLod(tail, vec3(uv, float(layer)), float(level - entry.regularMipCount));
+    return sluiceSamplePages(entry, level, uv);
+}
+
+/** As sluiceSamplePaged. */
+vec4 sluiceSamplePagedArray(sampler2DArray tail, uint layer, SluiceTextureEntry entry, vec2 uv,
+                            vec2 dx, vec2 dy, float lod, float maxAnisotropy)
+{
+    lod = sluiceClampPagedLod(entry, lod);
+    if (lod >= float(entry.regularMipCount)) {
+        vec2 scale = sluiceTailScale(entry);
+        return textureGrad(tail, vec3(uv, float(layer)), dx * scale, dy * scale);
+    }
+    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
+    vec4 sum = vec4(0.0);
+    for (uint i = 0u; i < taps.count; i++) {
+        vec2 at = sluicePagedTap(taps, uv, i);
+        vec4 fine = vec4(0.0), coarse = vec4(0.0);
+        if (taps.fraction < 1.0)
+            fine = sluiceSampleArrayLevel(tail, layer, entry, taps.fine, at);
+        if (taps.fraction > 0.0)
+            coarse = sluiceSampleArrayLevel(tail, layer, entry, taps.coarse, at);
+        sum += sluiceMixLevels(taps, fine, coarse);
+    }
+    return sum / float(taps.count);
+}
+#endif
+
+/**
+ * sluiceSampleGrad of a layer: explicit derivatives of `uv` per pixel; any stage. `missingLevels`: how
+ * many levels the sample is coarser than wanted, SLUICE_MIP_UNTOUCHED if it is SLUICE_FALLBACK_COLOR.
+ */
+vec4 sluiceSampleArrayGrad(sampler2DArray tex, uint tableIndex, uint layer, vec2 uv, vec2 dx, vec2 dy,
+                           float lodBias, float maxAnisotropy, out uint missingLevels)
+{
+    missingLevels = 0u;
+    if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
+        float scale = exp2(sluiceClampLodBias(lodBias));
+#ifdef SLUICE_PAGED
+        if (SLUICE_PAGED) {
+            SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+            vec2 size = vec2(entry.width, entry.height);
+            float lod = sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy);
+            return sluiceSamplePagedArray(tex, layer, entry, uv, dx * scale, dy * scale, lod,
+                                          maxAnisotropy);
+        }
+#endif
+        return textureGrad(tex, vec3(uv, float(layer)), dx * scale, dy * scale);
+    }
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSamplePagedArray(tex, layer, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy,
+                                      s.lod, maxAnisotropy);
+#endif
+    return sluiceTextureArrayGrad(tex, layer, s);
+}
+
+#ifdef GL_FRAGMENT_SHADER
+
+/** sluiceSample of a layer: the fragment's own derivatives, in control flow that is uniform over the
+ *  quad. Layer and tableIndex may differ inside it. */
+vec4 sluiceSampleArray(sampler2DArray tex, uint tableIndex, uint layer, vec2 uv, float lodBias,
+                       float maxAnisotropy, out uint missingLevels)
+{
+    vec2 dx = dFdx(uv);
+    vec2 dy = dFdy(uv);
+    missingLevels = 0u;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSampleArrayGrad(tex, tableIndex, layer, uv, dx, dy, lodBias, maxAnisotropy,
+                                     missingLevels);
+#endif
+    vec3 at = vec3(uv, float(layer));
+    bool implicitly = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS;
+    bool sure = implicitly && sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    /* The quad decides as one, because implicit derivatives need all of it. */
+    if (!sluiceAnyInQuad(!sure))
+        return texture(tex, at, lodBias);
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    if (!sluiceAnyInQuad(!(s.plain && implicitly)))
+        return texture(tex, at, lodBias);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+    return sluiceTextureArrayGrad(tex, layer, s);
+}
+
+#endif
+
+#endif
