@@ -277,6 +277,31 @@ static void a_stalled_source_keeps_only_its_share_of_the_threads(void **state)
     fault_source_finish(&other);
 }
 
+static void a_stalled_source_does_not_stop_a_loader_with_default_threads(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct fault_source other;
+    SluiceTileLoader *loader;
+    SluiceTileLoaderCreateInfo create = {0};
+    float texels[2] = {-1, -1};
+    setup(&f, (SluiceTileLoaderCreateInfo){0});
+    fault_source_init(&other, f.inner);
+    CHECK_OK(sluiceCreateTileLoader(&create, &loader));
+    sluiceDestroyTileLoader(f.loader);
+    f.loader = loader;
+    f.source.holds = true;
+    submit(&f, &f.source, 0, &texels[0], 1);
+    fault_source_await(&f.source, 1);
+    submit(&f, &other, 1, &texels[1], 0);
+    CHECK_OK(collect_one(&f).result);
+    assert_true(texels[1] == 1);
+    fault_source_release(&f.source);
+    CHECK_OK(collect_one(&f).result);
+    teardown(&f);
+    fault_source_finish(&other);
+}
+
 static void bytes_in_flight_are_bounded(void **state)
 {
     (void)state;
@@ -393,6 +418,47 @@ static void destroying_does_not_wait_for_other_attempts(void **state)
     struct fault_source *source = &f.source;
     teardown(&f); /* in less than a century */
     assert_int_equal(source->read_count, COUNT);
+}
+
+/* Holds its worker until the loader is being destroyed and everything else is dropped. */
+static void hold_until_dropped(void *user, const SluiceTileReadFailure *failure)
+{
+    struct fixture *f = user;
+    pthread_mutex_lock(&f->mutex);
+    SluiceTileLoader *loader = f->loader;
+    pthread_mutex_unlock(&f->mutex);
+    SluiceTileLoaderStatistics s = {0};
+    assert_true(failure->willRetry);
+    while (s.cancelledCount != failure->userValue) {
+        CHECK_OK(sluiceGetTileLoaderStatistics(loader, NULL, &s));
+        sched_yield();
+    }
+}
+
+static void destroying_drops_all_but_what_is_under_way(void **state)
+{
+    (void)state;
+    enum { OTHERS = 30 };
+    struct fixture f;
+    float texels[OTHERS + 1];
+    setup(&f, (SluiceTileLoaderCreateInfo){0});
+    sluiceDestroyTileLoader(f.loader);
+    SluiceTileLoaderCreateInfo create = {
+        .threadCount = 1, .retry = {4, 1, 1}, .failure = {&f, hold_until_dropped}};
+    pthread_mutex_lock(&f.mutex);
+    CHECK_OK(sluiceCreateTileLoader(&create, &f.loader));
+    pthread_mutex_unlock(&f.mutex);
+    f.source.fail_at = 1;
+    f.source.fails_on = true;
+    f.source.failure = SLUICE_ERROR_IO;
+    submit(&f, &f.source, OTHERS, &texels[OTHERS], 1); /* its value says how many to wait for */
+    for (uint32_t i = 0; i < OTHERS; i++)
+        submit(&f, &f.source, i, &texels[i], 0);
+    struct fault_source *source = &f.source;
+    while (atomic_load(&source->read_count) == 0)
+        sched_yield();
+    teardown(&f);
+    assert_int_equal(source->read_count, 1); /* nor was that one tried again */
 }
 
 /* Four sources, each failing at every fifth read, and more reads than slots. */
@@ -515,11 +581,13 @@ int main(void)
         cmocka_unit_test(a_source_that_cannot_be_opened_at_first_is_tried_again),
         cmocka_unit_test(another_attempt_goes_on_with_the_region_that_failed),
         cmocka_unit_test(a_stalled_source_keeps_only_its_share_of_the_threads),
+        cmocka_unit_test(a_stalled_source_does_not_stop_a_loader_with_default_threads),
         cmocka_unit_test(bytes_in_flight_are_bounded),
         cmocka_unit_test(a_read_beyond_the_bound_is_made_alone),
         cmocka_unit_test(a_read_that_waits_for_another_attempt_can_be_cancelled),
         cmocka_unit_test(a_read_that_is_cancelled_while_it_fails_is_not_tried_again),
         cmocka_unit_test(destroying_does_not_wait_for_other_attempts),
+        cmocka_unit_test(destroying_drops_all_but_what_is_under_way),
         cmocka_unit_test(many_reads_of_failing_sources_all_end_and_are_counted),
         cmocka_unit_test(a_source_with_reads_is_not_forgotten),
         cmocka_unit_test(reads_need_no_memory),
