@@ -3,6 +3,10 @@
 #ifdef WITH_EXR
 #include <sluice/exr.h>
 #endif
+#ifdef WITH_CONTAINER
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+#endif
 #ifdef WITH_VULKAN
 #include <sluice/vulkan.h>
 #include <vulkan/vulkan.h> /* behind it: the application's Vulkan is as it was */
@@ -22,6 +26,20 @@ int main(void)
     SluiceImageSource *source = NULL;
     if (sluiceCreateExrImageSource(&info, &source) != SLUICE_ERROR_FILE_NOT_FOUND)
         return 3;
+#endif
+#ifdef WITH_CONTAINER
+    SluiceDdsImageSourceCreateInfo dds = {.pPath = "there is no such file"};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = "there is no such file"};
+    SluiceImageSource *files[2] = {NULL, NULL};
+    SluiceImageInfo image;
+    if (sluiceCreateDdsImageSource(&dds, &files[0]) != SLUICE_SUCCESS ||
+        sluiceCreateKtx2ImageSource(&ktx2, &files[1]) != SLUICE_SUCCESS)
+        return 4;
+    for (int i = 0; i < 2; i++) {
+        if (sluiceGetImageInfo(files[i], &image) != SLUICE_ERROR_FILE_NOT_FOUND)
+            return 5;
+        sluiceDestroyImageSource(files[i]);
+    }
 #endif
 #ifdef WITH_VULKAN
     (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */
