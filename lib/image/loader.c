@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE /* mutexes that spin before they sleep */
 
 #include <sluice/loader.h>
 
@@ -22,6 +22,8 @@ struct SluiceTileLoader {
     pthread_cond_t idle;   ///< nothing is queued, delayed or running
     struct slc_read_queue queue;
     bool stopping;
+    uint32_t waiting_count;   ///< threads that wait for `work`
+    uint32_t signalled_count; ///< of which so many were told, and have not woken yet
     uint32_t thread_count;
     pthread_t *threads;
 };
@@ -134,10 +136,25 @@ static void wait_for_work(struct SluiceTileLoader *loader)
 {
     uint64_t due = slc_read_queue_next_due(&loader->queue);
     struct timespec until = {(time_t)(due / 1000000000u), (long)(due % 1000000000u)};
+    loader->waiting_count++;
     if (due == UINT64_MAX)
         pthread_cond_wait(&loader->work, &loader->mutex);
     else
         pthread_cond_timedwait(&loader->work, &loader->mutex, &until);
+    loader->waiting_count--;
+    loader->signalled_count -= loader->signalled_count > 0;
+}
+
+/*
+ * One thread at a time, which will wake the next one if there is more: where reads are quick, few
+ * threads that are awake do them sooner than many that wait for each other.
+ */
+static void signal_work(struct SluiceTileLoader *loader)
+{
+    if (loader->waiting_count == 0 || loader->signalled_count > 0)
+        return;
+    loader->signalled_count++;
+    pthread_cond_signal(&loader->work);
 }
 
 static void *worker_main(void *argument)
@@ -154,7 +171,7 @@ static void *worker_main(void *argument)
         }
         /* This thread may be gone for long: another one looks after what else there is. */
         if (loader->queue.startable.root || loader->queue.delayed.root)
-            pthread_cond_signal(&loader->work);
+            signal_work(loader);
         run(loader, read);
     }
     pthread_mutex_unlock(&loader->mutex);
@@ -217,7 +234,13 @@ static void init_synchronisation(struct SluiceTileLoader *loader)
     pthread_condattr_t attributes;
     pthread_condattr_init(&attributes);
     pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_mutex_init(&loader->mutex, NULL);
+    pthread_mutexattr_t mutex;
+    pthread_mutexattr_init(&mutex);
+#ifdef PTHREAD_ADAPTIVE_MUTEX_INITIALIZER_NP
+    pthread_mutexattr_settype(&mutex, PTHREAD_MUTEX_ADAPTIVE_NP);
+#endif
+    pthread_mutex_init(&loader->mutex, &mutex);
+    pthread_mutexattr_destroy(&mutex);
     pthread_cond_init(&loader->work, &attributes);
     pthread_cond_init(&loader->idle, NULL);
     pthread_condattr_destroy(&attributes);
@@ -299,7 +322,7 @@ SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead
     pthread_mutex_lock(&loader->mutex);
     bool queued = slc_read_queue_submit(&loader->queue, pRead, pTicket);
     if (queued)
-        pthread_cond_signal(&loader->work);
+        signal_work(loader);
     pthread_mutex_unlock(&loader->mutex);
     return queued ? SLUICE_SUCCESS : SLUICE_NOT_READY;
 }

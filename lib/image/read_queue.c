@@ -174,8 +174,9 @@ struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now
     uint64_t room = queue->max_running_size - queue->running_size;
     if (queue->running_count > 0 && (queue->running_size > queue->max_running_size || size > room))
         return NULL;
-    dequeue(queue, read);
     source_leave(queue, source);
+    slc_pairing_heap_remove(&source->queued, &read->node);
+    queue->queued_count--;
     read->state = SLC_READ_RUNNING;
     read->running_size = size;
     source->running_count++;
