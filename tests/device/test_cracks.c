@@ -260,18 +260,23 @@ static float tolerance(SluiceResidencyMode mode)
 static void check_sample(const struct kind *k, const struct sample *s, const float *truth,
                          float at_most, float *worst)
 {
+    float used[4];
+    memcpy(used, s->out.footprint, sizeof used);
     for (uint32_t c = 0; c < 4; c++) {
         float error = fabsf(s->out.color[c] - truth[c]);
         *worst = fmaxf(*worst, error);
         if (error <= at_most && fabsf(s->out.color[3] - 1) <= at_most)
             continue;
-        fail_msg("%ux%u %s, modes %d %d, anisotropy %g: uv %.9g %.9g dx %.9g %.9g dy %.9g %.9g "
-                 "bias %g; channel %u is %g, of the whole texture %g; lod %g, level %u of %u",
-                 k->width, k->height, sluiceFormatString(k->format), (int)k->u, (int)k->v,
-                 (double)k->anisotropy, (double)s->in.uv[0], (double)s->in.uv[1],
-                 (double)s->in.dx[0], (double)s->in.dx[1], (double)s->in.dy[0], (double)s->in.dy[1],
-                 (double)s->in.lodBias, c, (double)s->out.color[c], (double)truth[c],
-                 (double)s->out.lod, s->out.level, s->out.wantedLevel);
+        fail_msg(
+            "%ux%u %s, modes %d %d, anisotropy %g: uv %.9g %.9g dx %.9g %.9g dy %.9g %.9g "
+            "bias %g; channel %u is %g, of the whole texture %g; alpha %g; lod %g, level %u of %u, "
+            "sampled with dx %.9g %.9g dy %.9g %.9g, at least %g",
+            k->width, k->height, sluiceFormatString(k->format), (int)k->u, (int)k->v,
+            (double)k->anisotropy, (double)s->in.uv[0], (double)s->in.uv[1], (double)s->in.dx[0],
+            (double)s->in.dx[1], (double)s->in.dy[0], (double)s->in.dy[1], (double)s->in.lodBias, c,
+            (double)s->out.color[c], (double)truth[c], (double)s->out.color[3], (double)s->out.lod,
+            s->out.level, s->out.wantedLevel, (double)used[0], (double)used[1], (double)used[2],
+            (double)used[3], (double)s->out.minLod);
     }
 }
 

@@ -59,11 +59,11 @@ static void check(struct harness *h, uint32_t width, uint32_t height, float anis
     draw(h, EVERYTHING, width, height, anisotropy, bias, &truth);
     draw(h, COMPUTED, width, height, anisotropy, bias, &computed);
     draw(h, way, width, height, anisotropy, bias, &queried);
-    const float margin = anisotropy > 1 ? 0.1875f : 0.125f, error = harness_level_error(h);
+    const float margin = anisotropy > 1 ? 0.1875f : 0.125f, finer = 4 * harness_level_error(h);
     uint32_t different = 0;
     for (uint32_t i = 0; i < PIXELS; i++) {
         float coarser = queried.level[i] - truth.level[i];
-        if (!(coarser >= -error - PATTERN_LEVEL_ERROR && coarser <= margin + PATTERN_LEVEL_ERROR))
+        if (!(coarser >= -finer - PATTERN_LEVEL_ERROR && coarser <= margin + PATTERN_LEVEL_ERROR))
             fail_msg("%ux%u, anisotropy %g: pixel (%u, %u) shows level %g, not %g", width, height,
                      (double)anisotropy, i % PICTURE_SIZE, i / PICTURE_SIZE,
                      (double)queried.level[i], (double)truth.level[i]);

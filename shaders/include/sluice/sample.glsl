@@ -22,8 +22,9 @@
 
 /*
  * Define SLUICE_MIN_LOD where the device has the feature shaderResourceMinLod, and it is enabled: samples
- * are clamped by textureGradClampARB then, and keep their own footprint and their own derivatives. Without
- * it clamped samples get explicit derivatives that are as wide. Either shows the same level.
+ * are clamped by textureGradClampARB then, and without anisotropy keep their own derivatives. With it, and
+ * without the feature, clamped samples get derivatives that are as wide: devices that clamp scale the row
+ * of an anisotropic footprint, too. Either shows the same level.
  */
 #ifdef SLUICE_MIN_LOD
 #extension GL_ARB_sparse_texture_clamp : require
@@ -173,7 +174,7 @@ uint sluiceClampedBox(float lod, float margin, float coarsestLod, float maxAniso
 {
     if (maxAnisotropy > 1.0)
         halfBox = max(halfBox, vec2(exp2(lod - margin)));
-    if (sluiceSamplerClamps())
+    else if (sluiceSamplerClamps())
         return sluiceCoarsestLevel(max(lod, coarsestLod), count); /* exactly */
     return sluiceCoarsestLevel(lod + margin, count); /* coarser by as much as finer */
 }
@@ -302,7 +303,7 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         s.level = sluiceFinestLevel(s.lod, margin, count);
         s.missing = max(uint(ceil(max(s.lod - margin, 0.0))) - s.wantedLevel, 1u);
         s.minLod = sluiceSamplerClamps() ? min(s.lod, float(count - 1u)) : 0.0;
-        widened = widened || !sluiceSamplerClamps();
+        widened = widened || maxAnisotropy > 1.0 || !sluiceSamplerClamps();
     }
     s.plain = finite && !point && !round && s.missing == 0u;
     if (!finite)

@@ -125,6 +125,10 @@ vec4 sluiceSampleArray(sampler2DArray tex, uint tableIndex, uint layer, vec2 uv,
         return texture(tex, at, lodBias);
     if (s.level == SLUICE_MIP_UNTOUCHED)
         return SLUICE_FALLBACK_COLOR;
+#ifndef SLUICE_MIN_LOD
+    if (!(maxAnisotropy > 1.0)) /* as sluiceSample does */
+        return textureLod(tex, vec3(s.uv, float(layer)), s.lod);
+#endif
     return sluiceTextureArrayGrad(tex, layer, s);
 }
 
