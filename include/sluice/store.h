@@ -163,7 +163,7 @@ SLUICE_API SluiceResult sluiceGetStoreWriterLayout(const SluiceStoreWriter *writ
 
 /** Tiles written, found ones included, and tiles altogether; tails count as one each. Errors:
  *  NULL_POINTER. Any thread, also beside writes. */
-SLUICE_API SluiceResult sluiceGetStoreProgress(const SluiceStoreWriter *writer,
+SLUICE_API SluiceResult sluiceGetStoreProgress(SluiceStoreWriter *writer,
                                                uint64_t *pWrittenTileCount, uint64_t *pTileCount);
 
 /**
@@ -185,7 +185,8 @@ SLUICE_API SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint
  * Errors: NULL_POINTER; INVALID_ARGUMENT if there is no such layer or tile, the level belongs to
  *         the tail or rowPitch is below a row's size; INVALID_TILE_STATE if the tile is written
  *         already, or the file finished; OUT_OF_HOST_MEMORY; IO, a full disk among it. The tile
- *         is not written then, and may be tried again.
+ *         is not written then, and may be tried again. Where that cannot be, because the disk has
+ *         refused a piece of the index that it had room for, every later write is answered IO.
  * Thread safety: any thread, several at once, but not the same tile.
  */
 SLUICE_API SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer,
@@ -205,9 +206,10 @@ SLUICE_API SluiceResult sluiceWriteStoreTail(SluiceStoreWriter *writer, uint32_t
  * Seals the file, waits until it is on the disk, and gives it its name. After success the writer
  * can only be asked and destroyed.
  *
- * Errors: NULL_POINTER; INVALID_TILE_STATE if tiles are missing (the log names the first), or it is
- *         finished already; OUT_OF_HOST_MEMORY; IO. There is no file under the name then, or the
- *         one that was there before; the call may be repeated.
+ * Errors: NULL_POINTER; INVALID_TILE_STATE if tiles are missing (the log names the first; write
+ *         them and call again), or it is finished already; IO. Under the name is what was there
+ *         before, then, but for the last step, when the folder could not be written to the disk.
+ *         After IO the writer can only be destroyed; another one may resume.
  * Thread safety: external on the writer.
  */
 SLUICE_API SluiceResult sluiceFinishStore(SluiceStoreWriter *writer);

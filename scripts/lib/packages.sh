@@ -3,7 +3,8 @@
 # shellcheck shell=bash
 
 packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spirv-tools
-    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev)
+    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev libzstd-dev
+    libxxhash-dev)
 packages_to_test=(binutils g++ clang libcmocka-dev vulkan-validationlayers)
 
 package_is_installed() {

@@ -3,6 +3,9 @@
 #ifdef WITH_EXR
 #include <sluice/exr.h>
 #endif
+#ifdef WITH_STORE
+#include <sluice/store.h>
+#endif
 #ifdef WITH_VULKAN
 #include <sluice/vulkan.h>
 #include <vulkan/vulkan.h> /* behind it: the application's Vulkan is as it was */
@@ -22,6 +25,12 @@ int main(void)
     SluiceImageSource *source = NULL;
     if (sluiceCreateExrImageSource(&info, &source) != SLUICE_ERROR_FILE_NOT_FOUND)
         return 3;
+#endif
+#ifdef WITH_STORE
+    SluiceStoreImageSourceCreateInfo store = {.pPath = "there is no such file"};
+    SluiceImageSource *tiles = NULL;
+    if (sluiceCreateStoreImageSource(&store, &tiles) != SLUICE_ERROR_FILE_NOT_FOUND)
+        return 4;
 #endif
 #ifdef WITH_VULKAN
     (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */
