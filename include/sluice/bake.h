@@ -18,6 +18,9 @@
 extern "C" {
 #endif
 
+/** zstd's level where none is given. */
+#define SLUICE_BAKE_DEFAULT_COMPRESSION 8u
+
 /** How much of the level above makes a texel. */
 typedef enum SluiceBakeFilter {
     SLUICE_BAKE_FILTER_BOX = 0,   ///< the mean of the area that it covers
@@ -73,7 +76,7 @@ typedef struct SluiceBakeSettings {
     /** 0, or an alpha above 0 and at most 1: a cut-out's. Each level's alpha is scaled so that as
      *  many of its texels reach it as in the picture itself. Reads the picture twice. */
     float cutout;
-    uint32_t compressionLevel; ///< zstd's, 1 to 22; 0: 3
+    uint32_t compressionLevel; ///< zstd's, 1 to 22; 0: SLUICE_BAKE_DEFAULT_COMPRESSION
     bool uncompressed;
 } SluiceBakeSettings;
 

@@ -120,7 +120,7 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
         .settingsHash = bake->settings_hash,
         .compressionLevel = settings->uncompressed       ? 0
                             : settings->compressionLevel ? settings->compressionLevel
-                                                         : SLC_DEFAULT_COMPRESSION,
+                                                         : SLUICE_BAKE_DEFAULT_COMPRESSION,
         .flags = bake->info->pInputPath ? SLUICE_STORE_WRITER_RESUME : 0,
         .pAllocator = &bake->baker->allocator,
         .log = bake->baker->log,

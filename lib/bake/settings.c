@@ -21,7 +21,7 @@ uint64_t sluiceHashBakeSettings(const SluiceBakeSettings *pSettings)
         (uint32_t)pSettings->wrapY,
         pSettings->normalMap,
         cutout,
-        pSettings->compressionLevel ? pSettings->compressionLevel : SLC_DEFAULT_COMPRESSION,
+        pSettings->compressionLevel ? pSettings->compressionLevel : SLUICE_BAKE_DEFAULT_COMPRESSION,
         pSettings->uncompressed,
     };
     uint8_t bytes[sizeof values]; /* the same on every machine */

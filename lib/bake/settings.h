@@ -2,8 +2,6 @@
 #ifndef SLC_BAKE_SETTINGS_H
 #define SLC_BAKE_SETTINGS_H
 
-/** zstd's level where none is given. */
-#define SLC_DEFAULT_COMPRESSION 3
 /** Part of every hash; raised when the same settings give other texels. */
 #define SLC_BAKE_REVISION 1
 
