@@ -36,8 +36,11 @@ static SluiceResult open_and_lock(struct slc_store_part *part)
         slc_store_fail_system(file, "create");
         return absent ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
-    if (flock(file->descriptor, LOCK_EX | LOCK_NB) != 0)
-        return slc_store_fail_system(file, "lock; is another writer at work?");
+    if (flock(file->descriptor, LOCK_EX | LOCK_NB) != 0) {
+        SluiceResult result = slc_store_fail_system(file, "lock; is another writer at work?");
+        close_descriptor(part); /* or it would be removed as ours */
+        return result;
+    }
     struct stat status;
     if (fstat(file->descriptor, &status) != 0)
         return slc_store_fail_system(file, "stat");

@@ -1,4 +1,6 @@
 /* Makes tile stores of pictures. */
+#define _XOPEN_SOURCE 700
+
 #include "report.h"
 #include "verify.h"
 
@@ -28,6 +30,7 @@ int main(int argc, char **argv)
 {
     struct options options;
     int status = OK;
+    setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     if (!parse_options(&options, argc, argv))
         return WRONG_USAGE;
     if (options.help)

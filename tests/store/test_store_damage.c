@@ -1,0 +1,391 @@
+/* Files that are not to be trusted: an error or the picture, and nothing else. */
+#define _XOPEN_SOURCE 700
+
+#include "base/checked.h"
+#include "store/naive_store.h"
+#include "store/stores.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A file that the tests change. */
+struct victim {
+    struct scratch scratch;
+    unsigned char *bytes; ///< as they were
+    size_t size;
+};
+
+static void victim_init(struct victim *victim, uint32_t compression)
+{
+    scratch_init(&victim->scratch);
+    SluiceStoreCreateInfo info = {.pPath = victim->scratch.path,
+                                  .width = 300,
+                                  .height = 140,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pSourceName = "picture.png",
+                                  .compressionLevel = compression};
+    CHECK_OK(write_store(&info, PICTURE_SMOOTH));
+    victim->bytes = read_bytes(victim->scratch.path, &victim->size);
+}
+
+static void victim_finish(struct victim *victim)
+{
+    free(victim->bytes);
+    scratch_finish(&victim->scratch);
+}
+
+static bool is_an_error_of_the_file(SluiceResult result)
+{
+    return result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_UNSUPPORTED;
+}
+
+/* Whether any chunk, or any place that says where one is, has this byte. */
+static bool is_read(const struct naive_store *store, size_t at)
+{
+    if (at < store->data)
+        return true;
+    for (uint64_t i = 0; i < store->chunks; i++) {
+        struct naive_chunk chunk = naive_store_chunk(store, i);
+        if (at >= chunk.offset && at - chunk.offset < chunk.size)
+            return true;
+    }
+    return false;
+}
+
+/* The file is changed in place, one bit at a time. */
+static void flip_bits(uint32_t compression, int count)
+{
+    struct victim victim;
+    victim_init(&victim, compression);
+    struct naive_store store;
+    assert_null(naive_store_load(&store, victim.scratch.path));
+    FILE *file = fopen(victim.scratch.path, "r+b");
+    setvbuf(file, NULL, _IONBF, 0);
+    uint32_t random = 12345, harmless = 0;
+    for (int i = 0; i < count; i++) {
+        random = random * 1664525u + 1013904223u;
+        /* half of them in header and index */
+        size_t at = (random >> 8) % (i % 2 ? victim.size : store.data);
+        fseek(file, (long)at, SEEK_SET);
+        fputc(victim.bytes[at] ^ 1 << random % 8, file);
+        struct messages messages;
+        SluiceResult result = read_store(victim.scratch.path, PICTURE_SMOOTH, &messages);
+        if (is_read(&store, at)) {
+            assert_true(is_an_error_of_the_file(result));
+            assert_int_equal(messages.errors, 1);
+            assert_non_null(strstr(messages.last, victim.scratch.path));
+            assert_non_null(strstr(messages.last, ": at "));
+        } else {
+            CHECK_OK(result);
+            harmless++;
+        }
+        fseek(file, (long)at, SEEK_SET);
+        fputc(victim.bytes[at], file);
+    }
+    fclose(file);
+    assert_true(compression == 0 ? harmless < (uint32_t)count / 4 : harmless == 0);
+    CHECK_OK(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL));
+    naive_store_finish(&store);
+    victim_finish(&victim);
+}
+
+static void every_flipped_bit_of_a_compressed_file_is_noticed(void **state)
+{
+    (void)state;
+    flip_bits(3, 7000);
+}
+
+static void every_flipped_bit_that_is_read_of_a_raw_file_is_noticed(void **state)
+{
+    (void)state;
+    flip_bits(0, 3000);
+}
+
+static void every_bit_of_header_and_chunks_that_matters_is_noticed(void **state)
+{
+    (void)state;
+    /* not at random: all bits of the first bytes, and of where things end */
+    struct victim victim;
+    victim_init(&victim, 3);
+    const size_t places[] = {0, 128, 4060, 4096, 8180, victim.size - 32};
+    for (size_t p = 0; p < sizeof places / sizeof places[0]; p++)
+        for (size_t bit = 0; bit < 32 * 8; bit++) {
+            unsigned char *byte = &victim.bytes[places[p] + bit / 8];
+            *byte ^= (unsigned char)(1 << bit % 8);
+            write_bytes(victim.scratch.path, victim.bytes, victim.size);
+            assert_true(
+                is_an_error_of_the_file(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL)));
+            *byte ^= (unsigned char)(1 << bit % 8);
+        }
+    victim_finish(&victim);
+}
+
+static void a_file_cut_anywhere_is_refused_when_it_is_opened(void **state)
+{
+    (void)state;
+    struct victim victim;
+    victim_init(&victim, 3);
+    for (size_t size = 0; size < victim.size;) {
+        write_bytes(victim.scratch.path, victim.bytes, size);
+        struct messages messages;
+        CHECK_RESULT(read_store(victim.scratch.path, PICTURE_SMOOTH, &messages),
+                     SLUICE_ERROR_CORRUPT_DATA);
+        assert_int_equal(messages.errors, 1);
+        size += size < 200 || size + 200 > victim.size ? 1 : 37;
+    }
+    victim_finish(&victim);
+}
+
+static void a_file_that_goes_on_behind_its_end_is_refused(void **state)
+{
+    (void)state;
+    struct victim victim;
+    victim_init(&victim, 3);
+    victim.bytes[victim.size] = 0; /* read_bytes leaves room for it */
+    write_bytes(victim.scratch.path, victim.bytes, victim.size + 1);
+    CHECK_RESULT(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL), SLUICE_ERROR_CORRUPT_DATA);
+    victim_finish(&victim);
+}
+
+static void put(unsigned char *at, uint64_t value, int size)
+{
+    for (int i = 0; i < size; i++)
+        at[i] = (unsigned char)(value >> 8 * i);
+}
+
+/* Lies with right checksums. */
+static void contradictions_under_right_checksums_are_noticed(void **state)
+{
+    (void)state;
+    const struct {
+        size_t at; ///< in the header, or behind 4096 in the entry of the first tile
+        uint64_t value;
+        int size;
+    } lies[] = {
+        {16, 0, 4},
+        {16, (1u << 20) + 1, 4},
+        {20, 0, 4},
+        {16, 301, 4},
+        {20, 0xFFFFFFFF, 4},
+        {24, 8, 4},
+        {24, 0, 4},
+        {28, 0, 4},
+        {28, 2, 4},
+        {28, 65537, 4},
+        {32, 0, 4},
+        {32, 30, 4},
+        {32, 6, 4},
+        {36, 64, 4},
+        {40, 0, 4},
+        {44, 0, 4},
+        {44, 21, 4},
+        {68, 3901, 4},
+        {68, 0xFFFFFFFF, 4},
+        {96, 1, 8},
+        {96, UINT64_MAX, 8},
+        {104, 4096, 8},
+        {104, UINT64_MAX, 8},
+        {4072, 0, 8},
+        {4072, 9000, 8},
+        {4072, UINT64_MAX, 8},
+        {4096, 0, 8},
+        {4096, 4096, 8},
+        {4096, UINT64_MAX, 8},
+        {4096, 1u << 30, 8},
+        {4112, 0, 4},
+        {4112, 65537, 4},
+        {4112, 65536, 4},
+        {4112, 0xFFFFFFFF, 4},
+        {4112, 10, 4},
+        {4112, 1, 4},
+    };
+    struct victim victim;
+    victim_init(&victim, 3);
+    unsigned char *copy = malloc(victim.size);
+    for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
+        memcpy(copy, victim.bytes, victim.size);
+        put(copy + lies[i].at, lies[i].value, lies[i].size);
+        naive_store_reseal(copy, victim.size);
+        write_bytes(victim.scratch.path, copy, victim.size);
+        struct messages messages;
+        SluiceResult result = read_store(victim.scratch.path, PICTURE_SMOOTH, &messages);
+        if (!is_an_error_of_the_file(result))
+            fail_msg("%zu: %llu is %s", lies[i].at, (unsigned long long)lies[i].value,
+                     sluiceResultString(result));
+        assert_int_equal(messages.errors, 1);
+    }
+    free(copy);
+    victim_finish(&victim);
+}
+
+/* A frame of other content, in the place of the first tile's, with right checksums. */
+static SluiceResult read_with_frame(struct victim *victim, const void *frame, size_t size)
+{
+    struct naive_store store;
+    assert_null(naive_store_load(&store, victim->scratch.path));
+    struct naive_chunk chunk = naive_store_chunk(&store, 0);
+    memcpy(store.bytes + chunk.offset, frame, size);
+    put(store.bytes + chunk.entry + 16, size, 4);
+    naive_store_reseal(store.bytes, store.size);
+    write_bytes(victim->scratch.path, store.bytes, store.size);
+    naive_store_finish(&store);
+    struct messages messages;
+    SluiceResult result = read_store(victim->scratch.path, PICTURE_SMOOTH, &messages);
+    assert_true(result == SLUICE_SUCCESS || messages.errors == 1);
+    return result;
+}
+
+static void frames_of_another_size_than_the_texels_are_refused(void **state)
+{
+    (void)state;
+    /* Each says a content size and is one run of the byte 7: RFC 8878, raw and RLE blocks. */
+    const struct {
+        uint64_t claimed;
+        uint32_t run;
+    } bombs[] = {
+        {UINT64_C(1) << 40, 65536}, {65535, 65535}, {65537, 65537}, {65536, 65535}, {65536, 1},
+        {1 << 17, 1 << 17}};
+    struct victim victim;
+    victim_init(&victim, 3);
+    for (size_t i = 0; i < sizeof bombs / sizeof bombs[0]; i++) {
+        /* descriptor: 8 bytes of content size, single segment */
+        unsigned char frame[17] = {0x28, 0xB5, 0x2F, 0xFD, 0xE0};
+        put(frame + 5, bombs[i].claimed, 8);
+        put(frame + 13, bombs[i].run << 3 | 1 << 1 | 1, 3); /* last, RLE */
+        frame[16] = 7;
+        CHECK_RESULT(read_with_frame(&victim, frame, sizeof frame), SLUICE_ERROR_CORRUPT_DATA);
+    }
+    static const unsigned char without_size[9] = {0x28, 0xB5, 0x2F, 0xFD, 0x00, 0x58, 1, 0, 0};
+    CHECK_RESULT(read_with_frame(&victim, without_size, 9), SLUICE_ERROR_CORRUPT_DATA);
+    CHECK_RESULT(read_with_frame(&victim, "no frame", 8), SLUICE_ERROR_CORRUPT_DATA);
+    victim_finish(&victim);
+}
+
+static void tiles_that_are_swapped_are_noticed(void **state)
+{
+    (void)state;
+    for (uint32_t compression = 0; compression <= 3; compression += 3) {
+        struct victim victim;
+        victim_init(&victim, compression);
+        struct naive_store store;
+        assert_null(naive_store_load(&store, victim.scratch.path));
+        uint8_t first[20];
+        memcpy(first, store.bytes + 4096, 20);
+        memcpy(store.bytes + 4096, store.bytes + 4116, 20);
+        memcpy(store.bytes + 4116, first, 20);
+        unsigned char *chunks = malloc(store.size);
+        memcpy(chunks, store.bytes, store.size);
+        naive_store_reseal(store.bytes, store.size);
+        /* the entries' own checksums are as they were, those of the index are right */
+        memcpy(store.bytes + 4104, chunks + 4104, 8);
+        memcpy(store.bytes + 4124, chunks + 4124, 8);
+        free(chunks);
+        write_bytes(victim.scratch.path, store.bytes, store.size);
+        CHECK_RESULT(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL),
+                     SLUICE_ERROR_CORRUPT_DATA);
+        naive_store_finish(&store);
+        victim_finish(&victim);
+    }
+}
+
+static SluiceResult read_first_tile(SluiceImageSource *source)
+{
+    unsigned char texels[65536];
+    SluiceImageRegion region = {0, 0, 0, 128, 128, 0};
+    SluiceResult result = sluiceReadImageRegion(source, &region, texels, 512);
+    if (result == SLUICE_SUCCESS)
+        assert_true(is_painted(PICTURE_SMOOTH, SLUICE_FORMAT_R8G8B8A8_UNORM, &region, texels, 512));
+    return result;
+}
+
+static void a_file_that_is_cut_while_it_is_open_gives_an_error(void **state)
+{
+    (void)state;
+    for (int is_known = 0; is_known < 2; is_known++) { /* whether the index has been read before */
+        struct victim victim;
+        victim_init(&victim, 3);
+        struct messages messages;
+        SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
+                                                   .log = messages_log(&messages)};
+        SluiceImageSource *source;
+        CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+        if (is_known)
+            CHECK_OK(read_first_tile(source));
+        assert_int_equal(truncate(victim.scratch.path, is_known ? 8200 : 5000), 0);
+        CHECK_RESULT(read_first_tile(source), SLUICE_ERROR_IO);
+        assert_int_equal(messages.errors, 1);
+        write_bytes(victim.scratch.path, victim.bytes, victim.size); /* and is whole again */
+        CHECK_OK(read_first_tile(source));
+        sluiceDestroyImageSource(source);
+        victim_finish(&victim);
+    }
+}
+
+static void a_file_that_is_replaced_stays_what_it_was_for_who_has_it_open(void **state)
+{
+    (void)state;
+    struct victim victim;
+    victim_init(&victim, 3);
+    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    SluiceStoreCreateInfo info = {.pPath = victim.scratch.path,
+                                  .width = 500,
+                                  .height = 500,
+                                  .format = SLUICE_FORMAT_R8_UNORM};
+    CHECK_OK(write_store(&info, PICTURE_NOISE));
+    CHECK_OK(read_first_tile(source));
+    sluiceDestroyImageSource(source);
+    CHECK_OK(read_store(victim.scratch.path, PICTURE_NOISE, NULL));
+    victim_finish(&victim);
+}
+
+static void a_file_that_is_written_over_while_it_is_open_gives_an_error(void **state)
+{
+    (void)state;
+    struct victim victim, other;
+    victim_init(&victim, 3);
+    victim_init(&other, 0);
+    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    write_bytes(victim.scratch.path, other.bytes, other.size);
+    CHECK_RESULT(read_first_tile(source), SLUICE_ERROR_CORRUPT_DATA);
+    sluiceDestroyImageSource(source);
+    victim_finish(&victim);
+    victim_finish(&other);
+}
+
+static void what_is_no_file_is_not_opened(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    scratch_init(&scratch);
+    CHECK_RESULT(read_store(scratch.path, PICTURE_SMOOTH, NULL), SLUICE_ERROR_FILE_NOT_FOUND);
+    CHECK_RESULT(read_store(scratch.folder, PICTURE_SMOOTH, NULL), SLUICE_ERROR_IO);
+    CHECK_RESULT(read_store("/dev/null", PICTURE_SMOOTH, NULL), SLUICE_ERROR_IO);
+    CHECK_RESULT(read_store("/dev/null/a.store", PICTURE_SMOOTH, NULL),
+                 SLUICE_ERROR_FILE_NOT_FOUND);
+    scratch_finish(&scratch);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_flipped_bit_of_a_compressed_file_is_noticed),
+        cmocka_unit_test(every_flipped_bit_that_is_read_of_a_raw_file_is_noticed),
+        cmocka_unit_test(every_bit_of_header_and_chunks_that_matters_is_noticed),
+        cmocka_unit_test(a_file_cut_anywhere_is_refused_when_it_is_opened),
+        cmocka_unit_test(a_file_that_goes_on_behind_its_end_is_refused),
+        cmocka_unit_test(contradictions_under_right_checksums_are_noticed),
+        cmocka_unit_test(frames_of_another_size_than_the_texels_are_refused),
+        cmocka_unit_test(tiles_that_are_swapped_are_noticed),
+        cmocka_unit_test(a_file_that_is_cut_while_it_is_open_gives_an_error),
+        cmocka_unit_test(a_file_that_is_replaced_stays_what_it_was_for_who_has_it_open),
+        cmocka_unit_test(a_file_that_is_written_over_while_it_is_open_gives_an_error),
+        cmocka_unit_test(what_is_no_file_is_not_opened),
+    };
+    return RUN_TESTS(tests);
+}
