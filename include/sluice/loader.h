@@ -50,7 +50,7 @@ typedef struct SluiceTileReadFailureCallback {
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceTileLoaderCreateInfo {
     uint32_t threadCount;     ///< 0: one less than there are processors, at least 1
-    uint32_t requestCapacity; ///< reads not yet collected, at most; 0: 1024
+    uint32_t requestCapacity; ///< reads not yet collected, at most, up to 2^29; 0: 1024
     const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
     SluiceTileRetryPolicy retry;
     /** Reads of one source that are under way at once: a source that stalls holds so many threads
@@ -60,6 +60,9 @@ typedef struct SluiceTileLoaderCreateInfo {
      *  0: 2^28. */
     uint64_t maxBytesInFlight;
     SluiceTileReadFailureCallback failure;
+    /** Sources whose statistics are kept, about 700 bytes each; beyond it those longest without
+     *  reads are forgotten. At most 2^29; at least requestCapacity; 0: that. */
+    uint32_t maxSourceCount;
 } SluiceTileLoaderCreateInfo;
 
 /** One or more regions that are read as one: the packed levels of a texture, or one tile. */
@@ -84,7 +87,8 @@ typedef struct SluiceTileReadResult {
     uint64_t size; ///< bytes of texels delivered; 0 unless the result is SUCCESS
 } SluiceTileReadResult;
 
-/** Starts the threads. Errors: NULL_POINTER; OUT_OF_HOST_MEMORY, also for want of threads. */
+/** Starts the threads. Errors: NULL_POINTER; INVALID_ARGUMENT for counts beyond their limits;
+ *  OUT_OF_HOST_MEMORY, also for want of threads. */
 SLUICE_API SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInfo,
                                                SluiceTileLoader **pLoader);
 
@@ -95,8 +99,7 @@ SLUICE_API void sluiceDestroyTileLoader(SluiceTileLoader *loader);
 /**
  * Queues a read. `*pTicket` is never 0 and never comes again. Returns SLUICE_NOT_READY, and queues
  * nothing, while requestCapacity reads are uncollected. Regions are checked when they are read.
- * Errors: NULL_POINTER, INVALID_ARGUMENT; OUT_OF_HOST_MEMORY for the first read of a source.
- * Thread safety: any thread.
+ * Errors: NULL_POINTER, INVALID_ARGUMENT. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead *pRead,
                                              uint64_t *pTicket);
@@ -140,16 +143,16 @@ typedef struct SluiceTileLoaderStatistics {
 } SluiceTileLoaderStatistics;
 
 /**
- * `source` NULL: of all reads. Zeros for a source of which nothing was submitted. Errors:
- * NULL_POINTER. Thread safety: any thread.
+ * `source` NULL: of all reads. Zeros for a source of which nothing was submitted, or that is
+ * forgotten. Errors: NULL_POINTER. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
                                                       const SluiceImageSource *source,
                                                       SluiceTileLoaderStatistics *pStatistics);
 
 /**
- * Drops what the loader knows of a source, about half a kibibyte, before the source is destroyed:
- * another one at the same address would otherwise go on with its statistics. Returns
+ * Drops what the loader knows of a source. Useful where the source is destroyed: another one at the
+ * same address would otherwise go on with its statistics. Returns
  * SLUICE_NOT_READY, with nothing changed, while reads of it are not collected. The statistics of
  * all reads stay. Errors: NULL_POINTER. Thread safety: any thread.
  */

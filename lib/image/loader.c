@@ -10,6 +10,9 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Of reads, and of sources that are remembered. */
+#define MAX_COUNT (1u << 29)
+
 struct SluiceTileLoader {
     SluiceAllocationCallbacks allocator;
     SluiceTileRetryPolicy retry;
@@ -172,22 +175,31 @@ static void free_memory(struct SluiceTileLoader *loader, uint32_t thread_count)
     slc_free(&cb, loader, 1, sizeof *loader);
 }
 
+static struct slc_read_queue_limits read_limits(const SluiceTileLoaderCreateInfo *info,
+                                                uint32_t thread_count)
+{
+    uint32_t capacity = info->requestCapacity ? info->requestCapacity : 1024;
+    uint32_t per_source = info->maxReadsPerSource ? info->maxReadsPerSource : thread_count - 1;
+    return (struct slc_read_queue_limits){
+        .capacity = capacity,
+        .source_count = slc_max_u32(capacity, info->maxSourceCount),
+        .max_running_per_source = slc_max_u32(1, per_source),
+        .max_running_size = info->maxBytesInFlight ? info->maxBytesInFlight : (uint64_t)1 << 28,
+    };
+}
+
 static struct SluiceTileLoader *allocate(const SluiceTileLoaderCreateInfo *info,
                                          uint32_t thread_count)
 {
     SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
-    uint32_t per_source = info->maxReadsPerSource ? info->maxReadsPerSource : thread_count - 1;
     struct SluiceTileLoader *loader = slc_calloc(&cb, 1, sizeof *loader);
     if (!loader)
         return NULL;
     loader->allocator = cb;
     loader->retry = slc_retry_policy(&info->retry);
     loader->failure = info->failure;
-    if (slc_read_queue_init(&loader->queue, &cb,
-                            info->requestCapacity ? info->requestCapacity : 1024,
-                            slc_max_u32(1, per_source),
-                            info->maxBytesInFlight ? info->maxBytesInFlight : (uint64_t)1 << 28) !=
-        SLUICE_SUCCESS) {
+    struct slc_read_queue_limits limits = read_limits(info, thread_count);
+    if (slc_read_queue_init(&loader->queue, &cb, &limits) != SLUICE_SUCCESS) {
         slc_free(&cb, loader, 1, sizeof *loader);
         return NULL;
     }
@@ -232,6 +244,8 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 {
     if (!pCreateInfo || !pLoader || !slc_allocator_is_valid(pCreateInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
+    if (pCreateInfo->requestCapacity > MAX_COUNT || pCreateInfo->maxSourceCount > MAX_COUNT)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     uint32_t wanted = pCreateInfo->threadCount ? pCreateInfo->threadCount : default_thread_count();
     struct SluiceTileLoader *loader = allocate(pCreateInfo, wanted);
     if (!loader)
@@ -282,11 +296,11 @@ SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead
         if (!pRead->ppTexels[i])
             return SLUICE_ERROR_NULL_POINTER;
     pthread_mutex_lock(&loader->mutex);
-    SluiceResult result = slc_read_queue_submit(&loader->queue, &loader->allocator, pRead, pTicket);
-    if (result == SLUICE_SUCCESS)
+    bool queued = slc_read_queue_submit(&loader->queue, pRead, pTicket);
+    if (queued)
         pthread_cond_signal(&loader->work);
     pthread_mutex_unlock(&loader->mutex);
-    return result;
+    return queued ? SLUICE_SUCCESS : SLUICE_NOT_READY;
 }
 
 void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
@@ -343,7 +357,7 @@ SluiceResult sluiceForgetTileLoaderSource(SluiceTileLoader *loader, const Sluice
     if (!loader || !source)
         return SLUICE_ERROR_NULL_POINTER;
     pthread_mutex_lock(&loader->mutex);
-    SluiceResult result = slc_read_queue_forget(&loader->queue, &loader->allocator, source);
+    SluiceResult result = slc_read_queue_forget(&loader->queue, source);
     pthread_mutex_unlock(&loader->mutex);
     return result;
 }

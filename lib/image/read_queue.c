@@ -32,18 +32,19 @@ static bool source_is_more_urgent(const struct slc_heap_node *a, const struct sl
 }
 
 SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
-                                 uint32_t capacity, uint32_t max_running_per_source,
-                                 uint64_t max_running_size)
+                                 const struct slc_read_queue_limits *limits)
 {
+    uint32_t capacity = limits->capacity;
     *queue = (struct slc_read_queue){.capacity = capacity,
-                                     .max_running_per_source = max_running_per_source,
-                                     .max_running_size = max_running_size,
+                                     .max_running_per_source = limits->max_running_per_source,
+                                     .max_running_size = limits->max_running_size,
                                      .startable.is_before = source_is_more_urgent,
                                      .delayed.is_before = read_is_due_before};
     queue->reads = slc_calloc(cb, capacity, sizeof *queue->reads);
     queue->free_slots = slc_alloc(cb, capacity, sizeof *queue->free_slots);
     queue->finished = slc_alloc(cb, capacity, sizeof *queue->finished);
-    if (!queue->reads || !queue->free_slots || !queue->finished) {
+    if (!queue->reads || !queue->free_slots || !queue->finished ||
+        slc_read_sources_init(&queue->sources, cb, limits->source_count) != SLUICE_SUCCESS) {
         slc_read_queue_finish(queue, cb);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
@@ -113,15 +114,12 @@ static void stop_running(struct slc_read_queue *queue, struct slc_read *read)
     source_return(queue, read->source);
 }
 
-SluiceResult slc_read_queue_submit(struct slc_read_queue *queue,
-                                   const SluiceAllocationCallbacks *cb, const SluiceTileRead *given,
-                                   uint64_t *ticket)
+bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *given,
+                           uint64_t *ticket)
 {
     if (queue->free_count == 0)
-        return SLUICE_NOT_READY;
-    struct slc_read_source *source = slc_read_sources_get(&queue->sources, cb, given->source);
-    if (!source)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        return false;
+    struct slc_read_source *source = slc_read_sources_add_read(&queue->sources, given->source);
     source->queued.is_before = read_is_more_urgent;
     uint32_t slot = queue->free_slots[--queue->free_count];
     struct slc_read *read = &queue->reads[slot];
@@ -137,11 +135,10 @@ SluiceResult slc_read_queue_submit(struct slc_read_queue *queue,
     memcpy(read->texels, given->ppTexels, given->regionCount * sizeof *read->texels);
     *ticket = make_ticket(queue, slot);
     read->result = (SluiceTileReadResult){.ticket = *ticket, .userValue = given->userValue};
-    source->uncollected_count++;
     source->statistics.counts.readCount++;
     queue->statistics.counts.readCount++;
     enqueue(queue, read);
-    return SLUICE_SUCCESS;
+    return true;
 }
 
 /* Bytes of the regions that are left; too many rather than too few while the format is unknown. */
@@ -249,7 +246,7 @@ bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *
     *result = read->result;
     read->state = SLC_READ_FREE;
     read->generation++;
-    read->source->uncollected_count--;
+    slc_read_sources_remove_read(&queue->sources, read->source);
     queue->free_slots[queue->free_count++] = slot;
     return true;
 }
@@ -259,16 +256,13 @@ bool slc_read_queue_is_idle(const struct slc_read_queue *queue)
     return queue->queued_count == 0 && queue->running_count == 0 && !queue->delayed.root;
 }
 
-SluiceResult slc_read_queue_forget(struct slc_read_queue *queue,
-                                   const SluiceAllocationCallbacks *cb,
-                                   const SluiceImageSource *source)
+SluiceResult slc_read_queue_forget(struct slc_read_queue *queue, const SluiceImageSource *source)
 {
     struct slc_read_source *known = slc_read_sources_find(&queue->sources, source);
-    if (!known)
-        return SLUICE_SUCCESS;
-    if (known->uncollected_count > 0)
+    if (known && known->read_count > 0)
         return SLUICE_NOT_READY;
-    slc_read_sources_remove(&queue->sources, cb, known);
+    if (known)
+        slc_read_sources_forget(&queue->sources, known);
     return SLUICE_SUCCESS;
 }
 

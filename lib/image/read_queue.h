@@ -59,18 +59,21 @@ struct slc_read_queue {
     struct slc_read_statistics statistics; ///< of all sources; knows how many are delayed
 };
 
-/** `capacity` and `max_running_per_source` > 0. Errors: OUT_OF_HOST_MEMORY; nothing to finish then.
- */
+struct slc_read_queue_limits {
+    uint32_t capacity;               ///< > 0
+    uint32_t source_count;           ///< remembered; at least the capacity
+    uint32_t max_running_per_source; ///< > 0
+    uint64_t max_running_size;
+};
+
+/** Errors: OUT_OF_HOST_MEMORY; nothing to finish then. Must not be moved afterwards. */
 SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
-                                 uint32_t capacity, uint32_t max_running_per_source,
-                                 uint64_t max_running_size);
+                                 const struct slc_read_queue_limits *limits);
 void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb);
 
-/** Errors: OUT_OF_HOST_MEMORY for the first read of a source. NOT_READY when every slot is taken.
- */
-SluiceResult slc_read_queue_submit(struct slc_read_queue *queue,
-                                   const SluiceAllocationCallbacks *cb, const SluiceTileRead *read,
-                                   uint64_t *ticket);
+/** False when every slot is taken. */
+bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *read,
+                           uint64_t *ticket);
 
 /** The most urgent read that may run, running from now on; NULL if there is none at this time. */
 struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now);
@@ -99,9 +102,7 @@ bool slc_read_queue_is_idle(const struct slc_read_queue *queue);
 
 /** Drops what is known of a source. NOT_READY, and nothing has changed, while it has reads that are
  *  not collected. */
-SluiceResult slc_read_queue_forget(struct slc_read_queue *queue,
-                                   const SluiceAllocationCallbacks *cb,
-                                   const SluiceImageSource *source);
+SluiceResult slc_read_queue_forget(struct slc_read_queue *queue, const SluiceImageSource *source);
 
 /** Of a source, zeros for an unknown one, or of all for NULL. */
 void slc_read_queue_write_statistics(const struct slc_read_queue *queue,

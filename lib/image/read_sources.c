@@ -4,10 +4,43 @@
 
 #include <assert.h>
 
+static void unlink_idle(struct slc_read_source *source)
+{
+    source->previous->next = source->next;
+    source->next->previous = source->previous;
+    source->previous = source->next = NULL;
+}
+
+static void link_after(struct slc_read_source *where, struct slc_read_source *source)
+{
+    source->previous = where;
+    source->next = where->next;
+    where->next->previous = source;
+    where->next = source;
+}
+
+SluiceResult slc_read_sources_init(struct slc_read_sources *sources,
+                                   const SluiceAllocationCallbacks *cb, uint32_t count)
+{
+    assert(count > 0 && count < 1u << 30);
+    *sources = (struct slc_read_sources){.count = count, .place_count = 4};
+    while (sources->place_count < 2 * count)
+        sources->place_count *= 2;
+    sources->records = slc_calloc(cb, count, sizeof *sources->records);
+    sources->places = slc_calloc(cb, sources->place_count, sizeof *sources->places);
+    if (!sources->records || !sources->places) {
+        slc_read_sources_finish(sources, cb);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    sources->idle.previous = sources->idle.next = &sources->idle;
+    for (uint32_t i = 0; i < count; i++)
+        link_after(&sources->idle, &sources->records[i]);
+    return SLUICE_SUCCESS;
+}
+
 void slc_read_sources_finish(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb)
 {
-    for (uint32_t i = 0; i < sources->place_count; i++)
-        slc_free(cb, sources->places[i], 1, sizeof **sources->places);
+    slc_free(cb, sources->records, sources->count, sizeof *sources->records);
     slc_free(cb, sources->places, sources->place_count, sizeof *sources->places);
     *sources = (struct slc_read_sources){0};
 }
@@ -25,55 +58,58 @@ static uint32_t place_of(const struct slc_read_sources *sources, const SluiceIma
 struct slc_read_source *slc_read_sources_find(const struct slc_read_sources *sources,
                                               const SluiceImageSource *source)
 {
-    return sources->place_count ? sources->places[place_of(sources, source)] : NULL;
+    return sources->places[place_of(sources, source)];
 }
 
-/* Half of the places stay free, so that searches end soon. */
-static bool make_room(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb)
-{
-    if (2 * (sources->count + 1) <= sources->place_count)
-        return true;
-    struct slc_read_sources bigger = {sources->place_count ? 2 * sources->place_count : 16,
-                                      sources->count, NULL};
-    bigger.places = slc_calloc(cb, bigger.place_count, sizeof *bigger.places);
-    if (!bigger.places)
-        return false;
-    for (uint32_t i = 0; i < sources->place_count; i++)
-        if (sources->places[i])
-            bigger.places[place_of(&bigger, sources->places[i]->source)] = sources->places[i];
-    slc_free(cb, sources->places, sources->place_count, sizeof *sources->places);
-    *sources = bigger;
-    return true;
-}
-
-struct slc_read_source *slc_read_sources_get(struct slc_read_sources *sources,
-                                             const SluiceAllocationCallbacks *cb,
-                                             SluiceImageSource *source)
-{
-    struct slc_read_source *known = slc_read_sources_find(sources, source);
-    if (known || !make_room(sources, cb))
-        return known;
-    struct slc_read_source *added = slc_calloc(cb, 1, sizeof *added);
-    if (!added)
-        return NULL;
-    added->source = source;
-    sources->places[place_of(sources, source)] = added;
-    sources->count++;
-    return added;
-}
-
-void slc_read_sources_remove(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb,
-                             struct slc_read_source *source)
+static void remove_place(struct slc_read_sources *sources, const struct slc_read_source *source)
 {
     uint32_t mask = sources->place_count - 1, at = place_of(sources, source->source);
     assert(sources->places[at] == source);
     sources->places[at] = NULL;
-    sources->count--;
     /* Those behind it may have wished to be nearer. */
     for (at = (at + 1) & mask; sources->places[at]; at = (at + 1) & mask) {
         struct slc_read_source *moved = sources->places[at];
         sources->places[at] = NULL;
         sources->places[place_of(sources, moved->source)] = moved;
     }
-    slc_free(cb, source, 1, sizeof *source);
+}
+
+/* A record out of the idle ones, its former source forgotten. */
+static struct slc_read_source *recycle(struct slc_read_sources *sources, SluiceImageSource *source)
+{
+    struct slc_read_source *record = sources->idle.next;
+    assert(record != &sources->idle);
+    unlink_idle(record);
+    if (record->source)
+        remove_place(sources, record);
+    *record = (struct slc_read_source){.source = source};
+    sources->places[place_of(sources, source)] = record;
+    return record;
+}
+
+struct slc_read_source *slc_read_sources_add_read(struct slc_read_sources *sources,
+                                                  SluiceImageSource *source)
+{
+    struct slc_read_source *record = slc_read_sources_find(sources, source);
+    if (!record)
+        record = recycle(sources, source);
+    else if (record->read_count == 0)
+        unlink_idle(record);
+    record->read_count++;
+    return record;
+}
+
+void slc_read_sources_remove_read(struct slc_read_sources *sources, struct slc_read_source *source)
+{
+    if (--source->read_count == 0)
+        link_after(sources->idle.previous, source);
+}
+
+void slc_read_sources_forget(struct slc_read_sources *sources, struct slc_read_source *source)
+{
+    assert(source->source && source->read_count == 0);
+    remove_place(sources, source);
+    unlink_idle(source);
+    *source = (struct slc_read_source){0};
+    link_after(&sources->idle, source);
 }

@@ -53,8 +53,8 @@ static void model_stop(struct model *model, struct model_read *read)
     }
 }
 
-static uint64_t submit(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
-                       uint32_t source, uint32_t priority, uint32_t texel_count)
+static uint64_t submit(struct slc_read_queue *queue, uint32_t source, uint32_t priority,
+                       uint32_t texel_count)
 {
     SluiceImageRegion region = {0, 0, 0, texel_count, 1};
     void *texels = &region;
@@ -65,8 +65,8 @@ static uint64_t submit(struct slc_read_queue *queue, const SluiceAllocationCallb
                            .priority = priority,
                            .userValue = priority};
     uint64_t ticket = 0;
-    SluiceResult result = slc_read_queue_submit(queue, cb, &read, &ticket);
-    assert_int_equal(result == SLUICE_NOT_READY, ticket == 0);
+    bool queued = slc_read_queue_submit(queue, &read, &ticket);
+    assert_int_equal(queued, ticket != 0);
     return ticket;
 }
 
@@ -74,7 +74,8 @@ static uint64_t submit(struct slc_read_queue *queue, const SluiceAllocationCallb
 static void queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
                        uint32_t capacity)
 {
-    CHECK_OK(slc_read_queue_init(queue, cb, capacity, PER_SOURCE, 16 * MAX_TEXELS));
+    struct slc_read_queue_limits limits = {capacity, capacity, PER_SOURCE, 16 * MAX_TEXELS};
+    CHECK_OK(slc_read_queue_init(queue, cb, &limits));
 }
 
 /* One of those that run, or now and then of all that have not ended: at most CAPACITY. */
@@ -88,13 +89,13 @@ static struct model_read *pick(struct model *model, uint32_t random)
     return count ? open[random / 8 % count] : NULL;
 }
 
-static void model_submit(struct model *model, struct slc_read_queue *queue,
-                         const SluiceAllocationCallbacks *cb, uint32_t random, uint32_t uncollected)
+static void model_submit(struct model *model, struct slc_read_queue *queue, uint32_t random,
+                         uint32_t uncollected)
 {
     uint32_t source = random >> 4 & 15, priority = random >> 8 & 3;
     uint32_t texels = 1 + (random >> 12) % (MAX_TEXELS + 5); /* some fit only alone */
     source = source < SOURCES ? source : 0;
-    uint64_t ticket = submit(queue, cb, source, priority, texels);
+    uint64_t ticket = submit(queue, source, priority, texels);
     assert_int_equal(ticket != 0, uncollected < CAPACITY);
     if (ticket) {
         model->reads[model->count] = (struct model_read){
@@ -117,7 +118,7 @@ static void random_use_starts_reads_as_a_plain_search_would(void **state)
         uint32_t choice = random >> 29, before = model.count;
         struct model_read *read = pick(&model, random >> 10);
         if (choice <= 2) {
-            model_submit(&model, &queue, &cb, random, uncollected);
+            model_submit(&model, &queue, random, uncollected);
             uncollected += model.count - before;
         } else if (choice <= 4) {
             struct slc_read *got = slc_read_queue_start(&queue, now);
@@ -153,7 +154,7 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     struct slc_read_queue queue;
     queue_init(&queue, &cb, 4);
     assert_true(slc_read_queue_next_due(&queue) == UINT64_MAX && slc_read_queue_is_idle(&queue));
-    uint64_t ticket = submit(&queue, &cb, 0, 0, 1);
+    uint64_t ticket = submit(&queue, 0, 0, 1);
     struct slc_read *read = slc_read_queue_start(&queue, 100);
     slc_read_queue_add_attempt(&queue, read, SLUICE_ERROR_IO, 7);
     slc_read_queue_delay(&queue, read, 150);
@@ -190,19 +191,19 @@ static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
         void *texels = &region;
         uint64_t ticket;
         SluiceTileRead read = {&many[i], 1, &region, &texels, i, 0};
-        CHECK_OK(slc_read_queue_submit(&queue, &cb, &read, &ticket));
+        assert_true(slc_read_queue_submit(&queue, &read, &ticket));
     }
     for (uint32_t i = COUNT; i-- > 0;) { /* the last one is the most urgent */
-        CHECK_RESULT(slc_read_queue_forget(&queue, &cb, &many[i]), SLUICE_NOT_READY);
+        CHECK_RESULT(slc_read_queue_forget(&queue, &many[i]), SLUICE_NOT_READY);
         struct slc_read *read = slc_read_queue_start(&queue, 0);
         assert_ptr_equal(read->source->source, &many[i]);
         slc_read_queue_end(&queue, read, SLUICE_SUCCESS);
-        CHECK_RESULT(slc_read_queue_forget(&queue, &cb, &many[i]), SLUICE_NOT_READY);
+        CHECK_RESULT(slc_read_queue_forget(&queue, &many[i]), SLUICE_NOT_READY);
         assert_true(slc_read_queue_collect(&queue, &result));
         slc_read_queue_write_statistics(&queue, &many[i], &s);
         assert_int_equal(s.succeededCount, 1);
-        CHECK_OK(slc_read_queue_forget(&queue, &cb, &many[i]));
-        CHECK_OK(slc_read_queue_forget(&queue, &cb, &many[i]));
+        CHECK_OK(slc_read_queue_forget(&queue, &many[i]));
+        CHECK_OK(slc_read_queue_forget(&queue, &many[i]));
         slc_read_queue_write_statistics(&queue, &many[i], &s);
         assert_int_equal(s.readCount, 0);
         for (uint32_t k = 0; k < i; k++) { /* the others are found as before */
@@ -215,6 +216,39 @@ static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
     slc_read_queue_finish(&queue, &cb);
 }
 
+/* Three are remembered: of those without reads, the one longest without goes first. */
+static void sources_without_reads_give_way_to_new_ones(void **state)
+{
+    (void)state;
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    static SluiceImageSource many[5];
+    static const uint32_t order[] = {0, 1, 2, 0, 3, 4, 1};
+    static const bool known[7][5] = {{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 1, 1, 0, 0},
+                                     {1, 1, 1, 0, 0}, {1, 0, 1, 1, 0}, {1, 0, 0, 1, 1},
+                                     {0, 1, 0, 1, 1}};
+    struct slc_read_queue queue;
+    struct slc_read_queue_limits limits = {2, 3, 1, 100};
+    CHECK_OK(slc_read_queue_init(&queue, &cb, &limits));
+    for (uint32_t i = 0; i < 7; i++) {
+        SluiceImageRegion region = {0, 0, 0, 1, 1};
+        void *texels = &region;
+        uint64_t ticket;
+        SluiceTileReadResult result;
+        SluiceTileLoaderStatistics s;
+        SluiceTileRead read = {&many[order[i]], 1, &region, &texels, 0, 0};
+        assert_true(slc_read_queue_submit(&queue, &read, &ticket));
+        slc_read_queue_end(&queue, slc_read_queue_start(&queue, 0), SLUICE_SUCCESS);
+        assert_true(slc_read_queue_collect(&queue, &result));
+        for (uint32_t k = 0; k < 5; k++) {
+            slc_read_queue_write_statistics(&queue, &many[k], &s);
+            assert_int_equal(s.readCount > 0, known[i][k]);
+        }
+        slc_read_queue_write_statistics(&queue, NULL, &s);
+        assert_int_equal(s.readCount, i + 1);
+    }
+    slc_read_queue_finish(&queue, &cb);
+}
+
 static void tickets_are_never_zero_and_never_come_back(void **state)
 {
     (void)state;
@@ -224,7 +258,7 @@ static void tickets_are_never_zero_and_never_come_back(void **state)
     uint64_t seen[100];
     for (int i = 0; i < 100; i++) {
         SluiceTileReadResult result;
-        seen[i] = submit(&queue, &cb, 0, 0, 1);
+        seen[i] = submit(&queue, 0, 0, 1);
         assert_true(seen[i] != 0);
         for (int k = 0; k < i; k++) {
             assert_true(seen[k] != seen[i]);
@@ -243,6 +277,7 @@ int main(void)
         cmocka_unit_test(random_use_starts_reads_as_a_plain_search_would),
         cmocka_unit_test(a_delayed_read_is_started_when_it_is_due),
         cmocka_unit_test(a_source_is_forgotten_when_nothing_of_it_is_left),
+        cmocka_unit_test(sources_without_reads_give_way_to_new_ones),
         cmocka_unit_test(tickets_are_never_zero_and_never_come_back),
     };
     return RUN_TESTS(tests);
