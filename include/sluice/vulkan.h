@@ -23,6 +23,7 @@
 #define SLUICE_VULKAN_H
 
 #include <sluice/image.h>
+#include <sluice/loader.h>
 #include <sluice/manager.h>
 #include <sluice/replay.h>
 
@@ -218,6 +219,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * tiles are gone, which nobody looked at unless there is too little memory.
      */
     uint64_t residencyFadeTime;
+    /** How reads that fail are tried again at once, see loader.h; what they give up the manager
+     * asks for again after retryDelay. */
+    SluiceTileRetryPolicy readRetry;
+    uint32_t maxReadsPerSource; ///< at once; 0: as sluiceCreateTileLoader
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -382,6 +387,14 @@ typedef struct SluiceVulkanStreamerStatistics {
 
 SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
                                                   SluiceVulkanStreamerStatistics *pStatistics);
+
+/**
+ * What became of the reads of a source, or of all (NULL), see loader.h. A source is forgotten when
+ * its last texture is gone. Errors: NULL_POINTER. Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *streamer,
+                                                      const SluiceImageSource *source,
+                                                      SluiceTileLoaderStatistics *pStatistics);
 
 /** What AUTO turned out to be, or the mode that was asked for; AUTO if `streamer` is NULL. */
 SLUICE_API SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer);

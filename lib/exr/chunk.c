@@ -42,15 +42,16 @@ static SluiceResult read_rip_leader(struct slc_exr_file *file, exr_chunk_info_t 
 {
     uint64_t index = find_rip_index(file, info);
     if (index >= (uint64_t)file->chunk_count)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "chunk %llu is beyond the last",
-                            (unsigned long long)index);
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "chunk %llu is beyond the last", (unsigned long long)index);
     unsigned char bytes[24];
-    SluiceResult result = slc_exr_file_read(file, file->chunk_table_offset + 8 * index, bytes, 8);
+    SluiceResult result =
+        slc_input_file_read(&file->input, file->chunk_table_offset + 8 * index, bytes, 8);
     if (result != SLUICE_SUCCESS)
         return result;
     uint64_t offset = little_endian(bytes, 8);
     size_t leader = file->is_multipart ? 24 : 20; /* part, tile, level and size */
-    result = slc_exr_file_read(file, offset, bytes + 24 - leader, leader);
+    result = slc_input_file_read(&file->input, offset, bytes + 24 - leader, leader);
     if (result != SLUICE_SUCCESS)
         return result;
     bool matches = (!file->is_multipart || little_endian(bytes, 4) == 0) &&
@@ -59,9 +60,10 @@ static SluiceResult read_rip_leader(struct slc_exr_file *file, exr_chunk_info_t 
                    little_endian(bytes + 12, 4) == info->level_x &&
                    little_endian(bytes + 16, 4) == info->level_y;
     if (!matches)
-        return slc_exr_fail(
-            file, SLUICE_ERROR_CORRUPT_DATA, "the chunk at %llu is not tile %d, %d of level %u, %u",
-            (unsigned long long)offset, info->start_x, info->start_y, info->level_x, info->level_y);
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "the chunk at %llu is not tile %d, %d of level %u, %u",
+                              (unsigned long long)offset, info->start_x, info->start_y,
+                              info->level_x, info->level_y);
     info->idx = (int32_t)index;
     info->packed_size = little_endian(bytes + 20, 4);
     info->data_offset = offset + leader;
@@ -97,9 +99,9 @@ static SluiceResult find_with_library(struct slc_exr_file *file, struct slc_exr_
                                           level_y, &chunk->info);
     if (result == EXR_ERR_SUCCESS)
         return SLUICE_SUCCESS;
-    return slc_exr_fail(file, slc_exr_result(file, result),
-                        "cannot find chunk %u, %u of level %d: %s", x, y, level_x,
-                        exr_get_default_error_message(result));
+    return slc_input_fail(&file->input, slc_exr_result(file, result),
+                          "cannot find chunk %u, %u of level %d: %s", x, y, level_x,
+                          exr_get_default_error_message(result));
 }
 
 /*
@@ -114,14 +116,14 @@ static SluiceResult check_chunk(struct slc_exr_file *file, const struct slc_exr_
     if ((uint32_t)info->width == chunk->region.width &&
         (uint32_t)info->height == chunk->region.height && info->unpacked_size == unpacked &&
         info->packed_size > 0 && info->packed_size <= unpacked &&
-        (!is_raw || info->packed_size == unpacked) && info->data_offset <= file->size &&
-        info->packed_size <= file->size - info->data_offset)
+        (!is_raw || info->packed_size == unpacked) && info->data_offset <= file->input.size &&
+        info->packed_size <= file->input.size - info->data_offset)
         return SLUICE_SUCCESS;
-    return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                        "the chunk at %llu has %llu bytes for %u x %u texels of %u bytes",
-                        (unsigned long long)info->data_offset,
-                        (unsigned long long)info->packed_size, chunk->region.width,
-                        chunk->region.height, file->texel_size);
+    return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                          "the chunk at %llu has %llu bytes for %u x %u texels of %u bytes",
+                          (unsigned long long)info->data_offset,
+                          (unsigned long long)info->packed_size, chunk->region.width,
+                          chunk->region.height, file->texel_size);
 }
 
 SluiceResult slc_exr_chunk_find(struct slc_exr_file *file, uint32_t level, uint32_t x, uint32_t y,

@@ -187,11 +187,11 @@ SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
     exr_result_t result = decompress(decoder, &chunk->info);
     if (result != EXR_ERR_SUCCESS) {
         SluiceResult answer = explain(file, &chunk->info, result);
-        return slc_exr_fail(file, answer, "cannot decode the chunk at %llu: %s",
-                            (unsigned long long)chunk->info.data_offset,
-                            answer == SLUICE_ERROR_CORRUPT_DATA
-                                ? "its bytes are damaged"
-                                : exr_get_default_error_message(result));
+        return slc_input_fail(&file->input, answer, "cannot decode the chunk at %llu: %s",
+                              (unsigned long long)chunk->info.data_offset,
+                              answer == SLUICE_ERROR_CORRUPT_DATA
+                                  ? "its bytes are damaged"
+                                  : exr_get_default_error_message(result));
     }
     const unsigned char *texels = decoder->pipeline.unpacked_buffer;
     SluiceImageRegion shared = intersect(&chunk->region, &target->region);

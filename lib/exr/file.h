@@ -9,6 +9,8 @@
 
 #include <sluice/image.h>
 
+#include "image/input_file.h"
+
 #include <openexr.h>
 
 #include <stdatomic.h>
@@ -32,11 +34,7 @@ struct slc_exr_channel {
 };
 
 struct slc_exr_file {
-    SluiceAllocationCallbacks allocator;
-    SluiceLogCallback log;
-    char *path;
-    int descriptor;
-    uint64_t size;
+    struct slc_input_file input;
     atomic_bool system_failed; ///< a read failed for another reason than the file's end
     exr_context_t context;
 
@@ -67,22 +65,8 @@ SluiceResult slc_exr_file_open(struct slc_exr_file *file, const char *path,
 /** Also after a failed open. */
 void slc_exr_file_close(struct slc_exr_file *file);
 
-/** Reads `size` bytes at `offset`. Errors: IO; CORRUPT_DATA at the end of the file. Logged. */
-SluiceResult slc_exr_file_read(struct slc_exr_file *file, uint64_t offset, void *bytes,
-                               size_t size);
-
 /** What a result of OpenEXRCore is in ours, for reading. */
 SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result);
-
-/** Logs an error with the path in front and returns `result`. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
-#endif
-SluiceResult
-slc_exr_fail(const struct slc_exr_file *file, SluiceResult result, const char *format, ...);
-
-/** Copies as much of a file's own words as fits, with ? for what may not stand in a message. */
-void slc_exr_printable(const char *text, char *printable, size_t size);
 
 /** Fills the fields that describe the image from the open context. Errors are logged. */
 SluiceResult slc_exr_read_header(struct slc_exr_file *file);

@@ -17,7 +17,7 @@ static void list_channels(const exr_attr_chlist_t *list, char *text, size_t size
     size_t used = 0;
     text[0] = '\0';
     for (int32_t i = 0; i < list->num_channels && used < size; i++) {
-        slc_exr_printable(list->entries[i].name.str, name, sizeof name);
+        slc_printable(list->entries[i].name.str, name, sizeof name);
         used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", name);
     }
 }
@@ -44,35 +44,37 @@ static SluiceResult check_names(const struct slc_exr_file *file, const exr_attr_
     for (int32_t i = 0; i < list->num_channels; i++)
         if (strcmp(list->entries[i].name.str, "RY") == 0 ||
             strcmp(list->entries[i].name.str, "BY") == 0)
-            return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                                "has luminance-chroma channels (%s), which are not read; "
-                                "convert the file to R, G, B",
-                                names);
+            return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                                  "has luminance-chroma channels (%s), which are not read; "
+                                  "convert the file to R, G, B",
+                                  names);
     uint32_t found = find_letters(list);
     bool is_rgb = found != 0 && !(found & Y);
     bool is_grey = found != ~0u && (found & ~(uint32_t)A) == Y;
     if (is_rgb || is_grey)
         return SLUICE_SUCCESS;
-    return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                        "has the channels %s; any of R, G, B, A, or Y with or without A, are "
-                        "read; write the wanted ones to a file of their own under such names",
-                        names);
+    return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                          "has the channels %s; any of R, G, B, A, or Y with or without A, are "
+                          "read; write the wanted ones to a file of their own under such names",
+                          names);
 }
 
 static SluiceResult read_channel(struct slc_exr_file *file, const exr_attr_chlist_entry_t *entry)
 {
     uint32_t index = file->channel_count;
     if (index == SLC_EXR_MAX_CHANNELS)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has a channel name twice");
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has a channel name twice");
     if (entry->x_sampling != 1 || entry->y_sampling != 1)
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                            "channel %s is subsampled %d x %d, which is not read; convert the file "
-                            "to full resolution",
-                            entry->name.str, entry->x_sampling, entry->y_sampling);
+        return slc_input_fail(
+            &file->input, SLUICE_ERROR_UNSUPPORTED,
+            "channel %s is subsampled %d x %d, which is not read; convert the file "
+            "to full resolution",
+            entry->name.str, entry->x_sampling, entry->y_sampling);
     if (entry->pixel_type != EXR_PIXEL_UINT && entry->pixel_type != EXR_PIXEL_HALF &&
         entry->pixel_type != EXR_PIXEL_FLOAT)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "channel %s has the unknown type %d",
-                            entry->name.str, (int)entry->pixel_type);
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "channel %s has the unknown type %d", entry->name.str,
+                              (int)entry->pixel_type);
     struct slc_exr_channel *channel = &file->channels[index];
     channel->type = entry->pixel_type;
     channel->size = entry->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
@@ -93,7 +95,7 @@ static SluiceResult read_channels(struct slc_exr_file *file)
     const exr_attr_chlist_t *list;
     exr_result_t result = exr_get_channels(file->context, 0, &list);
     if (result != EXR_ERR_SUCCESS || list->num_channels < 1)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no channels");
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has no channels");
     SluiceResult answer = check_names(file, list);
     file->widest = EXR_PIXEL_HALF;
     for (int i = 0; i < 4; i++)
@@ -108,15 +110,15 @@ static SluiceResult read_size(struct slc_exr_file *file)
     exr_attr_box2i_t window;
     exr_result_t result = exr_get_data_window(file->context, 0, &window);
     if (result != EXR_ERR_SUCCESS)
-        return slc_exr_fail(file, slc_exr_result(file, result), "has no data window");
+        return slc_input_fail(&file->input, slc_exr_result(file, result), "has no data window");
     int64_t width = (int64_t)window.max.x - window.min.x + 1;
     int64_t height = (int64_t)window.max.y - window.min.y + 1;
     if (width < 1 || height < 1)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has an empty data window");
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has an empty data window");
     if (width > SLC_EXR_MAX_SIZE || height > SLC_EXR_MAX_SIZE)
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                            "is %lld x %lld texels, at most %u in either direction are read",
-                            (long long)width, (long long)height, SLC_EXR_MAX_SIZE);
+        return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                              "is %lld x %lld texels, at most %u in either direction are read",
+                              (long long)width, (long long)height, SLC_EXR_MAX_SIZE);
     file->width = (uint32_t)width;
     file->height = (uint32_t)height;
     file->first_line = window.min.y;
@@ -134,7 +136,8 @@ static SluiceResult read_tiling(struct slc_exr_file *file)
         result = exr_get_tile_levels(file->context, 0, &file->level_count_x, &file->level_count_y);
     if (result != EXR_ERR_SUCCESS || width == 0 || height == 0 || file->level_count_x < 1 ||
         file->level_count_y < 1)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no valid tile description");
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "has no valid tile description");
     file->layout = mode == EXR_TILE_ONE_LEVEL       ? SLC_EXR_ONE_LEVEL
                    : mode == EXR_TILE_MIPMAP_LEVELS ? SLC_EXR_MIPMAP
                                                     : SLC_EXR_RIPMAP;
@@ -148,7 +151,7 @@ static SluiceResult read_lines_per_chunk(struct slc_exr_file *file)
     int32_t lines = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
     if (result != EXR_ERR_SUCCESS || lines < 1)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no valid compression");
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has no valid compression");
     file->layout = SLC_EXR_SCANLINES;
     file->level_count_x = file->level_count_y = 1;
     file->chunk_width = file->width;
@@ -161,18 +164,18 @@ static SluiceResult read_layout(struct slc_exr_file *file)
     exr_storage_t storage;
     exr_result_t result = exr_get_storage(file->context, 0, &storage);
     if (result != EXR_ERR_SUCCESS)
-        return slc_exr_fail(file, slc_exr_result(file, result), "has no storage type");
+        return slc_input_fail(&file->input, slc_exr_result(file, result), "has no storage type");
     switch (storage) {
     case EXR_STORAGE_SCANLINE: return read_lines_per_chunk(file);
     case EXR_STORAGE_TILED: return read_tiling(file);
     case EXR_STORAGE_DEEP_SCANLINE:
     case EXR_STORAGE_DEEP_TILED:
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                            "has deep data%s, which is not read; flatten it to an ordinary image",
-                            file->is_multipart ? " in its first part" : "");
+        return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                              "has deep data%s, which is not read; flatten it to an ordinary image",
+                              file->is_multipart ? " in its first part" : "");
     default:
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED, "has the unknown storage type %d",
-                            (int)storage);
+        return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                              "has the unknown storage type %d", (int)storage);
     }
 }
 
@@ -180,17 +183,18 @@ static SluiceResult check_compression(struct slc_exr_file *file)
 {
     exr_result_t result = exr_get_compression(file->context, 0, &file->compression);
     if (result != EXR_ERR_SUCCESS)
-        return slc_exr_fail(file, slc_exr_result(file, result), "has no compression type");
+        return slc_input_fail(&file->input, slc_exr_result(file, result),
+                              "has no compression type");
     int major, minor, patch;
     const char *extra;
     exr_get_library_version(&major, &minor, &patch, &extra);
     bool is_dwa =
         file->compression == EXR_COMPRESSION_DWAA || file->compression == EXR_COMPRESSION_DWAB;
     if (is_dwa && (major < 3 || (major == 3 && minor < 2)))
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                            "is DWA compressed, which OpenEXRCore %d.%d.%d does not decode; use "
-                            "3.2 or newer, or compress the file otherwise",
-                            major, minor, patch);
+        return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                              "is DWA compressed, which OpenEXRCore %d.%d.%d does not decode; use "
+                              "3.2 or newer, or compress the file otherwise",
+                              major, minor, patch);
     return SLUICE_SUCCESS;
 }
 
@@ -200,16 +204,16 @@ static SluiceResult check_plausibility(struct slc_exr_file *file)
     uint64_t texels = (uint64_t)slc_min_u32(file->chunk_width, file->width) *
                       slc_min_u32(file->chunk_height, file->height);
     if (texels * file->texel_size > 1u << 30)
-        return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                            "has tiles of %u x %u texels, which need more than 1 GiB each; use "
-                            "smaller ones",
-                            file->chunk_width, file->chunk_height);
+        return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                              "has tiles of %u x %u texels, which need more than 1 GiB each; use "
+                              "smaller ones",
+                              file->chunk_width, file->chunk_height);
     /* The strongest compression there is, DWA of a constant, stays well below 65536 : 1. */
     uint64_t image = (uint64_t)file->width * file->height * file->texel_size;
-    if (image / 65536 > file->size)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                            "says it is %u x %u texels, which a file of %llu bytes cannot hold",
-                            file->width, file->height, (unsigned long long)file->size);
+    if (image / 65536 > file->input.size)
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "says it is %u x %u texels, which a file of %llu bytes cannot hold",
+                              file->width, file->height, (unsigned long long)file->input.size);
     return SLUICE_SUCCESS;
 }
 
@@ -217,10 +221,10 @@ static SluiceResult check_chunk_count(struct slc_exr_file *file)
 {
     exr_result_t result = exr_get_chunk_count(file->context, 0, &file->chunk_count);
     if (result != EXR_ERR_SUCCESS || file->chunk_count < 1 ||
-        (uint64_t)file->chunk_count > file->size / sizeof(uint64_t))
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                            "says it has %d chunks, which a file of %llu bytes cannot hold",
-                            file->chunk_count, (unsigned long long)file->size);
+        (uint64_t)file->chunk_count > file->input.size / sizeof(uint64_t))
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "says it has %d chunks, which a file of %llu bytes cannot hold",
+                              file->chunk_count, (unsigned long long)file->input.size);
     return SLUICE_SUCCESS;
 }
 
@@ -237,7 +241,8 @@ SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level,
     int32_t level_width = 0, level_height = 0;
     exr_result_t result = exr_get_level_sizes(file->context, 0, x, y, &level_width, &level_height);
     if (result != EXR_ERR_SUCCESS || level_width < 1 || level_height < 1)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has no size for level %u", level);
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has no size for level %u",
+                              level);
     *width = (uint32_t)level_width;
     *height = (uint32_t)level_height;
     return SLUICE_SUCCESS;
@@ -255,8 +260,8 @@ static SluiceResult check_levels(struct slc_exr_file *file)
         if (result != SLUICE_SUCCESS)
             return result;
         if (width < slc_mip_size(file->width, level) || height < slc_mip_size(file->height, level))
-            return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA,
-                                "level %u is %u x %u texels, too few", level, width, height);
+            return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                                  "level %u is %u x %u texels, too few", level, width, height);
     }
     return SLUICE_SUCCESS;
 }
@@ -266,9 +271,9 @@ static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, 
 {
     /* name, type, both ended by a zero, and a size; names have at most 255 bytes */
     unsigned char bytes[256 + 256 + 4] = {0};
-    uint64_t rest = *offset < file->size ? file->size - *offset : 0;
+    uint64_t rest = *offset < file->input.size ? file->input.size - *offset : 0;
     size_t size = rest < sizeof bytes ? (size_t)rest : sizeof bytes;
-    SluiceResult result = slc_exr_file_read(file, *offset, bytes, size);
+    SluiceResult result = slc_input_file_read(&file->input, *offset, bytes, size);
     if (result != SLUICE_SUCCESS)
         return result;
     *last = size > 0 && bytes[0] == 0;
@@ -280,8 +285,8 @@ static SluiceResult skip_attribute(struct slc_exr_file *file, uint64_t *offset, 
     const unsigned char *value =
         type ? memchr(type + 1, 0, size - (size_t)(type + 1 - bytes)) : NULL;
     if (!value || (size_t)(value + 5 - bytes) > size)
-        return slc_exr_fail(file, SLUICE_ERROR_CORRUPT_DATA, "has a broken attribute at %llu",
-                            (unsigned long long)*offset);
+        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
+                              "has a broken attribute at %llu", (unsigned long long)*offset);
     uint32_t length =
         value[1] | (uint32_t)value[2] << 8 | (uint32_t)value[3] << 16 | (uint32_t)value[4] << 24;
     *offset += (uint64_t)(value + 5 - bytes) + length;
@@ -305,7 +310,7 @@ static SluiceResult find_chunk_table(struct slc_exr_file *file)
         if (!last || !file->is_multipart)
             continue;
         unsigned char next;
-        result = slc_exr_file_read(file, offset, &next, 1);
+        result = slc_input_file_read(&file->input, offset, &next, 1);
         if (result != SLUICE_SUCCESS)
             return result;
         last = next == 0;
@@ -318,7 +323,7 @@ static SluiceResult find_chunk_table(struct slc_exr_file *file)
 static SluiceResult read_multipart_flag(struct slc_exr_file *file)
 {
     unsigned char bytes[8];
-    SluiceResult result = slc_exr_file_read(file, 0, bytes, sizeof bytes);
+    SluiceResult result = slc_input_file_read(&file->input, 0, bytes, sizeof bytes);
     file->is_multipart = result == SLUICE_SUCCESS && (bytes[5] & 0x10);
     return result;
 }

@@ -51,7 +51,7 @@ static SluiceResult read_chunks(struct slc_exr_file *file, const struct slc_exr_
 static SluiceResult build_chain(struct exr_source *source)
 {
     const SluiceImageInfo *info = &source->info;
-    const SluiceAllocationCallbacks *cb = &source->file.allocator;
+    const SluiceAllocationCallbacks *cb = &source->file.input.allocator;
     SluiceResult result =
         slc_mip_chain_init(&source->chain, cb, info->format, info->width, info->height);
     if (result == SLUICE_SUCCESS) {
@@ -102,7 +102,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
 static void destroy(SluiceImageSource *base)
 {
     struct exr_source *source = (struct exr_source *)base;
-    SluiceAllocationCallbacks cb = source->file.allocator;
+    SluiceAllocationCallbacks cb = source->file.input.allocator;
     slc_mip_chain_finish(&source->chain, &cb);
     slc_exr_file_close(&source->file);
     pthread_mutex_destroy(&source->mutex);
@@ -122,7 +122,7 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
         .height = file->height,
         .mipLevelCount = slc_mip_count(slc_max_u32(file->width, file->height)),
         .format = format,
-        .pName = file->path,
+        .pName = file->input.path,
     };
     source->reads_chain = file->layout == SLC_EXR_SCANLINES || file->layout == SLC_EXR_ONE_LEVEL;
     if (level_zero_alone) {
@@ -132,10 +132,10 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
     uint64_t size = (uint64_t)file->width * file->height * sluiceFormatTexelSize(format);
     if (size <= max_size)
         return SLUICE_SUCCESS;
-    return slc_exr_fail(file, SLUICE_ERROR_UNSUPPORTED,
-                        "is %u x %u texels, %llu bytes as %s; maxImageSize is %llu", file->width,
-                        file->height, (unsigned long long)size, sluiceFormatString(format),
-                        (unsigned long long)max_size);
+    return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
+                          "is %u x %u texels, %llu bytes as %s; maxImageSize is %llu", file->width,
+                          file->height, (unsigned long long)size, sluiceFormatString(format),
+                          (unsigned long long)max_size);
 }
 
 SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pInfo,

@@ -7,47 +7,137 @@
 #include "image/read_queue.h"
 
 #include <pthread.h>
-#include <stdatomic.h>
+#include <time.h>
 #include <unistd.h>
+
+/* Of reads, and of sources that are remembered. */
+#define MAX_COUNT (1u << 29)
 
 struct SluiceTileLoader {
     SluiceAllocationCallbacks allocator;
+    SluiceTileRetryPolicy retry;
+    SluiceTileReadFailureCallback failure;
     pthread_mutex_t mutex; ///< around everything below
-    pthread_cond_t work;   ///< a read is queued, or the loader stops
-    pthread_cond_t idle;   ///< nothing is queued or running
+    pthread_cond_t work;   ///< a read may have become startable or delayed, or the loader stops
+    pthread_cond_t idle;   ///< nothing is queued, delayed or running
     struct slc_read_queue queue;
-    uint32_t running_count;
     bool stopping;
-    atomic_bool *dropped; ///< per slot: a running read that nobody wants any more
     uint32_t thread_count;
     pthread_t *threads;
 };
 
-static SluiceResult read_regions(struct SluiceTileLoader *loader, const struct slc_read *read,
-                                 uint64_t *size)
+/* One try at the regions of a read that are left. */
+struct attempt {
+    SluiceResult result;
+    SluiceImageInfo info; ///< zeroed if the source did not tell
+    uint64_t latency;     ///< ns
+};
+
+static uint64_t nanoseconds(void)
 {
-    SluiceImageInfo info;
-    SluiceResult result = sluiceGetImageInfo(read->source, &info);
-    if (result != SLUICE_SUCCESS)
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+static bool is_dropped(const struct slc_read *read)
+{
+    return atomic_load_explicit(&read->dropped, memory_order_relaxed);
+}
+
+static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info)
+{
+    SluiceImageSource *source = read->source->source;
+    SluiceResult result = sluiceGetImageInfo(source, info);
+    if (result != SLUICE_SUCCESS) {
+        *info = (SluiceImageInfo){0};
         return result;
-    const atomic_bool *dropped = &loader->dropped[read - loader->queue.reads];
-    for (uint32_t i = 0; i < read->region_count; i++) {
-        if (atomic_load_explicit(dropped, memory_order_relaxed))
+    }
+    for (; read->done_count < read->region_count; read->done_count++) {
+        if (is_dropped(read))
             return SLUICE_ERROR_CANCELLED;
-        const SluiceImageRegion *region = &read->regions[i];
-        result = sluiceReadImageRegion(read->source, region, read->texels[i],
-                                       sluiceFormatRegionSize(info.format, region->width, 1));
+        const SluiceImageRegion *region = &read->regions[read->done_count];
+        result = sluiceReadImageRegion(source, region, read->texels[read->done_count],
+                                       sluiceFormatRegionSize(info->format, region->width, 1));
         if (result != SLUICE_SUCCESS)
             return result;
-        *size += sluiceFormatRegionSize(info.format, region->width, region->height);
+        read->done_size += sluiceFormatRegionSize(info->format, region->width, region->height);
     }
     return SLUICE_SUCCESS;
 }
 
+static struct attempt make_attempt(struct slc_read *read)
+{
+    struct attempt attempt = {0};
+    uint64_t start = nanoseconds();
+    attempt.result = read_regions(read, &attempt.info);
+    attempt.latency = nanoseconds() - start;
+    read->attempts.count++;
+    read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
+    return attempt;
+}
+
+/* Before the read is over, because the source need not live longer. */
+static void report_failure(const struct SluiceTileLoader *loader, const struct slc_read *read,
+                           const struct attempt *attempt, bool will_retry, uint64_t delay)
+{
+    bool is_failure = attempt->result != SLUICE_SUCCESS &&
+                      attempt->result != SLUICE_ERROR_CANCELLED &&
+                      (attempt->result != SLUICE_NOT_READY || !will_retry);
+    if (!is_failure || !loader->failure.pfnFailed)
+        return;
+    SluiceTileReadFailure failure = {
+        .source = read->source->source,
+        .pName = attempt->info.pName ? attempt->info.pName : "",
+        .region = read->regions[read->done_count],
+        .result = attempt->result,
+        .attempt = read->attempts.count,
+        .willRetry = will_retry,
+        .retryDelay = will_retry ? delay : 0,
+        .userValue = read->result.userValue,
+    };
+    loader->failure.pfnFailed(loader->failure.pUserData, &failure);
+}
+
 static void signal_if_idle(struct SluiceTileLoader *loader)
 {
-    if (loader->running_count == 0 && loader->queue.heap_count == 0)
+    if (slc_read_queue_is_idle(&loader->queue))
         pthread_cond_broadcast(&loader->idle);
+}
+
+/* With the mutex held, which is given up meanwhile. */
+static void run(struct SluiceTileLoader *loader, struct slc_read *read)
+{
+    uint64_t delay = 0;
+    pthread_mutex_unlock(&loader->mutex);
+    struct attempt attempt = make_attempt(read);
+    bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, attempt.result, &delay);
+    report_failure(loader, read, &attempt, will_retry, delay);
+    pthread_mutex_lock(&loader->mutex);
+    if (attempt.info.format != SLUICE_FORMAT_UNDEFINED)
+        read->source->format = attempt.info.format;
+    slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.latency);
+    if (!will_retry) {
+        slc_read_queue_end(&loader->queue, read, attempt.result);
+    } else if (is_dropped(read)) {
+        slc_read_queue_end(&loader->queue, read, SLUICE_ERROR_CANCELLED);
+    } else {
+        uint64_t now = nanoseconds();
+        slc_read_queue_delay(&loader->queue, read,
+                             delay < UINT64_MAX - now ? now + delay : UINT64_MAX - 1);
+    }
+    signal_if_idle(loader);
+}
+
+/* Until something is said, or until the first delayed read is due. */
+static void wait_for_work(struct SluiceTileLoader *loader)
+{
+    uint64_t due = slc_read_queue_next_due(&loader->queue);
+    struct timespec until = {(time_t)(due / 1000000000u), (long)(due % 1000000000u)};
+    if (due == UINT64_MAX)
+        pthread_cond_wait(&loader->work, &loader->mutex);
+    else
+        pthread_cond_timedwait(&loader->work, &loader->mutex, &until);
 }
 
 static void *worker_main(void *argument)
@@ -55,22 +145,17 @@ static void *worker_main(void *argument)
     struct SluiceTileLoader *loader = argument;
     pthread_mutex_lock(&loader->mutex);
     for (;;) {
-        struct slc_read *read = slc_read_queue_start(&loader->queue);
+        struct slc_read *read = slc_read_queue_start(&loader->queue, nanoseconds());
+        if (!read && loader->stopping)
+            break;
         if (!read) {
-            if (loader->stopping)
-                break;
-            pthread_cond_wait(&loader->work, &loader->mutex);
+            wait_for_work(loader);
             continue;
         }
-        loader->running_count++;
-        atomic_store(&loader->dropped[read - loader->queue.reads], false);
-        pthread_mutex_unlock(&loader->mutex);
-        uint64_t size = 0;
-        SluiceResult result = read_regions(loader, read, &size);
-        pthread_mutex_lock(&loader->mutex);
-        slc_read_queue_end(&loader->queue, read, result, result == SLUICE_SUCCESS ? size : 0);
-        loader->running_count--;
-        signal_if_idle(loader);
+        /* This thread may be gone for long: another one looks after what else there is. */
+        if (loader->queue.startable.root || loader->queue.delayed.root)
+            pthread_cond_signal(&loader->work);
+        run(loader, read);
     }
     pthread_mutex_unlock(&loader->mutex);
     return NULL;
@@ -86,29 +171,55 @@ static void free_memory(struct SluiceTileLoader *loader, uint32_t thread_count)
 {
     SluiceAllocationCallbacks cb = loader->allocator;
     slc_free(&cb, loader->threads, thread_count, sizeof *loader->threads);
-    slc_free(&cb, loader->dropped, loader->queue.capacity, sizeof *loader->dropped);
     slc_read_queue_finish(&loader->queue, &cb);
     slc_free(&cb, loader, 1, sizeof *loader);
 }
 
-static struct SluiceTileLoader *allocate(const SluiceAllocationCallbacks *cb, uint32_t capacity,
+static struct slc_read_queue_limits read_limits(const SluiceTileLoaderCreateInfo *info,
+                                                uint32_t thread_count)
+{
+    uint32_t capacity = info->requestCapacity ? info->requestCapacity : 1024;
+    uint32_t per_source = info->maxReadsPerSource ? info->maxReadsPerSource : thread_count - 1;
+    return (struct slc_read_queue_limits){
+        .capacity = capacity,
+        .source_count = slc_max_u32(capacity, info->maxSourceCount),
+        .max_running_per_source = slc_max_u32(1, per_source),
+        .max_running_size = info->maxBytesInFlight ? info->maxBytesInFlight : (uint64_t)1 << 28,
+    };
+}
+
+static struct SluiceTileLoader *allocate(const SluiceTileLoaderCreateInfo *info,
                                          uint32_t thread_count)
 {
-    struct SluiceTileLoader *loader = slc_calloc(cb, 1, sizeof *loader);
+    SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
+    struct SluiceTileLoader *loader = slc_calloc(&cb, 1, sizeof *loader);
     if (!loader)
         return NULL;
-    loader->allocator = *cb;
-    if (slc_read_queue_init(&loader->queue, cb, capacity) != SLUICE_SUCCESS) {
-        slc_free(cb, loader, 1, sizeof *loader);
+    loader->allocator = cb;
+    loader->retry = slc_retry_policy(&info->retry);
+    loader->failure = info->failure;
+    struct slc_read_queue_limits limits = read_limits(info, thread_count);
+    if (slc_read_queue_init(&loader->queue, &cb, &limits) != SLUICE_SUCCESS) {
+        slc_free(&cb, loader, 1, sizeof *loader);
         return NULL;
     }
-    loader->dropped = slc_calloc(cb, capacity, sizeof *loader->dropped);
-    loader->threads = slc_calloc(cb, thread_count, sizeof *loader->threads);
-    if (!loader->dropped || !loader->threads) {
+    loader->threads = slc_calloc(&cb, thread_count, sizeof *loader->threads);
+    if (!loader->threads) {
         free_memory(loader, thread_count);
         return NULL;
     }
     return loader;
+}
+
+static void init_synchronisation(struct SluiceTileLoader *loader)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_mutex_init(&loader->mutex, NULL);
+    pthread_cond_init(&loader->work, &attributes);
+    pthread_cond_init(&loader->idle, NULL);
+    pthread_condattr_destroy(&attributes);
 }
 
 static void stop_threads(struct SluiceTileLoader *loader)
@@ -133,15 +244,13 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 {
     if (!pCreateInfo || !pLoader || !slc_allocator_is_valid(pCreateInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceAllocationCallbacks cb = slc_allocator(pCreateInfo->pAllocator);
-    uint32_t capacity = pCreateInfo->requestCapacity ? pCreateInfo->requestCapacity : 1024;
+    if (pCreateInfo->requestCapacity > MAX_COUNT || pCreateInfo->maxSourceCount > MAX_COUNT)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     uint32_t wanted = pCreateInfo->threadCount ? pCreateInfo->threadCount : default_thread_count();
-    struct SluiceTileLoader *loader = allocate(&cb, capacity, wanted);
+    struct SluiceTileLoader *loader = allocate(pCreateInfo, wanted);
     if (!loader)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    pthread_mutex_init(&loader->mutex, NULL);
-    pthread_cond_init(&loader->work, NULL);
-    pthread_cond_init(&loader->idle, NULL);
+    init_synchronisation(loader);
     while (loader->thread_count < wanted &&
            pthread_create(&loader->threads[loader->thread_count], NULL, worker_main, loader) == 0)
         loader->thread_count++;
@@ -157,10 +266,10 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 
 static void drop_read(struct SluiceTileLoader *loader, struct slc_read *read)
 {
-    if (read->state == SLC_READ_QUEUED)
-        slc_read_queue_end(&loader->queue, read, SLUICE_ERROR_CANCELLED, 0);
+    if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED)
+        slc_read_queue_end(&loader->queue, read, SLUICE_ERROR_CANCELLED);
     else if (read->state == SLC_READ_RUNNING)
-        atomic_store(&loader->dropped[read - loader->queue.reads], true);
+        atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
 }
 
 void sluiceDestroyTileLoader(SluiceTileLoader *loader)
@@ -226,7 +335,29 @@ void sluiceWaitTileLoaderIdle(SluiceTileLoader *loader)
     if (!loader)
         return;
     pthread_mutex_lock(&loader->mutex);
-    while (loader->running_count > 0 || loader->queue.heap_count > 0)
+    while (!slc_read_queue_is_idle(&loader->queue))
         pthread_cond_wait(&loader->idle, &loader->mutex);
     pthread_mutex_unlock(&loader->mutex);
+}
+
+SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
+                                           const SluiceImageSource *source,
+                                           SluiceTileLoaderStatistics *pStatistics)
+{
+    if (!loader || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    pthread_mutex_lock(&loader->mutex);
+    slc_read_queue_write_statistics(&loader->queue, source, pStatistics);
+    pthread_mutex_unlock(&loader->mutex);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceForgetTileLoaderSource(SluiceTileLoader *loader, const SluiceImageSource *source)
+{
+    if (!loader || !source)
+        return SLUICE_ERROR_NULL_POINTER;
+    pthread_mutex_lock(&loader->mutex);
+    SluiceResult result = slc_read_queue_forget(&loader->queue, source);
+    pthread_mutex_unlock(&loader->mutex);
+    return result;
 }

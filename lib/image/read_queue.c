@@ -4,15 +4,47 @@
 
 #include <string.h>
 
-SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
-                                 uint32_t capacity)
+/* No format has more bytes per texel or per 4 x 4 of them. */
+#define LARGEST_BLOCK 16
+
+static const struct slc_read *read_of(const struct slc_heap_node *node)
 {
-    *queue = (struct slc_read_queue){.capacity = capacity};
+    return SLC_CONTAINER_OF(node, const struct slc_read, node);
+}
+
+static bool read_is_more_urgent(const struct slc_heap_node *a, const struct slc_heap_node *b)
+{
+    const struct slc_read *x = read_of(a), *y = read_of(b);
+    return x->priority != y->priority ? x->priority > y->priority : x->order < y->order;
+}
+
+static bool read_is_due_before(const struct slc_heap_node *a, const struct slc_heap_node *b)
+{
+    const struct slc_read *x = read_of(a), *y = read_of(b);
+    return x->due != y->due ? x->due < y->due : x->order < y->order;
+}
+
+static bool source_is_more_urgent(const struct slc_heap_node *a, const struct slc_heap_node *b)
+{
+    return read_is_more_urgent(
+        SLC_CONTAINER_OF(a, const struct slc_read_source, node)->queued.root,
+        SLC_CONTAINER_OF(b, const struct slc_read_source, node)->queued.root);
+}
+
+SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
+                                 const struct slc_read_queue_limits *limits)
+{
+    uint32_t capacity = limits->capacity;
+    *queue = (struct slc_read_queue){.capacity = capacity,
+                                     .max_running_per_source = limits->max_running_per_source,
+                                     .max_running_size = limits->max_running_size,
+                                     .startable.is_before = source_is_more_urgent,
+                                     .delayed.is_before = read_is_due_before};
     queue->reads = slc_calloc(cb, capacity, sizeof *queue->reads);
     queue->free_slots = slc_alloc(cb, capacity, sizeof *queue->free_slots);
-    queue->heap = slc_alloc(cb, capacity, sizeof *queue->heap);
     queue->finished = slc_alloc(cb, capacity, sizeof *queue->finished);
-    if (!queue->reads || !queue->free_slots || !queue->heap || !queue->finished) {
+    if (!queue->reads || !queue->free_slots || !queue->finished ||
+        slc_read_sources_init(&queue->sources, cb, limits->source_count) != SLUICE_SUCCESS) {
         slc_read_queue_finish(queue, cb);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
@@ -24,51 +56,10 @@ SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAlloc
 
 void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb)
 {
+    slc_read_sources_finish(&queue->sources, cb);
     slc_free(cb, queue->reads, queue->capacity, sizeof *queue->reads);
     slc_free(cb, queue->free_slots, queue->capacity, sizeof *queue->free_slots);
-    slc_free(cb, queue->heap, queue->capacity, sizeof *queue->heap);
     slc_free(cb, queue->finished, queue->capacity, sizeof *queue->finished);
-}
-
-static bool is_more_urgent(const struct slc_read *a, const struct slc_read *b)
-{
-    return a->priority != b->priority ? a->priority > b->priority : a->order < b->order;
-}
-
-static void heap_put(struct slc_read_queue *queue, uint32_t index, uint32_t slot)
-{
-    queue->heap[index] = slot;
-    queue->reads[slot].heap_index = index;
-}
-
-/* Puts `slot` where it belongs, the place `index` being free. */
-static void heap_settle(struct slc_read_queue *queue, uint32_t index, uint32_t slot)
-{
-    const struct slc_read *reads = queue->reads, *read = &reads[slot];
-    while (index > 0 && is_more_urgent(read, &reads[queue->heap[(index - 1) / 2]])) {
-        heap_put(queue, index, queue->heap[(index - 1) / 2]);
-        index = (index - 1) / 2;
-    }
-    for (;;) {
-        uint64_t child = 2 * (uint64_t)index + 1;
-        if (child >= queue->heap_count)
-            break;
-        if (child + 1 < queue->heap_count &&
-            is_more_urgent(&reads[queue->heap[child + 1]], &reads[queue->heap[child]]))
-            child++;
-        if (!is_more_urgent(&reads[queue->heap[child]], read))
-            break;
-        heap_put(queue, index, queue->heap[child]);
-        index = (uint32_t)child;
-    }
-    heap_put(queue, index, slot);
-}
-
-static void heap_remove(struct slc_read_queue *queue, uint32_t index)
-{
-    uint32_t last = queue->heap[--queue->heap_count];
-    if (index < queue->heap_count)
-        heap_settle(queue, index, last);
 }
 
 /* Slot and generation in one number that is never 0. */
@@ -77,44 +68,160 @@ static uint64_t make_ticket(const struct slc_read_queue *queue, uint32_t slot)
     return queue->reads[slot].generation * queue->capacity + slot + 1;
 }
 
+/* Around every change of a source's queue or of how many of its reads run. */
+static void source_leave(struct slc_read_queue *queue, struct slc_read_source *source)
+{
+    if (slc_heap_node_is_in(&source->node))
+        slc_pairing_heap_remove(&queue->startable, &source->node);
+}
+
+static void source_return(struct slc_read_queue *queue, struct slc_read_source *source)
+{
+    if (source->queued.root && source->running_count < queue->max_running_per_source)
+        slc_pairing_heap_add(&queue->startable, &source->node);
+}
+
+static void enqueue(struct slc_read_queue *queue, struct slc_read *read)
+{
+    source_leave(queue, read->source);
+    read->state = SLC_READ_QUEUED;
+    slc_pairing_heap_add(&read->source->queued, &read->node);
+    queue->queued_count++;
+    source_return(queue, read->source);
+}
+
+static void dequeue(struct slc_read_queue *queue, struct slc_read *read)
+{
+    source_leave(queue, read->source);
+    slc_pairing_heap_remove(&read->source->queued, &read->node);
+    queue->queued_count--;
+    source_return(queue, read->source);
+}
+
+static void undelay(struct slc_read_queue *queue, struct slc_read *read)
+{
+    slc_pairing_heap_remove(&queue->delayed, &read->node);
+    read->source->statistics.counts.delayedCount--;
+    queue->statistics.counts.delayedCount--;
+}
+
+static void stop_running(struct slc_read_queue *queue, struct slc_read *read)
+{
+    source_leave(queue, read->source);
+    read->source->running_count--;
+    queue->running_count--;
+    queue->running_size -= read->running_size;
+    source_return(queue, read->source);
+}
+
 bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *given,
                            uint64_t *ticket)
 {
     if (queue->free_count == 0)
         return false;
+    struct slc_read_source *source = slc_read_sources_add_read(&queue->sources, given->source);
+    source->queued.is_before = read_is_more_urgent;
     uint32_t slot = queue->free_slots[--queue->free_count];
     struct slc_read *read = &queue->reads[slot];
-    read->state = SLC_READ_QUEUED;
     read->order = queue->submitted++;
     read->priority = given->priority;
-    read->source = given->source;
+    read->source = source;
+    read->attempts = (struct slc_attempts){0};
     read->region_count = given->regionCount;
+    read->done_count = 0;
+    read->done_size = 0;
+    atomic_store_explicit(&read->dropped, false, memory_order_relaxed);
     memcpy(read->regions, given->pRegions, given->regionCount * sizeof *read->regions);
     memcpy(read->texels, given->ppTexels, given->regionCount * sizeof *read->texels);
     *ticket = make_ticket(queue, slot);
     read->result = (SluiceTileReadResult){.ticket = *ticket, .userValue = given->userValue};
-    heap_settle(queue, queue->heap_count++, slot);
+    source->statistics.counts.readCount++;
+    queue->statistics.counts.readCount++;
+    enqueue(queue, read);
     return true;
 }
 
-struct slc_read *slc_read_queue_start(struct slc_read_queue *queue)
+/* Bytes of the regions that are left; too many rather than too few while the format is unknown. */
+static uint64_t size_of(const struct slc_read *read)
 {
-    if (queue->heap_count == 0)
+    uint64_t size = 0;
+    for (uint32_t i = read->done_count; i < read->region_count; i++) {
+        const SluiceImageRegion *region = &read->regions[i];
+        uint64_t bytes =
+            sluiceFormatRegionSize(read->source->format, region->width, region->height);
+        if (read->source->format == SLUICE_FORMAT_UNDEFINED)
+            bytes = (uint64_t)region->width * region->height;
+        if (read->source->format == SLUICE_FORMAT_UNDEFINED)
+            bytes = bytes > UINT64_MAX / LARGEST_BLOCK ? UINT64_MAX : bytes * LARGEST_BLOCK;
+        size = bytes > UINT64_MAX - size ? UINT64_MAX : size + bytes;
+    }
+    return size;
+}
+
+struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now)
+{
+    while (slc_read_queue_next_due(queue) <= now && queue->delayed.root) {
+        struct slc_read *due = SLC_CONTAINER_OF(queue->delayed.root, struct slc_read, node);
+        undelay(queue, due);
+        enqueue(queue, due);
+    }
+    if (!queue->startable.root)
         return NULL;
-    struct slc_read *read = &queue->reads[queue->heap[0]];
-    heap_remove(queue, 0);
+    struct slc_read_source *source =
+        SLC_CONTAINER_OF(queue->startable.root, struct slc_read_source, node);
+    struct slc_read *read = SLC_CONTAINER_OF(source->queued.root, struct slc_read, node);
+    uint64_t size = size_of(read);
+    uint64_t room = queue->max_running_size - queue->running_size;
+    if (queue->running_count > 0 && (queue->running_size > queue->max_running_size || size > room))
+        return NULL;
+    dequeue(queue, read);
+    source_leave(queue, source);
     read->state = SLC_READ_RUNNING;
+    read->running_size = size;
+    source->running_count++;
+    queue->running_count++;
+    queue->running_size += size;
+    source_return(queue, source);
     return read;
 }
 
-void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result,
-                        uint64_t size)
+uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue)
+{
+    return queue->delayed.root ? read_of(queue->delayed.root)->due : UINT64_MAX;
+}
+
+void slc_read_queue_add_attempt(struct slc_read_queue *queue, struct slc_read *read,
+                                SluiceResult result, uint64_t latency)
+{
+    slc_read_statistics_add_attempt(&read->source->statistics, result, latency);
+    slc_read_statistics_add_attempt(&queue->statistics, result, latency);
+}
+
+void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, uint64_t due)
+{
+    stop_running(queue, read);
+    read->state = SLC_READ_DELAYED;
+    read->due = due;
+    slc_pairing_heap_add(&queue->delayed, &read->node);
+    read->source->statistics.counts.delayedCount++;
+    queue->statistics.counts.delayedCount++;
+    read->source->statistics.counts.retriedCount++;
+    queue->statistics.counts.retriedCount++;
+}
+
+void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result)
 {
     if (read->state == SLC_READ_QUEUED)
-        heap_remove(queue, read->heap_index);
+        dequeue(queue, read);
+    else if (read->state == SLC_READ_DELAYED)
+        undelay(queue, read);
+    else
+        stop_running(queue, read);
     read->state = SLC_READ_FINISHED;
     read->result.result = result;
-    read->result.size = size;
+    read->result.size = result == SLUICE_SUCCESS ? read->done_size : 0;
+    slc_read_statistics_add_end(&read->source->statistics, result, read->result.size);
+    slc_read_statistics_add_end(&queue->statistics, result, read->result.size);
     uint64_t last = (uint64_t)queue->finished_first + queue->finished_count++;
     queue->finished[last % queue->capacity] = (uint32_t)(read - queue->reads);
 }
@@ -139,6 +246,33 @@ bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *
     *result = read->result;
     read->state = SLC_READ_FREE;
     read->generation++;
+    slc_read_sources_remove_read(&queue->sources, read->source);
     queue->free_slots[queue->free_count++] = slot;
     return true;
+}
+
+bool slc_read_queue_is_idle(const struct slc_read_queue *queue)
+{
+    return queue->queued_count == 0 && queue->running_count == 0 && !queue->delayed.root;
+}
+
+SluiceResult slc_read_queue_forget(struct slc_read_queue *queue, const SluiceImageSource *source)
+{
+    struct slc_read_source *known = slc_read_sources_find(&queue->sources, source);
+    if (known && known->read_count > 0)
+        return SLUICE_NOT_READY;
+    if (known)
+        slc_read_sources_forget(&queue->sources, known);
+    return SLUICE_SUCCESS;
+}
+
+void slc_read_queue_write_statistics(const struct slc_read_queue *queue,
+                                     const SluiceImageSource *source,
+                                     SluiceTileLoaderStatistics *statistics)
+{
+    const struct slc_read_source *known =
+        source ? slc_read_sources_find(&queue->sources, source) : NULL;
+    *statistics = (SluiceTileLoaderStatistics){0};
+    if (!source || known)
+        slc_read_statistics_write(known ? &known->statistics : &queue->statistics, statistics);
 }

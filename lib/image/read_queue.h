@@ -1,59 +1,112 @@
 /**
- * The bookkeeping of a loader without its threads: a fixed number of reads, each free, queued by
- * priority, running or finished. Not synchronised; the loader holds a lock around every call.
+ * The bookkeeping of a loader without its threads and without a clock: a fixed number of reads,
+ * each free, queued by priority, delayed until another attempt, running or finished. Not
+ * synchronised; the loader holds a lock around every call.
  */
 #ifndef SLC_IMAGE_READ_QUEUE_H
 #define SLC_IMAGE_READ_QUEUE_H
 
-#include <sluice/loader.h>
+#include "image/read_sources.h"
+#include "image/retry.h"
 
-enum slc_read_state { SLC_READ_FREE, SLC_READ_QUEUED, SLC_READ_RUNNING, SLC_READ_FINISHED };
+#include <stdatomic.h>
+
+enum slc_read_state {
+    SLC_READ_FREE,
+    SLC_READ_QUEUED,
+    SLC_READ_DELAYED,
+    SLC_READ_RUNNING,
+    SLC_READ_FINISHED
+};
 
 struct slc_read {
     enum slc_read_state state;
-    uint64_t generation; ///< of the slot, so that old tickets are recognised
-    uint64_t order;      ///< of submission
-    uint32_t heap_index; ///< while queued
+    uint64_t generation;       ///< of the slot, so that old tickets are recognised
+    uint64_t order;            ///< of submission
+    struct slc_heap_node node; ///< among its source's queued reads, or among the delayed ones
+    uint64_t due;              ///< while delayed
     uint32_t priority;
-    SluiceImageSource *source;
-    uint32_t region_count;
+    struct slc_read_source *source;
+    uint64_t running_size; ///< bytes that it counts for while it runs
+    SluiceTileReadResult result;
+
+    /* The thread that runs it has these to itself, and reads those above that do not change. */
+    struct slc_attempts attempts;
+    uint32_t region_count, done_count; ///< of which so many are delivered
+    uint64_t done_size;                ///< their bytes
     SluiceImageRegion regions[SLUICE_MAX_READ_REGIONS];
     void *texels[SLUICE_MAX_READ_REGIONS];
-    SluiceTileReadResult result;
+
+    atomic_bool dropped; ///< nobody wants it any more
 };
 
 struct slc_read_queue {
     uint32_t capacity;
+    uint32_t max_running_per_source;
+    uint64_t max_running_size; ///< bytes, but for a read that runs alone
     struct slc_read *reads;
     uint32_t *free_slots; ///< a stack
     uint32_t free_count;
-    uint32_t *heap; ///< of queued slots, the most urgent first
-    uint32_t heap_count;
     uint32_t *finished; ///< a ring of slots in the order in which they finished
     uint32_t finished_first, finished_count;
     uint64_t submitted;
+
+    struct slc_read_sources sources;
+    struct slc_pairing_heap startable; ///< sources that have room for another of their queued reads
+    struct slc_pairing_heap delayed;   ///< reads, the first one due in front
+    uint32_t queued_count, running_count;
+    uint64_t running_size;
+    struct slc_read_statistics statistics; ///< of all sources; knows how many are delayed
 };
 
-/** `capacity` > 0. Errors: OUT_OF_HOST_MEMORY; nothing to finish then. */
+struct slc_read_queue_limits {
+    uint32_t capacity;               ///< > 0
+    uint32_t source_count;           ///< remembered; at least the capacity
+    uint32_t max_running_per_source; ///< > 0
+    uint64_t max_running_size;
+};
+
+/** Errors: OUT_OF_HOST_MEMORY; nothing to finish then. Must not be moved afterwards. */
 SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
-                                 uint32_t capacity);
+                                 const struct slc_read_queue_limits *limits);
 void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb);
 
 /** False when every slot is taken. */
 bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *read,
                            uint64_t *ticket);
 
-/** The most urgent queued read, running from now on; NULL if none is queued. */
-struct slc_read *slc_read_queue_start(struct slc_read_queue *queue);
+/** The most urgent read that may run, running from now on; NULL if there is none at this time. */
+struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now);
 
-/** Ends a running read, or a queued one that is dropped. */
-void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result,
-                        uint64_t size);
+/** When the first delayed read is due; UINT64_MAX: none is delayed. */
+uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue);
+
+/** An attempt at a running read took `latency` ns and ended with `result`. The read still runs. */
+void slc_read_queue_add_attempt(struct slc_read_queue *queue, struct slc_read *read,
+                                SluiceResult result, uint64_t latency);
+
+/** Puts a running read aside until `due`. */
+void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, uint64_t due);
+
+/** Ends a running read, or a queued or delayed one that is dropped. */
+void slc_read_queue_end(struct slc_read_queue *queue, struct slc_read *read, SluiceResult result);
 
 /** The read of a ticket that is not collected yet, or NULL. */
 struct slc_read *slc_read_queue_find(struct slc_read_queue *queue, uint64_t ticket);
 
 /** The longest finished read's result, its slot being free again; false if none is finished. */
 bool slc_read_queue_collect(struct slc_read_queue *queue, SluiceTileReadResult *result);
+
+/** Whether nothing is queued, delayed or running. */
+bool slc_read_queue_is_idle(const struct slc_read_queue *queue);
+
+/** Drops what is known of a source. NOT_READY, and nothing has changed, while it has reads that are
+ *  not collected. */
+SluiceResult slc_read_queue_forget(struct slc_read_queue *queue, const SluiceImageSource *source);
+
+/** Of a source, zeros for an unknown one, or of all for NULL. */
+void slc_read_queue_write_statistics(const struct slc_read_queue *queue,
+                                     const SluiceImageSource *source,
+                                     SluiceTileLoaderStatistics *statistics);
 
 #endif /* SLC_IMAGE_READ_QUEUE_H */

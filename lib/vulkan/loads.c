@@ -72,7 +72,10 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
         return result;
     SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
                                          .requestCapacity = count,
-                                         .pAllocator = s->info.pAllocator};
+                                         .pAllocator = s->info.pAllocator,
+                                         .retry = s->info.readRetry,
+                                         .maxReadsPerSource = s->info.maxReadsPerSource,
+                                         .maxSourceCount = s->info.maxTextureCount};
     return sluiceCreateTileLoader(&loader, &s->loader);
 }
 

@@ -375,6 +375,14 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
         streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
 }
 
+SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *streamer,
+                                           const SluiceImageSource *source,
+                                           SluiceTileLoaderStatistics *pStatistics)
+{
+    return streamer ? sluiceGetTileLoaderStatistics(streamer->loader, source, pStatistics)
+                    : SLUICE_ERROR_NULL_POINTER;
+}
+
 SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer)
 {
     return streamer ? streamer->info.residencyMode : SLUICE_RESIDENCY_MODE_AUTO;

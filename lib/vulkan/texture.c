@@ -317,6 +317,15 @@ static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *fir
     return over;
 }
 
+/* The application may destroy it now, and make another one at the same address. */
+static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *source)
+{
+    for (uint32_t i = 0; i < s->texture_high; i++)
+        if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
+            return;
+    sluiceForgetTileLoaderSource(s->loader, source); /* nothing of it is under way */
+}
+
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
 {
     for (uint32_t i = 0; i < s->texture_high && s->removed_count; i++) {
@@ -325,9 +334,11 @@ uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)
             continue;
         uint32_t count = texture->layer_count;
         if (is_over(s, texture)) {
+            const SluiceImageSource *source = texture->source;
             for (uint32_t layer = 0; layer < count; layer++)
                 destroy_parts(s, i + layer);
             s->removed_count -= count;
+            forget_source(s, source);
         } else if (limit >= texture->removed_frame) {
             /* Its pages are bound to its slots until it is gone. */
             limit = texture->removed_frame ? texture->removed_frame - 1 : 0;

@@ -6,6 +6,13 @@
 #ifdef WITH_STORE
 #include <sluice/store.h>
 #endif
+#ifdef WITH_CONTAINER
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+#endif
+#ifdef WITH_BAKE
+#include <sluice/bake.h>
+#endif
 #ifdef WITH_VULKAN
 #include <sluice/vulkan.h>
 #include <vulkan/vulkan.h> /* behind it: the application's Vulkan is as it was */
@@ -30,7 +37,26 @@ int main(void)
     SluiceStoreImageSourceCreateInfo store = {.pPath = "there is no such file"};
     SluiceImageSource *tiles = NULL;
     if (sluiceCreateStoreImageSource(&store, &tiles) != SLUICE_ERROR_FILE_NOT_FOUND)
+        return 6;
+#endif
+#ifdef WITH_CONTAINER
+    SluiceDdsImageSourceCreateInfo dds = {.pPath = "there is no such file"};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = "there is no such file"};
+    SluiceImageSource *files[2] = {NULL, NULL};
+    SluiceImageInfo image;
+    if (sluiceCreateDdsImageSource(&dds, &files[0]) != SLUICE_SUCCESS ||
+        sluiceCreateKtx2ImageSource(&ktx2, &files[1]) != SLUICE_SUCCESS)
         return 4;
+    for (int i = 0; i < 2; i++) {
+        if (sluiceGetImageInfo(files[i], &image) != SLUICE_ERROR_FILE_NOT_FOUND)
+            return 5;
+        sluiceDestroyImageSource(files[i]);
+    }
+#endif
+#ifdef WITH_BAKE
+    SluiceBakeSettings settings = {.cutout = 0.5f};
+    if (sluiceHashBakeSettings(&settings) == 0)
+        return 7;
 #endif
 #ifdef WITH_VULKAN
     (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */

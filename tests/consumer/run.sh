@@ -44,7 +44,7 @@ find_installed() {
 
 installed_modules() {
     local name
-    for name in sluice sluice-exr sluice-store sluice-vulkan; do
+    for name in sluice sluice-exr sluice-container sluice-store sluice-bake sluice-vulkan; do
         [ ! -f "$PKG_CONFIG_PATH/$name.pc" ] || echo "$name"
     done
 }
@@ -64,7 +64,8 @@ every_public_header_is_installed() {
     for header in "$root"/include/sluice/*.h; do
         name=$(basename "$header" .h)
         case $name in
-        exr | store | vulkan) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
+        dds | ktx2) [ -f "$PKG_CONFIG_PATH/sluice-container.pc" ] || continue ;;
+        exr | store | bake | vulkan) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
         esac
         [ -f "$prefix/include/sluice/$name.h" ] || { echo "$name.h is missing"; return 1; }
     done
@@ -100,7 +101,8 @@ subproject() {
         cp "$root"/tests/consumer/{meson.build,main.c,main.cpp} "$work/outside" &&
         ln -s "$root" "$work/outside/subprojects/sluice" &&
         meson setup "$work/sub" "$work/outside" --force-fallback-for=sluice --wrap-mode=nodownload \
-            -Dsluice:exr=disabled -Dsluice:store=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled &&
+            -Dsluice:exr=disabled -Dsluice:container=disabled -Dsluice:store=disabled \
+            -Dsluice:bake=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled &&
         meson test -C "$work/sub"
 }
 

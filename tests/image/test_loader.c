@@ -31,7 +31,7 @@ static void setup(struct fixture *f, uint32_t threads, uint32_t capacity)
 {
     SluiceProceduralImage image = {NULL, mark};
     SluiceImageInfo info = {SIZE, SIZE, 0, SLUICE_FORMAT_R32_SFLOAT, "loader test"};
-    SluiceTileLoaderCreateInfo create = {threads, capacity, NULL};
+    SluiceTileLoaderCreateInfo create = {threads, capacity, NULL, .retry.maxAttempts = 1};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &f->inner));
     fault_source_init(&f->source, f->inner);
     CHECK_OK(sluiceCreateTileLoader(&create, &f->loader));

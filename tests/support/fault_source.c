@@ -6,7 +6,10 @@
 
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 {
-    return sluiceGetImageInfo(((struct fault_source *)base)->inner, info);
+    struct fault_source *source = (struct fault_source *)base;
+    if (atomic_fetch_add(&source->info_count, 1) < source->unopened)
+        return source->failure;
+    return sluiceGetImageInfo(source->inner, info);
 }
 
 static void wait_while_held(struct fault_source *source)
@@ -20,27 +23,46 @@ static void wait_while_held(struct fault_source *source)
     pthread_mutex_unlock(&source->mutex);
 }
 
+/* What the test wants of the read of this number. */
+static SluiceResult answer_of(const struct fault_source *source, uint64_t number)
+{
+    if (number <= source->script_length)
+        return source->script[number - 1];
+    if (number <= source->postponed)
+        return SLUICE_NOT_READY;
+    bool fails = source->fail_at &&
+                 (number == source->fail_at || (source->fails_on && number > source->fail_at));
+    return fails ? source->failure : SLUICE_SUCCESS;
+}
+
+static void note_beginning(struct fault_source *source)
+{
+    unsigned now = atomic_fetch_add(&source->running, 1) + 1;
+    unsigned most = atomic_load(&source->most_running);
+    while (now > most && !atomic_compare_exchange_weak(&source->most_running, &most, now))
+        continue;
+}
+
 static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
                                 void *texels, size_t row_pitch)
 {
     struct fault_source *source = (struct fault_source *)base;
     uint64_t number = atomic_fetch_add(&source->read_count, 1) + 1;
+    note_beginning(source);
     wait_while_held(source);
     if (source->delay_us) {
         struct timespec delay = {0, (long)source->delay_us * 1000};
         nanosleep(&delay, NULL);
     }
-    if (number <= source->postponed)
-        return SLUICE_NOT_READY;
-    bool fails = source->fail_at &&
-                 (number == source->fail_at || (source->fails_on && number > source->fail_at));
-    if (!fails)
-        return sluiceReadImageRegion(source->inner, region, texels, row_pitch);
     SluiceImageRegion half = *region;
+    SluiceResult answer = answer_of(source, number);
     half.height /= 2;
-    if (source->is_short && half.height > 0)
+    if (answer == SLUICE_SUCCESS)
+        answer = sluiceReadImageRegion(source->inner, region, texels, row_pitch);
+    else if (source->is_short && half.height > 0)
         sluiceReadImageRegion(source->inner, &half, texels, row_pitch);
-    return source->failure;
+    atomic_fetch_sub(&source->running, 1);
+    return answer;
 }
 
 static void destroy(SluiceImageSource *base)

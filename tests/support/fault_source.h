@@ -11,14 +11,19 @@ struct fault_source {
     SluiceImageSource base;
     SluiceImageSource *inner; ///< not owned
     /** What to do; set before the first read. */
-    uint64_t fail_at;     ///< the read of this number, from 1, fails; 0: none
-    bool fails_on;        ///< and so do all later ones
-    SluiceResult failure; ///< with this
-    bool is_short;        ///< after having written half of the rows
-    uint64_t postponed;   ///< so many reads answer NOT_READY first
-    uint32_t delay_us;    ///< before every read
+    uint64_t fail_at;           ///< the read of this number, from 1, fails; 0: none
+    bool fails_on;              ///< and so do all later ones
+    SluiceResult failure;       ///< with this
+    bool is_short;              ///< after having written half of the rows
+    uint64_t postponed;         ///< so many reads answer NOT_READY first
+    const SluiceResult *script; ///< what the first reads answer, SUCCESS passing them on
+    uint64_t script_length;
+    int64_t unopened;  ///< so many questions for the info answer `failure` first
+    uint32_t delay_us; ///< before every read
     /** What happened. */
     atomic_uint_least64_t read_count;
+    atomic_int_least64_t info_count;
+    atomic_uint running, most_running; ///< reads at once
     /** Reads wait while this is true; fault_source_release ends it. */
     bool holds;
     uint32_t waiting; ///< reads that wait now

@@ -1,0 +1,18 @@
+/** What DDS headers call formats. */
+#ifndef SLC_CONTAINER_DDS_FORMAT_H
+#define SLC_CONTAINER_DDS_FORMAT_H
+
+#include "container/layout.h"
+
+/** DDS_PIXELFORMAT without its size. */
+struct slc_dds_pixel_format {
+    uint32_t flags, four_cc, bit_count, masks[4]; ///< R, G, B, A
+};
+
+/** UNDEFINED if the format is none that is read. `*changes`: of enum slc_texel_change. */
+SluiceFormat slc_dds_format(const struct slc_dds_pixel_format *format, unsigned *changes);
+
+/** The same for a number of DXGI_FORMAT. */
+SluiceFormat slc_dxgi_format(uint32_t number, unsigned *changes);
+
+#endif /* SLC_CONTAINER_DDS_FORMAT_H */

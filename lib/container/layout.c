@@ -1,0 +1,60 @@
+#include "container/layout.h"
+
+#include "base/checked.h"
+
+SluiceResult slc_layout_check(const struct slc_container_layout *layout,
+                              const struct slc_input_file *file, const char *advice)
+{
+    if (layout->width == 0 || layout->height == 0 || layout->layer_count == 0)
+        return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA, "is %u x %u texels, %u layers",
+                              layout->width, layout->height, layout->layer_count);
+    if (layout->width > SLC_CONTAINER_MAX_SIZE || layout->height > SLC_CONTAINER_MAX_SIZE ||
+        layout->layer_count > SLC_CONTAINER_MAX_LAYERS)
+        return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                              "is %u x %u texels, %u layers; at most %u and %u", layout->width,
+                              layout->height, layout->layer_count, SLC_CONTAINER_MAX_SIZE,
+                              SLC_CONTAINER_MAX_LAYERS);
+    uint32_t full = slc_mip_count(slc_max_u32(layout->width, layout->height));
+    if (layout->level_count > full)
+        return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,
+                              "has %u levels, but %u x %u texels have %u", layout->level_count,
+                              layout->width, layout->height, full);
+    if (layout->level_count < full)
+        return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                              "has %u of %u levels; write it again with all of them (%s)",
+                              layout->level_count, full, advice);
+    return SLUICE_SUCCESS;
+}
+
+uint64_t slc_layout_image_size(const struct slc_container_layout *layout, uint32_t level)
+{
+    return sluiceFormatRegionSize(layout->format, slc_mip_size(layout->width, level),
+                                  slc_mip_size(layout->height, level));
+}
+
+/* One format of those that differ in how bytes are understood, not in which there are. */
+static SluiceFormat bytes_of(SluiceFormat format)
+{
+    switch (format) {
+    case SLUICE_FORMAT_R8G8B8A8_SRGB: return SLUICE_FORMAT_R8G8B8A8_UNORM;
+    case SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK:
+    case SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK:
+    case SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK: return SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK;
+    case SLUICE_FORMAT_BC2_SRGB_BLOCK: return SLUICE_FORMAT_BC2_UNORM_BLOCK;
+    case SLUICE_FORMAT_BC3_SRGB_BLOCK: return SLUICE_FORMAT_BC3_UNORM_BLOCK;
+    case SLUICE_FORMAT_BC7_SRGB_BLOCK: return SLUICE_FORMAT_BC7_UNORM_BLOCK;
+    default: return format;
+    }
+}
+
+SluiceResult slc_layout_rename(struct slc_container_layout *layout,
+                               const struct slc_input_file *file, SluiceFormat format)
+{
+    if (format != SLUICE_FORMAT_UNDEFINED && bytes_of(format) != bytes_of(layout->format))
+        return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                              "holds %s and cannot be read as %s; nothing is converted",
+                              sluiceFormatString(layout->format), sluiceFormatString(format));
+    if (format != SLUICE_FORMAT_UNDEFINED)
+        layout->format = format;
+    return SLUICE_SUCCESS;
+}

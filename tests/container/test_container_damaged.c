@@ -1,0 +1,412 @@
+/* Files that are not to be trusted and systems that fail: an error or the image, nothing worse. */
+#define _XOPEN_SOURCE 700
+#define _FILE_OFFSET_BITS 64
+
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+
+#include "container/container_files.h"
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The linker puts these in front of pread (--wrap): what the system does is the test's to say. */
+static struct {
+    int fail_at;    ///< the read of this number, from 1, and all later ones fail; 0: none
+    int error;      ///< errno, 0: the file ends
+    int interrupts; ///< so many reads are interrupted first
+    size_t most;    ///< bytes that a read delivers at most; 0: all
+    atomic_int count;
+} disk;
+
+ssize_t __real_pread(int descriptor, void *buffer, size_t size, off_t offset);
+ssize_t __real_pread64(int descriptor, void *buffer, size_t size, off_t offset);
+ssize_t __wrap_pread(int descriptor, void *buffer, size_t size, off_t offset);
+ssize_t __wrap_pread64(int descriptor, void *buffer, size_t size, off_t offset);
+
+/* True if the read is answered with `*answer`; otherwise it may be shorter now. */
+static bool disk_answers(size_t *size, ssize_t *answer)
+{
+    disk.count++;
+    if (disk.interrupts > 0) {
+        disk.interrupts--;
+        errno = EINTR;
+        *answer = -1;
+        return true;
+    }
+    if (disk.fail_at && disk.count >= disk.fail_at) {
+        errno = disk.error;
+        *answer = disk.error ? -1 : 0;
+        return true;
+    }
+    if (disk.most && *size > disk.most)
+        *size = disk.most;
+    return false;
+}
+
+ssize_t __wrap_pread(int descriptor, void *buffer, size_t size, off_t offset)
+{
+    ssize_t answer;
+    return disk_answers(&size, &answer) ? answer : __real_pread(descriptor, buffer, size, offset);
+}
+
+ssize_t __wrap_pread64(int descriptor, void *buffer, size_t size, off_t offset)
+{
+    ssize_t answer;
+    return disk_answers(&size, &answer) ? answer : __real_pread64(descriptor, buffer, size, offset);
+}
+
+static SluiceResult create(const char *path, bool is_ktx2,
+                           const SluiceAllocationCallbacks *allocator, struct log_tally *tally,
+                           SluiceImageSource **source)
+{
+    *tally = (struct log_tally){.path = path};
+    *source = NULL;
+    SluiceDdsImageSourceCreateInfo dds = {
+        .pPath = path, .pAllocator = allocator, .log = log_to(tally)};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {
+        .pPath = path, .pAllocator = allocator, .log = log_to(tally), .maxCacheSize = 1 << 20};
+    return is_ktx2 ? sluiceCreateKtx2ImageSource(&ktx2, source)
+                   : sluiceCreateDdsImageSource(&dds, source);
+}
+
+/* The kinds of file there are. */
+enum { DDS, DX10, KTX2, KTX2_ZSTD, KIND_COUNT };
+
+static bool kind_is_built(int kind)
+{
+#ifdef TEST_HAS_ZSTD
+    (void)kind;
+    return true;
+#else
+    return kind != KTX2_ZSTD;
+#endif
+}
+
+static struct file_bytes make_file(int kind, const struct picture *picture)
+{
+    static const uint32_t dxt5[7] = {0x4, 0x35545844};
+    switch (kind) {
+    case DDS: return make_old_dds(picture, dxt5);
+    case DX10: return make_dds(picture);
+    case KTX2: return make_ktx2(picture, 0);
+    default: return make_ktx2(picture, 2);
+    }
+}
+
+static struct picture small_picture(int kind)
+{
+    return (struct picture){format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK), 13, 9,
+                            kind == DDS ? 0 : 2};
+}
+
+/* What all reads of a file answer; an error must have been logged once, success not at all. */
+static SluiceResult read_file(const char *path, int kind)
+{
+    struct log_tally tally;
+    SluiceImageSource *source;
+    CHECK_OK(create(path, kind >= KTX2, NULL, &tally, &source));
+    SluiceResult result = read_everything(source);
+    sluiceDestroyImageSource(source);
+    assert_int_equal(tally.errors, result != SLUICE_SUCCESS);
+    return result;
+}
+
+static void a_file_cut_at_any_byte_is_an_error(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        scratch_init(&scratch, &file);
+        CHECK_OK(read_file(scratch.path, kind));
+        for (size_t size = file.size; size-- > 0;) {
+            assert_int_equal(ftruncate(scratch.descriptor, (off_t)size), 0);
+            SluiceResult result = read_file(scratch.path, kind);
+            if (result != SLUICE_ERROR_CORRUPT_DATA)
+                fail_msg("kind %d cut at %zu: %s", kind, size, sluiceResultString(result));
+        }
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+/* Bytes of headers that say nothing about where texels are or how they are stored. */
+static bool is_ignored(int kind, size_t at)
+{
+    if (kind >= KTX2)
+        return (at >= 16 && at < 20) || (at >= 48 && at < 80); /* typeSize; places of metadata */
+    if (kind == DX10 && ((at >= 88 && at < 108) || (at >= 112 && at < 128) || at >= 144))
+        return true; /* bits, masks, old caps; alpha mode */
+    if (kind == DDS && at >= 88 && at < 108)
+        return true;
+    return (at >= 20 && at < 24) || (at >= 32 && at < 76) || (at >= 108 && at < 112) ||
+           (at >= 116 && at < 128);
+}
+
+static void check_changed_byte(const struct scratch *scratch, int kind, size_t at, uint8_t byte,
+                               const struct picture *picture)
+{
+    struct log_tally tally;
+    SluiceImageSource *source;
+    CHECK_OK(create(scratch->path, kind >= KTX2, NULL, &tally, &source));
+    SluiceResult result = read_everything(source);
+    bool is_expected = result == SLUICE_SUCCESS || result == SLUICE_ERROR_CORRUPT_DATA ||
+                       result == SLUICE_ERROR_UNSUPPORTED;
+    if (!is_expected || (is_ignored(kind, at) && result != SLUICE_SUCCESS))
+        fail_msg("kind %d, %02x at %zu: %s", kind, byte, at, sluiceResultString(result));
+    assert_int_equal(tally.errors, result != SLUICE_SUCCESS);
+    if (is_ignored(kind, at))
+        check_picture(source, picture);
+    sluiceDestroyImageSource(source);
+}
+
+static void any_changed_byte_of_a_header_gives_an_error_or_an_image(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        scratch_init(&scratch, &file);
+        size_t end = kind == KTX2_ZSTD ? file.size : file.header_size;
+        for (size_t at = 0; at < end; at++)
+            for (int change = 0; change < 11; change++) {
+                uint8_t old = file.bytes[at];
+                uint8_t byte = change < 8    ? old ^ 1u << change
+                               : change == 8 ? 0xFF
+                               : change == 9 ? 0
+                                             : old ^ 0x81;
+                assert_int_equal(pwrite(scratch.descriptor, &byte, 1, (off_t)at), 1);
+                check_changed_byte(&scratch, kind, at, byte, &picture);
+                assert_int_equal(pwrite(scratch.descriptor, &old, 1, (off_t)at), 1);
+            }
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+static void nothing_is_opened_before_it_is_asked_for(void **state)
+{
+    (void)state;
+    for (int kind = DX10; kind <= KTX2; kind++) {
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        struct log_tally tally;
+        SluiceImageSource *source;
+        scratch_init(&scratch, &file);
+        unlink(scratch.path);
+        disk.count = 0;
+        CHECK_OK(create(scratch.path, kind == KTX2, NULL, &tally, &source));
+        assert_int_equal(disk.count, 0);
+        CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
+        CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
+        assert_int_equal(tally.errors, 2);
+        FILE *again = fopen(scratch.path, "wb"); /* files come and go */
+        assert_int_equal(fwrite(file.bytes, 1, file.size, again), file.size);
+        fclose(again);
+        check_picture(source, &picture);
+        unlink(scratch.path); /* what is open stays readable */
+        check_picture(source, &picture);
+        sluiceDestroyImageSource(source);
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+static void what_is_no_file_is_an_error_of_the_system(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/sluice-folder-XXXXXX", pipe_name[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(pipe_name, sizeof pipe_name, "%s/pipe", folder);
+    assert_int_equal(mkfifo(pipe_name, 0600), 0);
+    for (int kind = DX10; kind <= KTX2; kind++) {
+        CHECK_RESULT(read_file(folder, kind), SLUICE_ERROR_IO);
+        CHECK_RESULT(read_file(pipe_name, kind), SLUICE_ERROR_IO); /* and does not hang */
+        char below[128];
+        snprintf(below, sizeof below, "%s/x", pipe_name);
+        CHECK_RESULT(read_file(below, kind), SLUICE_ERROR_FILE_NOT_FOUND);
+    }
+    unlink(pipe_name);
+    rmdir(folder);
+}
+
+static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        struct log_tally tally;
+        SluiceImageSource *source;
+        SluiceImageInfo info;
+        scratch_init(&scratch, &file);
+        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &source));
+        CHECK_OK(sluiceGetImageInfo(source, &info));
+        assert_int_equal(ftruncate(scratch.descriptor, (off_t)file.size - 1), 0);
+        CHECK_RESULT(read_everything(source), SLUICE_ERROR_IO);
+        assert_non_null(strstr(tally.last, "shorter"));
+        scratch_replace(&scratch, file.bytes, file.size);
+        check_picture(source, &picture);
+        sluiceDestroyImageSource(source);
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+/* The same read fails in turn, until there are fewer. */
+static void every_failing_read_is_told_from_damage(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        scratch_init(&scratch, &file);
+        SluiceResult result = SLUICE_ERROR_IO;
+        int n = 0;
+        for (; result == SLUICE_ERROR_IO; n++) {
+            disk.count = 0;
+            disk.fail_at = n + 1;
+            disk.error = n % 2 ? EIO : ESTALE;
+            result = read_file(scratch.path, kind);
+        }
+        disk.fail_at = 0;
+        CHECK_OK(result);
+        assert_true(n > 5);
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+static void short_and_interrupted_reads_are_continued(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        struct log_tally tally;
+        SluiceImageSource *source;
+        scratch_init(&scratch, &file);
+        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &source));
+        disk.most = 7;
+        disk.interrupts = 20;
+        check_picture(source, &picture);
+        disk.most = 0;
+        sluiceDestroyImageSource(source);
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+static void every_refused_allocation_is_survived(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = small_picture(kind);
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        scratch_init(&scratch, &file);
+        SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        uint64_t n = 0;
+        for (; result != SLUICE_SUCCESS; n++) {
+            struct failing_allocator a;
+            struct log_tally tally;
+            SluiceImageSource *source;
+            failing_allocator_init(&a, n);
+            result = create(scratch.path, kind >= KTX2, &a.callbacks, &tally, &source);
+            if (result == SLUICE_SUCCESS)
+                result = read_everything(source);
+            if (result != SLUICE_SUCCESS)
+                CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+            if (source && result != SLUICE_SUCCESS) { /* later there is memory again */
+                a.refuse_from = UINT64_MAX;
+                check_picture(source, &picture);
+            }
+            sluiceDestroyImageSource(source);
+            assert_int_equal(a.live_bytes, 0);
+            assert_true(n < 100);
+        }
+        assert_true(n > (kind == KTX2_ZSTD ? 4 : 2));
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+struct reader {
+    SluiceImageSource *source;
+    const struct picture *picture;
+};
+
+static void *read_picture(void *argument)
+{
+    const struct reader *reader = argument;
+    check_picture(reader->source, reader->picture);
+    return NULL;
+}
+
+static void any_number_of_threads_may_open_and_read(void **state)
+{
+    (void)state;
+    enum { THREADS = 6 };
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!kind_is_built(kind))
+            continue;
+        struct picture picture = {format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK), 130, 99};
+        struct file_bytes file = make_file(kind, &picture);
+        struct scratch scratch;
+        struct log_tally tally;
+        struct reader reader = {NULL, &picture};
+        pthread_t threads[THREADS];
+        scratch_init(&scratch, &file);
+        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &reader.source));
+        for (int i = 0; i < THREADS; i++)
+            assert_int_equal(pthread_create(&threads[i], NULL, read_picture, &reader), 0);
+        for (int i = 0; i < THREADS; i++)
+            pthread_join(threads[i], NULL);
+        sluiceDestroyImageSource(reader.source);
+        scratch_finish(&scratch);
+        free(file.bytes);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_cut_at_any_byte_is_an_error),
+        cmocka_unit_test(any_changed_byte_of_a_header_gives_an_error_or_an_image),
+        cmocka_unit_test(nothing_is_opened_before_it_is_asked_for),
+        cmocka_unit_test(what_is_no_file_is_an_error_of_the_system),
+        cmocka_unit_test(a_file_that_shrinks_while_it_is_open_is_an_error),
+        cmocka_unit_test(every_failing_read_is_told_from_damage),
+        cmocka_unit_test(short_and_interrupted_reads_are_continued),
+        cmocka_unit_test(every_refused_allocation_is_survived),
+        cmocka_unit_test(any_number_of_threads_may_open_and_read),
+    };
+    return RUN_TESTS(tests);
+}

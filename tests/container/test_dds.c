@@ -1,0 +1,261 @@
+#define _XOPEN_SOURCE 700
+
+#include <sluice/dds.h>
+
+#include "container/container_files.h"
+#include "support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static SluiceImageSource *open_dds(const char *path, SluiceFormat format, struct log_tally *tally)
+{
+    SluiceDdsImageSourceCreateInfo info = {.pPath = path, .format = format};
+    if (tally) {
+        *tally = (struct log_tally){.path = path};
+        info.log = log_to(tally);
+    }
+    SluiceImageSource *source = NULL;
+    CHECK_OK(sluiceCreateDdsImageSource(&info, &source));
+    return source;
+}
+
+static void check_file(struct file_bytes file, const struct picture *picture)
+{
+    struct scratch scratch;
+    scratch_init(&scratch, &file);
+    SluiceImageSource *source = open_dds(scratch.path, SLUICE_FORMAT_UNDEFINED, NULL);
+    check_picture(source, picture);
+    sluiceDestroyImageSource(source);
+    scratch_finish(&scratch);
+    free(file.bytes);
+}
+
+static void every_dxgi_format_is_delivered_as_it_is(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < format_names_count; i++) {
+        struct picture picture = {&format_names[i], 37, 70};
+        if (picture.format->dxgi)
+            check_file(make_dds(&picture), &picture);
+    }
+}
+
+static void every_size_and_array_is_delivered(void **state)
+{
+    (void)state;
+    static const struct picture shapes[] = {
+        {NULL, 1, 1},
+        {NULL, 2, 1},
+        {NULL, 1, 5},
+        {NULL, 5, 3},
+        {NULL, 13, 1},
+        {NULL, 64, 64},
+        {NULL, 1023, 2},
+        {NULL, 129, 255},
+        {NULL, 3, 3},
+        {NULL, 20, 12, 3},
+        {NULL, 16, 16, 0, true},
+        {NULL, 7, 7, 2, true},
+    };
+    static const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK,
+                                           SLUICE_FORMAT_BC7_SRGB_BLOCK, SLUICE_FORMAT_R8_UNORM,
+                                           SLUICE_FORMAT_R8G8B8A8_SRGB};
+    for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
+        for (size_t k = 0; k < sizeof formats / sizeof formats[0]; k++) {
+            struct picture picture = shapes[i];
+            picture.format = format_names_of(formats[k]);
+            check_file(make_dds(&picture), &picture);
+        }
+}
+
+#define FOUR_CC(text)                                                                              \
+    (uint32_t)(text)[0] | (uint32_t)(text)[1] << 8 | (uint32_t)(text)[2] << 16 |                   \
+        (uint32_t)(text)[3] << 24
+
+static void old_names_are_understood(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        uint32_t number;
+        SluiceFormat format;
+    } names[] = {
+        {"DXT1", 0, SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK},
+        {"DXT2", 0, SLUICE_FORMAT_BC2_UNORM_BLOCK},
+        {"DXT3", 0, SLUICE_FORMAT_BC2_UNORM_BLOCK},
+        {"DXT4", 0, SLUICE_FORMAT_BC3_UNORM_BLOCK},
+        {"DXT5", 0, SLUICE_FORMAT_BC3_UNORM_BLOCK},
+        {"ATI1", 0, SLUICE_FORMAT_BC4_UNORM_BLOCK},
+        {"BC4U", 0, SLUICE_FORMAT_BC4_UNORM_BLOCK},
+        {"BC4S", 0, SLUICE_FORMAT_BC4_SNORM_BLOCK},
+        {"ATI2", 0, SLUICE_FORMAT_BC5_UNORM_BLOCK},
+        {"BC5U", 0, SLUICE_FORMAT_BC5_UNORM_BLOCK},
+        {"BC5S", 0, SLUICE_FORMAT_BC5_SNORM_BLOCK},
+        {NULL, 111, SLUICE_FORMAT_R16_SFLOAT},
+        {NULL, 112, SLUICE_FORMAT_R16G16_SFLOAT},
+        {NULL, 113, SLUICE_FORMAT_R16G16B16A16_SFLOAT},
+        {NULL, 114, SLUICE_FORMAT_R32_SFLOAT},
+        {NULL, 115, SLUICE_FORMAT_R32G32_SFLOAT},
+        {NULL, 116, SLUICE_FORMAT_R32G32B32A32_SFLOAT},
+    };
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        struct picture picture = {format_names_of(names[i].format), 33, 18};
+        uint32_t code = names[i].name ? FOUR_CC(names[i].name) : names[i].number;
+        check_file(make_old_dds(&picture, (uint32_t[7]){0x4, code}), &picture);
+    }
+}
+
+static void masks_are_understood(void **state)
+{
+    (void)state;
+    struct format_names plain = *format_names_of(SLUICE_FORMAT_R8G8B8A8_UNORM);
+    struct format_names bgra = plain, rgbx = plain, bgrx = plain;
+    bgra.is_bgra = bgrx.is_bgra = true;
+    rgbx.is_opaque = bgrx.is_opaque = true;
+    const struct {
+        uint32_t pixel_format[7];
+        const struct format_names *format;
+    } masks[] = {
+        {{0x41, 0, 32, 0xFF, 0xFF00, 0xFF0000, 0xFF000000}, &plain},
+        {{0x41, 0, 32, 0xFF0000, 0xFF00, 0xFF, 0xFF000000}, &bgra},
+        {{0x40, 0, 32, 0xFF, 0xFF00, 0xFF0000, 0}, &rgbx},
+        {{0x40, 0, 32, 0xFF0000, 0xFF00, 0xFF, 0xFF000000}, &bgrx}, /* alpha is not announced */
+        {{0x40, 0, 16, 0xFF, 0xFF00, 0, 0}, format_names_of(SLUICE_FORMAT_R8G8_UNORM)},
+        {{0x40, 0, 8, 0xFF, 0, 0, 0}, format_names_of(SLUICE_FORMAT_R8_UNORM)},
+        {{0x20000, 0, 8, 0xFF, 0, 0, 0}, format_names_of(SLUICE_FORMAT_R8_UNORM)},
+        {{0x20000, 0, 8, 0xFF, 0xFF, 0xFF, 0}, format_names_of(SLUICE_FORMAT_R8_UNORM)},
+        {{0x20001, 0, 16, 0xFF, 0, 0, 0xFF00}, format_names_of(SLUICE_FORMAT_R8G8_UNORM)},
+    };
+    for (size_t i = 0; i < sizeof masks / sizeof masks[0]; i++) {
+        /* wider than the pieces in which texels are changed */
+        struct picture picture = {masks[i].format, 1500, 3};
+        check_file(make_old_dds(&picture, masks[i].pixel_format), &picture);
+    }
+}
+
+static void old_cube_maps_have_six_layers(void **state)
+{
+    (void)state;
+    struct picture picture = {format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK), 32, 32, 0, true};
+    check_file(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT5")}), &picture);
+}
+
+static void a_format_of_the_same_bytes_can_be_asked_for(void **state)
+{
+    (void)state;
+    struct format_names srgb = *format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK);
+    struct picture picture = {&srgb, 24, 24};
+    struct file_bytes file = make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")});
+    struct scratch scratch;
+    struct log_tally tally;
+    scratch_init(&scratch, &file);
+    srgb.format = SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK;
+    SluiceImageSource *source = open_dds(scratch.path, srgb.format, NULL);
+    check_picture(source, &picture);
+    sluiceDestroyImageSource(source);
+    source = open_dds(scratch.path, SLUICE_FORMAT_BC4_UNORM_BLOCK, &tally);
+    CHECK_RESULT(read_everything(source), SLUICE_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(tally.last, "BC4_UNORM"));
+    sluiceDestroyImageSource(source);
+    scratch_finish(&scratch);
+    free(file.bytes);
+}
+
+/* Little-endian words written over a good file, what that makes of it, and a word of the message.
+ */
+struct refusal {
+    uint32_t at, value, at2, value2;
+    SluiceResult result;
+    const char *message;
+};
+
+static void check_refusals(struct file_bytes file, const struct refusal *refusals, size_t count)
+{
+    struct scratch scratch;
+    scratch_init(&scratch, &file);
+    for (size_t i = 0; i < count; i++) {
+        struct log_tally tally;
+        const struct refusal *r = &refusals[i];
+        scratch_replace(&scratch, file.bytes, file.size);
+        assert_int_equal(pwrite(scratch.descriptor, &r->value, 4, r->at), 4);
+        if (r->at2)
+            assert_int_equal(pwrite(scratch.descriptor, &r->value2, 4, r->at2), 4);
+        SluiceImageSource *source = open_dds(scratch.path, SLUICE_FORMAT_UNDEFINED, &tally);
+        SluiceResult result = read_everything(source);
+        if (result != r->result || tally.errors != 1 || !strstr(tally.last, r->message))
+            fail_msg("%zu: %s, %d errors: %s", i, sluiceResultString(result), tally.errors,
+                     tally.last);
+        sluiceDestroyImageSource(source);
+    }
+    scratch_finish(&scratch);
+    free(file.bytes);
+}
+
+static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
+{
+    (void)state;
+    static const struct refusal old[] = {
+        {0, 0x20534445, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "not a DDS file"},
+        {4, 123, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "header of 123"},
+        {76, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "format of 0"},
+        {16, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "0 x 32 texels"},
+        {12, 0x80000000u, 0, 0, SLUICE_ERROR_UNSUPPORTED, "at most 1048576"},
+        {28, 1, 0, 0, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
+        {28, 0, 0, 0, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
+        {28, 5, 0, 0, SLUICE_ERROR_UNSUPPORTED, "texconv"},
+        {28, 7, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "has 7 levels"},
+        {28, 0xFFFFFFFFu, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "levels"},
+        {16, 33, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "need"},
+        {84, FOUR_CC("RXGB"), 0, 0, SLUICE_ERROR_UNSUPPORTED, "RXGB"},
+        {84, FOUR_CC("D\n\x01\xFF"), 0, 0, SLUICE_ERROR_UNSUPPORTED, "D???"},
+        {80, 0x40, 0, 0, SLUICE_ERROR_UNSUPPORTED, "masks"},
+        {112, 0x200000, 0, 0, SLUICE_ERROR_UNSUPPORTED, "volume"},
+        {8, 0x821007, 24, 4, SLUICE_ERROR_UNSUPPORTED, "volume"},
+        {112, 0x200 | 0x400, 0, 0, SLUICE_ERROR_UNSUPPORTED, "all six"},
+        {112, 0xFE00, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "6 layers"},
+    };
+    static const struct refusal dx10[] = {
+        {128, 70, 0, 0, SLUICE_ERROR_UNSUPPORTED, "DXGI format 70"},
+        {132, 4, 0, 0, SLUICE_ERROR_UNSUPPORTED, "dimension 4"},
+        {132, 2, 0, 0, SLUICE_ERROR_UNSUPPORTED, "dimension 2"},
+        {140, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "0 layers"},
+        {140, 2, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "2 layers"},
+        {140, 65537, 0, 0, SLUICE_ERROR_UNSUPPORTED, "65537 layers"},
+        {140, 0xFFFFFFFFu, 136, 4, SLUICE_ERROR_UNSUPPORTED, "layers"},
+    };
+    struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 32, 32};
+    check_refusals(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")}), old,
+                   sizeof old / sizeof old[0]);
+    check_refusals(make_dds(&picture), dx10, sizeof dx10 / sizeof dx10[0]);
+}
+
+static void wrong_arguments_are_refused(void **state)
+{
+    (void)state;
+    SluiceImageSource *source = NULL;
+    SluiceDdsImageSourceCreateInfo info = {.pPath = "x"};
+    CHECK_RESULT(sluiceCreateDdsImageSource(NULL, &source), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceCreateDdsImageSource(&info, NULL), SLUICE_ERROR_NULL_POINTER);
+    info.format = SLUICE_FORMAT_COUNT;
+    CHECK_RESULT(sluiceCreateDdsImageSource(&info, &source), SLUICE_ERROR_INVALID_ARGUMENT);
+    info = (SluiceDdsImageSourceCreateInfo){0};
+    CHECK_RESULT(sluiceCreateDdsImageSource(&info, &source), SLUICE_ERROR_NULL_POINTER);
+    assert_null(source);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_dxgi_format_is_delivered_as_it_is),
+        cmocka_unit_test(every_size_and_array_is_delivered),
+        cmocka_unit_test(old_names_are_understood),
+        cmocka_unit_test(masks_are_understood),
+        cmocka_unit_test(old_cube_maps_have_six_layers),
+        cmocka_unit_test(a_format_of_the_same_bytes_can_be_asked_for),
+        cmocka_unit_test(what_cannot_be_delivered_is_refused_with_a_reason),
+        cmocka_unit_test(wrong_arguments_are_refused),
+    };
+    return RUN_TESTS(tests);
+}

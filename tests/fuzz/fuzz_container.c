@@ -1,0 +1,78 @@
+/*
+ * Any bytes as a DDS and as a KTX2 file: an error or an image, all of whose texels can be read.
+ * With clang:
+ *
+ *     CC=clang meson setup BUILD -Db_sanitize=address,undefined -Db_lundef=false \
+ *         -Dc_args=-fsanitize=fuzzer-no-link
+ *     ninja -C BUILD tests/container/fuzz_container_libfuzzer
+ *     BUILD/tests/container/fuzz_container_libfuzzer -max_len=1000 tests/fuzz/corpus/container
+ *
+ * In the ordinary test run standalone.c plays the corpus.
+ */
+#define _XOPEN_SOURCE 700
+
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+
+#include <stdlib.h>
+#include <unistd.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+#define MAX_LEVEL_SIZE ((uint64_t)1 << 20)
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+/* Memory of the exact size, so that a byte too many is seen. */
+static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, uint32_t layer,
+                       uint32_t level)
+{
+    SluiceImageRegion region = {
+        level, 0, 0, level_size(info->width, level), level_size(info->height, level), layer};
+    uint64_t row = sluiceFormatRegionSize(info->format, region.width, 1);
+    uint64_t size = sluiceFormatRegionSize(info->format, region.width, region.height);
+    if (size > MAX_LEVEL_SIZE)
+        return;
+    void *texels = malloc(size);
+    if (texels &&
+        sluiceReadImageRegion(source, &region, texels, row) == SLUICE_ERROR_INVALID_ARGUMENT)
+        abort();
+    free(texels);
+}
+
+static void read_source(SluiceImageSource *source)
+{
+    SluiceImageInfo info;
+    if (sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS)
+        for (uint32_t layer = 0; layer < info.arrayLayerCount && layer < 16; layer++)
+            for (uint32_t level = 0; level < info.mipLevelCount; level++)
+                read_level(source, &info, layer, level);
+    sluiceDestroyImageSource(source);
+}
+
+static void read_file(const char *path)
+{
+    SluiceDdsImageSourceCreateInfo dds = {.pPath = path};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .maxCacheSize = MAX_LEVEL_SIZE};
+    SluiceImageSource *source;
+    if (sluiceCreateDdsImageSource(&dds, &source) == SLUICE_SUCCESS)
+        read_source(source);
+    if (sluiceCreateKtx2ImageSource(&ktx2, &source) == SLUICE_SUCCESS)
+        read_source(source);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[] = "/tmp/fuzz-container-XXXXXX";
+    int descriptor = mkstemp(path);
+    if (descriptor < 0)
+        return 0;
+    if (write(descriptor, data, size) == (ssize_t)size)
+        read_file(path);
+    close(descriptor);
+    unlink(path);
+    return 0;
+}

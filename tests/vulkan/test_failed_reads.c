@@ -1,0 +1,267 @@
+/* From a source that fails, through the loader and the manager, to what is shown. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+enum { SIZE = 512, TILES = SIZE / FAKE_TILE, LOADER_ATTEMPTS = 3, MANAGER_ATTEMPTS = 5 };
+
+/* Two tiles of level 0 cannot be read for as long as it is broken. */
+struct broken_source {
+    SluiceImageSource base;
+    SluiceImageSource *inner;
+    atomic_bool is_broken;
+    atomic_uint refused[TILES][TILES];
+};
+
+static bool is_lost(uint32_t x, uint32_t y)
+{
+    return (x == 2 && y == 1) || (x == 3 && y == 3);
+}
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    return sluiceGetImageInfo(((struct broken_source *)base)->inner, info);
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    struct broken_source *source = (struct broken_source *)base;
+    uint32_t x = region->x / FAKE_TILE, y = region->y / FAKE_TILE;
+    if (region->mipLevel == 0 && is_lost(x, y) && atomic_load(&source->is_broken)) {
+        atomic_fetch_add(&source->refused[y][x], 1);
+        return SLUICE_ERROR_IO;
+    }
+    return sluiceReadImageRegion(source->inner, region, texels, row_pitch);
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    (void)base;
+}
+
+static const SluiceImageSourceInterface broken_interface = {get_info, read_region, destroy};
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static uint8_t want_all(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return 0;
+}
+
+struct fixture {
+    struct fake_vulkan fake;
+    struct broken_source source;
+    SluiceVulkanStreamer *streamer;
+    SluiceVulkanTexture texture;
+    uint64_t time;
+    uint32_t warnings;
+    uint32_t lost_copies; ///< of texels to the tiles that cannot be read
+};
+
+static void on_log(void *user, SluiceLogSeverity severity, const char *message)
+{
+    struct fixture *f = user;
+    if (severity != SLUICE_LOG_WARNING)
+        return;
+    f->warnings++;
+    assert_non_null(strstr(message, "broken picture: level 0, tile ("));
+    assert_non_null(strstr(message, "SLUICE_ERROR_IO"));
+}
+
+static void setup(struct fixture *f, SluiceResidencyMode mode)
+{
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo image_info = {.width = SIZE,
+                                  .height = SIZE,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "broken picture"};
+    *f = (struct fixture){.fake = {.tail_page_count = 1, .want = want_all}};
+    f->source.base.pInterface = &broken_interface;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &image_info, NULL, &f->source.inner));
+    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 2,
+                                           .maxRegionCount = 256,
+                                           .loaderThreadCount = 2,
+                                           .feedbackTimeout = 1u << 30,
+                                           .retryDelay = 1,
+                                           .readRetry = {LOADER_ATTEMPTS, 1, 1},
+                                           .log = {f, on_log}};
+    fake_vulkan_fill(&f->fake, &info);
+    info.residencyMode = mode;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &f->streamer));
+    SluiceVulkanTextureCreateInfo texture_info = {.source = &f->source.base};
+    CHECK_OK(sluiceAddVulkanTexture(f->streamer, &texture_info, &f->texture));
+}
+
+static void teardown(struct fixture *f)
+{
+    sluiceDestroyVulkanStreamer(f->streamer);
+    sluiceDestroyImageSource(f->source.inner);
+    assert_int_equal(f->fake.live_objects, 0);
+}
+
+/* Frames that are long enough apart for every delay of the manager to be over. */
+static void run_frames(struct fixture *f, uint32_t count)
+{
+    struct fake_vulkan *fake = &f->fake;
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceStreamingFrame frame;
+        fake->published = false;
+        fake->copy_count = fake->bind_count = 0;
+        fake->bind_value = fake->submitted_bind_value;
+        f->time += 1000;
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(f->streamer));
+        CHECK_OK(
+            sluiceBeginStreamingFrame(f->streamer, fake_vulkan_commands(fake), f->time, &frame));
+        for (uint32_t k = 0; k < fake->copy_count; k++)
+            f->lost_copies +=
+                fake->copies[k].level == 0 && is_lost(fake->copies[k].x, fake->copies[k].y);
+        CHECK_OK(sluiceEndStreamingFrame(f->streamer, fake_vulkan_commands(fake)));
+        fake->frame_semaphore = frame.semaphore;
+        fake->frame_value = frame.signalValue;
+    }
+}
+
+/* What each tile of level 0 is, and what may be sampled there. */
+static void check_level_0(struct fixture *f, SluiceTileState lost_state, uint8_t lost_level)
+{
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f->streamer);
+    uint8_t map[TILES * TILES];
+    CHECK_OK(sluiceWriteMinMipData(manager, f->texture.textureId, TILES, sizeof map, map));
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++) {
+            SluiceTileState tile_state;
+            CHECK_OK(sluiceGetTileState(manager, f->texture.textureId, y * TILES + x, &tile_state,
+                                        NULL));
+            assert_int_equal(tile_state, is_lost(x, y) ? lost_state : SLUICE_TILE_STATE_MAPPED);
+            assert_int_equal(map[y * TILES + x], is_lost(x, y) ? lost_level : 0);
+        }
+}
+
+static void check_given_up(struct fixture *f)
+{
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f->streamer);
+    SluiceTile tiles[8];
+    uint32_t count = 8;
+    CHECK_OK(sluiceGetGivenUpTiles(manager, &count, tiles));
+    assert_int_equal(count, 2);
+    for (uint32_t i = 0; i < 2; i++)
+        assert_true(tiles[i].mipLevel == 0 && is_lost(tiles[i].x, tiles[i].y));
+}
+
+static void check_counts(struct fixture *f)
+{
+    SluiceVulkanStreamerStatistics stats;
+    SluiceTileLoaderStatistics reads, all;
+    sluiceGetVulkanStreamerStatistics(f->streamer, &stats);
+    CHECK_OK(sluiceGetVulkanReadStatistics(f->streamer, &f->source.base, &reads));
+    CHECK_OK(sluiceGetVulkanReadStatistics(f->streamer, NULL, &all));
+    assert_int_equal(stats.tilesFailed, 2 * MANAGER_ATTEMPTS);
+    assert_int_equal(stats.manager.givenUpTileCount, 2);
+    assert_int_equal(stats.loadsInFlight, 0);
+    assert_int_equal(reads.givenUpCount, 2 * MANAGER_ATTEMPTS);
+    assert_int_equal(reads.failedCount, 2 * MANAGER_ATTEMPTS * LOADER_ATTEMPTS);
+    assert_int_equal(reads.retriedCount, 2 * MANAGER_ATTEMPTS * (LOADER_ATTEMPTS - 1));
+    assert_int_equal(reads.byteCount, stats.bytesRead);
+    assert_memory_equal(&reads, &all, sizeof all); /* there is one source */
+    assert_int_equal(f->warnings, 2 * MANAGER_ATTEMPTS);
+    for (uint32_t y = 0; y < TILES; y++)
+        for (uint32_t x = 0; x < TILES; x++)
+            assert_int_equal(f->source.refused[y][x],
+                             is_lost(x, y) ? MANAGER_ATTEMPTS * LOADER_ATTEMPTS : 0);
+}
+
+static void check_story(SluiceResidencyMode mode)
+{
+    static struct fixture f; /* large */
+    setup(&f, mode);
+    f.source.is_broken = true;
+    run_frames(&f, 30);
+    check_level_0(&f, SLUICE_TILE_STATE_GIVEN_UP, 1);
+    check_given_up(&f);
+    check_counts(&f);
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE) /* in others copies go to pages */
+        assert_int_equal(f.lost_copies, 0);
+
+    f.source.is_broken = false;
+    run_frames(&f, 5); /* nobody asks of its own accord */
+    check_level_0(&f, SLUICE_TILE_STATE_GIVEN_UP, 1);
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+    CHECK_OK(sluiceRetryFailedTiles(manager, f.texture.textureId));
+    run_frames(&f, 5);
+    check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
+    if (mode == SLUICE_RESIDENCY_MODE_SPARSE)
+        assert_int_equal(f.lost_copies, 2);
+    assert_int_equal(f.warnings, 2 * MANAGER_ATTEMPTS);
+    teardown(&f);
+}
+
+static void tiles_that_are_given_up_stay_coarser_until_they_are_asked_for_again(void **state)
+{
+    (void)state;
+    check_story(SLUICE_RESIDENCY_MODE_SPARSE);
+    check_story(SLUICE_RESIDENCY_MODE_PAGED);
+    check_story(SLUICE_RESIDENCY_MODE_DENSE);
+}
+
+/* Fails while the manager still tries: nobody has to ask. */
+static void tiles_that_fail_for_a_while_come_by_themselves(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    setup(&f, SLUICE_RESIDENCY_MODE_SPARSE);
+    f.source.is_broken = true;
+    while (f.warnings < 4)
+        run_frames(&f, 1);
+    f.source.is_broken = false;
+    run_frames(&f, 10);
+    check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
+    assert_int_equal(stats.tilesFailed, f.warnings);
+    assert_int_equal(stats.manager.givenUpTileCount, 0);
+    teardown(&f);
+}
+
+static void statistics_of_a_removed_texture_are_forgotten(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    SluiceTileLoaderStatistics reads;
+    setup(&f, SLUICE_RESIDENCY_MODE_SPARSE);
+    SluiceVulkanTextureCreateInfo again = {.source = &f.source.base};
+    SluiceVulkanTexture second;
+    CHECK_OK(sluiceAddVulkanTexture(f.streamer, &again, &second));
+    run_frames(&f, 10);
+    CHECK_OK(sluiceRemoveVulkanTexture(f.streamer, f.texture.textureId));
+    run_frames(&f, 5);
+    CHECK_OK(sluiceGetVulkanReadStatistics(f.streamer, &f.source.base, &reads));
+    assert_true(reads.readCount > 0); /* the other one has it still */
+    CHECK_OK(sluiceRemoveVulkanTexture(f.streamer, second.textureId));
+    run_frames(&f, 5);
+    CHECK_OK(sluiceGetVulkanReadStatistics(f.streamer, &f.source.base, &reads));
+    assert_int_equal(reads.readCount, 0);
+    CHECK_OK(sluiceGetVulkanReadStatistics(f.streamer, NULL, &reads));
+    assert_true(reads.readCount > 0);
+    CHECK_RESULT(sluiceGetVulkanReadStatistics(NULL, NULL, &reads), SLUICE_ERROR_NULL_POINTER);
+    teardown(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tiles_that_are_given_up_stay_coarser_until_they_are_asked_for_again),
+        cmocka_unit_test(tiles_that_fail_for_a_while_come_by_themselves),
+        cmocka_unit_test(statistics_of_a_removed_texture_are_forgotten),
+    };
+    return RUN_TESTS(tests);
+}
