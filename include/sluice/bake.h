@@ -149,9 +149,8 @@ typedef struct SluiceBakeReport {
  * Errors: NULL_POINTER; INVALID_ARGUMENT for values outside their ranges; FILE_NOT_FOUND, IO;
  *         CORRUPT_DATA for files that no reader can make sense of, or that are cut off;
  *         UNSUPPORTED for pictures of more than four channels or of complex numbers, formats that
- *         cannot be encoded here, transfers that block-compressed data contradict; LIMIT_EXCEEDED
- *         if maxMemory does not do for the picture's width, or for a file that can only be read
- *         as a whole; CANCELLED; OUT_OF_HOST_MEMORY. `pReport` may be NULL.
+ *         cannot be encoded here; LIMIT_EXCEEDED if maxMemory does not do for the picture's width;
+ *         CANCELLED; OUT_OF_HOST_MEMORY. `pReport` may be NULL.
  * Thread safety: any thread, several at once, but not to the same output.
  */
 SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,

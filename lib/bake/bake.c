@@ -127,13 +127,25 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
     };
 }
 
+/* By the channels alone: nobody says more. */
+static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
+{
+    SluiceFormatInfo info = {0};
+    (void)sluiceGetFormatInfo(format, &info);
+    if (normals)
+        return SLUICE_STORE_MEANING_NORMAL;
+    return info.channelCount < 3    ? SLUICE_STORE_MEANING_DATA
+           : info.channelCount == 3 ? SLUICE_STORE_MEANING_COLOR
+                                    : SLUICE_STORE_MEANING_COLOR_ALPHA;
+}
+
 static SluiceResult describe_picture(struct bake *bake)
 {
     struct slc_picture *picture = bake->picture;
     SluiceImageInfo image = {.width = picture->width, .height = picture->height};
     if (picture->blocks) {
         SluiceResult result = sluiceGetImageInfo(picture->blocks, &image);
-        bake->plan.meaning = SLUICE_STORE_MEANING_COLOR_ALPHA;
+        bake->plan.meaning = meaning_of_blocks(image.format, bake->info->settings.normalMap);
         if (result == SLUICE_SUCCESS)
             describe_store(bake, &image);
         return result;

@@ -4,7 +4,7 @@
 # Whenever it is killed, under the store's name is nothing or a whole file, and the next run completes
 # it to what an undisturbed one writes: without compression files are the same in whatever order their
 # tiles were written. TIMES: 40. The moments come from a fixed seed.
-bake=$1 make=$2 times=${3:-40}
+bake=$(realpath "$1") make=$(realpath "$2") times=${3:-40}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # test_tool.sh SLUICE_BAKE MAKE_PICTURE: files, folders, failures and what is said of them. Prints TAP.
-bake=$1 make=$2
+bake=$(realpath "$1") make=$(realpath "$2")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
