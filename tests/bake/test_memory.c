@@ -14,7 +14,7 @@
 
 #define WIDTH "1024"
 #define HEIGHT "131072" /* 512 MiB of RGBA */
-#define MOST_KIB (160 * 1024)
+#define MOST_KIB (96 * 1024)
 
 static char *const *arguments;
 
