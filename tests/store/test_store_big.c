@@ -15,7 +15,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-enum { SIZE = 65536, KEPT = 256 * 1024 + 32 * 1024 };
+enum { SIZE = 65536, KEPT = 256 * 1024 + 16 * 1024 };
 
 static void put(unsigned char *at, uint64_t value, int size)
 {
@@ -116,8 +116,10 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     write_far_tiles(&info);
     seal_by_hand(&scratch);
     failing_allocator_init(&allocator, UINT64_MAX);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path,
-                                               .pAllocator = &allocator.callbacks};
+    SluiceStoreReadPool *pool; /* counts for itself */
+    CHECK_OK(sluiceCreateStoreReadPool(NULL, &pool));
+    SluiceStoreImageSourceCreateInfo create = {
+        .pPath = scratch.path, .pAllocator = &allocator.callbacks, .readPool = pool};
     SluiceImageSource *source;
     fault_io = (struct fault_io){0};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
@@ -141,6 +143,7 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     free(texels);
     sluiceDestroyImageSource(source);
     assert_int_equal(allocator.live_bytes, 0);
+    sluiceDestroyStoreReadPool(pool);
     scratch_finish(&scratch);
 }
 

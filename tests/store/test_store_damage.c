@@ -358,6 +358,44 @@ static void a_file_that_is_written_over_while_it_is_open_gives_an_error(void **s
     victim_finish(&other);
 }
 
+/* Writes one byte of the first tile's texels. */
+static void change_tile(const struct victim *victim, unsigned char value)
+{
+    FILE *file = fopen(victim->scratch.path, "r+b");
+    fseek(file, 8192 + 100, SEEK_SET);
+    fputc(value, file);
+    fclose(file);
+}
+
+static void raw_tiles_are_checked_each_time_or_once(void **state)
+{
+    (void)state;
+    for (int once = 0; once < 2; once++) {
+        struct victim victim;
+        victim_init(&victim, 0);
+        SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
+                                                   .checkRawTilesOnce = once};
+        SluiceImageSource *source;
+        static unsigned char texels[65536];
+        SluiceImageRegion region = {0, 0, 0, 128, 128, 0};
+        unsigned char right = victim.bytes[8192 + 100];
+        CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+        change_tile(&victim, right ^ 1);
+        CHECK_RESULT(read_first_tile(source), SLUICE_ERROR_CORRUPT_DATA);
+        CHECK_RESULT(read_first_tile(source), SLUICE_ERROR_CORRUPT_DATA);
+        change_tile(&victim, right);
+        CHECK_OK(read_first_tile(source));
+        change_tile(&victim, right ^ 1);
+        CHECK_RESULT(sluiceReadImageRegion(source, &region, texels, 512),
+                     once ? SLUICE_SUCCESS : SLUICE_ERROR_CORRUPT_DATA);
+        assert_int_equal(texels[100], right ^ 1);
+        region.x = 128; /* that is not known to be right yet */
+        CHECK_OK(sluiceReadImageRegion(source, &region, texels, 512));
+        sluiceDestroyImageSource(source);
+        victim_finish(&victim);
+    }
+}
+
 static void what_is_no_file_is_not_opened(void **state)
 {
     (void)state;
@@ -385,6 +423,7 @@ int main(void)
         cmocka_unit_test(a_file_that_is_cut_while_it_is_open_gives_an_error),
         cmocka_unit_test(a_file_that_is_replaced_stays_what_it_was_for_who_has_it_open),
         cmocka_unit_test(a_file_that_is_written_over_while_it_is_open_gives_an_error),
+        cmocka_unit_test(raw_tiles_are_checked_each_time_or_once),
         cmocka_unit_test(what_is_no_file_is_not_opened),
     };
     return RUN_TESTS(tests);
