@@ -5,9 +5,9 @@
  *
  *     store_figures [--json] [--quick] FOLDER PICTURE...
  *
- * FOLDER takes files that are written and removed; a PICTURE is a PPM or an OpenEXR file. All
- * ratios are of times in this run, taken in turns: each way reads all tiles once, then the next
- * way does, and again; the shortest time of each counts.
+ * FOLDER takes the files that are written; a PICTURE is a PPM or an OpenEXR file. All ratios are of
+ * times in this run, taken in turns: each way reads all tiles once, then the next way does, and
+ * again; of each tile the shortest time of each way counts.
  */
 #define _XOPEN_SOURCE 700
 #define _FILE_OFFSET_BITS 64
@@ -27,7 +27,7 @@
 
 /* Texels go to as many places in turn as a staging buffer has, so that they are not in the cache.
  */
-enum { TILE = 65536, PLACES = 256, MAX_WAYS = 3 };
+enum { TILE = 65536, PLACES = 256 };
 
 static struct {
     bool json, quick;
@@ -102,27 +102,36 @@ static void read_block(const struct picture *p, size_t i)
 
 typedef void way(const struct picture *picture, size_t tile);
 
+/* The least that each way took for a tile, of all rounds, and of all tiles the sum. */
+static void race_picture(const struct picture *p, way *const *ways, unsigned way_count,
+                         double *seconds)
+{
+    double *best = malloc(way_count * p->tile_count * sizeof *best);
+    if (!best)
+        fail("finding memory");
+    for (unsigned round = 0; round < run.rounds; round++)
+        for (unsigned w = 0; w < way_count; w++)
+            for (size_t i = 0; i < p->tile_count; i++) {
+                double start = now();
+                ways[w](p, i);
+                double taken = now() - start, *least = &best[w * p->tile_count + i];
+                if (round == 0 || taken < *least)
+                    *least = taken;
+            }
+    for (unsigned w = 0; w < way_count; w++)
+        for (size_t i = 0; i < p->tile_count; i++)
+            seconds[w] += best[w * p->tile_count + i];
+    free(best);
+}
+
 /* Seconds that each way takes for all tiles of all pictures. */
 static void race(const struct picture *pictures, size_t count, way *const *ways, unsigned way_count,
                  double *seconds)
 {
     for (unsigned w = 0; w < way_count; w++)
         seconds[w] = 0;
-    for (size_t n = 0; n < count; n++) {
-        double best[MAX_WAYS];
-        for (unsigned w = 0; w < way_count; w++)
-            best[w] = 1e9;
-        for (unsigned round = 0; round < run.rounds; round++)
-            for (unsigned w = 0; w < way_count; w++) {
-                double start = now();
-                for (size_t i = 0; i < pictures[n].tile_count; i++)
-                    ways[w](&pictures[n], i);
-                double taken = now() - start;
-                best[w] = taken < best[w] ? taken : best[w];
-            }
-        for (unsigned w = 0; w < way_count; w++)
-            seconds[w] += best[w];
-    }
+    for (size_t n = 0; n < count; n++)
+        race_picture(&pictures[n], ways, way_count, seconds);
 }
 
 static void find_tiles(struct picture *p)
@@ -326,7 +335,7 @@ int main(int argc, char **argv)
         return 2;
     }
     const char *folder = argv[first++];
-    run.rounds = run.quick ? 3 : 15;
+    run.rounds = run.quick ? 3 : 9;
     run.places = calloc(PLACES, TILE);
     SluiceImageSource **sources = calloc((size_t)(argc - first), sizeof(SluiceImageSource *));
     size_t count = 0;
