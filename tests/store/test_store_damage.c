@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <zstd.h>
 
 static bool is_an_error_of_the_file(SluiceResult result)
 {
@@ -234,6 +235,61 @@ static void frames_of_another_size_than_the_texels_are_refused(void **state)
     victim_finish(&victim);
 }
 
+/* The first tile's own texels, in a frame made by zstd. */
+static SluiceResult read_recompressed(uint32_t compression, bool says_size)
+{
+    struct victim victim;
+    victim_init(&victim, compression);
+    struct naive_store store;
+    assert_null(naive_store_load(&store, victim.scratch.path));
+    uint8_t *level = malloc(naive_store_level_size(&store, 0)), *tile = malloc(65536);
+    assert_null(naive_store_level(&store, 0, 0, level));
+    for (int y = 0; y < 128; y++)
+        memcpy(tile + y * 512, level + y * 1200, 512);
+    char frame[65536];
+    ZSTD_CCtx *context = ZSTD_createCCtx();
+    ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, says_size);
+    size_t size = ZSTD_compress2(context, frame, sizeof frame, tile, 65536);
+    assert_false(ZSTD_isError(size));
+    assert_in_range(size, 1, naive_store_chunk(&store, 0).size);
+    SluiceResult result = read_with_frame(&victim, frame, size);
+    ZSTD_freeCCtx(context);
+    free(level);
+    free(tile);
+    naive_store_finish(&store);
+    victim_finish(&victim);
+    return result;
+}
+
+static void a_frame_that_does_not_say_its_size_is_refused(void **state)
+{
+    (void)state;
+    CHECK_OK(read_recompressed(3, true));
+    CHECK_RESULT(read_recompressed(3, false), SLUICE_ERROR_CORRUPT_DATA);
+}
+
+static void a_frame_in_an_uncompressed_file_is_refused(void **state)
+{
+    (void)state;
+    CHECK_RESULT(read_recompressed(0, true), SLUICE_ERROR_CORRUPT_DATA);
+}
+
+static void a_raw_tile_that_is_not_in_its_place_is_refused(void **state)
+{
+    (void)state;
+    struct victim victim;
+    victim_init(&victim, 0);
+    const uint64_t places[] = {8192 + 65536, 8192 + 1, 4096, 0};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        put(victim.bytes + 4096, places[i], 8);
+        naive_store_reseal(victim.bytes, victim.size);
+        write_bytes(victim.scratch.path, victim.bytes, victim.size);
+        CHECK_RESULT(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL),
+                     SLUICE_ERROR_CORRUPT_DATA);
+    }
+    victim_finish(&victim);
+}
+
 static void tiles_that_are_swapped_are_noticed(void **state)
 {
     (void)state;
@@ -271,6 +327,9 @@ int main(void)
         cmocka_unit_test(a_file_that_goes_on_behind_its_end_is_refused),
         cmocka_unit_test(contradictions_under_right_checksums_are_noticed),
         cmocka_unit_test(frames_of_another_size_than_the_texels_are_refused),
+        cmocka_unit_test(a_frame_that_does_not_say_its_size_is_refused),
+        cmocka_unit_test(a_frame_in_an_uncompressed_file_is_refused),
+        cmocka_unit_test(a_raw_tile_that_is_not_in_its_place_is_refused),
         cmocka_unit_test(tiles_that_are_swapped_are_noticed),
     };
     return RUN_TESTS(tests);
