@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 /** zstd's level where none is given. */
-#define SLUICE_BAKE_DEFAULT_COMPRESSION 8u
+#define SLUICE_BAKE_DEFAULT_COMPRESSION 10u
 
 /** How much of the level above makes a texel. */
 typedef enum SluiceBakeFilter {

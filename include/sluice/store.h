@@ -218,20 +218,42 @@ SLUICE_API SluiceResult sluiceFinishStore(SluiceStoreWriter *writer);
  *  safety: external on the writer. */
 SLUICE_API void sluiceDestroyStoreWriter(SluiceStoreWriter *writer);
 
+/**
+ * Memory that reads need for their time: 256 KiB and about 160 KiB of zstd's for each read that is
+ * under way at the same time, kept for those to come. Many sources can share one.
+ */
+typedef struct SluiceStoreReadPool SluiceStoreReadPool;
+
+/** `pAllocator` NULL: malloc and free. Errors: NULL_POINTER, OUT_OF_HOST_MEMORY. Any thread; what
+ *  uses the pool may do so on any threads at once. */
+SLUICE_API SluiceResult sluiceCreateStoreReadPool(const SluiceAllocationCallbacks *pAllocator,
+                                                  SluiceStoreReadPool **pPool);
+
+/** Every source that uses it is gone. NULL is allowed. */
+SLUICE_API void sluiceDestroyStoreReadPool(SluiceStoreReadPool *pool);
+
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceStoreImageSourceCreateInfo {
-    const char *pPath; ///< required; copied
-    /** NULL: malloc and free. Also zstd takes its memory from here. */
-    const SluiceAllocationCallbacks *pAllocator;
-    SluiceLogCallback log; ///< what is wrong with a file, and at which offset
+    const char *pPath;                           ///< required; copied
+    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
+    SluiceLogCallback log;                       ///< what is wrong with a file, and at which offset
+    /** NULL: the source has one of its own, with the same allocator. Outlives the source. For
+     *  programs with many sources: as large as they need for the reads at one time, of all. */
+    SluiceStoreReadPool *readPool;
+    /**
+     * Tiles that are not compressed and whose checksum was right are not checked again, until that
+     * is forgotten with their part of the index. Reading 64 KiB that the system has in memory takes
+     * hardly longer than their checksum; on the other hand, what goes wrong with the file while it
+     * is open may then be taken for texels.
+     */
+    bool checkRawTilesOnce;
 } SluiceStoreImageSourceCreateInfo;
 
 /**
  * Opens a file: one read. The source delivers the file's format, any rectangle of any level; it
  * fits every GPU, whatever that packs. A rectangle that is one tile (sluiceGetStoreTileRegion)
  * with tightly packed rows is decompressed, or read, right into the caller's memory; any other is
- * copied together from all tiles it touches. Holds parts of the index, at most 256 KiB; a read
- * takes as much for its time.
+ * copied together from all tiles it touches. Holds parts of the index, at most 256 KiB.
  *
  * Nothing that a file says is believed unchecked: reads answer CORRUPT_DATA if a checksum is wrong
  * or something does not fit together, IO if the system cannot read or the file was cut off while it

@@ -61,18 +61,24 @@ SluiceResult slc_store_compress(struct slc_store_compressor *compressor, int lev
                                                                   : SLUICE_SUCCESS;
 }
 
-SluiceResult slc_store_decompress(const SluiceAllocationCallbacks *cb, const void *bytes,
+struct slc_store_decompressor *slc_store_decompressor_create(const SluiceAllocationCallbacks *cb)
+{
+    return (struct slc_store_decompressor *)ZSTD_createDCtx_advanced(memory_of(cb));
+}
+
+void slc_store_decompressor_destroy(struct slc_store_decompressor *decompressor)
+{
+    ZSTD_freeDCtx((ZSTD_DCtx *)decompressor);
+}
+
+SluiceResult slc_store_decompress(struct slc_store_decompressor *decompressor, const void *bytes,
                                   size_t size, void *texels, size_t texel_size,
                                   const char **message)
 {
     *message = "a tile does not decompress to the size of its texels";
     if (ZSTD_getFrameContentSize(bytes, size) != texel_size)
         return SLUICE_ERROR_CORRUPT_DATA;
-    ZSTD_DCtx *context = ZSTD_createDCtx_advanced(memory_of(cb));
-    if (!context)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    size_t got = ZSTD_decompressDCtx(context, texels, texel_size, bytes, size);
-    ZSTD_freeDCtx(context);
+    size_t got = ZSTD_decompressDCtx((ZSTD_DCtx *)decompressor, texels, texel_size, bytes, size);
     if (got == texel_size)
         return SLUICE_SUCCESS;
     if (ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation)

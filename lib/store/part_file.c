@@ -108,6 +108,8 @@ SluiceResult slc_store_part_reserve(const struct slc_store_part *part, uint64_t 
     do
         error = posix_fallocate(part->file.descriptor, 0, (off_t)size);
     while (error == EINTR);
+    if (error == EOPNOTSUPP || error == EINVAL) /* of the file system: without a promise, then */
+        return slc_store_part_cut(part, size);
     errno = error;
     return error ? slc_store_fail_system(&part->file, "make room for the index") : SLUICE_SUCCESS;
 }

@@ -22,8 +22,8 @@ SluiceResult slc_store_part_open(struct slc_store_part *part, const char *path,
 
 /** Makes the file `size` bytes long. Errors: IO, logged. */
 SluiceResult slc_store_part_cut(const struct slc_store_part *part, uint64_t size);
-/** Takes room on the disk for the first `size` bytes; they stay what they are, new ones are 0.
- *  Errors: IO, logged. */
+/** Makes an empty file `size` bytes of 0 and takes room on the disk for them. Errors: IO, logged.
+ */
 SluiceResult slc_store_part_reserve(const struct slc_store_part *part, uint64_t size);
 
 /** Waits until all of it is on the disk, and gives it its name. Errors: IO, logged. */

@@ -29,14 +29,19 @@ static SluiceResult read_header(struct slc_store_reader *reader)
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_store_reader_open(struct slc_store_reader *reader, const char *path,
-                                   const SluiceAllocationCallbacks *cb,
-                                   const SluiceLogCallback *log)
+SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
+                                   const SluiceStoreImageSourceCreateInfo *info)
 {
-    *reader = (struct slc_store_reader){.file.descriptor = -1};
-    SluiceResult result = slc_store_file_open(&reader->file, path, cb, log);
+    SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
+    *reader = (struct slc_store_reader){
+        .file.descriptor = -1, .pool = info->readPool, .checks_once = info->checkRawTilesOnce};
+    SluiceResult result = slc_store_file_open(&reader->file, info->pPath, &cb, &info->log);
     if (result == SLUICE_SUCCESS)
         result = read_header(reader);
+    if (result == SLUICE_SUCCESS && !reader->pool) {
+        result = sluiceCreateStoreReadPool(info->pAllocator, &reader->own_pool);
+        reader->pool = reader->own_pool;
+    }
     if (result != SLUICE_SUCCESS)
         return result;
     reader->has_mutex = pthread_mutex_init(&reader->mutex, NULL) == 0;
@@ -49,6 +54,7 @@ void slc_store_reader_close(struct slc_store_reader *reader)
         slc_free(&reader->file.allocator, reader->kept[i].bytes, SLC_STORE_BLOCK_SIZE, 1);
     if (reader->has_mutex)
         pthread_mutex_destroy(&reader->mutex);
+    sluiceDestroyStoreReadPool(reader->own_pool);
     slc_store_file_close(&reader->file);
 }
 
@@ -58,9 +64,12 @@ static bool find_in_kept(struct slc_store_reader *reader, uint64_t block,
     uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);
     pthread_mutex_lock(&reader->mutex);
     bool is_kept = reader->kept[i].bytes && reader->kept[i].number == block;
-    if (is_kept)
+    if (is_kept) {
+        uint32_t entry = (uint32_t)(find->number % SLC_STORE_BLOCK_ENTRIES);
         find->entry =
             slc_store_entry_read(reader->kept[i].bytes + slc_store_entry_offset(find->number));
+        find->is_checked = (reader->kept[i].checked[entry / 8] >> entry % 8 & 1) != 0;
+    }
     pthread_mutex_unlock(&reader->mutex);
     return is_kept;
 }
@@ -74,6 +83,7 @@ static void keep_block(struct slc_store_reader *reader, uint64_t block, const un
         reader->kept[i].bytes = slc_alloc(&reader->file.allocator, SLC_STORE_BLOCK_SIZE, 1);
     if (reader->kept[i].bytes) {
         memcpy(reader->kept[i].bytes, bytes, SLC_STORE_BLOCK_SIZE);
+        memset(reader->kept[i].checked, 0, sizeof reader->kept[i].checked);
         reader->kept[i].number = block;
     }
     pthread_mutex_unlock(&reader->mutex);
@@ -113,6 +123,17 @@ SluiceResult slc_store_find_chunk(struct slc_store_reader *reader, struct slc_st
     return SLUICE_SUCCESS;
 }
 
+static void note_checked(struct slc_store_reader *reader, const struct slc_store_find *find)
+{
+    uint64_t block = find->number / SLC_STORE_BLOCK_ENTRIES;
+    uint32_t i = (uint32_t)(block % SLC_STORE_KEPT_BLOCKS);
+    uint32_t entry = (uint32_t)(find->number % SLC_STORE_BLOCK_ENTRIES);
+    pthread_mutex_lock(&reader->mutex);
+    if (reader->kept[i].bytes && reader->kept[i].number == block)
+        reader->kept[i].checked[entry / 8] |= (uint8_t)(1 << entry % 8);
+    pthread_mutex_unlock(&reader->mutex);
+}
+
 static SluiceResult read_stored(struct slc_store_reader *reader, const struct slc_store_find *find,
                                 void *bytes)
 {
@@ -127,28 +148,39 @@ static SluiceResult read_stored(struct slc_store_reader *reader, const struct sl
                              "the checksum of a tile is wrong");
 }
 
+static SluiceResult read_raw(struct slc_store_reader *reader, const struct slc_store_find *find,
+                             void *texels)
+{
+    if (reader->checks_once && find->is_checked)
+        return slc_store_file_read(&reader->file, find->offset, texels, find->entry.size);
+    SluiceResult result = read_stored(reader, find, texels);
+    if (reader->checks_once && result == SLUICE_SUCCESS)
+        note_checked(reader, find);
+    return result;
+}
+
 static SluiceResult read_compressed(struct slc_store_reader *reader,
-                                    const struct slc_store_find *find, void *texels,
+                                    const struct slc_store_find *find,
+                                    struct slc_store_read_bench *bench, void *texels,
                                     size_t texel_size)
 {
-    const SluiceAllocationCallbacks *cb = &reader->file.allocator;
-    size_t size = find->entry.size;
-    void *bytes = slc_alloc(cb, size, 1);
-    if (!bytes)
+    SluiceResult result = read_stored(reader, find, bench->stored);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const char *message;
+    struct slc_store_decompressor *decompressor = slc_store_read_decompressor(reader->pool, bench);
+    if (!decompressor)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = read_stored(reader, find, bytes);
-    if (result == SLUICE_SUCCESS) {
-        const char *message;
-        result = slc_store_decompress(cb, bytes, size, texels, texel_size, &message);
-        if (result == SLUICE_ERROR_CORRUPT_DATA)
-            slc_store_fail_at(&reader->file, result, find->offset, message);
-    }
-    slc_free(cb, bytes, size, 1);
+    result = slc_store_decompress(decompressor, bench->stored, find->entry.size, texels, texel_size,
+                                  &message);
+    if (result == SLUICE_ERROR_CORRUPT_DATA)
+        slc_store_fail_at(&reader->file, result, find->offset, message);
     return result;
 }
 
 SluiceResult slc_store_read_chunk(struct slc_store_reader *reader,
-                                  const struct slc_store_place *place, void *texels,
+                                  const struct slc_store_place *place,
+                                  struct slc_store_read_bench *bench, void *texels,
                                   struct slc_store_find *find)
 {
     *find = (struct slc_store_find){.place = *place};
@@ -157,6 +189,6 @@ SluiceResult slc_store_read_chunk(struct slc_store_reader *reader,
         return result;
     uint32_t texel_size = slc_store_chunk_size(&reader->header.grid, place);
     if (find->entry.size == texel_size)
-        return read_stored(reader, find, texels);
-    return read_compressed(reader, find, texels, texel_size);
+        return read_raw(reader, find, texels);
+    return read_compressed(reader, find, bench, texels, texel_size);
 }

@@ -4,6 +4,7 @@
 
 #include "store/file.h"
 #include "store/layout.h"
+#include "store/read_pool.h"
 
 #include <pthread.h>
 
@@ -14,11 +15,14 @@ struct slc_store_reader {
     struct slc_store_file file;
     struct slc_store_header header; ///< constant
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
+    SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's
+    bool checks_once;                     ///< raw chunks, as long as their block is kept
     bool has_mutex;
     pthread_mutex_t mutex; ///< around what follows
     struct {
-        uint64_t number;      ///< of the block
-        unsigned char *bytes; ///< NULL: none; sound
+        uint64_t number;                                    ///< of the block
+        unsigned char *bytes;                               ///< NULL: none; sound
+        uint8_t checked[(SLC_STORE_BLOCK_ENTRIES + 7) / 8]; ///< bits: chunks that were right
     } kept[SLC_STORE_KEPT_BLOCKS];
 };
 
@@ -28,12 +32,12 @@ struct slc_store_find {
     uint64_t number;
     struct slc_store_entry entry;
     uint64_t offset; ///< of its bytes, or of the part of the index that is wrong
+    bool is_checked; ///< its checksum was right before, and that is enough
 };
 
-/** Errors: as sluiceCreateStoreImageSource, logged. */
-SluiceResult slc_store_reader_open(struct slc_store_reader *reader, const char *path,
-                                   const SluiceAllocationCallbacks *cb,
-                                   const SluiceLogCallback *log);
+/** `info` without NULL where there may not be. Errors: as sluiceCreateStoreImageSource, logged. */
+SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
+                                   const SluiceStoreImageSourceCreateInfo *info);
 /** Also after a failed open. */
 void slc_store_reader_close(struct slc_store_reader *reader);
 
@@ -41,11 +45,13 @@ void slc_store_reader_close(struct slc_store_reader *reader);
 SluiceResult slc_store_find_chunk(struct slc_store_reader *reader, struct slc_store_find *find);
 
 /**
- * Reads the chunk at `place` into slc_store_chunk_size bytes. `find` is what is known then, also
- * after an error. Errors: IO, CORRUPT_DATA, logged; OUT_OF_HOST_MEMORY. Any thread.
+ * Reads the chunk at `place` into slc_store_chunk_size bytes, which may be bench->texels. `find` is
+ * what is known then, also after an error. Errors: IO, CORRUPT_DATA, logged; OUT_OF_HOST_MEMORY.
+ * Any thread.
  */
 SluiceResult slc_store_read_chunk(struct slc_store_reader *reader,
-                                  const struct slc_store_place *place, void *texels,
+                                  const struct slc_store_place *place,
+                                  struct slc_store_read_bench *bench, void *texels,
                                   struct slc_store_find *find);
 
 #endif /* SLC_STORE_READER_H */

@@ -28,7 +28,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 
 /* Texels of a chunk, or of a level of the tail, and which of the level they are. */
 struct patch {
-    const char *texels; ///< tightly packed
+    const unsigned char *texels; ///< tightly packed
     uint32_t x, y, width, height;
 };
 
@@ -40,8 +40,8 @@ static void copy_patch(const SluiceFormatInfo *format, const struct patch *patch
     uint32_t x1 = slc_min_u32(patch->x + patch->width, region->x + region->width);
     uint32_t y1 = slc_min_u32(patch->y + patch->height, region->y + region->height);
     size_t pitch = slc_format_row_size(format, patch->width);
-    const char *from = patch->texels + (y0 - patch->y) / format->blockHeight * pitch +
-                       slc_format_row_size(format, x0 - patch->x);
+    const unsigned char *from = patch->texels + (y0 - patch->y) / format->blockHeight * pitch +
+                                slc_format_row_size(format, x0 - patch->x);
     char *to = texels + (y0 - region->y) / format->blockHeight * row_pitch +
                slc_format_row_size(format, x0 - region->x);
     size_t size = slc_format_row_size(format, x1 - x0);
@@ -51,29 +51,26 @@ static void copy_patch(const SluiceFormatInfo *format, const struct patch *patch
 }
 
 static SluiceResult read_from_tail(struct slc_store_reader *reader, const SluiceImageRegion *region,
-                                   char *texels, size_t row_pitch)
+                                   struct slc_store_read_bench *bench, char *texels,
+                                   size_t row_pitch)
 {
-    const SluiceAllocationCallbacks *cb = &reader->file.allocator;
     const struct slc_store_grid *grid = &reader->header.grid;
     struct slc_store_place place = {region->arrayLayer, grid->layout.tailFirstLevel, 0, 0};
-    char *tail = slc_alloc(cb, grid->layout.tailSize, 1);
-    if (!tail)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     struct slc_store_find find;
-    SluiceResult result = slc_store_read_chunk(reader, &place, tail, &find);
-    if (result == SLUICE_SUCCESS) {
-        struct patch patch = {tail + slc_store_tail_offset(grid, region->mipLevel), 0, 0,
-                              slc_mip_size(grid->layout.width, region->mipLevel),
-                              slc_mip_size(grid->layout.height, region->mipLevel)};
-        copy_patch(&grid->format, &patch, region, texels, row_pitch);
-    }
-    slc_free(cb, tail, grid->layout.tailSize, 1);
-    return result;
+    SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct patch patch = {bench->texels + slc_store_tail_offset(grid, region->mipLevel), 0, 0,
+                          slc_mip_size(grid->layout.width, region->mipLevel),
+                          slc_mip_size(grid->layout.height, region->mipLevel)};
+    copy_patch(&grid->format, &patch, region, texels, row_pitch);
+    return SLUICE_SUCCESS;
 }
 
 /* All tiles that the region touches; each is read whole, because its checksum is. */
 static SluiceResult read_from_tiles(struct slc_store_reader *reader,
-                                    const SluiceImageRegion *region, char *tile, char *texels,
+                                    const SluiceImageRegion *region,
+                                    struct slc_store_read_bench *bench, char *texels,
                                     size_t row_pitch)
 {
     const struct slc_store_grid *grid = &reader->header.grid;
@@ -84,11 +81,11 @@ static SluiceResult read_from_tiles(struct slc_store_reader *reader,
         for (uint32_t x = region->x / layout->tileWidth; x <= x1; x++) {
             struct slc_store_place place = {region->arrayLayer, region->mipLevel, x, y};
             struct slc_store_find find;
-            SluiceResult result = slc_store_read_chunk(reader, &place, tile, &find);
+            SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
             if (result != SLUICE_SUCCESS)
                 return result;
             SluiceImageRegion whole = slc_store_chunk_region(grid, &place);
-            struct patch patch = {tile, whole.x, whole.y, whole.width, whole.height};
+            struct patch patch = {bench->texels, whole.x, whole.y, whole.width, whole.height};
             copy_patch(&grid->format, &patch, region, texels, row_pitch);
         }
     return SLUICE_SUCCESS;
@@ -113,18 +110,19 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
 {
     struct slc_store_reader *reader = &((struct store_source *)base)->reader;
     const struct slc_store_grid *grid = &reader->header.grid;
-    if (region->mipLevel >= grid->layout.tailFirstLevel)
-        return read_from_tail(reader, region, texels, row_pitch);
+    struct slc_store_read_bench *bench = slc_store_read_pool_take(reader->pool);
+    if (!bench)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     struct slc_store_place place;
     struct slc_store_find find;
-    if (is_one_tile(grid, region, row_pitch, &place))
-        return slc_store_read_chunk(reader, &place, texels, &find);
-    const SluiceAllocationCallbacks *cb = &reader->file.allocator;
-    char *tile = slc_alloc(cb, SLC_STORE_TILE_SIZE, 1);
-    if (!tile)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = read_from_tiles(reader, region, tile, texels, row_pitch);
-    slc_free(cb, tile, SLC_STORE_TILE_SIZE, 1);
+    SluiceResult result;
+    if (region->mipLevel >= grid->layout.tailFirstLevel)
+        result = read_from_tail(reader, region, bench, texels, row_pitch);
+    else if (is_one_tile(grid, region, row_pitch, &place))
+        result = slc_store_read_chunk(reader, &place, bench, texels, &find);
+    else
+        result = read_from_tiles(reader, region, bench, texels, row_pitch);
+    slc_store_read_pool_give(reader->pool, bench);
     return result;
 }
 
@@ -148,7 +146,7 @@ SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &store_interface;
-    SluiceResult result = slc_store_reader_open(&source->reader, pInfo->pPath, &cb, &pInfo->log);
+    SluiceResult result = slc_store_reader_open(&source->reader, pInfo);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;

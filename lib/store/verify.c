@@ -21,12 +21,14 @@ static void note_defect(struct verifier *verifier, const struct slc_store_find *
 }
 
 /* Errors: OUT_OF_HOST_MEMORY; whatever the file is at fault for is noted. */
-static SluiceResult verify_chunk(struct verifier *verifier, uint64_t number, void *texels)
+static SluiceResult verify_chunk(struct verifier *verifier, uint64_t number,
+                                 struct slc_store_read_bench *bench)
 {
     const struct slc_store_grid *grid = &verifier->reader.header.grid;
     struct slc_store_place place = slc_store_chunk_place(grid, number);
     struct slc_store_find find;
-    SluiceResult result = slc_store_read_chunk(&verifier->reader, &place, texels, &find);
+    SluiceResult result =
+        slc_store_read_chunk(&verifier->reader, &place, bench, bench->texels, &find);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         return result;
     verifier->report.tileCount++;
@@ -41,7 +43,7 @@ static SluiceResult verify_chunk(struct verifier *verifier, uint64_t number, voi
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult verify_chunks(struct verifier *verifier, void *texels)
+static SluiceResult verify_chunks(struct verifier *verifier, struct slc_store_read_bench *bench)
 {
     enum { STEP = 64 };
     const SluiceStoreVerifyInfo *info = verifier->info;
@@ -50,7 +52,7 @@ static SluiceResult verify_chunks(struct verifier *verifier, void *texels)
         if (info->pfnProgress && number % STEP == 0 &&
             !info->pfnProgress(info->pUserData, number, count))
             return SLUICE_ERROR_CANCELLED;
-        SluiceResult result = verify_chunk(verifier, number, texels);
+        SluiceResult result = verify_chunk(verifier, number, bench);
         if (result != SLUICE_SUCCESS)
             return result;
     }
@@ -61,16 +63,18 @@ SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreRe
 {
     if (!pInfo || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceStoreImageSourceCreateInfo open = {
+        .pPath = pInfo->pPath, .pAllocator = pInfo->pAllocator, .log = pInfo->log};
     struct verifier verifier = {.info = pInfo};
-    void *texels = slc_alloc(&cb, SLC_STORE_MAX_CHUNK_SIZE, 1);
-    SluiceResult result =
-        texels ? slc_store_reader_open(&verifier.reader, pInfo->pPath, &cb, &pInfo->log)
-               : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (result == SLUICE_SUCCESS)
-        result = verify_chunks(&verifier, texels);
+    struct slc_store_read_bench *bench = NULL;
+    SluiceResult result = slc_store_reader_open(&verifier.reader, &open);
+    if (result == SLUICE_SUCCESS) {
+        bench = slc_store_read_pool_take(verifier.reader.pool);
+        result = bench ? verify_chunks(&verifier, bench) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    if (bench)
+        slc_store_read_pool_give(verifier.reader.pool, bench);
     slc_store_reader_close(&verifier.reader);
-    slc_free(&cb, texels, SLC_STORE_MAX_CHUNK_SIZE, 1);
     if (pReport)
         *pReport = verifier.report;
     return result;

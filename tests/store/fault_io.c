@@ -28,6 +28,8 @@ int __wrap_ftruncate64(int descriptor, off_t size);
 static bool fails(enum fault_call call)
 {
     uint64_t number = ++fault_io.count[call], at = fault_io.fail_at[call];
+    if (number == fault_io.kill_at[call])
+        raise(SIGKILL);
     if (at == 0 || number < at || (number > at && !fault_io.is_lasting))
         return false;
     errno = fault_io.error;
@@ -62,8 +64,6 @@ ssize_t __wrap_pread(int descriptor, void *bytes, size_t size, off_t offset)
 
 ssize_t __wrap_pwrite(int descriptor, const void *bytes, size_t size, off_t offset)
 {
-    if (fault_io.kill_at && fault_io.count[FAULT_WRITE] + 1 == fault_io.kill_at)
-        raise(SIGKILL);
     if (fails(FAULT_WRITE)) {
         if (fault_io.writes_half)
             (void)!__real_pwrite(descriptor, bytes, size / 2, offset);

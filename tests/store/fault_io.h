@@ -18,7 +18,7 @@ struct fault_io {
     bool writes_half;              ///< a write that fails has written half of its bytes
     bool interrupts;               ///< every other read and write is interrupted before it begins
     uint32_t longest;              ///< reads and writes are cut to so many bytes; 0: none
-    uint64_t kill_at;              ///< before the write of this number the process kills itself
+    uint64_t kill_at[FAULT_CALLS]; ///< before the call of this number the process kills itself
     /** What happened. */
     uint64_t count[FAULT_CALLS];
     uint64_t read_size, largest_read;

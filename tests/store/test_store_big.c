@@ -15,7 +15,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-enum { SIZE = 65536, KEPT = 256 * 1024 + 32 * 1024 };
+enum { SIZE = 65536, KEPT = 256 * 1024 + 16 * 1024 };
 
 static void put(unsigned char *at, uint64_t value, int size)
 {
@@ -116,8 +116,10 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     write_far_tiles(&info);
     seal_by_hand(&scratch);
     failing_allocator_init(&allocator, UINT64_MAX);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path,
-                                               .pAllocator = &allocator.callbacks};
+    SluiceStoreReadPool *pool; /* counts for itself */
+    CHECK_OK(sluiceCreateStoreReadPool(NULL, &pool));
+    SluiceStoreImageSourceCreateInfo create = {
+        .pPath = scratch.path, .pAllocator = &allocator.callbacks, .readPool = pool};
     SluiceImageSource *source;
     fault_io = (struct fault_io){0};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
@@ -141,6 +143,44 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     free(texels);
     sluiceDestroyImageSource(source);
     assert_int_equal(allocator.live_bytes, 0);
+    sluiceDestroyStoreReadPool(pool);
+    scratch_finish(&scratch);
+}
+
+/* Tiles 0 and 64 x 204, whose parts of the index are kept at the same place. */
+static void what_was_checked_is_forgotten_with_its_part_of_the_index(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    scratch_init(&scratch);
+    SluiceStoreCreateInfo info = describe(&scratch, NULL);
+    SluiceStoreWriter *writer;
+    SluiceStoreLayout layout;
+    CHECK_OK(sluiceCreateStoreWriter(&info, &writer));
+    CHECK_OK(sluiceGetStoreWriterLayout(writer, &layout));
+    CHECK_OK(write_one(writer, &layout, PICTURE_MIXED, 0, 0, 0, 0));
+    CHECK_OK(write_one(writer, &layout, PICTURE_MIXED, 0, 0, 64 * 204 % 512, 64 * 204 / 512));
+    sluiceDestroyStoreWriter(writer);
+    seal_by_hand(&scratch);
+    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path, .checkRawTilesOnce = true};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    int file = open(scratch.path, O_RDWR);
+    off_t second = 4096 * (1 + (off_t)(349526 + 203) / 204) + (off_t)64 * 204 * 65536;
+    unsigned char byte;
+    assert_int_equal(pread(file, &byte, 1, second), 1);
+    byte ^= 1;
+    assert_int_equal(pwrite(file, &byte, 1, second), 1);
+    close(file);
+    unsigned char *texels = malloc(65536);
+    SluiceImageRegion tiles[] = {{0, 0, 0, 128, 128, 0},
+                                 {0, 64 * 204 % 512 * 128, 64 * 204 / 512 * 128, 128, 128, 0}};
+    CHECK_OK(sluiceReadImageRegion(source, &tiles[0], texels, 512));
+    for (int i = 0; i < 2; i++) /* its part of the index is kept from the first time on */
+        CHECK_RESULT(sluiceReadImageRegion(source, &tiles[1], texels, 512),
+                     SLUICE_ERROR_CORRUPT_DATA);
+    free(texels);
+    sluiceDestroyImageSource(source);
     scratch_finish(&scratch);
 }
 
@@ -168,6 +208,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(writing_a_large_texture_takes_no_more_memory_than_a_small_one),
         cmocka_unit_test(a_large_file_is_opened_by_one_small_read_and_little_is_kept),
+        cmocka_unit_test(what_was_checked_is_forgotten_with_its_part_of_the_index),
         cmocka_unit_test(resuming_a_large_file_finds_its_tiles_in_little_memory),
     };
     return RUN_TESTS(tests);

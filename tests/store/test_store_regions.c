@@ -1,6 +1,7 @@
 /* Any rectangle of any level, as GPUs with other tails and other readers ask for them. */
 #include "base/checked.h"
 #include "store/stores.h"
+#include "support/failing_allocator.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -130,6 +131,50 @@ static void a_store_of_one_layer_can_be_a_layer_of_an_array(void **state)
     scratch_finish(&scratch);
 }
 
+static void sources_share_a_pool(void **state)
+{
+    (void)state;
+    struct scratch scratches[2];
+    SluiceImageSource *sources[2];
+    SluiceStoreReadPool *pool;
+    struct failing_allocator allocator;
+    failing_allocator_init(&allocator, UINT64_MAX);
+    CHECK_OK(sluiceCreateStoreReadPool(&allocator.callbacks, &pool));
+    uint64_t after_first = 0;
+    for (int i = 0; i < 2; i++) {
+        scratch_init(&scratches[i]);
+        SluiceStoreCreateInfo info = {.pPath = scratches[i].path,
+                                      .width = 300,
+                                      .height = 200,
+                                      .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                      .compressionLevel = 1};
+        CHECK_OK(write_store(&info, PICTURE_MIXED));
+        SluiceStoreImageSourceCreateInfo create = {.pPath = scratches[i].path, .readPool = pool};
+        CHECK_OK(sluiceCreateStoreImageSource(&create, &sources[i]));
+        SluiceImageInfo image;
+        CHECK_OK(sluiceGetImageInfo(sources[i], &image));
+        for (uint32_t l = 0; l < image.mipLevelCount; l++) {
+            SluiceImageRegion level = {l, 0, 0, slc_mip_size(300, l), slc_mip_size(200, l), 0};
+            check_region(sources[i], &image, &level, 4);
+        }
+        if (i == 0)
+            after_first = allocator.live_bytes;
+    }
+    assert_in_range(after_first, 1, 512 * 1024);
+    assert_int_equal(allocator.live_bytes, after_first);
+    for (int i = 0; i < 2; i++) {
+        sluiceDestroyImageSource(sources[i]);
+        scratch_finish(&scratches[i]);
+    }
+    sluiceDestroyStoreReadPool(pool);
+    sluiceDestroyStoreReadPool(NULL);
+    assert_int_equal(allocator.live_bytes, 0);
+    CHECK_RESULT(sluiceCreateStoreReadPool(NULL, NULL), SLUICE_ERROR_NULL_POINTER);
+    failing_allocator_init(&allocator, 0);
+    CHECK_RESULT(sluiceCreateStoreReadPool(&allocator.callbacks, &pool),
+                 SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+}
+
 static void what_leaves_the_level_is_refused(void **state)
 {
     (void)state;
@@ -163,6 +208,7 @@ int main(void)
         cmocka_unit_test(any_rectangle_is_what_was_written_there),
         cmocka_unit_test(every_tile_and_every_level_is_read_by_its_own_region),
         cmocka_unit_test(a_store_of_one_layer_can_be_a_layer_of_an_array),
+        cmocka_unit_test(sources_share_a_pool),
         cmocka_unit_test(what_leaves_the_level_is_refused),
     };
     return RUN_TESTS(tests);

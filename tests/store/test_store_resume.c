@@ -91,13 +91,14 @@ static void a_writer_stopped_anywhere_is_resumed_to_the_same_file(void **state)
     }
 }
 
-/* The child dies in front of its write of a number; true once it lives to the end. */
-static bool write_and_die(const SluiceStoreCreateInfo *info, uint64_t kill_at)
+/* The child dies in front of its call of a number; true if it lives to the end. */
+static bool write_and_die(const SluiceStoreCreateInfo *info, enum fault_call call, uint64_t kill_at)
 {
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        fault_io = (struct fault_io){.kill_at = kill_at, .longest = 20000};
+        fault_io = (struct fault_io){.longest = 20000};
+        fault_io.kill_at[call] = kill_at;
         _exit(write_store(info, PICTURE_MIXED) == SLUICE_SUCCESS ? 0 : 1);
     }
     int status;
@@ -108,25 +109,40 @@ static bool write_and_die(const SluiceStoreCreateInfo *info, uint64_t kill_at)
     return true;
 }
 
-static void a_writer_killed_before_any_write_is_resumed_to_the_same_file(void **state)
+/* The number of times it was killed. */
+static uint32_t kill_before_every(enum fault_call call, uint32_t compression)
+{
+    size_t size;
+    unsigned char *expected = write_at_once(compression, &size);
+    bool lives = false;
+    uint32_t kills = 0;
+    for (uint64_t kill_at = 1; !lives; kill_at++) {
+        struct scratch scratch;
+        scratch_init(&scratch);
+        SluiceStoreCreateInfo info = describe(&scratch, compression);
+        lives = write_and_die(&info, call, kill_at);
+        kills += !lives;
+        /* complete or absent: it has its name when the folder is all that is not on the disk yet */
+        bool is_named = lives || (call == FAULT_SYNC && kill_at == 2);
+        assert_int_equal(exists(scratch.path), is_named);
+        if (!is_named)
+            CHECK_OK(write_store(&info, PICTURE_MIXED));
+        expect_bytes(scratch.path, expected, size);
+        scratch_finish(&scratch);
+    }
+    free(expected);
+    return kills;
+}
+
+static void a_writer_killed_before_any_call_is_resumed_to_the_same_file(void **state)
 {
     (void)state;
     for (uint32_t compression = 0; compression <= 3; compression += 3) {
-        size_t size;
-        unsigned char *expected = write_at_once(compression, &size);
-        bool lives = false;
-        for (uint64_t kill_at = 1; !lives; kill_at++) {
-            struct scratch scratch;
-            scratch_init(&scratch);
-            SluiceStoreCreateInfo info = describe(&scratch, compression);
-            lives = write_and_die(&info, kill_at);
-            assert_int_equal(exists(scratch.path), lives);
-            if (!lives)
-                CHECK_OK(write_store(&info, PICTURE_MIXED));
-            expect_bytes(scratch.path, expected, size);
-            scratch_finish(&scratch);
-        }
-        free(expected);
+        assert_in_range(kill_before_every(FAULT_WRITE, compression), 2 * 21, 1000);
+        assert_in_range(kill_before_every(FAULT_READ, compression), 21, 1000);
+        assert_int_equal(kill_before_every(FAULT_CUT, compression), 2);
+        assert_int_equal(kill_before_every(FAULT_SYNC, compression), 2);
+        assert_int_equal(kill_before_every(FAULT_RENAME, compression), 1);
     }
 }
 
@@ -139,7 +155,7 @@ static void a_writer_killed_again_and_again_gets_there(void **state)
     scratch_init(&scratch);
     SluiceStoreCreateInfo info = describe(&scratch, 3);
     uint32_t runs = 1;
-    while (!write_and_die(&info, 6))
+    while (!write_and_die(&info, FAULT_WRITE, 6))
         assert_true(runs++ < 100);
     assert_true(runs > 5);
     expect_bytes(scratch.path, expected, size);
@@ -312,7 +328,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_writer_stopped_anywhere_is_resumed_to_the_same_file),
-        cmocka_unit_test(a_writer_killed_before_any_write_is_resumed_to_the_same_file),
+        cmocka_unit_test(a_writer_killed_before_any_call_is_resumed_to_the_same_file),
         cmocka_unit_test(a_writer_killed_again_and_again_gets_there),
         cmocka_unit_test(a_tile_that_is_damaged_meanwhile_is_written_again),
         cmocka_unit_test(other_settings_begin_anew),
