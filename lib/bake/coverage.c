@@ -3,10 +3,9 @@
 #include "base/alloc.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define STEPS 65536u
-#define MAX_SCALE 16.0f
+#define MAX_SCALE 16u
 
 SluiceResult slc_coverage_init(struct slc_coverage *coverage, const SluiceAllocationCallbacks *cb,
                                uint32_t level_count)
@@ -43,38 +42,51 @@ void slc_coverage_add(struct slc_coverage *coverage, uint32_t level, const float
         counts[alpha_step(rgba[4 * (size_t)i + 3])]++;
 }
 
-static double share_from(const uint64_t *counts, uint32_t step)
+static uint64_t count_from(const uint64_t *counts, uint32_t step)
 {
-    uint64_t reached = 0, all = 0;
-    for (uint32_t i = 0; i < STEPS; i++) {
-        all += counts[i];
-        reached += i >= step ? counts[i] : 0;
+    uint64_t count = 0;
+    for (uint32_t i = step; i < STEPS; i++)
+        count += counts[i];
+    return count;
+}
+
+/* The first step all of which reaches the threshold; 1 is in the last. */
+static uint32_t step_of(float threshold)
+{
+    uint32_t step = (uint32_t)ceilf(threshold * (float)STEPS);
+    return step < STEPS ? step : STEPS - 1;
+}
+
+static uint32_t distance(uint32_t a, uint32_t b)
+{
+    return a > b ? a - b : b - a;
+}
+
+/* The step from which on the share of texels is nearest to `wanted`; of equal ones the one next to
+ * `first`. From the last step down. */
+static uint32_t find_step(const uint64_t *counts, double wanted, uint32_t first)
+{
+    double all = (double)count_from(counts, 0), least = INFINITY;
+    uint64_t reached = 0;
+    uint32_t best = first, lowest = first / MAX_SCALE + 1;
+    for (uint32_t i = STEPS - 1; i >= lowest; i--) {
+        reached += counts[i];
+        double error = fabs((double)reached / all - wanted);
+        if (error < least || (error == least && distance(i, first) < distance(best, first))) {
+            least = error;
+            best = i;
+        }
     }
-    return all ? (double)reached / (double)all : 0.0;
+    return best;
 }
 
 float slc_coverage_scale(const struct slc_coverage *coverage, uint32_t level, float threshold)
 {
-    const uint64_t *counts = coverage->counts + (size_t)level * STEPS;
+    const uint64_t *above = coverage->counts, *counts = above + (size_t)level * STEPS;
+    uint32_t first = step_of(threshold);
     if (level == 0)
         return 1.0f;
-    double wanted = share_from(coverage->counts, (uint32_t)ceilf(threshold * (float)(STEPS)));
-    double all = 0.0, reached = 0.0, least = INFINITY;
-    for (uint32_t i = 0; i < STEPS; i++)
-        all += (double)counts[i];
-    uint32_t first = (uint32_t)ceilf(threshold * (float)STEPS), best = first;
-    /* From 1 down; of steps that are as near as each other the one next to the threshold. */
-    for (uint32_t i = STEPS; i-- > 0;) {
-        reached += (double)counts[i];
-        float scale = threshold * (float)STEPS / (float)(i ? i : 1);
-        if (i == 0 || scale > MAX_SCALE || scale < 1.0f / MAX_SCALE)
-            continue;
-        double distance = fabs(reached / all - wanted);
-        bool is_nearer_threshold = labs((long)i - (long)first) < labs((long)best - (long)first);
-        if (distance < least || (distance == least && is_nearer_threshold)) {
-            least = distance;
-            best = i;
-        }
-    }
+    double wanted = (double)count_from(above, first) / (double)count_from(above, 0);
+    uint32_t best = find_step(counts, wanted, first);
     return best == first ? 1.0f : threshold * (float)STEPS / (float)best;
 }

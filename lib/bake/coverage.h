@@ -9,11 +9,9 @@
 
 #include <sluice/base.h>
 
-#define SLC_COVERAGE_LEVELS 21
-
 struct slc_coverage {
     uint32_t level_count;
-    uint64_t *counts; ///< [level_count][SLC_ALPHA_STEPS]
+    uint64_t *counts; ///< [level_count][65536]
 };
 
 /** Errors: OUT_OF_HOST_MEMORY. */
@@ -28,8 +26,8 @@ void slc_coverage_add(struct slc_coverage *coverage, uint32_t level, const float
 
 /**
  * What alpha of `level` is multiplied by so that the share of texels that reach `threshold` is as
- * near as can be to that of level 0. 1 for level 0. Scales lie between 1/16 and 16: beyond that a
- * level is all there or all gone anyway.
+ * near as can be to that of level 0. 1 for level 0; at most 16, so that what is hardly there does
+ * not become solid.
  */
 float slc_coverage_scale(const struct slc_coverage *coverage, uint32_t level, float threshold);
 

@@ -76,6 +76,7 @@ static void coverage_is_kept(void **state)
     check_kept(2500, 3, 0.5f, SLUICE_FORMAT_R8G8B8A8_SRGB);
     check_kept(2500, 3, 0.3f, SLUICE_FORMAT_R8G8B8A8_SRGB);
     check_kept(2500, 3, 0.9f, SLUICE_FORMAT_R8G8B8A8_SRGB);
+    check_kept(2500, 3, 1.0f, SLUICE_FORMAT_R8G8B8A8_SRGB);
     check_kept(1500, 2, 0.5f, SLUICE_FORMAT_R16G16B16A16_SFLOAT);
 }
 
