@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -27,20 +28,29 @@ struct run {
 /* A file on its thread. */
 struct task {
     struct run *run;
+    const struct file *file;
     struct outcome *outcome;
     uint64_t size, counted; /* bytes of the input, and how many are in `done` */
 };
 
-/* Messages come on the thread of their file, or on one that helps it. */
 static _Thread_local struct task *current;
 
+static bool begins_with(const char *text, const char *start)
+{
+    return strncmp(text, start, strlen(start)) == 0;
+}
+
+/* Messages begin with a file's name. On a thread that waits they may be of another one that it
+ * helps. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
-    struct outcome *outcome = current ? current->outcome : NULL;
-    if (severity == SLUICE_LOG_ERROR && outcome && !outcome->message[0])
-        snprintf(outcome->message, sizeof outcome->message, "%s", message);
-    else if (severity != SLUICE_LOG_INFO && !outcome)
+    const struct task *task = current;
+    bool is_own = task && (begins_with(message, task->file->input) ||
+                           begins_with(message, task->file->output));
+    if (severity == SLUICE_LOG_ERROR && is_own && !task->outcome->message[0])
+        snprintf(task->outcome->message, sizeof task->outcome->message, "%s", message);
+    else if (severity != SLUICE_LOG_INFO && !is_own)
         fprintf(stderr, "sluice-bake: %s\n", message);
 }
 
@@ -59,7 +69,7 @@ static void bake_one(struct run *run, size_t index)
 {
     const struct file *file = &run->files->files[index];
     struct outcome *outcome = &run->outcomes[index];
-    struct task task = {run, outcome, file->size, 0};
+    struct task task = {run, file, outcome, file->size, 0};
     SluiceBakeInfo info = {.pInputPath = file->input,
                            .pOutputPath = file->output,
                            .settings = run->options->settings,
