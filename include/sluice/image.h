@@ -1,6 +1,6 @@
 /**
- * Where texels come from: one interface, many implementations (OpenEXR in exr.h, procedural and
- * wrapping ones here, the application's own).
+ * Where texels come from: one interface, many implementations (OpenEXR in exr.h, DDS in dds.h, KTX2
+ * in ktx2.h, procedural and wrapping ones here, the application's own).
  *
  * A source is a mip chain of one texel format that can be read rectangle by rectangle, from any
  * thread, several at once. It knows nothing of tiles: the reader asks for the rectangle that a tile
@@ -149,8 +149,8 @@ typedef struct SluiceProceduralImage {
  * and round, sRGB encodes, NaN becomes 0 but in 32-bit float formats. Formats without a sign round
  * to the nearest value that they have, ties to even (E5B9G9R9: up, as its specification says),
  * saturate, and make 0 of what is negative. Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED for
- * compressed formats: bring an own source, and for
- * arrays; OUT_OF_HOST_MEMORY. Any thread.
+ * compressed formats, which come from dds.h, ktx2.h or an own source, and for arrays;
+ * OUT_OF_HOST_MEMORY. Any thread.
  * Source of E5B9G9R9: Vulkan specification, "RGB to Shared Exponent Conversion".
  */
 SLUICE_API SluiceResult sluiceCreateProceduralImageSource(

@@ -49,7 +49,7 @@ typedef struct SluiceTileReadFailureCallback {
 
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceTileLoaderCreateInfo {
-    uint32_t threadCount;     ///< 0: one less than there are processors, at least 1
+    uint32_t threadCount;     ///< 0: one less than there are processors, at least 2
     uint32_t requestCapacity; ///< reads not yet collected, at most, up to 2^29; 0: 1024
     const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
     SluiceTileRetryPolicy retry;

@@ -161,10 +161,11 @@ static void *worker_main(void *argument)
     return NULL;
 }
 
+/* At least two, or one source that stalls would stop all. */
 static uint32_t default_thread_count(void)
 {
     long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    return processors > 2 ? (uint32_t)processors - 1 : 1;
+    return processors > 3 ? (uint32_t)processors - 1 : 2;
 }
 
 static void free_memory(struct SluiceTileLoader *loader, uint32_t thread_count)

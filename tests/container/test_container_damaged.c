@@ -102,10 +102,29 @@ static struct file_bytes make_file(int kind, const struct picture *picture)
     }
 }
 
-static struct picture small_picture(int kind)
+/* A small file of a kind. */
+struct sample {
+    struct picture picture;
+    struct file_bytes file;
+    struct scratch scratch;
+};
+
+/* False for what this build cannot make. */
+static bool sample_init(struct sample *sample, int kind)
 {
-    return (struct picture){format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK), 13, 9,
-                            kind == DDS ? 0 : 2};
+    const struct format_names *format = format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK);
+    if (!kind_is_built(kind))
+        return false;
+    sample->picture = (struct picture){format, 13, 9, kind == DDS ? 0 : 2};
+    sample->file = make_file(kind, &sample->picture);
+    scratch_init(&sample->scratch, &sample->file);
+    return true;
+}
+
+static void sample_finish(struct sample *sample)
+{
+    scratch_finish(&sample->scratch);
+    free(sample->file.bytes);
 }
 
 /* What all reads of a file answer; an error must have been logged once, success not at all. */
@@ -124,21 +143,17 @@ static void a_file_cut_at_any_byte_is_an_error(void **state)
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
-        scratch_init(&scratch, &file);
-        CHECK_OK(read_file(scratch.path, kind));
-        for (size_t size = file.size; size-- > 0;) {
-            assert_int_equal(ftruncate(scratch.descriptor, (off_t)size), 0);
-            SluiceResult result = read_file(scratch.path, kind);
+        CHECK_OK(read_file(s.scratch.path, kind));
+        for (size_t size = s.file.size; size-- > 0;) {
+            assert_int_equal(ftruncate(s.scratch.descriptor, (off_t)size), 0);
+            SluiceResult result = read_file(s.scratch.path, kind);
             if (result != SLUICE_ERROR_CORRUPT_DATA)
                 fail_msg("kind %d cut at %zu: %s", kind, size, sluiceResultString(result));
         }
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -176,26 +191,22 @@ static void any_changed_byte_of_a_header_gives_an_error_or_an_image(void **state
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
-        scratch_init(&scratch, &file);
-        size_t end = kind == KTX2_ZSTD ? file.size : file.header_size;
+        size_t end = kind == KTX2_ZSTD ? s.file.size : s.file.header_size;
         for (size_t at = 0; at < end; at++)
             for (int change = 0; change < 11; change++) {
-                uint8_t old = file.bytes[at];
+                uint8_t old = s.file.bytes[at];
                 uint8_t byte = change < 8    ? old ^ 1u << change
                                : change == 8 ? 0xFF
                                : change == 9 ? 0
                                              : old ^ 0x81;
-                assert_int_equal(pwrite(scratch.descriptor, &byte, 1, (off_t)at), 1);
-                check_changed_byte(&scratch, kind, at, byte, &picture);
-                assert_int_equal(pwrite(scratch.descriptor, &old, 1, (off_t)at), 1);
+                assert_int_equal(pwrite(s.scratch.descriptor, &byte, 1, (off_t)at), 1);
+                check_changed_byte(&s.scratch, kind, at, byte, &s.picture);
+                assert_int_equal(pwrite(s.scratch.descriptor, &old, 1, (off_t)at), 1);
             }
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -203,28 +214,25 @@ static void nothing_is_opened_before_it_is_asked_for(void **state)
 {
     (void)state;
     for (int kind = DX10; kind <= KTX2; kind++) {
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
+        struct sample s;
+        assert_true(sample_init(&s, kind));
         struct log_tally tally;
         SluiceImageSource *source;
-        scratch_init(&scratch, &file);
-        unlink(scratch.path);
+        unlink(s.scratch.path);
         disk.count = 0;
-        CHECK_OK(create(scratch.path, kind == KTX2, NULL, &tally, &source));
+        CHECK_OK(create(s.scratch.path, kind == KTX2, NULL, &tally, &source));
         assert_int_equal(disk.count, 0);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
         assert_int_equal(tally.errors, 2);
-        FILE *again = fopen(scratch.path, "wb"); /* files come and go */
-        assert_int_equal(fwrite(file.bytes, 1, file.size, again), file.size);
+        FILE *again = fopen(s.scratch.path, "wb"); /* files come and go */
+        assert_int_equal(fwrite(s.file.bytes, 1, s.file.size, again), s.file.size);
         fclose(again);
-        check_picture(source, &picture);
-        unlink(scratch.path); /* what is open stays readable */
-        check_picture(source, &picture);
+        check_picture(source, &s.picture);
+        unlink(s.scratch.path); /* what is open stays readable */
+        check_picture(source, &s.picture);
         sluiceDestroyImageSource(source);
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -250,25 +258,21 @@ static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
         struct log_tally tally;
         SluiceImageSource *source;
         SluiceImageInfo info;
-        scratch_init(&scratch, &file);
-        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &source));
+        CHECK_OK(create(s.scratch.path, kind >= KTX2, NULL, &tally, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
-        assert_int_equal(ftruncate(scratch.descriptor, (off_t)file.size - 1), 0);
+        assert_int_equal(ftruncate(s.scratch.descriptor, (off_t)s.file.size - 1), 0);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_IO);
         assert_non_null(strstr(tally.last, "shorter"));
-        scratch_replace(&scratch, file.bytes, file.size);
-        check_picture(source, &picture);
+        scratch_replace(&s.scratch, s.file.bytes, s.file.size);
+        check_picture(source, &s.picture);
         sluiceDestroyImageSource(source);
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -277,25 +281,21 @@ static void every_failing_read_is_told_from_damage(void **state)
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
-        scratch_init(&scratch, &file);
         SluiceResult result = SLUICE_ERROR_IO;
         int n = 0;
         for (; result == SLUICE_ERROR_IO; n++) {
             disk.count = 0;
             disk.fail_at = n + 1;
             disk.error = n % 2 ? EIO : ESTALE;
-            result = read_file(scratch.path, kind);
+            result = read_file(s.scratch.path, kind);
         }
         disk.fail_at = 0;
         CHECK_OK(result);
         assert_true(n > 5);
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -303,22 +303,18 @@ static void short_and_interrupted_reads_are_continued(void **state)
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
         struct log_tally tally;
         SluiceImageSource *source;
-        scratch_init(&scratch, &file);
-        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &source));
+        CHECK_OK(create(s.scratch.path, kind >= KTX2, NULL, &tally, &source));
         disk.most = 7;
         disk.interrupts = 20;
-        check_picture(source, &picture);
+        check_picture(source, &s.picture);
         disk.most = 0;
         sluiceDestroyImageSource(source);
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
@@ -326,12 +322,9 @@ static void every_refused_allocation_is_survived(void **state)
 {
     (void)state;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!kind_is_built(kind))
+        struct sample s;
+        if (!sample_init(&s, kind))
             continue;
-        struct picture picture = small_picture(kind);
-        struct file_bytes file = make_file(kind, &picture);
-        struct scratch scratch;
-        scratch_init(&scratch, &file);
         SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         uint64_t n = 0;
         for (; result != SLUICE_SUCCESS; n++) {
@@ -339,22 +332,21 @@ static void every_refused_allocation_is_survived(void **state)
             struct log_tally tally;
             SluiceImageSource *source;
             failing_allocator_init(&a, n);
-            result = create(scratch.path, kind >= KTX2, &a.callbacks, &tally, &source);
+            result = create(s.scratch.path, kind >= KTX2, &a.callbacks, &tally, &source);
             if (result == SLUICE_SUCCESS)
                 result = read_everything(source);
             if (result != SLUICE_SUCCESS)
                 CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
             if (source && result != SLUICE_SUCCESS) { /* later there is memory again */
                 a.refuse_from = UINT64_MAX;
-                check_picture(source, &picture);
+                check_picture(source, &s.picture);
             }
             sluiceDestroyImageSource(source);
             assert_int_equal(a.live_bytes, 0);
             assert_true(n < 100);
         }
         assert_true(n > (kind == KTX2_ZSTD ? 4 : 2));
-        scratch_finish(&scratch);
-        free(file.bytes);
+        sample_finish(&s);
     }
 }
 
