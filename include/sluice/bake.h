@@ -140,7 +140,8 @@ typedef struct SluiceBakeReport {
  * Numbers that are none: NaN becomes 0; infinities, and what lies beyond, become +-65504, or
  * +-2^120 where 32-bit floats are stored. Level 0 is stored byte for byte where the format holds
  * the picture's samples. Pictures whose data are block-compressed (DDS, KTX2) keep all their
- * levels; settings but for compression do not apply to them, and they need the full chain.
+ * levels and need the full chain; of the settings, a transfer renames their format to its sRGB twin
+ * or back, and normalMap, wraps and compression apply.
  * ICC profiles and orientation tags are not applied; CMYK, Lab and the like become sRGB.
  *
  * The file is complete under its name or not there. What an interrupted bake leaves behind, beside

@@ -139,17 +139,30 @@ static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
                                     : SLUICE_STORE_MEANING_COLOR_ALPHA;
 }
 
+/* Many files of blocks do not know whether they hold sRGB; the settings may say so. */
+static SluiceResult describe_blocks(struct bake *bake)
+{
+    const SluiceBakeSettings *settings = &bake->info->settings;
+    SluiceImageInfo image;
+    SluiceResult result = sluiceGetImageInfo(bake->picture->blocks, &image);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (settings->transfer != SLUICE_BAKE_TRANSFER_AUTO)
+        image.format =
+            slc_format_twin(image.format, settings->transfer == SLUICE_BAKE_TRANSFER_SRGB);
+    bake->plan.meaning = meaning_of_blocks(image.format, settings->normalMap);
+    if (slc_format_is_srgb(image.format))
+        bake->plan.color_space = SLUICE_STORE_COLOR_SPACE_SRGB;
+    describe_store(bake, &image);
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult describe_picture(struct bake *bake)
 {
     struct slc_picture *picture = bake->picture;
     SluiceImageInfo image = {.width = picture->width, .height = picture->height};
-    if (picture->blocks) {
-        SluiceResult result = sluiceGetImageInfo(picture->blocks, &image);
-        bake->plan.meaning = meaning_of_blocks(image.format, bake->info->settings.normalMap);
-        if (result == SLUICE_SUCCESS)
-            describe_store(bake, &image);
-        return result;
-    }
+    if (picture->blocks)
+        return describe_blocks(bake);
     SluiceResult result =
         slc_plan_make(picture, &bake->info->settings, bake->baker->decoded16, &bake->plan);
     image.format = bake->plan.format;

@@ -15,7 +15,9 @@ static const SluiceFormat twins[][2] = {
     {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB},
     {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK},
     {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC2_UNORM_BLOCK, SLUICE_FORMAT_BC2_SRGB_BLOCK},
     {SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC3_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC7_UNORM_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK},
 };
 
 SluiceResult slc_check_settings(const SluiceBakeSettings *s)
@@ -39,12 +41,17 @@ static bool has_srgb_twin(SluiceFormat format)
     return false;
 }
 
-static SluiceFormat twin(SluiceFormat format, bool srgb)
+SluiceFormat slc_format_twin(SluiceFormat format, bool srgb)
 {
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
         if (twins[i][0] == format || twins[i][1] == format)
             return twins[i][srgb];
     return format;
+}
+
+bool slc_format_is_srgb(SluiceFormat format)
+{
+    return has_srgb_twin(format) && slc_format_twin(format, true) == format;
 }
 
 static SluiceFormat byte_format(const struct slc_picture *picture, bool normals)
@@ -77,7 +84,7 @@ static SluiceFormat texel_format(SluiceFormat format, bool srgb)
     SluiceFormatInfo info;
     if (sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS || !slc_format_is_compressed(&info))
         return format;
-    return twin(SLUICE_FORMAT_R8G8B8A8_UNORM, srgb && has_srgb_twin(format));
+    return slc_format_twin(SLUICE_FORMAT_R8G8B8A8_UNORM, srgb && has_srgb_twin(format));
 }
 
 static bool is_float32(SluiceFormat format)
@@ -149,7 +156,7 @@ SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSe
     if (format == SLUICE_FORMAT_UNDEFINED)
         format = natural_format(picture, settings->normalMap, srgb);
     plan->rules.srgb = srgb;
-    plan->format = twin(format, srgb);
+    plan->format = slc_format_twin(format, srgb);
     if (sluiceFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
         slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s", picture->name,
                 sluiceFormatString(plan->format));

@@ -97,6 +97,19 @@ static void files_from_elsewhere_are_read_in_strips(void **state)
     }
 }
 
+#ifdef HAVE_CONTAINER
+static SluiceFormat format_of(const char *path)
+{
+    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceImageSource *source;
+    SluiceImageInfo info;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    CHECK_OK(sluiceGetImageInfo(source, &info));
+    sluiceDestroyImageSource(source);
+    return info.format;
+}
+#endif
+
 static void block_compressed_levels_are_kept(void **state)
 {
     (void)state;
@@ -123,6 +136,10 @@ static void block_compressed_levels_are_kept(void **state)
     }
     assert_int_equal(fgetc(file), EOF);
     fclose(file);
+    assert_int_equal(format_of(out), SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK);
+    settings.transfer = SLUICE_BAKE_TRANSFER_SRGB;
+    bake_picture_file(in, out, &settings);
+    assert_int_equal(format_of(out), SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK);
     bake_folder_finish(&folder);
 #endif
 }
