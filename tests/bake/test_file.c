@@ -184,6 +184,26 @@ static void too_little_memory_is_refused_and_the_rest_is_kept_to(void **state)
 }
 
 /* One thread, because the allocator counts for one. */
+static void run_out_of_memory(const SluiceBakeInfo *info)
+{
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        struct failing_allocator allocator;
+        failing_allocator_init(&allocator, n);
+        SluiceBakerCreateInfo create = {.threadCount = 1, .pAllocator = &allocator.callbacks};
+        SluiceBaker *baker = NULL;
+        result = sluiceCreateBaker(&create, &baker);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceBakeFile(baker, info, NULL);
+        sluiceDestroyBaker(baker);
+        if (result != SLUICE_SUCCESS) {
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+            assert_int_equal(access(info->pOutputPath, F_OK), -1);
+        }
+        assert_int_equal(allocator.live_count, 0);
+    }
+}
+
 static void no_memory_is_an_ordinary_result(void **state)
 {
     (void)state;
@@ -194,25 +214,47 @@ static void no_memory_is_an_ordinary_result(void **state)
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", path);
     plain_source_init(&source, SLUICE_FORMAT_R8G8B8A8_SRGB, 300, 200, samples);
-    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
-        struct failing_allocator allocator;
-        failing_allocator_init(&allocator, n);
-        SluiceBakerCreateInfo create = {.threadCount = 1, .pAllocator = &allocator.callbacks};
-        SluiceBakeInfo info = {.source = &source.base,
-                               .pOutputPath = path,
-                               .settings = {.alpha = SLUICE_BAKE_ALPHA_STRAIGHT, .cutout = 0.5f}};
-        SluiceBaker *baker = NULL;
-        result = sluiceCreateBaker(&create, &baker);
-        if (result == SLUICE_SUCCESS)
-            result = sluiceBakeFile(baker, &info, NULL);
-        sluiceDestroyBaker(baker);
-        if (result != SLUICE_SUCCESS) {
-            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-            assert_int_equal(access(path, F_OK), -1);
-        }
-        assert_int_equal(allocator.live_count, 0);
+    SluiceBakeInfo info = {.source = &source.base,
+                           .pOutputPath = path,
+                           .settings = {.alpha = SLUICE_BAKE_ALPHA_STRAIGHT, .cutout = 0.5f}};
+    run_out_of_memory(&info);
+    free(samples);
+    bake_folder_finish(&folder);
+}
+
+/* From a store of blocks to another, tile by tile on several threads; then with memory that runs
+ * out. */
+static void blocks_are_copied_as_they_are(void **state)
+{
+    (void)state;
+    struct bake_folder folder;
+    struct plain_source plain;
+    char first[256], second[256];
+    uint8_t *samples = random_bytes(1100 * 700 * 4, 7);
+    SluiceImageSource *blocks;
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "first.store", first);
+    bake_folder_file(&folder, "second.store", second);
+    plain_source_init(&plain, SLUICE_FORMAT_R8G8B8A8_SRGB, 1100, 700, samples);
+    SluiceBakeInfo info = {.source = &plain.base,
+                           .pOutputPath = first,
+                           .settings = {.format = SLUICE_FORMAT_BC4_UNORM_BLOCK,
+                                        .transfer = SLUICE_BAKE_TRANSFER_LINEAR}};
+    SluiceResult result = bake(2, 0, &info, NULL);
+    if (result == SLUICE_ERROR_UNSUPPORTED) {
+        free(samples);
+        bake_folder_finish(&folder);
+        SKIP_TEST("this build makes no blocks");
     }
+    CHECK_OK(result);
+    SluiceStoreImageSourceCreateInfo create = {.pPath = first};
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &blocks));
+    info = (SluiceBakeInfo){.source = blocks, .pOutputPath = second};
+    CHECK_OK(bake(5, 0, &info, NULL));
+    check_same(first, second, 11);
+    unlink(second);
+    run_out_of_memory(&info);
+    sluiceDestroyImageSource(blocks);
     free(samples);
     bake_folder_finish(&folder);
 }
@@ -255,6 +297,7 @@ int main(void)
         cmocka_unit_test(what_is_up_to_date_is_skipped_until_something_changes),
         cmocka_unit_test(too_little_memory_is_refused_and_the_rest_is_kept_to),
         cmocka_unit_test(no_memory_is_an_ordinary_result),
+        cmocka_unit_test(blocks_are_copied_as_they_are),
         cmocka_unit_test(wrong_settings_are_refused),
     };
     return RUN_TESTS(tests);
