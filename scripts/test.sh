@@ -56,7 +56,7 @@ if [ "$quick" = no ]; then
     # What is slow has run twice by now and depends on none of this.
     # shellcheck disable=SC2034 # read by meson_stage
     test_options=(--no-suite slow --no-suite short)
-    off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dvulkan=disabled -Dsamples=disabled'
+    off='-Dexr=disabled -Dcontainer=disabled -Dzstd=disabled -Dstore=disabled -Dbake=disabled -Dvulkan=disabled -Dsamples=disabled'
     # shellcheck disable=SC2086 # lists of words
     {
         meson_stage gcc-O3-static CC=gcc -- $off -Doptimization=3 -Ddefault_library=static

@@ -84,7 +84,7 @@ build_library() {
     [ ! -d "$work/build" ] || again=(--reconfigure)
     logged meson setup "${again[@]}" "$work/build" "$root" --prefix="$work/prefix" --libdir=lib \
         --buildtype=release -Doptimization=2 -Db_ndebug=if-release -Ddefault_library=static \
-        -Dtests=false -Dsamples=disabled -Dexr=disabled -Dvulkan=disabled
+        -Dtests=false -Dsamples=disabled -Dexr=disabled -Dstore=disabled -Dvulkan=disabled
     logged ninja -C "$work/build"
     logged meson install -C "$work/build" --no-rebuild
     export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig

@@ -30,6 +30,9 @@ typedef struct SluiceExrImageSourceCreateInfo {
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log; ///< what is wrong with a file, and where
     uint64_t maxImageSize; ///< bytes of level 0 beyond which a file is refused; 0: 2^34
+    /** The source has level 0 alone (mipLevelCount is 1), and any file is read where it is asked
+     *  for, chunk by chunk: no chain is built and nothing is kept in memory. */
+    bool levelZeroAlone;
 } SluiceExrImageSourceCreateInfo;
 
 /**

@@ -111,7 +111,8 @@ static void destroy(SluiceImageSource *base)
 
 static const SluiceImageSourceInterface exr_interface = {get_info, read_region, destroy};
 
-static SluiceResult describe(struct exr_source *source, SluiceFormat format, uint64_t max_size)
+static SluiceResult describe(struct exr_source *source, SluiceFormat format, uint64_t max_size,
+                             bool level_zero_alone)
 {
     struct slc_exr_file *file = &source->file;
     if (format == SLUICE_FORMAT_UNDEFINED)
@@ -124,6 +125,10 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
         .pName = file->input.path,
     };
     source->reads_chain = file->layout == SLC_EXR_SCANLINES || file->layout == SLC_EXR_ONE_LEVEL;
+    if (level_zero_alone) {
+        source->info.mipLevelCount = 1;
+        source->reads_chain = false;
+    }
     uint64_t size = (uint64_t)file->width * file->height * sluiceFormatTexelSize(format);
     if (size <= max_size)
         return SLUICE_SUCCESS;
@@ -150,7 +155,8 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     SluiceResult result = slc_exr_file_open(&source->file, pInfo->pPath, &cb, &pInfo->log);
     if (result == SLUICE_SUCCESS)
         result = describe(source, pInfo->format,
-                          pInfo->maxImageSize ? pInfo->maxImageSize : (uint64_t)1 << 34);
+                          pInfo->maxImageSize ? pInfo->maxImageSize : (uint64_t)1 << 34,
+                          pInfo->levelZeroAlone);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;

@@ -3,8 +3,9 @@
 # shellcheck shell=bash
 
 packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spirv-tools
-    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev libzstd-dev)
-packages_to_test=(binutils g++ clang libcmocka-dev vulkan-validationlayers)
+    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev libzstd-dev
+    libxxhash-dev libvips-dev libsquish-dev g++)
+packages_to_test=(binutils clang libcmocka-dev vulkan-validationlayers)
 
 package_is_installed() {
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]

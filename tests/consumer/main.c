@@ -3,9 +3,15 @@
 #ifdef WITH_EXR
 #include <sluice/exr.h>
 #endif
+#ifdef WITH_STORE
+#include <sluice/store.h>
+#endif
 #ifdef WITH_CONTAINER
 #include <sluice/dds.h>
 #include <sluice/ktx2.h>
+#endif
+#ifdef WITH_BAKE
+#include <sluice/bake.h>
 #endif
 #ifdef WITH_VULKAN
 #include <sluice/vulkan.h>
@@ -27,6 +33,12 @@ int main(void)
     if (sluiceCreateExrImageSource(&info, &source) != SLUICE_ERROR_FILE_NOT_FOUND)
         return 3;
 #endif
+#ifdef WITH_STORE
+    SluiceStoreImageSourceCreateInfo store = {.pPath = "there is no such file"};
+    SluiceImageSource *tiles = NULL;
+    if (sluiceCreateStoreImageSource(&store, &tiles) != SLUICE_ERROR_FILE_NOT_FOUND)
+        return 6;
+#endif
 #ifdef WITH_CONTAINER
     SluiceDdsImageSourceCreateInfo dds = {.pPath = "there is no such file"};
     SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = "there is no such file"};
@@ -40,6 +52,11 @@ int main(void)
             return 5;
         sluiceDestroyImageSource(files[i]);
     }
+#endif
+#ifdef WITH_BAKE
+    SluiceBakeSettings settings = {.cutout = 0.5f};
+    if (sluiceHashBakeSettings(&settings) == 0)
+        return 7;
 #endif
 #ifdef WITH_VULKAN
     (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */

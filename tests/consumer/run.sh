@@ -44,7 +44,7 @@ find_installed() {
 
 installed_modules() {
     local name
-    for name in sluice sluice-exr sluice-container sluice-vulkan; do
+    for name in sluice sluice-exr sluice-container sluice-store sluice-bake sluice-vulkan; do
         [ ! -f "$PKG_CONFIG_PATH/$name.pc" ] || echo "$name"
     done
 }
@@ -65,7 +65,7 @@ every_public_header_is_installed() {
         name=$(basename "$header" .h)
         case $name in
         dds | ktx2) [ -f "$PKG_CONFIG_PATH/sluice-container.pc" ] || continue ;;
-        exr | vulkan) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
+        exr | store | bake | vulkan) [ -f "$PKG_CONFIG_PATH/sluice-$name.pc" ] || continue ;;
         esac
         [ -f "$prefix/include/sluice/$name.h" ] || { echo "$name.h is missing"; return 1; }
     done
@@ -101,7 +101,8 @@ subproject() {
         cp "$root"/tests/consumer/{meson.build,main.c,main.cpp} "$work/outside" &&
         ln -s "$root" "$work/outside/subprojects/sluice" &&
         meson setup "$work/sub" "$work/outside" --force-fallback-for=sluice --wrap-mode=nodownload \
-            -Dsluice:exr=disabled -Dsluice:container=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled &&
+            -Dsluice:exr=disabled -Dsluice:container=disabled -Dsluice:store=disabled \
+            -Dsluice:bake=disabled -Dsluice:vulkan=disabled -Dsluice:samples=disabled &&
         meson test -C "$work/sub"
 }
 

@@ -30,7 +30,7 @@ status 0 "$info" --help && grep -q 'exit status\|Exit status' "$folder/out" &&
 report help_names_defaults $?
 
 wrong=0
-for arguments in '--no-such-option' 'x' '--image' '--image 0x4' '--image 4' '--image 4x' \
+for arguments in '--no-such-option' '--png x' '--level 1' '--tile 1,1' 'x --device 0' 'x --png y --tile 1' '--image' '--image 0x4' '--image 4' '--image 4x' \
     '--image 4x4x4' '--image -4x4' '--image 1048577x1'; do
     # shellcheck disable=SC2086
     status 2 "$info" $arguments && [ -s "$folder/err" ] || wrong=1

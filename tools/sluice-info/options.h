@@ -6,12 +6,18 @@
 #include <stdint.h>
 
 struct options {
+    char **files; ///< of argv
+    int file_count;
+    const char *png; ///< NULL: no picture is written
+    uint32_t level;
+    bool has_tile; ///< a tile of it, or all of it
+    uint32_t tile_x, tile_y;
     const char *device;     ///< number or a part of the name; NULL: all
     uint32_t width, height; ///< of the image whose layout is shown
     bool list, json, help;
 };
 
-/** On failure says on standard error what is wrong. */
+/** Moves file names to the front of argv. On failure says on standard error what is wrong. */
 bool parse_options(struct options *options, int argc, char **argv);
 
 void print_help(void);

@@ -1,0 +1,161 @@
+#!/usr/bin/env bash
+# Measures how fast tiles come out of a store and prints a table: each figure beside the floor or
+# ceiling that was set for it.
+#
+#   bench/store/run.sh [options] [PICTURE...]
+#
+#   --json          one object per line (name, value, unit) instead of the table
+#   --quick         one picture, few rounds: to see that everything works
+#   --work DIR      keep what is built and written there (default: a scratch folder, removed)
+#   --help
+#
+# A PICTURE is anything that vips reads, or an OpenEXR file. Without any: photographs of the package
+# plasma-workspace-wallpapers if that is installed and vips is there (libvips-tools), else OpenEXR
+# pictures in openexr-images where SLUICE_TEST_DATA says (default: ../shared/data beside the checkout).
+#
+# The library is built with gcc -O3, static and without asserts, installed into the work folder and
+# used from there through pkg-config. One thread; the files are in the page cache. README.md in this
+# folder's parent says what each figure is. Needs gcc, meson, ninja, pkg-config, awk, OpenEXR, libzstd.
+#
+# Environment: CC                 compiler instead of gcc
+#              SLUICE_TEST_DATA   folder of sample files
+
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+export CC=${CC:-gcc} LC_ALL=C
+
+json=no work='' arguments=() pictures=()
+
+say() { printf '%s\n' "$*" >&2; }
+die() {
+    say "error: $*"
+    exit 1
+}
+
+while [ $# -gt 0 ]; do
+    case $1 in
+    --json) json=yes ;;
+    --quick) arguments+=("$1") ;;
+    --work)
+        [ $# -ge 2 ] || die "$1 needs a value (see --help)"
+        work=$2
+        shift
+        ;;
+    --help) sed -n '2,/^$/s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -*) die "unknown option $1 (see --help)" ;;
+    *) pictures+=("$1") ;;
+    esac
+    shift
+done
+
+if [ -z "$work" ]; then
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+fi
+mkdir -p "$work/pictures" "$work/stores"
+work=$(cd "$work" && pwd)
+
+# logged COMMAND...: quiet, but for the end of the log when it fails
+logged() {
+    "$@" >>"$work/log" 2>&1 </dev/null || {
+        tail -n 40 "$work/log" >&2
+        die "failed: $*"
+    }
+}
+
+build() {
+    say "building"
+    local again=()
+    [ ! -d "$work/build" ] || again=(--reconfigure)
+    logged meson setup "${again[@]}" "$work/build" "$root" --prefix="$work/prefix" --libdir=lib \
+        --buildtype=release -Db_ndebug=if-release -Ddefault_library=static \
+        -Dtests=false -Dsamples=disabled -Dvulkan=disabled -Dstore=enabled -Dexr=enabled
+    logged ninja -C "$work/build"
+    logged meson install -C "$work/build" --no-rebuild
+    export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
+    # shellcheck disable=SC2046 # a list of words
+    logged "$CC" -std=c11 -O2 "$here"/*.c \
+        $(pkg-config --static --cflags --libs sluice-store sluice-exr sluice libzstd) \
+        -pthread -o "$work/store_figures"
+}
+
+# Photographs of many sizes and kinds; drawings compress too well to say much.
+find_pictures() {
+    local folder=/usr/share/wallpapers data=${SLUICE_TEST_DATA:-$root/../shared/data} name
+    [ ${#pictures[@]} -eq 0 ] || return 0
+    if command -v vips >/dev/null; then
+        for name in Canopee FallenLeaf SafeLanding EveningGlow ColorfulCups Autumn; do
+            pictures+=("$(find "$folder/$name/contents/images" -name '*x*.*' 2>/dev/null | sort -V | tail -n 1)")
+        done
+    fi
+    [ ${#pictures[@]} -gt 0 ] && [ -f "${pictures[0]}" ] && return 0
+    say "no photographs in $folder, or no vips: OpenEXR pictures in $data instead"
+    pictures=("$data"/openexr-images/ScanLines/*.exr "$data"/openexr-images/MultiResolution/Bonita.exr)
+}
+
+prepare_pictures() {
+    local picture number=0
+    files=()
+    for picture in "${pictures[@]}"; do
+        [ -f "$picture" ] || continue
+        number=$((number + 1))
+        case $picture in
+        *.exr | *.ppm) files+=("$picture") ;;
+        *)
+            logged vips colourspace "$picture" "$work/pictures/$number.ppm" srgb
+            files+=("$work/pictures/$number.ppm")
+            ;;
+        esac
+    done
+    [ ${#files[@]} -gt 0 ] || die "there are no pictures (see --help)"
+}
+
+# One line per figure: its name, what it is, and what it should be.
+table() {
+    cat <<'END'
+rgba8.zstd3.tiles|RGBA8, zstd 3|
+rgba8.zstd3.zstd_alone|... ZSTD_decompress of the same texels|
+rgba8.zstd3.of_zstd_alone|... the store, of that|0.85 at least
+rgba8.zstd3.written|... written, picture in memory|
+rgba8.zstd3.size|... size of the file|
+rgba8.raw.tiles|RGBA8, uncompressed, always checked|
+rgba8.raw.pread_alone|... pread of 64 KiB|
+rgba8.raw.of_pread_alone|... the store, of that|
+rgba8.raw.checked_once.tiles|RGBA8, uncompressed, checked once|
+rgba8.raw.checked_once.of_pread_alone|... of pread of 64 KiB|0.9 at least
+rgba16f.zstd3.tiles|RGBA16F, zstd 3|
+rgba16f.zstd3.openexr_zip|... OpenEXR, ZIP, half, tiles of the same shape|
+rgba16f.zstd3.of_openexr_zip|... the store, of that|4 at least
+rgba16f.zstd3.size_of_openexr_zip|... size of the file, of OpenEXR's|
+open_and_first_tile.median|opening and the first tile|100 at most
+open_and_first_tile.least|... the least|
+open_and_first_tile.shared_pool.median|... with a pool that others use, too|100 at most
+open_and_first_tile.shared_pool.least|... the least|
+END
+}
+
+print_table() {
+    table | awk -F '|' -v figures="$work/figures" '
+        BEGIN {
+            while ((getline line < figures) > 0) {
+                split(line, word, " ")
+                value[word[1]] = word[2]
+                sub(/^[^ ]+ [^ ]+ /, "", line)
+                unit[word[1]] = line
+            }
+            printf "%-52s %12s %-14s %s\n", "", "figure", "unit", "should be"
+        }
+        $1 in value { printf "%-52s %12.4g %-14s %s\n", $2, value[$1], unit[$1], $3 }'
+}
+
+build
+find_pictures
+prepare_pictures
+say "reading ${#files[@]} pictures"
+if [ "$json" = yes ]; then
+    "$work/store_figures" "${arguments[@]}" --json "$work/stores" "${files[@]}"
+else
+    "$work/store_figures" "${arguments[@]}" "$work/stores" "${files[@]}" >"$work/figures"
+    print_table
+fi

@@ -1,0 +1,112 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "bake/baker.h"
+
+#include "bake/texels.h"
+#include "base/alloc.h"
+#include "base/log.h"
+
+#include <unistd.h>
+
+#include <vips/vips.h>
+
+#define DEFAULT_MEMORY ((uint64_t)1 << 30)
+#define MAX_THREADS 256u
+
+static uint32_t count_threads(uint32_t wanted)
+{
+    if (wanted == 0) {
+        long online = sysconf(_SC_NPROCESSORS_ONLN);
+        wanted = online > 0 ? (uint32_t)online : 1;
+    }
+    return wanted < MAX_THREADS ? wanted : MAX_THREADS;
+}
+
+static SluiceResult start_vips(const SluiceLogCallback *log)
+{
+    if (VIPS_INIT("sluice-bake") != 0) {
+        slc_log(log, SLUICE_LOG_ERROR, "libvips does not start: %s", vips_error_buffer());
+        vips_error_clear();
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    vips_cache_set_max(0); /* pictures are read once, and the cache would keep them open */
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker **pBaker)
+{
+    if (!pInfo || !pBaker || !slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceResult result = start_vips(&pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceBaker *baker = slc_calloc(&cb, 1, sizeof *baker);
+    float *decoded16 = slc_alloc(&cb, 65536, sizeof *decoded16);
+    result = baker && decoded16 ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result == SLUICE_SUCCESS)
+        result = slc_jobs_init(&baker->jobs, &cb, count_threads(pInfo->threadCount) - 1);
+    if (result != SLUICE_SUCCESS) {
+        slc_free(&cb, decoded16, 65536, sizeof *decoded16);
+        slc_free(&cb, baker, 1, sizeof *baker);
+        return result;
+    }
+    slc_decode_srgb16(decoded16);
+    baker->allocator = cb;
+    baker->log = pInfo->log;
+    baker->max_memory = pInfo->maxMemory ? pInfo->maxMemory : DEFAULT_MEMORY;
+    baker->decoded16 = decoded16;
+    *pBaker = baker;
+    return SLUICE_SUCCESS;
+}
+
+void sluiceDestroyBaker(SluiceBaker *baker)
+{
+    if (!baker)
+        return;
+    SluiceAllocationCallbacks cb = baker->allocator;
+    slc_jobs_finish(&baker->jobs);
+    slc_free(&cb, baker->decoded16, 65536, sizeof *baker->decoded16);
+    slc_free(&cb, baker, 1, sizeof *baker);
+}
+
+struct reservation {
+    const SluiceBaker *baker;
+    uint64_t size;
+};
+
+static bool fits(void *user)
+{
+    const struct reservation *reservation = user;
+    const SluiceBaker *baker = reservation->baker;
+    return reservation->size <= baker->max_memory - baker->used_memory;
+}
+
+/* Others may have come first when the lock is taken again, so it is asked until it fits. */
+static bool take(struct reservation *reservation, SluiceBaker *baker)
+{
+    slc_jobs_lock(&baker->jobs);
+    bool has_room = fits(reservation);
+    if (has_room)
+        baker->used_memory += reservation->size;
+    pthread_mutex_unlock(&baker->jobs.mutex);
+    return has_room;
+}
+
+SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size)
+{
+    struct reservation reservation = {baker, size};
+    if (size > baker->max_memory)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    do {
+        slc_jobs_help_until(&baker->jobs, fits, &reservation);
+    } while (!take(&reservation, baker));
+    return SLUICE_SUCCESS;
+}
+
+void slc_baker_give_back(SluiceBaker *baker, uint64_t size)
+{
+    slc_jobs_lock(&baker->jobs);
+    baker->used_memory -= size;
+    slc_jobs_unlock_and_wake(&baker->jobs);
+}

@@ -1,0 +1,22 @@
+/** Threads and memory that bakes share. */
+#ifndef SLC_BAKE_BAKER_H
+#define SLC_BAKE_BAKER_H
+
+#include <sluice/bake.h>
+
+#include "bake/jobs.h"
+
+struct SluiceBaker {
+    SluiceAllocationCallbacks allocator;
+    SluiceLogCallback log;
+    uint64_t max_memory;
+    uint64_t used_memory; ///< under the pool's mutex
+    struct slc_jobs jobs;
+    float *decoded16; ///< 65536 values of sRGB codes
+};
+
+/** Waits until others have given back enough. Errors: LIMIT_EXCEEDED if all would not do. */
+SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size);
+void slc_baker_give_back(SluiceBaker *baker, uint64_t size);
+
+#endif /* SLC_BAKE_BAKER_H */

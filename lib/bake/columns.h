@@ -1,0 +1,30 @@
+/** Filters one row of RGBA floats to the width of the level below. */
+#ifndef SLC_BAKE_COLUMNS_H
+#define SLC_BAKE_COLUMNS_H
+
+#include "bake/filter.h"
+
+struct slc_columns {
+    struct slc_axis axis;
+    uint32_t tap_count;
+    uint32_t distinct; ///< texels with weights of their own: 1 where all have the same
+    float *weights;    ///< [distinct][tap_count]
+    float *padded;     ///< the row with SLC_MAX_REACH texels on either side; NULL for box filters
+};
+
+/** Errors: OUT_OF_HOST_MEMORY; finish it then, too. */
+SluiceResult slc_columns_init(struct slc_columns *columns, const SluiceAllocationCallbacks *cb,
+                              const struct slc_axis *axis);
+void slc_columns_finish(struct slc_columns *columns, const SluiceAllocationCallbacks *cb);
+
+/** `row` is [axis.size][4], `below` [axis.below][4]; they do not overlap. */
+void slc_columns_apply(struct slc_columns *columns, const float *row, float *below);
+
+/** sum[i] = weight * row[i], or += where it is not the first; `count` texels of four floats. */
+void slc_row_set(const float *row, float weight, float *sum, uint32_t count);
+void slc_row_add(const float *row, float weight, float *sum, uint32_t count);
+
+/** Bytes that slc_columns_init allocates. */
+uint64_t slc_columns_memory(const struct slc_axis *axis);
+
+#endif /* SLC_BAKE_COLUMNS_H */

@@ -1,0 +1,27 @@
+/** Block-compressed levels from a source into a store, as they are. */
+#ifndef SLC_BAKE_COPY_H
+#define SLC_BAKE_COPY_H
+
+#include <sluice/store.h>
+
+#include "bake/jobs.h"
+
+struct slc_copy {
+    SluiceAllocationCallbacks allocator;
+    struct slc_jobs *jobs;
+    SluiceImageSource *source;
+    SluiceStoreWriter *writer;
+    SluiceStoreLayout layout;
+    uint32_t layer_count;
+    uint64_t found_tile_count; ///< written by an earlier run
+    void *user;
+    bool (*progress)(void *user, uint64_t done, uint64_t total); ///< in tiles; NULL: none
+};
+
+/** Bytes that slc_copy_run allocates. */
+uint64_t slc_copy_memory(const SluiceStoreLayout *layout, uint32_t thread_count);
+
+/** Errors: what reading and writing say; CANCELLED; OUT_OF_HOST_MEMORY. */
+SluiceResult slc_copy_run(struct slc_copy *copy);
+
+#endif /* SLC_BAKE_COPY_H */

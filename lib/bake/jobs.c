@@ -1,0 +1,114 @@
+#include "bake/jobs.h"
+
+#include "base/alloc.h"
+
+#include <assert.h>
+
+static struct slc_job *take(struct slc_jobs *jobs)
+{
+    struct slc_job *job = jobs->first;
+    if (job) {
+        jobs->first = job->next;
+        if (!jobs->first)
+            jobs->last = NULL;
+    }
+    return job;
+}
+
+static void run_unlocked(struct slc_jobs *jobs, struct slc_job *job)
+{
+    pthread_mutex_unlock(&jobs->mutex);
+    job->run(job);
+    pthread_mutex_lock(&jobs->mutex);
+}
+
+static void *work(void *user)
+{
+    struct slc_jobs *jobs = user;
+    pthread_mutex_lock(&jobs->mutex);
+    while (!jobs->ends) {
+        struct slc_job *job = take(jobs);
+        if (job)
+            run_unlocked(jobs, job);
+        else
+            pthread_cond_wait(&jobs->changed, &jobs->mutex);
+    }
+    pthread_mutex_unlock(&jobs->mutex);
+    return NULL;
+}
+
+SluiceResult slc_jobs_init(struct slc_jobs *jobs, const SluiceAllocationCallbacks *cb,
+                           uint32_t thread_count)
+{
+    *jobs = (struct slc_jobs){.allocator = *cb};
+    pthread_mutex_init(&jobs->mutex, NULL);
+    pthread_cond_init(&jobs->changed, NULL);
+    if (thread_count == 0)
+        return SLUICE_SUCCESS;
+    jobs->threads = slc_alloc(cb, thread_count, sizeof *jobs->threads);
+    bool is_complete = jobs->threads != NULL;
+    for (uint32_t i = 0; i < thread_count && is_complete; i++) {
+        is_complete = pthread_create(&jobs->threads[i], NULL, work, jobs) == 0;
+        jobs->thread_count += is_complete;
+    }
+    if (is_complete)
+        return SLUICE_SUCCESS;
+    slc_jobs_lock(jobs);
+    jobs->ends = true;
+    slc_jobs_unlock_and_wake(jobs);
+    for (uint32_t i = 0; i < jobs->thread_count; i++)
+        pthread_join(jobs->threads[i], NULL);
+    slc_free(cb, jobs->threads, thread_count, sizeof *jobs->threads);
+    pthread_cond_destroy(&jobs->changed);
+    pthread_mutex_destroy(&jobs->mutex);
+    return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+void slc_jobs_finish(struct slc_jobs *jobs)
+{
+    assert(!jobs->first);
+    slc_jobs_lock(jobs);
+    jobs->ends = true;
+    slc_jobs_unlock_and_wake(jobs);
+    for (uint32_t i = 0; i < jobs->thread_count; i++)
+        pthread_join(jobs->threads[i], NULL);
+    slc_free(&jobs->allocator, jobs->threads, jobs->thread_count, sizeof *jobs->threads);
+    pthread_cond_destroy(&jobs->changed);
+    pthread_mutex_destroy(&jobs->mutex);
+}
+
+void slc_jobs_submit(struct slc_jobs *jobs, struct slc_job *job)
+{
+    job->next = NULL;
+    slc_jobs_lock(jobs);
+    if (jobs->last)
+        jobs->last->next = job;
+    else
+        jobs->first = job;
+    jobs->last = job;
+    slc_jobs_unlock_and_wake(jobs);
+}
+
+void slc_jobs_lock(struct slc_jobs *jobs)
+{
+    pthread_mutex_lock(&jobs->mutex);
+}
+
+void slc_jobs_unlock_and_wake(struct slc_jobs *jobs)
+{
+    pthread_cond_broadcast(&jobs->changed);
+    pthread_mutex_unlock(&jobs->mutex);
+}
+
+void slc_jobs_help_until(struct slc_jobs *jobs, bool (*is_done)(void *user), void *user)
+{
+    pthread_mutex_lock(&jobs->mutex);
+    while (!is_done(user)) {
+        struct slc_job *job = take(jobs);
+        if (job)
+            run_unlocked(jobs, job);
+        else
+            pthread_cond_wait(&jobs->changed, &jobs->mutex);
+    }
+    pthread_mutex_unlock(&jobs->mutex);
+}

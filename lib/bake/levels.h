@@ -1,0 +1,39 @@
+/** One picture through the filter into the tiles of a store. */
+#ifndef SLC_BAKE_LEVELS_H
+#define SLC_BAKE_LEVELS_H
+
+#include "bake/coverage.h"
+#include "bake/plan.h"
+#include "bake/pyramid.h"
+#include "bake/tiler.h"
+
+struct slc_baking {
+    SluiceAllocationCallbacks allocator;
+    struct slc_picture *picture;
+    struct slc_plan plan;
+    struct slc_pyramid pyramid;
+    struct slc_tiler tiler;
+    struct slc_coverage coverage;
+    bool counts; ///< the pass that counts alpha, not the one that writes
+    float alpha_scales[SLC_MAX_LEVELS];
+    float *row;              ///< [width][4]
+    uint64_t replaced_count; ///< texels of level 0
+    uint64_t done, total;    ///< texels of level 0, of all passes
+    void *user;
+    bool (*progress)(void *user, uint64_t done, uint64_t total); ///< NULL: none
+};
+
+/** Bytes that baking takes, without reading. */
+uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_plan *plan,
+                           const SluiceStoreLayout *layout);
+
+/** What is set: allocator, picture, plan, user, progress. Errors: OUT_OF_HOST_MEMORY; finish it
+ *  then, too. */
+SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_jobs *jobs,
+                             const SluiceStoreLayout *layout);
+void slc_baking_finish(struct slc_baking *baking);
+
+/** All levels into the writer. Errors: what reading and writing say; CANCELLED. */
+SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer);
+
+#endif /* SLC_BAKE_LEVELS_H */

@@ -1,0 +1,133 @@
+#include "bake/picture.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "image/format.h"
+
+/* Rows that are read at once: a row of tiles of the files that are meant for this. */
+#define STRIP 128u
+
+struct source_picture {
+    struct slc_picture base;
+    SluiceImageSource *source;
+    bool owned;
+    SluiceFormat format;
+    char *rows; ///< [STRIP][width]
+    size_t pitch;
+    uint32_t first, count;
+};
+
+static SluiceResult row(struct slc_picture *base, uint32_t y, const void **samples)
+{
+    struct source_picture *picture = (struct source_picture *)base;
+    if (y >= picture->first + picture->count || y < picture->first) {
+        uint32_t count = slc_min_u32(STRIP, base->height - y);
+        SluiceImageRegion region = {0, 0, y, base->width, count, 0};
+        SluiceResult result =
+            sluiceReadImageRegion(picture->source, &region, picture->rows, picture->pitch);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        picture->first = y;
+        picture->count = count;
+    }
+    *samples = picture->rows + (y - picture->first) * picture->pitch;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult rewind_picture(struct slc_picture *base)
+{
+    (void)base;
+    return SLUICE_SUCCESS;
+}
+
+static void close_picture(struct slc_picture *base)
+{
+    struct source_picture *picture = (struct source_picture *)base;
+    SluiceAllocationCallbacks cb = base->allocator;
+    if (picture->owned)
+        sluiceDestroyImageSource(picture->source);
+    slc_free(&cb, picture->rows, STRIP * picture->pitch, 1);
+    slc_free(&cb, picture, 1, sizeof *picture);
+}
+
+static const struct slc_picture_interface source_interface = {row, rewind_picture, close_picture};
+
+static bool find_sample(SluiceFormat format, enum slc_sample *sample)
+{
+    switch (format) {
+    case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R8G8_UNORM:
+    case SLUICE_FORMAT_R8G8B8A8_UNORM:
+    case SLUICE_FORMAT_R8G8B8A8_SRGB: *sample = SLC_SAMPLE_U8; return true;
+    case SLUICE_FORMAT_R16_SFLOAT:
+    case SLUICE_FORMAT_R16G16_SFLOAT:
+    case SLUICE_FORMAT_R16G16B16A16_SFLOAT: *sample = SLC_SAMPLE_F16; return true;
+    case SLUICE_FORMAT_R32_SFLOAT:
+    case SLUICE_FORMAT_R32G32_SFLOAT:
+    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: *sample = SLC_SAMPLE_F32; return true;
+    default: return false;
+    }
+}
+
+static SluiceResult unsupported(const struct source_picture *picture, const char *what)
+{
+    slc_log(&picture->base.log, SLUICE_LOG_ERROR, "%s: %s", picture->base.name, what);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
+static SluiceResult describe(struct source_picture *picture, const SluiceImageInfo *info)
+{
+    struct slc_picture *base = &picture->base;
+    SluiceFormatInfo format;
+    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS)
+        return unsupported(picture, "its format is unknown");
+    base->width = info->width;
+    base->height = info->height;
+    base->channels = format.channelCount;
+    base->alpha = format.channelCount == 4;
+    base->premultiplied = true;
+    base->srgb = info->format == SLUICE_FORMAT_R8G8B8A8_SRGB;
+    picture->format = info->format;
+    if (slc_format_is_compressed(&format)) {
+        base->blocks = picture->source;
+        base->memory = 1 << 20;
+        return SLUICE_SUCCESS;
+    }
+    if (!find_sample(info->format, &base->sample))
+        return unsupported(picture, "packed formats are not baked");
+    if (info->arrayLayerCount > 1)
+        return unsupported(picture, "arrays are baked only of block-compressed data");
+    picture->pitch = (size_t)slc_format_row_size(&format, info->width);
+    base->memory = STRIP * (uint64_t)picture->pitch;
+    picture->rows = slc_alloc(&base->allocator, STRIP * picture->pitch, 1);
+    return picture->rows ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const char *name,
+                                   const SluiceAllocationCallbacks *cb,
+                                   const SluiceLogCallback *log, struct slc_picture **opened)
+{
+    SluiceImageInfo info;
+    struct source_picture *picture = slc_calloc(cb, 1, sizeof *picture);
+    if (!picture) {
+        if (owned)
+            sluiceDestroyImageSource(source);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    picture->base.implementation = &source_interface;
+    picture->base.allocator = *cb;
+    picture->base.log = *log;
+    picture->base.name = name;
+    picture->source = source;
+    picture->owned = owned;
+    SluiceResult result = sluiceGetImageInfo(source, &info);
+    if (result == SLUICE_SUCCESS)
+        result = describe(picture, &info);
+    if (result != SLUICE_SUCCESS) {
+        close_picture(&picture->base);
+        return result;
+    }
+    *opened = &picture->base;
+    return SLUICE_SUCCESS;
+}

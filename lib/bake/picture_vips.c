@@ -1,0 +1,183 @@
+#include "bake/picture.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+
+#include <string.h>
+
+#include <vips/vips.h>
+
+/* Rows that are asked for at once; libvips decodes ahead by about as many. */
+#define STRIP 64u
+
+struct vips_picture {
+    struct slc_picture base;
+    char *path;
+    VipsImage *image;
+    VipsRegion *region;
+    uint32_t first, count; ///< rows in the region
+};
+
+/* One line of what libvips says of the last failure; its buffer is the whole process's. */
+static SluiceResult fail(const struct vips_picture *picture, SluiceResult result)
+{
+    char *text = vips_error_buffer_copy();
+    char *end = strchr(text, '\n');
+    if (end)
+        *end = '\0';
+    slc_log(&picture->base.log, SLUICE_LOG_ERROR, "%s: %s", picture->path,
+            *text ? text : "libvips cannot read it");
+    g_free(text);
+    return result;
+}
+
+static SluiceResult unsupported(const struct vips_picture *picture, const char *what)
+{
+    slc_log(&picture->base.log, SLUICE_LOG_ERROR, "%s: %s", picture->path, what);
+    return SLUICE_ERROR_UNSUPPORTED;
+}
+
+/* Takes the place of the image it is made from. */
+static bool replace(VipsImage **image, int status, VipsImage *made)
+{
+    if (status != 0)
+        return false;
+    g_object_unref(*image);
+    *image = made;
+    return true;
+}
+
+static bool is_another_space(VipsInterpretation space)
+{
+    switch (space) {
+    case VIPS_INTERPRETATION_XYZ:
+    case VIPS_INTERPRETATION_LAB:
+    case VIPS_INTERPRETATION_CMYK:
+    case VIPS_INTERPRETATION_LABQ:
+    case VIPS_INTERPRETATION_CMC:
+    case VIPS_INTERPRETATION_LCH:
+    case VIPS_INTERPRETATION_LABS:
+    case VIPS_INTERPRETATION_YXY:
+    case VIPS_INTERPRETATION_HSV: return true;
+    default: return false;
+    }
+}
+
+static bool convert(VipsImage **image, bool *was_short)
+{
+    VipsImage *made = NULL;
+    *was_short = vips_image_get_coding(*image) == VIPS_CODING_RAD;
+    if (*was_short && !replace(image, vips_rad2float(*image, &made, NULL), made))
+        return false;
+    if (is_another_space(vips_image_guess_interpretation(*image)) &&
+        !replace(image, vips_colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL), made))
+        return false;
+    VipsBandFormat format = vips_image_get_format(*image);
+    bool is_kept =
+        format == VIPS_FORMAT_UCHAR || format == VIPS_FORMAT_USHORT || format == VIPS_FORMAT_FLOAT;
+    return is_kept || replace(image, vips_cast_float(*image, &made, NULL), made);
+}
+
+static SluiceResult load(struct vips_picture *picture)
+{
+    picture->image = vips_image_new_from_file(picture->path, "access", VIPS_ACCESS_SEQUENTIAL,
+                                              "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    if (!picture->image)
+        return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    if (vips_band_format_iscomplex(vips_image_get_format(picture->image)))
+        return unsupported(picture, "complex numbers are no colours");
+    if (!convert(&picture->image, &picture->base.halves_suffice))
+        return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    if (vips_image_get_bands(picture->image) > 4)
+        return unsupported(picture, "it has more than four channels");
+    if (vips_image_get_width(picture->image) > 1 << 20 ||
+        vips_image_get_height(picture->image) > 1 << 20)
+        return unsupported(picture, "it has more than 2^20 texels in a direction");
+    picture->region = vips_region_new(picture->image);
+    return picture->region ? SLUICE_SUCCESS : fail(picture, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+}
+
+static void unload(struct vips_picture *picture)
+{
+    if (picture->region)
+        g_object_unref(picture->region);
+    if (picture->image)
+        g_object_unref(picture->image);
+    picture->region = NULL;
+    picture->image = NULL;
+    picture->first = picture->count = 0;
+}
+
+static SluiceResult row(struct slc_picture *base, uint32_t y, const void **samples)
+{
+    struct vips_picture *picture = (struct vips_picture *)base;
+    if (y >= picture->first + picture->count) {
+        picture->first = y;
+        picture->count = slc_min_u32(STRIP, base->height - y);
+        VipsRect rect = {0, (int)y, (int)base->width, (int)picture->count};
+        if (vips_region_prepare(picture->region, &rect) != 0)
+            return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    }
+    *samples = VIPS_REGION_ADDR(picture->region, 0, (int)y);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult rewind_picture(struct slc_picture *base)
+{
+    struct vips_picture *picture = (struct vips_picture *)base;
+    unload(picture);
+    return load(picture);
+}
+
+static void close_picture(struct slc_picture *base)
+{
+    struct vips_picture *picture = (struct vips_picture *)base;
+    SluiceAllocationCallbacks cb = base->allocator;
+    unload(picture);
+    slc_free(&cb, picture->path, picture->path ? strlen(picture->path) + 1 : 0, 1);
+    slc_free(&cb, picture, 1, sizeof *picture);
+}
+
+static const struct slc_picture_interface vips_interface = {row, rewind_picture, close_picture};
+
+static void describe(struct vips_picture *picture)
+{
+    struct slc_picture *base = &picture->base;
+    VipsImage *image = picture->image;
+    VipsBandFormat format = vips_image_get_format(image);
+    base->width = (uint32_t)vips_image_get_width(image);
+    base->height = (uint32_t)vips_image_get_height(image);
+    base->channels = (uint32_t)vips_image_get_bands(image);
+    base->alpha = base->channels == 4 || (base->channels == 2 && vips_image_hasalpha(image) != 0);
+    base->sample = format == VIPS_FORMAT_UCHAR    ? SLC_SAMPLE_U8
+                   : format == VIPS_FORMAT_USHORT ? SLC_SAMPLE_U16
+                                                  : SLC_SAMPLE_F32;
+    base->srgb =
+        base->sample != SLC_SAMPLE_F32 && base->channels > 1 && (base->channels > 2 || base->alpha);
+    /* Two rows of the file's tiles, which are seldom higher than 512, and what is prepared. */
+    base->memory =
+        (uint64_t)base->width * base->channels * slc_sample_size(base->sample) * (2 * 512 + STRIP) +
+        ((uint64_t)16 << 20);
+}
+
+SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallbacks *cb,
+                                   const SluiceLogCallback *log, struct slc_picture **opened)
+{
+    struct vips_picture *picture = slc_calloc(cb, 1, sizeof *picture);
+    if (!picture)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    picture->base.implementation = &vips_interface;
+    picture->base.allocator = *cb;
+    picture->base.log = *log;
+    picture->path = slc_strdup(cb, path);
+    picture->base.name = picture->path;
+    SluiceResult result = picture->path ? load(picture) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (result != SLUICE_SUCCESS) {
+        close_picture(&picture->base);
+        return result;
+    }
+    describe(picture);
+    *opened = &picture->base;
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,172 @@
+#include "bake/plan.h"
+
+#include "bake/blocks.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "image/format.h"
+
+#include <math.h>
+
+#define HALF_LIMIT 65504.0f
+#define FLOAT_LIMIT 0x1p120f /* sums of a few, weighted, stay finite */
+
+/* Formats that differ in whether they hold sRGB. */
+static const SluiceFormat twins[][2] = {
+    {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB},
+    {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC2_UNORM_BLOCK, SLUICE_FORMAT_BC2_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC3_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC7_UNORM_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK},
+};
+
+SluiceResult slc_check_settings(const SluiceBakeSettings *s)
+{
+    bool is_fine = (unsigned)s->format < SLUICE_FORMAT_COUNT &&
+                   (unsigned)s->transfer <= SLUICE_BAKE_TRANSFER_LINEAR &&
+                   (unsigned)s->alpha <= SLUICE_BAKE_ALPHA_PREMULTIPLIED &&
+                   (unsigned)s->filter <= SLUICE_BAKE_FILTER_KAISER &&
+                   (unsigned)s->wrapX <= SLUICE_BAKE_WRAP_MIRROR &&
+                   (unsigned)s->wrapY <= SLUICE_BAKE_WRAP_MIRROR && s->cutout >= 0.0f &&
+                   s->cutout <= 1.0f && s->compressionLevel <= SLUICE_STORE_MAX_COMPRESSION_LEVEL &&
+                   !(s->normalMap && s->transfer == SLUICE_BAKE_TRANSFER_SRGB);
+    return is_fine ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
+static bool has_srgb_twin(SluiceFormat format)
+{
+    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
+        if (twins[i][0] == format || twins[i][1] == format)
+            return true;
+    return false;
+}
+
+SluiceFormat slc_format_twin(SluiceFormat format, bool srgb)
+{
+    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
+        if (twins[i][0] == format || twins[i][1] == format)
+            return twins[i][srgb];
+    return format;
+}
+
+bool slc_format_is_srgb(SluiceFormat format)
+{
+    return has_srgb_twin(format) && slc_format_twin(format, true) == format;
+}
+
+static SluiceFormat byte_format(const struct slc_picture *picture, bool normals)
+{
+    if (normals || picture->channels > 2 || picture->alpha)
+        return SLUICE_FORMAT_R8G8B8A8_UNORM;
+    return picture->channels == 1 ? SLUICE_FORMAT_R8_UNORM : SLUICE_FORMAT_R8G8_UNORM;
+}
+
+static SluiceFormat natural_format(const struct slc_picture *picture, bool normals, bool srgb)
+{
+    bool is_single = picture->channels == 1;
+    bool is_pair = picture->channels == 2 && !picture->alpha && !normals;
+    bool is_half = picture->sample == SLC_SAMPLE_F16 || picture->halves_suffice ||
+                   (picture->sample == SLC_SAMPLE_U16 && !is_single);
+    if (picture->sample == SLC_SAMPLE_U8)
+        return is_single && srgb ? SLUICE_FORMAT_R8G8B8A8_UNORM : byte_format(picture, normals);
+    if (is_half)
+        return is_single ? SLUICE_FORMAT_R16_SFLOAT
+               : is_pair ? SLUICE_FORMAT_R16G16_SFLOAT
+                         : SLUICE_FORMAT_R16G16B16A16_SFLOAT;
+    return is_single ? SLUICE_FORMAT_R32_SFLOAT
+           : is_pair ? SLUICE_FORMAT_R32G32_SFLOAT
+                     : SLUICE_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+/* Of texels in memory; blocks are made from RGBA bytes. */
+static SluiceFormat texel_format(SluiceFormat format, bool srgb)
+{
+    SluiceFormatInfo info;
+    if (sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS || !slc_format_is_compressed(&info))
+        return format;
+    return slc_format_twin(SLUICE_FORMAT_R8G8B8A8_UNORM, srgb && has_srgb_twin(format));
+}
+
+static bool is_float32(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_R32_SFLOAT || format == SLUICE_FORMAT_R32G32_SFLOAT ||
+           format == SLUICE_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
+{
+    const SluiceBakeSettings *settings = &plan->settings;
+    struct slc_rules *rules = &plan->rules;
+    SluiceFormatInfo info = {0};
+    (void)sluiceGetFormatInfo(plan->format, &info);
+    bool is_straight = settings->alpha == SLUICE_BAKE_ALPHA_AUTO
+                           ? !picture->premultiplied
+                           : settings->alpha == SLUICE_BAKE_ALPHA_STRAIGHT;
+    rules->sample = picture->sample;
+    rules->channels = picture->channels;
+    rules->alpha = picture->alpha;
+    rules->straight = picture->alpha && info.channelCount == 4 && is_straight;
+    rules->normals = settings->normalMap;
+    rules->rings = settings->filter != SLUICE_BAKE_FILTER_BOX;
+    rules->format = texel_format(plan->format, rules->srgb);
+    rules->limit = is_float32(rules->format) ? FLOAT_LIMIT : HALF_LIMIT;
+}
+
+static void find_meaning(const struct slc_picture *picture, struct slc_plan *plan)
+{
+    const struct slc_rules *rules = &plan->rules;
+    bool is_data = picture->channels == 1 || (picture->channels == 2 && !picture->alpha);
+    if (rules->normals)
+        plan->meaning = SLUICE_STORE_MEANING_NORMAL;
+    else if (is_data && !rules->srgb)
+        plan->meaning = SLUICE_STORE_MEANING_DATA;
+    else if (!picture->alpha)
+        plan->meaning = SLUICE_STORE_MEANING_COLOR;
+    else
+        plan->meaning = rules->straight ? SLUICE_STORE_MEANING_COLOR_ALPHA
+                                        : SLUICE_STORE_MEANING_COLOR_PREMULTIPLIED;
+    if (plan->meaning == SLUICE_STORE_MEANING_NORMAL || plan->meaning == SLUICE_STORE_MEANING_DATA)
+        plan->color_space = SLUICE_STORE_COLOR_SPACE_UNDEFINED;
+    else if (rules->srgb && has_srgb_twin(plan->format))
+        plan->color_space = SLUICE_STORE_COLOR_SPACE_SRGB;
+    else
+        plan->color_space = SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB;
+}
+
+/* The alpha that rounds to one that reaches the cut-out's. */
+static float find_threshold(const struct slc_plan *plan)
+{
+    float cutout = plan->settings.cutout;
+    bool is_bytes =
+        sluiceFormatTexelSize(plan->rules.format) == 4 && has_srgb_twin(plan->rules.format);
+    if (!plan->rules.alpha || cutout == 0.0f || !is_bytes)
+        return plan->rules.alpha ? cutout : 0.0f;
+    return (ceilf(cutout * 255.0f) - 0.5f) / 255.0f;
+}
+
+SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSettings *settings,
+                           const float *decoded16, struct slc_plan *plan)
+{
+    *plan = (struct slc_plan){.settings = *settings};
+    plan->rules.decoded16 = decoded16;
+    bool srgb = settings->transfer == SLUICE_BAKE_TRANSFER_AUTO
+                    ? picture->srgb && !settings->normalMap
+                    : settings->transfer == SLUICE_BAKE_TRANSFER_SRGB;
+    SluiceFormat format = settings->format;
+    if (format == SLUICE_FORMAT_UNDEFINED)
+        format = natural_format(picture, settings->normalMap, srgb);
+    plan->rules.srgb = srgb;
+    plan->format = slc_format_twin(format, srgb);
+    if (sluiceFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
+        slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s", picture->name,
+                sluiceFormatString(plan->format));
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    find_rules(picture, plan);
+    find_meaning(picture, plan);
+    plan->level_count = slc_mip_count(slc_max_u32(picture->width, picture->height));
+    plan->reaches_around =
+        settings->filter != SLUICE_BAKE_FILTER_BOX && settings->wrapY == SLUICE_BAKE_WRAP_REPEAT;
+    plan->threshold = find_threshold(plan);
+    return SLUICE_SUCCESS;
+}

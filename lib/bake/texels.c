@@ -1,0 +1,233 @@
+#include "bake/texels.h"
+
+#include "base/checked.h"
+#include "image/convert.h"
+#include "image/half.h"
+#include "image/srgb.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What colours count where alpha is 0. */
+#define LEAST_WEIGHT 0x1p-24f
+/* What is divided by at least where alpha may ring. */
+#define LEAST_RINGING 0x1p-10f
+#define CHUNK 256u
+
+uint32_t slc_sample_size(enum slc_sample sample)
+{
+    return sample == SLC_SAMPLE_U8 ? 1 : sample == SLC_SAMPLE_F32 ? 4 : 2;
+}
+
+/* IEC 61966-2-1 */
+void slc_decode_srgb16(float *values)
+{
+    for (uint32_t i = 0; i < 65536; i++) {
+        double v = i / 65535.0;
+        values[i] = (float)(v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
+    }
+}
+
+static float sample_value(const struct slc_rules *rules, const char *sample)
+{
+    uint16_t word;
+    float value;
+    switch (rules->sample) {
+    case SLC_SAMPLE_U8: return (float)*(const uint8_t *)sample / 255.0f;
+    case SLC_SAMPLE_U16: memcpy(&word, sample, 2); return (float)word / 65535.0f;
+    case SLC_SAMPLE_F16: memcpy(&word, sample, 2); return slc_float_from_half(word);
+    default: memcpy(&value, sample, 4); return value;
+    }
+}
+
+/* Of R, G or B. */
+static float colour_value(const struct slc_rules *rules, const char *sample)
+{
+    uint16_t word;
+    if (!rules->srgb)
+        return sample_value(rules, sample);
+    if (rules->sample == SLC_SAMPLE_U8)
+        return slc_srgb_to_linear[*(const uint8_t *)sample];
+    if (rules->sample == SLC_SAMPLE_U16) {
+        memcpy(&word, sample, 2);
+        return rules->decoded16[word];
+    }
+    float value = sample_value(rules, sample); /* encoded floats, beyond 1 too */
+    if (value <= 0.04045f)
+        return value / 12.92f;
+    return powf((value + 0.055f) / 1.055f, 2.4f);
+}
+
+/* Grey stands for R, G and B. */
+static void expand(const struct slc_rules *rules, const char *samples, float *rgba, uint32_t count)
+{
+    uint32_t size = slc_sample_size(rules->sample), channels = rules->channels;
+    uint32_t colours = rules->alpha ? channels - 1 : channels;
+    for (uint32_t i = 0; i < count; i++, samples += size * channels, rgba += 4) {
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] = c < colours ? colour_value(rules, samples + c * size)
+                                  : (colours == 1 ? rgba[0] : 0.0f);
+        rgba[3] = rules->alpha ? sample_value(rules, samples + (channels - 1) * size) : 1.0f;
+    }
+}
+
+/* The usual picture, without a decision per sample. */
+static void expand_srgb8(const uint8_t *samples, uint32_t channels, float *rgba, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, samples += channels, rgba += 4) {
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] = slc_srgb_to_linear[samples[c]];
+        rgba[3] = channels == 4 ? (float)samples[3] * (1.0f / 255.0f) : 1.0f;
+    }
+}
+
+static uint32_t limit_texels(float limit, float *rgba, uint32_t count)
+{
+    uint32_t replaced = 0;
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        bool is_fine = true;
+        for (uint32_t c = 0; c < 4; c++) {
+            if (fabsf(rgba[c]) <= limit)
+                continue;
+            rgba[c] = isnan(rgba[c]) ? 0.0f : copysignf(limit, rgba[c]);
+            is_fine = false;
+        }
+        replaced += !is_fine;
+    }
+    return replaced;
+}
+
+static void weigh_by_alpha(float *rgba, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        rgba[3] = rgba[3] > 0.0f ? fminf(rgba[3], 1.0f) : 0.0f;
+        float weight = rgba[3] + LEAST_WEIGHT;
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] *= weight;
+    }
+}
+
+/* Integers hold (n + 1) / 2. */
+static void point_normals(const struct slc_rules *rules, float *rgba, uint32_t count)
+{
+    bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
+    bool is_flat = rules->channels - rules->alpha == 2;
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        for (uint32_t c = 0; c < 3 && is_encoded; c++)
+            rgba[c] = 2.0f * rgba[c] - 1.0f;
+        if (is_flat)
+            rgba[2] = sqrtf(fmaxf(0.0f, 1.0f - rgba[0] * rgba[0] - rgba[1] * rgba[1]));
+    }
+}
+
+uint32_t slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
+                         uint32_t count)
+{
+    uint32_t replaced = 0;
+    if (rules->sample == SLC_SAMPLE_U8 && rules->srgb && rules->channels >= 3)
+        expand_srgb8(samples, rules->channels, rgba, count);
+    else
+        expand(rules, samples, rgba, count);
+    if (rules->sample == SLC_SAMPLE_F16 || rules->sample == SLC_SAMPLE_F32)
+        replaced = limit_texels(rules->limit, rgba, count);
+    if (rules->normals)
+        point_normals(rules, rgba, count);
+    if (rules->straight)
+        weigh_by_alpha(rgba, count);
+    return replaced;
+}
+
+static void unweigh(const struct slc_rules *rules, float *rgba, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        float weight = rgba[3] + LEAST_WEIGHT;
+        if (rules->rings)
+            weight = fmaxf(weight, LEAST_RINGING);
+        float factor = 1.0f / weight;
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] *= factor;
+    }
+}
+
+static void normalise(const struct slc_rules *rules, float *rgba, uint32_t count)
+{
+    bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        float length = sqrtf(rgba[0] * rgba[0] + rgba[1] * rgba[1] + rgba[2] * rgba[2]);
+        float factor = length > 1e-6f ? 1.0f / length : 0.0f;
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] *= factor;
+        if (factor == 0.0f)
+            rgba[2] = 1.0f;
+        for (uint32_t c = 0; c < 3 && is_encoded; c++)
+            rgba[c] = 0.5f * rgba[c] + 0.5f;
+    }
+}
+
+static void scale_alpha(const struct slc_rules *rules, float scale, float *rgba, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, rgba += 4) {
+        float alpha = fminf(rgba[3] * scale, 1.0f);
+        float factor = rgba[3] > 0.0f && !rules->straight ? alpha / rgba[3] : 1.0f;
+        for (uint32_t c = 0; c < 3; c++)
+            rgba[c] *= factor;
+        rgba[3] = alpha;
+    }
+}
+
+static void write_chunk(const struct slc_rules *rules, const float *rgba, float alpha_scale,
+                        void *texels, uint32_t count)
+{
+    float own[4 * CHUNK];
+    if (rules->straight || rules->normals || alpha_scale != 1.0f) {
+        memcpy(own, rgba, 4 * count * sizeof(float));
+        rgba = own;
+        if (rules->straight)
+            unweigh(rules, own, count);
+        if (rules->normals)
+            normalise(rules, own, count);
+        if (alpha_scale != 1.0f)
+            scale_alpha(rules, alpha_scale, own, count);
+    }
+    slc_texels_from_rgba(rules->format, rgba, texels, count);
+}
+
+void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,
+                      void *texels, uint32_t count)
+{
+    size_t texel_size = sluiceFormatTexelSize(rules->format);
+    for (uint32_t i = 0; i < count; i += CHUNK)
+        write_chunk(rules, rgba + 4 * (size_t)i, alpha_scale, (char *)texels + i * texel_size,
+                    slc_min_u32(CHUNK, count - i));
+}
+
+bool slc_keeps_samples(const struct slc_rules *rules)
+{
+    if (rules->sample != SLC_SAMPLE_U8)
+        return false;
+    switch (rules->format) {
+    case SLUICE_FORMAT_R8_UNORM: return rules->channels == 1 && !rules->srgb;
+    case SLUICE_FORMAT_R8G8_UNORM:
+        return rules->channels == 2 && !rules->alpha && !rules->srgb && !rules->normals;
+    case SLUICE_FORMAT_R8G8B8A8_UNORM: return rules->channels >= 3 && !rules->srgb;
+    case SLUICE_FORMAT_R8G8B8A8_SRGB: return rules->channels >= 3 && rules->srgb;
+    default: return false;
+    }
+}
+
+void slc_copy_samples(const struct slc_rules *rules, const void *samples, void *texels,
+                      uint32_t count)
+{
+    const uint8_t *in = samples;
+    uint8_t *out = texels;
+    if (rules->channels != 3) {
+        memcpy(out, in, (size_t)count * rules->channels);
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++, in += 3, out += 4) {
+        out[0] = in[0];
+        out[1] = in[1];
+        out[2] = in[2];
+        out[3] = 255;
+    }
+}

@@ -1,0 +1,52 @@
+/**
+ * Between the samples of a picture, the floats that are filtered, and the texels that are stored.
+ *
+ * Filtered floats are RGBA: linear, weighted by alpha if that is straight, vectors from -1 to 1 for
+ * normal maps, without NaN and infinities.
+ */
+#ifndef SLC_BAKE_TEXELS_H
+#define SLC_BAKE_TEXELS_H
+
+#include <sluice/bake.h>
+
+enum slc_sample { SLC_SAMPLE_U8, SLC_SAMPLE_U16, SLC_SAMPLE_F16, SLC_SAMPLE_F32 };
+
+/** How a picture is understood and what becomes of it. */
+struct slc_rules {
+    enum slc_sample sample;
+    uint32_t channels;   ///< of the picture, 1 to 4: grey, grey and alpha (or RG), RGB, RGBA
+    bool alpha;          ///< the last of 2 or 4 channels is alpha
+    bool srgb;           ///< R, G and B are encoded
+    bool straight;       ///< colours are to be weighted by alpha
+    bool normals;        ///< R, G and B are a vector; of two channels, B is the rest of its length
+    bool rings;          ///< the filter has negative lobes
+    SluiceFormat format; ///< of texels: not compressed
+    float limit;         ///< larger magnitudes become this
+    const float *decoded16; ///< 65536 values of sRGB codes, for SLC_SAMPLE_U16 with srgb
+};
+
+/** Bytes of a sample. */
+uint32_t slc_sample_size(enum slc_sample sample);
+
+/** Fills 65536 values for `decoded16`. */
+void slc_decode_srgb16(float *values);
+
+/**
+ * `count` texels of `samples`, [count][channels], to [count][4] floats. Answers in how many texels
+ * there was a NaN or something beyond the limit.
+ */
+uint32_t slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
+                         uint32_t count);
+
+/** `count` filtered texels as they are stored. `alpha_scale` multiplies alpha, up to 1. */
+void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,
+                      void *texels, uint32_t count);
+
+/** Whether samples are stored as they are, but for a missing A: bytes of integers. */
+bool slc_keeps_samples(const struct slc_rules *rules);
+
+/** Texels of samples that are kept. */
+void slc_copy_samples(const struct slc_rules *rules, const void *samples, void *texels,
+                      uint32_t count);
+
+#endif /* SLC_BAKE_TEXELS_H */

@@ -1,0 +1,77 @@
+/**
+ * Collects the rows of all levels into bands of one tile's height and hands each tile that is
+ * complete to the pool, which writes it into the store.
+ */
+#ifndef SLC_BAKE_TILER_H
+#define SLC_BAKE_TILER_H
+
+#include <sluice/store.h>
+
+#include "bake/jobs.h"
+
+/** Bands of a level: one that is filled, one whose tiles are written, one that is filled last. */
+#define SLC_MAX_BANDS 3
+
+struct slc_tiler;
+struct slc_band;
+
+struct slc_tile_job {
+    struct slc_job base;
+    struct slc_band *band;
+    uint32_t x;
+};
+
+/** The rows of one row of tiles. */
+struct slc_band {
+    struct slc_tiler *tiler;
+    uint32_t level, y;  ///< tile coordinate; while it is open or its tiles are written
+    uint32_t row_count; ///< so far
+    uint32_t pending;   ///< tiles that are not written yet; under the pool's mutex
+    bool is_open;
+    char *texels;
+    struct slc_tile_job *jobs; ///< one per tile of a row
+};
+
+struct slc_tiler_level {
+    uint32_t width, height;
+    uint32_t band_count; ///< 0 in the tail
+    struct slc_band bands[SLC_MAX_BANDS];
+    size_t tail_offset; ///< in the tail's texels
+};
+
+struct slc_tiler {
+    SluiceAllocationCallbacks allocator;
+    struct slc_jobs *jobs;
+    SluiceStoreLayout layout;
+    SluiceFormat texel_format; ///< of rows: the layout's, or what blocks are made from
+    SluiceStoreWriter *writer;
+    SluiceResult result;       ///< the first failure; under the pool's mutex
+    uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex
+    char *tail;                ///< texels of the tail's levels, one after the other
+    size_t tail_size;
+    struct slc_tiler_level levels[SLUICE_STORE_MAX_MIP_LEVELS];
+};
+
+/** Bytes that slc_tiler_init allocates. */
+uint64_t slc_tiler_memory(const SluiceStoreLayout *layout, SluiceFormat texel_format,
+                          bool reaches_around);
+
+/** `reaches_around`: the first band of a level may be completed last. Errors: OUT_OF_HOST_MEMORY;
+ *  finish it then, too. */
+SluiceResult slc_tiler_init(struct slc_tiler *tiler, const SluiceAllocationCallbacks *cb,
+                            struct slc_jobs *jobs, const SluiceStoreLayout *layout,
+                            SluiceFormat texel_format, bool reaches_around);
+/** Waits for tiles that are being written. */
+void slc_tiler_finish(struct slc_tiler *tiler);
+
+/** Where the row goes, to be filled and then ended; waits for room. NULL after a failure. */
+void *slc_tiler_begin_row(struct slc_tiler *tiler, uint32_t level, uint32_t y);
+void slc_tiler_end_row(struct slc_tiler *tiler, uint32_t level, uint32_t y);
+
+/** After the last row: waits for all tiles and writes the tail. */
+SluiceResult slc_tiler_complete(struct slc_tiler *tiler);
+
+/** The first failure. */
+SluiceResult slc_tiler_result(struct slc_tiler *tiler);
+
+#endif /* SLC_BAKE_TILER_H */

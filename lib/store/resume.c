@@ -1,0 +1,87 @@
+#include "store/resume.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+struct resume {
+    const struct slc_store_part *part;
+    const struct slc_store_header *header;
+    struct slc_store_resumed *resumed;
+    unsigned char *chunk; ///< SLC_STORE_MAX_CHUNK_SIZE bytes
+};
+
+static bool is_empty(const struct slc_store_entry *entry)
+{
+    return entry->offset == 0 && entry->size == 0 && entry->checksum == 0;
+}
+
+static SluiceResult check_chunk(const struct resume *resume, uint64_t number,
+                                const struct slc_store_entry *entry, bool *is_right)
+{
+    struct slc_store_place place = slc_store_chunk_place(&resume->header->grid, number);
+    *is_right = false;
+    if (slc_store_entry_defect(resume->header, resume->part->file.size, &place, entry))
+        return SLUICE_SUCCESS;
+    SluiceResult result =
+        slc_store_file_read(&resume->part->file, entry->offset, resume->chunk, entry->size);
+    if (result == SLUICE_SUCCESS)
+        *is_right = slc_store_chunk_checksum(resume->header, number, resume->chunk, entry->size) ==
+                    entry->checksum;
+    return result;
+}
+
+/* An entry of a chunk that does not exist is wrong as well. */
+static SluiceResult check_entry(const struct resume *resume, uint64_t number, unsigned char *bytes,
+                                bool *has_changed)
+{
+    struct slc_store_entry entry = slc_store_entry_read(bytes);
+    if (is_empty(&entry))
+        return SLUICE_SUCCESS;
+    bool is_right = false;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (number < resume->header->grid.chunk_count)
+        result = check_chunk(resume, number, &entry, &is_right);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!is_right) {
+        memset(bytes, 0, SLC_STORE_ENTRY_SIZE);
+        *has_changed = true;
+        return SLUICE_SUCCESS;
+    }
+    resume->resumed->chunk_count++;
+    if (entry.offset + entry.size > resume->resumed->end)
+        resume->resumed->end = entry.offset + entry.size;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_block(const struct resume *resume, uint64_t block)
+{
+    unsigned char bytes[SLC_STORE_BLOCK_SIZE];
+    const struct slc_store_file *file = &resume->part->file;
+    uint64_t offset = slc_store_block_offset(block);
+    bool has_changed = false;
+    SluiceResult result = slc_store_file_read(file, offset, bytes, sizeof bytes);
+    for (uint32_t i = 0; i < SLC_STORE_BLOCK_ENTRIES && result == SLUICE_SUCCESS; i++)
+        result = check_entry(resume, block * SLC_STORE_BLOCK_ENTRIES + i,
+                             bytes + i * SLC_STORE_ENTRY_SIZE, &has_changed);
+    if (result == SLUICE_SUCCESS && has_changed)
+        result = slc_store_file_write(file, offset, bytes, sizeof bytes);
+    return result;
+}
+
+SluiceResult slc_store_resume(const struct slc_store_part *part,
+                              const struct slc_store_header *header,
+                              struct slc_store_resumed *resumed)
+{
+    const SluiceAllocationCallbacks *cb = &part->file.allocator;
+    *resumed = (struct slc_store_resumed){.end = header->data_offset};
+    struct resume resume = {part, header, resumed, slc_alloc(cb, SLC_STORE_MAX_CHUNK_SIZE, 1)};
+    if (!resume.chunk)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint64_t block = 0; block < header->block_count && result == SLUICE_SUCCESS; block++)
+        result = check_block(&resume, block);
+    slc_free(cb, resume.chunk, SLC_STORE_MAX_CHUNK_SIZE, 1);
+    return result;
+}

@@ -1,0 +1,22 @@
+/** What an earlier writer left behind: what of it is right is kept, the rest forgotten. */
+#ifndef SLC_STORE_RESUME_H
+#define SLC_STORE_RESUME_H
+
+#include "store/layout.h"
+#include "store/part_file.h"
+
+struct slc_store_resumed {
+    uint64_t chunk_count;
+    uint64_t end; ///< of the last chunk, at least data_offset
+};
+
+/**
+ * Reads every chunk that the index of a .part file has, and clears the entries of those whose
+ * checksum is not right. The header has been found to match; the file is as long as header and
+ * index at least. Errors: IO, logged; OUT_OF_HOST_MEMORY.
+ */
+SluiceResult slc_store_resume(const struct slc_store_part *part,
+                              const struct slc_store_header *header,
+                              struct slc_store_resumed *resumed);
+
+#endif /* SLC_STORE_RESUME_H */

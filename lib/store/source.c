@@ -1,0 +1,184 @@
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "image/format.h"
+#include "store/reader.h"
+
+#include <string.h>
+
+struct store_source {
+    SluiceImageSource base;
+    struct slc_store_reader reader;
+    char name[SLUICE_STORE_MAX_SOURCE_NAME + 1]; ///< the image's own source
+};
+
+static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
+{
+    const struct slc_store_reader *reader = &((struct store_source *)base)->reader;
+    const struct slc_store_grid *grid = &reader->header.grid;
+    *info = (SluiceImageInfo){
+        .width = grid->layout.width,
+        .height = grid->layout.height,
+        .mipLevelCount = grid->layout.mipLevelCount,
+        .format = grid->layout.format,
+        .pName = reader->file.path,
+        .arrayLayerCount = grid->layer_count,
+    };
+    return SLUICE_SUCCESS;
+}
+
+/* Texels of a chunk, or of a level of the tail, and which of the level they are. */
+struct patch {
+    const unsigned char *texels; ///< tightly packed
+    uint32_t x, y, width, height;
+};
+
+/* What the patch and the region share. */
+static void copy_patch(const SluiceFormatInfo *format, const struct patch *patch,
+                       const SluiceImageRegion *region, char *texels, size_t row_pitch)
+{
+    uint32_t x0 = slc_max_u32(patch->x, region->x), y0 = slc_max_u32(patch->y, region->y);
+    uint32_t x1 = slc_min_u32(patch->x + patch->width, region->x + region->width);
+    uint32_t y1 = slc_min_u32(patch->y + patch->height, region->y + region->height);
+    size_t pitch = slc_format_row_size(format, patch->width);
+    const unsigned char *from = patch->texels + (y0 - patch->y) / format->blockHeight * pitch +
+                                slc_format_row_size(format, x0 - patch->x);
+    char *to = texels + (y0 - region->y) / format->blockHeight * row_pitch +
+               slc_format_row_size(format, x0 - region->x);
+    size_t size = slc_format_row_size(format, x1 - x0);
+    uint32_t rows = slc_format_row_count(format, y1 - y0);
+    for (uint32_t row = 0; row < rows; row++)
+        memcpy(to + row * row_pitch, from + row * pitch, size);
+}
+
+static SluiceResult read_from_tail(struct slc_store_reader *reader, const SluiceImageRegion *region,
+                                   struct slc_store_read_bench *bench, char *texels,
+                                   size_t row_pitch)
+{
+    const struct slc_store_grid *grid = &reader->header.grid;
+    struct slc_store_place place = {region->arrayLayer, grid->layout.tailFirstLevel, 0, 0};
+    struct slc_store_find find;
+    SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct patch patch = {bench->texels + slc_store_tail_offset(grid, region->mipLevel), 0, 0,
+                          slc_mip_size(grid->layout.width, region->mipLevel),
+                          slc_mip_size(grid->layout.height, region->mipLevel)};
+    copy_patch(&grid->format, &patch, region, texels, row_pitch);
+    return SLUICE_SUCCESS;
+}
+
+/* All tiles that the region touches; each is read whole, because its checksum is. */
+static SluiceResult read_from_tiles(struct slc_store_reader *reader,
+                                    const SluiceImageRegion *region,
+                                    struct slc_store_read_bench *bench, char *texels,
+                                    size_t row_pitch)
+{
+    const struct slc_store_grid *grid = &reader->header.grid;
+    const SluiceStoreLayout *layout = &grid->layout;
+    uint32_t x1 = (region->x + region->width - 1) / layout->tileWidth;
+    uint32_t y1 = (region->y + region->height - 1) / layout->tileHeight;
+    for (uint32_t y = region->y / layout->tileHeight; y <= y1; y++)
+        for (uint32_t x = region->x / layout->tileWidth; x <= x1; x++) {
+            struct slc_store_place place = {region->arrayLayer, region->mipLevel, x, y};
+            struct slc_store_find find;
+            SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
+            if (result != SLUICE_SUCCESS)
+                return result;
+            SluiceImageRegion whole = slc_store_chunk_region(grid, &place);
+            struct patch patch = {bench->texels, whole.x, whole.y, whole.width, whole.height};
+            copy_patch(&grid->format, &patch, region, texels, row_pitch);
+        }
+    return SLUICE_SUCCESS;
+}
+
+/* Whether the caller's memory can take a tile as it is. */
+static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegion *region,
+                        size_t row_pitch, struct slc_store_place *place)
+{
+    *place = (struct slc_store_place){region->arrayLayer, region->mipLevel,
+                                      region->x / grid->layout.tileWidth,
+                                      region->y / grid->layout.tileHeight};
+    SluiceImageRegion whole = slc_store_chunk_region(grid, place);
+    return whole.x == region->x && whole.y == region->y && whole.width == region->width &&
+           whole.height == region->height &&
+           (row_pitch == slc_format_row_size(&grid->format, region->width) ||
+            slc_format_row_count(&grid->format, region->height) == 1);
+}
+
+static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    struct slc_store_reader *reader = &((struct store_source *)base)->reader;
+    const struct slc_store_grid *grid = &reader->header.grid;
+    struct slc_store_read_bench *bench = slc_store_read_pool_take(reader->pool);
+    if (!bench)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    struct slc_store_place place;
+    struct slc_store_find find;
+    SluiceResult result;
+    if (region->mipLevel >= grid->layout.tailFirstLevel)
+        result = read_from_tail(reader, region, bench, texels, row_pitch);
+    else if (is_one_tile(grid, region, row_pitch, &place))
+        result = slc_store_read_chunk(reader, &place, bench, texels, &find);
+    else
+        result = read_from_tiles(reader, region, bench, texels, row_pitch);
+    slc_store_read_pool_give(reader->pool, bench);
+    return result;
+}
+
+static void destroy(SluiceImageSource *base)
+{
+    struct store_source *source = (struct store_source *)base;
+    SluiceAllocationCallbacks cb = source->reader.file.allocator;
+    slc_store_reader_close(&source->reader);
+    slc_free(&cb, source, 1, sizeof *source);
+}
+
+static const SluiceImageSourceInterface store_interface = {get_info, read_region, destroy};
+
+SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
+                                          SluiceImageSource **pSource)
+{
+    if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    struct store_source *source = slc_calloc(&cb, 1, sizeof *source);
+    if (!source)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    source->base.pInterface = &store_interface;
+    SluiceResult result = slc_store_reader_open(&source->reader, pInfo);
+    if (result != SLUICE_SUCCESS) {
+        destroy(&source->base);
+        return result;
+    }
+    const struct slc_store_header *header = &source->reader.header;
+    memcpy(source->name, header->name, header->name_size);
+    *pSource = &source->base;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInfo)
+{
+    if (!source || !pInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (source->pInterface != &store_interface)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    const struct slc_store_header *header = &((struct store_source *)source)->reader.header;
+    *pInfo = (SluiceStoreInfo){
+        .versionMajor = header->major,
+        .versionMinor = header->minor,
+        .layout = header->grid.layout,
+        .arrayLayerCount = header->grid.layer_count,
+        .colorSpace = header->color_space,
+        .meaning = header->meaning,
+        .addressModeU = header->address_mode_u,
+        .addressModeV = header->address_mode_v,
+        .pSourceName = ((struct store_source *)source)->name,
+        .sourceSize = header->source_size,
+        .sourceModifiedTime = header->source_time,
+        .settingsHash = header->settings_hash,
+        .compressionLevel = header->compression_level,
+        .fileSize = header->file_size,
+    };
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,81 @@
+#include "base/alloc.h"
+#include "store/reader.h"
+
+struct verifier {
+    const SluiceStoreVerifyInfo *info;
+    struct slc_store_reader reader;
+    SluiceStoreReport report;
+    SluiceResult result; ///< of the first defect
+};
+
+static void note_defect(struct verifier *verifier, const struct slc_store_find *find,
+                        SluiceResult result)
+{
+    SluiceStoreDefect defect = {find->place.layer, find->place.level, find->place.x,
+                                find->place.y,     find->offset,      result};
+    verifier->report.defectCount++;
+    if (verifier->result == SLUICE_SUCCESS)
+        verifier->result = result;
+    if (verifier->info->pfnDefect)
+        verifier->info->pfnDefect(verifier->info->pUserData, &defect);
+}
+
+/* Errors: OUT_OF_HOST_MEMORY; whatever the file is at fault for is noted. */
+static SluiceResult verify_chunk(struct verifier *verifier, uint64_t number,
+                                 struct slc_store_read_bench *bench)
+{
+    const struct slc_store_grid *grid = &verifier->reader.header.grid;
+    struct slc_store_place place = slc_store_chunk_place(grid, number);
+    struct slc_store_find find;
+    SluiceResult result =
+        slc_store_read_chunk(&verifier->reader, &place, bench, bench->texels, &find);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return result;
+    verifier->report.tileCount++;
+    if (result != SLUICE_SUCCESS) {
+        note_defect(verifier, &find, result);
+        return SLUICE_SUCCESS;
+    }
+    uint32_t texel_size = slc_store_chunk_size(grid, &place);
+    verifier->report.storedSize += find.entry.size;
+    verifier->report.texelSize += texel_size;
+    verifier->report.rawTileCount += find.entry.size == texel_size;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult verify_chunks(struct verifier *verifier, struct slc_store_read_bench *bench)
+{
+    enum { STEP = 64 };
+    const SluiceStoreVerifyInfo *info = verifier->info;
+    uint64_t count = verifier->reader.header.grid.chunk_count;
+    for (uint64_t number = 0; number < count; number++) {
+        if (info->pfnProgress && number % STEP == 0 &&
+            !info->pfnProgress(info->pUserData, number, count))
+            return SLUICE_ERROR_CANCELLED;
+        SluiceResult result = verify_chunk(verifier, number, bench);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    return verifier->result;
+}
+
+SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreReport *pReport)
+{
+    if (!pInfo || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceStoreImageSourceCreateInfo open = {
+        .pPath = pInfo->pPath, .pAllocator = pInfo->pAllocator, .log = pInfo->log};
+    struct verifier verifier = {.info = pInfo};
+    struct slc_store_read_bench *bench = NULL;
+    SluiceResult result = slc_store_reader_open(&verifier.reader, &open);
+    if (result == SLUICE_SUCCESS) {
+        bench = slc_store_read_pool_take(verifier.reader.pool);
+        result = bench ? verify_chunks(&verifier, bench) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    if (bench)
+        slc_store_read_pool_give(verifier.reader.pool, bench);
+    slc_store_reader_close(&verifier.reader);
+    if (pReport)
+        *pReport = verifier.report;
+    return result;
+}

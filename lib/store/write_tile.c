@@ -1,0 +1,283 @@
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "image/format.h"
+#include "store/writer.h"
+
+#include <string.h>
+
+static uint64_t entry_offset(uint64_t number)
+{
+    return slc_store_block_offset(number / SLC_STORE_BLOCK_ENTRIES) +
+           slc_store_entry_offset(number);
+}
+
+SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t number,
+                                    struct slc_store_entry *entry)
+{
+    unsigned char bytes[SLC_STORE_ENTRY_SIZE];
+    SluiceResult result =
+        slc_store_file_read(&writer->part.file, entry_offset(number), bytes, sizeof bytes);
+    if (result == SLUICE_SUCCESS)
+        *entry = slc_store_entry_read(bytes);
+    return result;
+}
+
+SluiceResult slc_store_writer_seal(const SluiceStoreWriter *writer, uint64_t block,
+                                   uint64_t *missing)
+{
+    unsigned char bytes[SLC_STORE_BLOCK_SIZE];
+    const struct slc_store_file *file = &writer->part.file;
+    uint64_t count = writer->header.grid.chunk_count;
+    SluiceResult result =
+        slc_store_file_read(file, slc_store_block_offset(block), bytes, sizeof bytes);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    for (uint32_t i = 0; i < SLC_STORE_BLOCK_ENTRIES; i++) {
+        struct slc_store_entry entry = slc_store_entry_read(bytes + i * SLC_STORE_ENTRY_SIZE);
+        *missing = block * SLC_STORE_BLOCK_ENTRIES + i;
+        if (*missing < count && !slc_store_entry_is_written(&entry))
+            return SLUICE_SUCCESS;
+    }
+    *missing = count;
+    slc_store_block_seal(&writer->header, block, bytes);
+    return slc_store_file_write(file, slc_store_block_offset(block), bytes, sizeof bytes);
+}
+
+static void free_bench(const SluiceAllocationCallbacks *cb, struct slc_store_bench *bench)
+{
+    slc_store_compressor_destroy(bench->compressor);
+    slc_free(cb, bench, 1, sizeof *bench);
+}
+
+void slc_store_writer_free_benches(SluiceStoreWriter *writer)
+{
+    while (writer->idle) {
+        struct slc_store_bench *bench = writer->idle;
+        writer->idle = bench->next;
+        free_bench(&writer->allocator, bench);
+    }
+}
+
+static SluiceResult take_bench(SluiceStoreWriter *writer, struct slc_store_bench **out)
+{
+    pthread_mutex_lock(&writer->mutex);
+    struct slc_store_bench *bench = writer->idle;
+    if (bench)
+        writer->idle = bench->next;
+    pthread_mutex_unlock(&writer->mutex);
+    if (!bench) {
+        bench = slc_alloc(&writer->allocator, 1, sizeof *bench);
+        if (!bench)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        bench->compressor = NULL;
+    }
+    *out = bench;
+    if (writer->header.compression_level == 0 || bench->compressor)
+        return SLUICE_SUCCESS;
+    bench->compressor = slc_store_compressor_create(&writer->allocator);
+    if (bench->compressor)
+        return SLUICE_SUCCESS;
+    free_bench(&writer->allocator, bench);
+    return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+static void give_bench(SluiceStoreWriter *writer, struct slc_store_bench *bench)
+{
+    pthread_mutex_lock(&writer->mutex);
+    bench->next = writer->idle;
+    writer->idle = bench;
+    pthread_mutex_unlock(&writer->mutex);
+}
+
+/* A place in the file that is nobody else's. Errors: as state says. */
+static SluiceResult take_place(SluiceStoreWriter *writer, const struct slc_store_place *place,
+                               struct slc_store_entry *entry)
+{
+    const struct slc_store_header *header = &writer->header;
+    pthread_mutex_lock(&writer->mutex);
+    SluiceResult result = writer->state == SLC_STORE_WRITING ? SLUICE_SUCCESS : SLUICE_ERROR_IO;
+    if (header->compression_level == 0) {
+        entry->offset = header->data_offset + slc_store_chunk_offset(&header->grid, place);
+    } else if (result == SLUICE_SUCCESS) {
+        entry->offset = writer->end;
+        writer->end += entry->size;
+    }
+    pthread_mutex_unlock(&writer->mutex);
+    return result;
+}
+
+/* Unless others have taken the room behind it, it is free again. */
+static void return_place(SluiceStoreWriter *writer, const struct slc_store_entry *entry)
+{
+    pthread_mutex_lock(&writer->mutex);
+    if (writer->end == entry->offset + entry->size)
+        writer->end = entry->offset;
+    pthread_mutex_unlock(&writer->mutex);
+}
+
+/* The index has had its room on the disk from the start. If this fails all the same, what is there
+ * now may be half an entry, and only reading everything again finds out. */
+static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
+                                const struct slc_store_entry *entry)
+{
+    unsigned char bytes[SLC_STORE_ENTRY_SIZE];
+    slc_store_entry_write(entry, bytes);
+    SluiceResult result =
+        slc_store_file_write(&writer->part.file, entry_offset(number), bytes, sizeof bytes);
+    pthread_mutex_lock(&writer->mutex);
+    if (result == SLUICE_SUCCESS)
+        writer->written_count++;
+    else
+        writer->state = SLC_STORE_BROKEN;
+    pthread_mutex_unlock(&writer->mutex);
+    return result;
+}
+
+static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_store_place *place,
+                                 const void *bytes, size_t size)
+{
+    uint64_t number = slc_store_chunk_number(&writer->header.grid, place);
+    struct slc_store_entry entry = {
+        .checksum = slc_store_chunk_checksum(&writer->header, number, bytes, size),
+        .size = (uint32_t)size,
+    };
+    SluiceResult result = take_place(writer, place, &entry);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_store_file_write(&writer->part.file, entry.offset, bytes, size);
+    if (result != SLUICE_SUCCESS) {
+        return_place(writer, &entry);
+        return result;
+    }
+    return write_entry(writer, number, &entry);
+}
+
+/* `texels`: the whole chunk, rows tight. */
+static SluiceResult write_texels(SluiceStoreWriter *writer, const struct slc_store_place *place,
+                                 struct slc_store_bench *bench, const void *texels)
+{
+    size_t size = slc_store_chunk_size(&writer->header.grid, place);
+    if (writer->header.compression_level == 0)
+        return write_stored(writer, place, texels, size);
+    size_t stored_size;
+    SluiceResult result =
+        slc_store_compress(bench->compressor, (int)writer->header.compression_level, texels, size,
+                           bench->stored, &stored_size);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (stored_size == 0)
+        return write_stored(writer, place, texels, size);
+    return write_stored(writer, place, bench->stored, stored_size);
+}
+
+/* `size` bytes of each of `rows` rows, from `row_pitch` apart to none apart. */
+static void pack_rows(const void *texels, size_t row_pitch, size_t size, uint32_t rows,
+                      unsigned char *packed)
+{
+    for (uint32_t row = 0; row < rows; row++)
+        memcpy(packed + row * size, (const char *)texels + row * row_pitch, size);
+}
+
+static SluiceResult check_unwritten(SluiceStoreWriter *writer, const struct slc_store_place *place)
+{
+    pthread_mutex_lock(&writer->mutex);
+    bool is_finished = writer->state == SLC_STORE_FINISHED;
+    pthread_mutex_unlock(&writer->mutex);
+    if (is_finished)
+        return SLUICE_ERROR_INVALID_TILE_STATE;
+    struct slc_store_entry entry;
+    SluiceResult result =
+        slc_store_writer_entry(writer, slc_store_chunk_number(&writer->header.grid, place), &entry);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    return slc_store_entry_is_written(&entry) ? SLUICE_ERROR_INVALID_TILE_STATE : SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceWriteStoreTile(SluiceStoreWriter *writer, uint32_t arrayLayer, uint32_t mipLevel,
+                                  uint32_t tileX, uint32_t tileY, const void *pTexels,
+                                  size_t rowPitch)
+{
+    if (!writer || !pTexels)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_store_grid *grid = &writer->header.grid;
+    struct slc_store_place place;
+    if (!slc_store_grid_find(grid, arrayLayer, mipLevel, tileX, tileY, &place) ||
+        slc_store_is_tail(grid, &place))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceImageRegion region = slc_store_chunk_region(grid, &place);
+    size_t row_size = slc_format_row_size(&grid->format, region.width);
+    if (rowPitch < row_size)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_unwritten(writer, &place);
+    struct slc_store_bench *bench;
+    if (result == SLUICE_SUCCESS)
+        result = take_bench(writer, &bench);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (rowPitch != row_size) {
+        pack_rows(pTexels, rowPitch, row_size, slc_format_row_count(&grid->format, region.height),
+                  bench->texels);
+        pTexels = bench->texels;
+    }
+    result = write_texels(writer, &place, bench, pTexels);
+    give_bench(writer, bench);
+    return result;
+}
+
+/* What a level of the tail needs to be packed behind those before it. */
+struct tail_level {
+    size_t row_size, pitch;
+    uint32_t rows;
+};
+
+static struct tail_level tail_level(const struct slc_store_grid *grid, uint32_t i,
+                                    const size_t *pitches)
+{
+    uint32_t level = grid->layout.tailFirstLevel + i;
+    size_t row_size = slc_format_row_size(&grid->format, slc_mip_size(grid->layout.width, level));
+    return (struct tail_level){
+        row_size, pitches ? pitches[i] : row_size,
+        slc_format_row_count(&grid->format, slc_mip_size(grid->layout.height, level))};
+}
+
+static SluiceResult check_tail(const struct slc_store_grid *grid, const void *const *levels,
+                               const size_t *pitches)
+{
+    uint32_t count = grid->layout.mipLevelCount - grid->layout.tailFirstLevel;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!levels[i])
+            return SLUICE_ERROR_NULL_POINTER;
+        struct tail_level level = tail_level(grid, i, pitches);
+        if (level.pitch < level.row_size)
+            return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceWriteStoreTail(SluiceStoreWriter *writer, uint32_t arrayLayer,
+                                  const void *const *ppLevels, const size_t *pRowPitches)
+{
+    if (!writer || !ppLevels)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_store_grid *grid = &writer->header.grid;
+    uint32_t first = grid->layout.tailFirstLevel;
+    struct slc_store_place place;
+    if (!slc_store_grid_find(grid, arrayLayer, first, 0, 0, &place))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_tail(grid, ppLevels, pRowPitches);
+    if (result == SLUICE_SUCCESS)
+        result = check_unwritten(writer, &place);
+    struct slc_store_bench *bench;
+    if (result == SLUICE_SUCCESS)
+        result = take_bench(writer, &bench);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    for (uint32_t i = 0; first + i < grid->layout.mipLevelCount; i++) {
+        struct tail_level level = tail_level(grid, i, pRowPitches);
+        pack_rows(ppLevels[i], level.pitch, level.row_size, level.rows,
+                  bench->texels + slc_store_tail_offset(grid, first + i));
+    }
+    result = write_texels(writer, &place, bench, bench->texels);
+    give_bench(writer, bench);
+    return result;
+}

@@ -1,0 +1,242 @@
+#include "store/writer.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "store/resume.h"
+
+#include <string.h>
+
+static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store_header *header)
+{
+    const char *name = info->pSourceName ? info->pSourceName : "";
+    size_t name_size = strlen(name);
+    *header = (struct slc_store_header){
+        .major = SLUICE_STORE_VERSION_MAJOR,
+        .minor = SLUICE_STORE_VERSION_MINOR,
+        .color_space = info->colorSpace,
+        .meaning = info->meaning,
+        .address_mode_u = info->addressModeU,
+        .address_mode_v = info->addressModeV,
+        .source_size = info->sourceSize,
+        .source_time = info->sourceModifiedTime,
+        .settings_hash = info->settingsHash,
+        .compression_level = info->compressionLevel,
+        .name_size = (uint32_t)name_size,
+        .name = name,
+    };
+    SluiceResult result = slc_store_grid_init(&header->grid, info->width, info->height,
+                                              info->format, slc_max_u32(1, info->arrayLayerCount));
+    if (result != SLUICE_SUCCESS)
+        return result;
+    bool is_in_range =
+        name_size <= SLUICE_STORE_MAX_SOURCE_NAME &&
+        (uint32_t)info->colorSpace <= SLUICE_STORE_COLOR_SPACE_ACESCG &&
+        (uint32_t)info->meaning <= SLUICE_STORE_MEANING_DATA &&
+        (uint32_t)info->addressModeU <= SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        (uint32_t)info->addressModeV <= SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER &&
+        info->compressionLevel <= SLUICE_STORE_MAX_COMPRESSION_LEVEL &&
+        (info->flags & ~(uint32_t)SLUICE_STORE_WRITER_RESUME) == 0 &&
+        (info->mipLevelCount == 0 || info->mipLevelCount == header->grid.layout.mipLevelCount);
+    return is_in_range ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
+/* Whether what is there is of the same create-info. */
+static SluiceResult find_match(const SluiceStoreWriter *writer, bool *matches)
+{
+    unsigned char bytes[SLC_STORE_HEADER_SIZE];
+    const struct slc_store_file *file = &writer->part.file;
+    *matches = false;
+    if (!writer->may_resume || file->size < writer->header.data_offset)
+        return SLUICE_SUCCESS;
+    SluiceResult result = slc_store_file_read(file, 0, bytes, sizeof bytes);
+    if (result == SLUICE_SUCCESS)
+        *matches = slc_store_header_matches(bytes, writer->header_bytes);
+    return result;
+}
+
+static SluiceResult begin_anew(SluiceStoreWriter *writer)
+{
+    writer->end = writer->header.data_offset;
+    SluiceResult result = slc_store_part_cut(&writer->part, 0);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_part_reserve(&writer->part, writer->header.data_offset);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_file_write(&writer->part.file, 0, writer->header_bytes,
+                                      sizeof writer->header_bytes);
+    return result;
+}
+
+static SluiceResult go_on(SluiceStoreWriter *writer)
+{
+    struct slc_store_resumed resumed;
+    SluiceResult result = slc_store_resume(&writer->part, &writer->header, &resumed);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    writer->end = resumed.end;
+    writer->written_count = resumed.chunk_count;
+    slc_log(&writer->part.file.log, SLUICE_LOG_INFO, "%s: goes on with %llu of %llu tiles",
+            writer->part.file.path, (unsigned long long)resumed.chunk_count,
+            (unsigned long long)writer->header.grid.chunk_count);
+    result = slc_store_part_cut(&writer->part, writer->end);
+    if (result == SLUICE_SUCCESS) /* a finished one is not any more */
+        result = slc_store_file_write(&writer->part.file, 0, writer->header_bytes,
+                                      sizeof writer->header_bytes);
+    return result;
+}
+
+static SluiceResult begin(SluiceStoreWriter *writer, const SluiceStoreCreateInfo *info)
+{
+    SluiceResult result =
+        slc_store_part_open(&writer->part, info->pPath, &writer->allocator, &info->log);
+    bool matches = false;
+    if (result == SLUICE_SUCCESS)
+        result = find_match(writer, &matches);
+    if (result == SLUICE_SUCCESS)
+        result = matches ? go_on(writer) : begin_anew(writer);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    writer->has_mutex = pthread_mutex_init(&writer->mutex, NULL) == 0;
+    return writer->has_mutex ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+SluiceResult sluiceCreateStoreWriter(const SluiceStoreCreateInfo *pInfo,
+                                     SluiceStoreWriter **pWriter)
+{
+    if (!pInfo || !pWriter || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_store_header header;
+    SluiceResult result = describe(pInfo, &header);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceStoreWriter *writer = slc_calloc(&cb, 1, sizeof *writer);
+    if (!writer)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    writer->allocator = cb;
+    writer->header = header;
+    writer->may_resume = (pInfo->flags & SLUICE_STORE_WRITER_RESUME) != 0;
+    slc_store_header_write(&writer->header, writer->header_bytes);
+    writer->header.name = NULL; /* the caller's, from here on only in the bytes */
+    writer->part.file.descriptor = writer->part.folder = -1;
+    result = begin(writer, pInfo);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyStoreWriter(writer);
+        return result;
+    }
+    *pWriter = writer;
+    return SLUICE_SUCCESS;
+}
+
+void sluiceDestroyStoreWriter(SluiceStoreWriter *writer)
+{
+    if (!writer)
+        return;
+    if (!writer->may_resume && writer->state != SLC_STORE_FINISHED)
+        slc_store_part_remove(&writer->part);
+    slc_store_part_close(&writer->part);
+    slc_store_writer_free_benches(writer);
+    if (writer->has_mutex)
+        pthread_mutex_destroy(&writer->mutex);
+    SluiceAllocationCallbacks cb = writer->allocator;
+    slc_free(&cb, writer, 1, sizeof *writer);
+}
+
+SluiceResult sluiceGetStoreWriterLayout(const SluiceStoreWriter *writer, SluiceStoreLayout *pLayout)
+{
+    if (!writer || !pLayout)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pLayout = writer->header.grid.layout;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetStoreProgress(SluiceStoreWriter *writer, uint64_t *pWrittenTileCount,
+                                    uint64_t *pTileCount)
+{
+    if (!writer || !pWrittenTileCount || !pTileCount)
+        return SLUICE_ERROR_NULL_POINTER;
+    pthread_mutex_lock(&writer->mutex);
+    *pWrittenTileCount = writer->written_count;
+    pthread_mutex_unlock(&writer->mutex);
+    *pTileCount = writer->header.grid.chunk_count;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceIsStoreTileWritten(SluiceStoreWriter *writer, uint32_t arrayLayer,
+                                      uint32_t mipLevel, uint32_t tileX, uint32_t tileY,
+                                      bool *pWritten)
+{
+    if (!writer || !pWritten)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_store_grid *grid = &writer->header.grid;
+    struct slc_store_place place;
+    if (!slc_store_grid_find(grid, arrayLayer, mipLevel, tileX, tileY, &place))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_store_entry entry;
+    SluiceResult result =
+        slc_store_writer_entry(writer, slc_store_chunk_number(grid, &place), &entry);
+    if (result == SLUICE_SUCCESS)
+        *pWritten = slc_store_entry_is_written(&entry);
+    return result;
+}
+
+/* Names the first chunk that is not there. */
+static SluiceResult refuse_unfinished(const SluiceStoreWriter *writer, uint64_t missing)
+{
+    const struct slc_store_grid *grid = &writer->header.grid;
+    struct slc_store_place place = slc_store_chunk_place(grid, missing);
+    slc_log(&writer->part.file.log, SLUICE_LOG_ERROR,
+            "%s: cannot be finished: %llu of %llu tiles are written; the first that is missing: "
+            "layer %u, level %u, x %u, y %u%s",
+            writer->part.file.path, (unsigned long long)writer->written_count,
+            (unsigned long long)grid->chunk_count, place.layer, place.level, place.x, place.y,
+            slc_store_is_tail(grid, &place) ? " (the tail)" : "");
+    return SLUICE_ERROR_INVALID_TILE_STATE;
+}
+
+static SluiceResult seal_index(const SluiceStoreWriter *writer)
+{
+    for (uint64_t block = 0; block < writer->header.block_count; block++) {
+        uint64_t missing;
+        SluiceResult result = slc_store_writer_seal(writer, block, &missing);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        if (missing < writer->header.grid.chunk_count)
+            return refuse_unfinished(writer, missing);
+    }
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult seal_and_publish(SluiceStoreWriter *writer)
+{
+    struct slc_store_header header = writer->header;
+    unsigned char bytes[SLC_STORE_HEADER_SIZE];
+    header.name = (const char *)writer->header_bytes + SLC_STORE_NAME_OFFSET;
+    header.file_size = writer->end;
+    if (header.compression_level == 0)
+        header.file_size = header.data_offset + header.grid.layer_size * header.grid.layer_count;
+    slc_store_header_write(&header, bytes);
+    SluiceResult result = slc_store_part_cut(&writer->part, header.file_size);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_file_write(&writer->part.file, 0, bytes, sizeof bytes);
+    if (result == SLUICE_SUCCESS)
+        result = slc_store_part_publish(&writer->part);
+    return result;
+}
+
+SluiceResult sluiceFinishStore(SluiceStoreWriter *writer)
+{
+    if (!writer)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (writer->state == SLC_STORE_FINISHED)
+        return SLUICE_ERROR_INVALID_TILE_STATE;
+    if (writer->state == SLC_STORE_BROKEN)
+        return SLUICE_ERROR_IO;
+    SluiceResult result = seal_index(writer);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = seal_and_publish(writer);
+    /* After an error of the disk nobody knows what is on it; only reading it again will tell. */
+    writer->state = result == SLUICE_SUCCESS ? SLC_STORE_FINISHED : SLC_STORE_BROKEN;
+    return result;
+}

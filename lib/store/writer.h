@@ -1,0 +1,57 @@
+/** A store that is being written: what creation, writing and finishing share. */
+#ifndef SLC_STORE_WRITER_H
+#define SLC_STORE_WRITER_H
+
+#include "store/codec.h"
+#include "store/layout.h"
+#include "store/part_file.h"
+
+#include <pthread.h>
+
+/** What one call needs to make a chunk; as many as there were calls at a time. */
+struct slc_store_bench {
+    struct slc_store_bench *next;
+    struct slc_store_compressor *compressor; ///< NULL: nothing is compressed
+    unsigned char texels[SLC_STORE_MAX_CHUNK_SIZE];
+    unsigned char stored[SLC_STORE_MAX_CHUNK_SIZE];
+};
+
+enum slc_store_state {
+    SLC_STORE_WRITING,
+    SLC_STORE_BROKEN,  ///< nobody knows what the file holds; to be resumed
+    SLC_STORE_FINISHED ///< has its name
+};
+
+struct SluiceStoreWriter {
+    SluiceAllocationCallbacks allocator;
+    struct slc_store_part part;
+    struct slc_store_header header;
+    unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
+    bool may_resume;
+    bool has_mutex;
+    pthread_mutex_t mutex; ///< around what follows
+    enum slc_store_state state;
+    uint64_t end; ///< where the next compressed chunk goes
+    uint64_t written_count;
+    struct slc_store_bench *idle;
+};
+
+/** The entry of a chunk as it is in the file now. Errors: IO, logged. */
+SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t number,
+                                    struct slc_store_entry *entry);
+
+/** Chunks that are not there have no bytes. */
+static inline bool slc_store_entry_is_written(const struct slc_store_entry *entry)
+{
+    return entry->size > 0;
+}
+
+/** Gives back what sluiceWriteStoreTile keeps between calls. */
+void slc_store_writer_free_benches(SluiceStoreWriter *writer);
+
+/** The entries of a block have all been written; `missing` is the first chunk that is not, else
+ *  the number of chunks. Seals the block then. Errors: IO, logged. */
+SluiceResult slc_store_writer_seal(const SluiceStoreWriter *writer, uint64_t block,
+                                   uint64_t *missing);
+
+#endif /* SLC_STORE_WRITER_H */

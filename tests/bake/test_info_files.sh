@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# test_info_files.sh SLUICE_INFO SLUICE_BAKE MAKE_PICTURE COMPARE_PICTURES DDS: what sluice-info says of
+# files, and the pictures it makes of them. Prints TAP. DDS: a file of 44 x 20 texels, or "".
+info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(realpath "$4") dds=$5
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+number=0 status=0
+
+# fact NAME: the exit status before it says whether it is so
+fact() {
+    local result=$?
+    number=$((number + 1))
+    if [ $result -eq 0 ]; then
+        echo "ok $number - $1"
+    else
+        echo "not ok $number - $1"
+        sed 's/^/# /' out err 2>/dev/null
+        status=1
+    fi
+}
+
+# run STATUS ARGUMENTS...: whether sluice-info ends with this status; its words are in out and err
+run() {
+    local expected=$1 got=0
+    shift
+    "$info" "$@" >out 2>err || got=$?
+    [ $got -eq "$expected" ]
+}
+
+"$make" rgba 300 200 1 a.png && "$make" grey 70 30 2 b.png &&
+    "$bake" a.png b.png -o . --wrap repeat,mirror >out 2>err
+fact stores_can_be_made
+
+run 0 a.store && grep -q 'tile store' out && grep -q '300 x 200 texels, 9 levels' out &&
+    grep -q 'R8G8B8A8_SRGB' out && grep -q 'made from *a.png' out &&
+    grep -q 'beyond the edges *repeat, mirrored repeat' out && grep -q 'straight alpha' out
+fact it_says_what_is_in_a_store
+
+run 0 a.store b.store --json && [ "$(grep -c '^{.*}$' out)" -eq 2 ] &&
+    grep -q "\"sourceSize\": $(stat -c %s a.png)," out && { ! command -v python3 >/dev/null ||
+    python3 -c 'import json
+for line in open("out"): json.loads(line)'; }
+fact json_has_an_object_per_file
+
+run 0 a.store --png whole.png && "$compare" a.png whole.png
+fact level_0_is_the_picture
+
+run 0 a.store --tile 2,1 --png tile.png && "$compare" a.png tile.png 256 128
+fact a_tile_is_a_part_of_it
+
+run 0 b.store --png grey.png && "$compare" b.png grey.png
+fact one_channel_is_grey
+
+run 0 a.store --level 8 --png one.png && [ -s one.png ]
+fact the_last_level_is_a_texel
+
+run 1 a.store --level 9 --png no.png && grep -q 'a.store: .*level' err && [ ! -e no.png ] &&
+    run 1 a.store --tile 3,0 --png no.png && grep -q 'a.store: .*tile' err && [ ! -e no.png ]
+fact levels_and_tiles_that_are_not_there_are_errors
+
+echo nothing >text
+: >empty
+run 1 a.store text empty absent && [ "$(grep -c . err)" -eq 3 ] && grep -q '300 x 200' out
+fact files_that_are_none_are_errors_and_the_others_are_shown
+
+if [ -n "$dds" ]; then
+    run 0 "$dds" && grep -q '44 x 20 texels, 6 levels' out && grep -q 'BC1' out &&
+        run 1 "$dds" --png no.png && [ ! -e no.png ]
+    fact it_knows_dds
+fi
+
+echo "1..$number"
+exit $status

@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# test_tool.sh SLUICE_BAKE MAKE_PICTURE: files, folders, failures and what is said of them. Prints TAP.
+bake=$(realpath "$1") make=$(realpath "$2")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+number=0 status=0
+
+# fact NAME: the exit status before it says whether it is so
+fact() {
+    local result=$?
+    number=$((number + 1))
+    if [ $result -eq 0 ]; then
+        echo "ok $number - $1"
+    else
+        echo "not ok $number - $1"
+        sed 's/^/# /' out err 2>/dev/null
+        status=1
+    fi
+}
+
+# run STATUS ARGUMENTS...: whether the tool ends with this status; its words are in out and err
+run() {
+    local expected=$1 got=0
+    shift
+    "$bake" "$@" >out 2>err || got=$?
+    [ $got -eq "$expected" ]
+}
+
+count() { grep -c -- "$1" "$2"; }
+
+mkdir -p in/sub/deep
+"$make" rgb 300 200 1 in/a.png && "$make" rgba 129 77 2 in/sub/b.png &&
+    "$make" grey 64 512 3 in/sub/deep/c.tif && "$make" rgb 200 100 4 in/d.jpg &&
+    "$make" rgb 333 111 5 in/sub/e.webp
+fact pictures_can_be_made
+
+run 0 in/a.png -o one.store && [ -s one.store ] && run 0 --verify one.store
+fact one_picture_becomes_one_file
+
+run 0 in -o out.d && [ "$(find out.d -type f | sort | tr '\n' ' ')" = \
+    "out.d/a.store out.d/d.store out.d/sub/b.store out.d/sub/deep/c.store out.d/sub/e.store " ]
+fact folders_keep_their_structure
+
+grep -q '^5 baked, 0 unchanged, 0 failed' out
+fact the_summary_counts
+
+[ ! -s err ]
+fact nothing_is_said_on_stderr_without_a_terminal
+
+find out.d -type f -exec sha256sum {} + >before
+run 0 in -o out.d && grep -q '^0 baked, 5 unchanged' out && sha256sum --quiet -c before
+fact what_is_up_to_date_is_left_alone
+
+touch -d '2001-01-01' in/a.png
+run 0 in -o out.d && grep -q '^1 baked, 4 unchanged' out
+fact a_touched_picture_is_baked_again
+
+run 0 in -o out.d --wrap repeat && grep -q '^5 baked' out
+fact other_settings_bake_again
+
+run 0 in -o out.d --wrap repeat --force && grep -q '^5 baked' out
+fact force_bakes_again
+
+truncate -s 100 out.d/a.store
+run 1 --verify out.d/a.store out.d/d.store && grep -q '^whole .*d.store' out && grep -q '^damaged .*a.store' out
+fact verify_finds_a_damaged_file
+
+run 0 in -o out.d --wrap repeat && grep -q '^1 baked, 4 unchanged' out && run 0 --verify out.d/a.store
+fact a_damaged_store_is_baked_again
+
+head -c 20000 in/a.png >in/cut.png
+echo "this is no picture" >in/sub/text.png
+: >in/empty.jpg
+run 1 in in/absent.png -o out.d --wrap repeat && grep -q '^0 baked, 5 unchanged, 4 failed' out
+fact broken_pictures_do_not_stop_the_others
+
+[ "$(count . err)" -eq 4 ] && grep -q 'in/cut.png: ..' err && grep -q 'in/sub/text.png: ..' err &&
+    grep -q 'in/empty.jpg: ..' err && grep -q 'in/absent.png: ..' err
+fact every_failure_names_the_file_and_the_reason
+
+[ ! -e out.d/cut.store ] && [ -z "$(find out.d -name '*.part')" ]
+fact broken_pictures_leave_nothing
+
+run 1 in -o out.d --wrap repeat --json && [ "$(count '^{.*}$' out)" -eq 8 ] &&
+    [ "$(count '"status": "failed"' out)" -eq 3 ] && [ "$(count '"status": "unchanged"' out)" -eq 5 ] &&
+    { ! command -v python3 >/dev/null || python3 -c 'import json, sys
+for line in open("out"): json.loads(line)'; }
+fact json_has_an_object_per_file
+
+rm in/cut.png in/sub/text.png in/empty.jpg
+"$make" rgb 10 10 1 in/a.tif
+run 1 in -o other.d && grep -q 'in/a.*would both become other.d/a.store' err
+fact two_pictures_for_one_file_are_refused
+rm in/a.tif
+
+run 0 in -o one.d --threads 1 --force && run 0 in -o two.d --threads 7 --force &&
+    [ "$(find one.d -type f | wc -l)" -eq 5 ] && run 0 --verify two.d/*.store two.d/*/*.store
+fact any_number_of_threads_will_do
+
+for format in r8 rg8 rgba8 r16f rg16f rgba16f r32f rg32f rgba32f rgb10a2 rg11b10f rgb9e5; do
+    run 0 in/a.png -o "formats.d/$format.store" --format $format || break
+done && run 0 --verify formats.d/*.store && [ "$(count '^whole' out)" -eq 12 ]
+fact every_format_can_be_named
+
+run 2 && run 2 in && run 2 in -o && run 2 in -o x --nonsense && run 2 in -o x --format rgb565 &&
+    run 2 in -o x --cutout 2 && run 2 in -o x --memory 0 && run 2 in -o x --threads 0 &&
+    run 2 in -o x --compression 23 && run 2 in -o x --normal --srgb && [ ! -e x ]
+fact wrong_usage_is_refused_before_anything_is_done
+
+run 0 --help && grep -q 'usage: sluice-bake' out && grep -q '(box)' out && grep -q '(1G)' out
+fact help_gives_defaults
+
+run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*MiB' err && [ ! -e small.store ]
+fact too_little_memory_is_an_error_that_says_so
+
+echo "1..$number"
+exit $status

@@ -1,0 +1,30 @@
+/** Which pictures there are, and where their stores go. */
+#ifndef TOOLS_SLUICE_BAKE_FILES_H
+#define TOOLS_SLUICE_BAKE_FILES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct file {
+    char *input, *output;
+    uint64_t size; ///< bytes of the input, 0 if that is not known
+};
+
+struct files {
+    struct file *files;
+    size_t count, capacity;
+};
+
+/**
+ * Pictures named and found in folders, sorted by output. A folder holds pictures if their names
+ * end as pictures' do; hidden ones and stores do not count. False, having said why, if a folder
+ * cannot be read, two pictures would go to one file, or there is no memory.
+ */
+bool find_files(struct files *files, char **inputs, int input_count, const char *output);
+void free_files(struct files *files);
+
+/** Makes the folders above a file. */
+bool make_folders_of(const char *path);
+
+#endif /* TOOLS_SLUICE_BAKE_FILES_H */

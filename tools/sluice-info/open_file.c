@@ -1,0 +1,112 @@
+#include "open_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifdef HAVE_STORE
+#include <sluice/store.h>
+#endif
+#ifdef HAVE_EXR
+#include <sluice/exr.h>
+#endif
+#ifdef HAVE_CONTAINER
+#include <sluice/dds.h>
+#include <sluice/ktx2.h>
+#endif
+
+/* The library's words name the file. */
+static void on_log(void *user, SluiceLogSeverity severity, const char *message)
+{
+    bool *has_spoken = user;
+    if (severity == SLUICE_LOG_INFO)
+        return;
+    fprintf(stderr, "sluice-info: %s\n", message);
+    *has_spoken = true;
+}
+
+static bool read_start(const char *path, char bytes[12])
+{
+    FILE *file = fopen(path, "rb");
+    memset(bytes, 0, 12);
+    if (file)
+        (void)!fread(bytes, 1, 12, file);
+    bool failed = !file || ferror(file);
+    if (failed)
+        fprintf(stderr, "sluice-info: %s: %s\n", path, strerror(errno));
+    if (file)
+        fclose(file);
+    return !failed;
+}
+
+static SluiceResult open_store(struct texture_file *file, const char *path, SluiceLogCallback log)
+{
+#ifdef HAVE_STORE
+    SluiceStoreImageSourceCreateInfo info = {.pPath = path, .log = log};
+    file->kind = "tile store";
+    file->is_store = true;
+    return sluiceCreateStoreImageSource(&info, &file->source);
+#else
+    (void)file, (void)path, (void)log;
+    return SLUICE_ERROR_UNSUPPORTED;
+#endif
+}
+
+static SluiceResult open_exr(struct texture_file *file, const char *path, SluiceLogCallback log)
+{
+#ifdef HAVE_EXR
+    SluiceExrImageSourceCreateInfo info = {.pPath = path, .log = log};
+    file->kind = "OpenEXR";
+    return sluiceCreateExrImageSource(&info, &file->source);
+#else
+    (void)file, (void)path, (void)log;
+    return SLUICE_ERROR_UNSUPPORTED;
+#endif
+}
+
+static SluiceResult open_container(struct texture_file *file, const char *path, bool is_dds,
+                                   SluiceLogCallback log)
+{
+#ifdef HAVE_CONTAINER
+    SluiceDdsImageSourceCreateInfo dds = {.pPath = path, .log = log};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .log = log};
+    file->kind = is_dds ? "DDS" : "KTX2";
+    return is_dds ? sluiceCreateDdsImageSource(&dds, &file->source)
+                  : sluiceCreateKtx2ImageSource(&ktx2, &file->source);
+#else
+    (void)file, (void)path, (void)is_dds, (void)log;
+    return SLUICE_ERROR_UNSUPPORTED;
+#endif
+}
+
+bool open_texture_file(struct texture_file *file, const char *path)
+{
+    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
+    char start[12];
+    bool has_spoken = false;
+    SluiceLogCallback log = {&has_spoken, on_log};
+    SluiceResult result;
+    *file = (struct texture_file){0};
+    if (!read_start(path, start))
+        return false;
+    if (memcmp(start, "\x76\x2F\x31\x01", 4) == 0)
+        result = open_exr(file, path, log);
+    else if (memcmp(start, "DDS ", 4) == 0 || memcmp(start, ktx2, 12) == 0)
+        result = open_container(file, path, start[0] == 'D', log);
+    else
+        result = open_store(file, path, log);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetImageInfo(file->source, &file->image);
+    if (result == SLUICE_SUCCESS)
+        return true;
+    if (!has_spoken)
+        fprintf(stderr, "sluice-info: %s: %s\n", path, sluiceResultString(result));
+    close_texture_file(file);
+    return false;
+}
+
+void close_texture_file(struct texture_file *file)
+{
+    sluiceDestroyImageSource(file->source);
+    file->source = NULL;
+}

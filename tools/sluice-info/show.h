@@ -1,0 +1,18 @@
+/** What sluice-info does, one function for each kind of thing; they say what went wrong. */
+#ifndef TOOLS_SLUICE_INFO_SHOW_H
+#define TOOLS_SLUICE_INFO_SHOW_H
+
+#include "options.h"
+
+/** The exit status. */
+enum { ALL_SHOWN = 0, NOT_SHOWN = 1, WRONG_USAGE = 2 };
+
+int show_devices(const struct options *options);
+
+/** What a store, an OpenEXR, DDS or KTX2 file says of itself. */
+int show_file(const struct options *options, const char *path);
+
+/** A level or a tile of the file as a PNG. */
+int write_picture(const struct options *options);
+
+#endif /* TOOLS_SLUICE_INFO_SHOW_H */

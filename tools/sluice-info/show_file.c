@@ -1,0 +1,171 @@
+#define _XOPEN_SOURCE 700
+
+#include "show.h"
+
+#include "open_file.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#ifdef HAVE_STORE
+#include <sluice/store.h>
+#endif
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+static uint64_t file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
+}
+
+static uint64_t texel_size(const SluiceImageInfo *image)
+{
+    uint64_t size = 0;
+    for (uint32_t l = 0; l < image->mipLevelCount; l++)
+        size += sluiceFormatRegionSize(image->format, level_size(image->width, l),
+                                       level_size(image->height, l));
+    return size * (image->arrayLayerCount ? image->arrayLayerCount : 1);
+}
+
+static void print_string(const char *text)
+{
+    putchar('"');
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\')
+            printf("\\%c", *text);
+        else if ((unsigned char)*text < 0x20)
+            printf("\\u%04x", (unsigned char)*text);
+        else
+            putchar(*text);
+    }
+    putchar('"');
+}
+
+#ifdef HAVE_STORE
+static const char *name_of(const char *const *names, unsigned count, unsigned value)
+{
+    return value < count ? names[value] : "unknown";
+}
+
+static const char *const spaces[] = {"undefined", "sRGB", "linear sRGB", "linear Rec. 2020",
+                                     "ACEScg"};
+static const char *const meanings[] = {"colour", "colour, straight alpha", "colour, premultiplied",
+                                       "normals", "data"};
+static const char *const modes[] = {"repeat", "mirrored repeat", "clamp to edge",
+                                    "clamp to border"};
+
+static void print_time(int64_t nanoseconds)
+{
+    char text[32];
+    time_t seconds = (time_t)(nanoseconds / 1000000000);
+    struct tm broken;
+    if (gmtime_r(&seconds, &broken) &&
+        strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &broken) > 0)
+        printf(", %s", text);
+    printf("\n");
+}
+
+static void print_levels(const SluiceStoreLayout *layout)
+{
+    for (uint32_t l = 0; l < layout->tailFirstLevel; l++)
+        printf("  level %-2u                %u x %u, %u x %u tiles\n", l,
+               level_size(layout->width, l), level_size(layout->height, l),
+               layout->levelWidthInTiles[l], layout->levelHeightInTiles[l]);
+    printf("  tail                    levels %u to %u, %u bytes\n", layout->tailFirstLevel,
+           layout->mipLevelCount - 1, layout->tailSize);
+}
+
+static void print_store(const SluiceStoreInfo *s)
+{
+    printf("  version                 %u.%u\n", s->versionMajor, s->versionMinor);
+    printf("  meaning                 %s\n", name_of(meanings, 5, s->meaning));
+    printf("  colour space            %s\n", name_of(spaces, 5, s->colorSpace));
+    printf("  beyond the edges        %s, %s\n", name_of(modes, 4, s->addressModeU),
+           name_of(modes, 4, s->addressModeV));
+    printf("  made from               %s, %" PRIu64 " bytes", s->pSourceName, s->sourceSize);
+    print_time(s->sourceModifiedTime);
+    printf("  settings                %016" PRIx64 "\n", s->settingsHash);
+    printf("  compression             %u\n", s->compressionLevel);
+    printf("  tiles                   %u x %u texels, %" PRIu64 " per layer\n", s->layout.tileWidth,
+           s->layout.tileHeight, s->layout.tileCount);
+    print_levels(&s->layout);
+}
+
+static void print_store_json(const SluiceStoreInfo *s)
+{
+    printf(", \"version\": \"%u.%u\", \"meaning\": \"%s\", \"colorSpace\": \"%s\"", s->versionMajor,
+           s->versionMinor, name_of(meanings, 5, s->meaning), name_of(spaces, 5, s->colorSpace));
+    printf(", \"addressModeU\": \"%s\", \"addressModeV\": \"%s\", \"sourceName\": ",
+           name_of(modes, 4, s->addressModeU), name_of(modes, 4, s->addressModeV));
+    print_string(s->pSourceName);
+    printf(", \"sourceSize\": %" PRIu64 ", \"sourceModifiedTime\": %" PRId64
+           ", \"settingsHash\": \"%016" PRIx64 "\", \"compressionLevel\": %u",
+           s->sourceSize, s->sourceModifiedTime, s->settingsHash, s->compressionLevel);
+    printf(", \"tileWidth\": %u, \"tileHeight\": %u, \"tileCount\": %" PRIu64
+           ", \"tailFirstLevel\": %u, \"tailSize\": %u",
+           s->layout.tileWidth, s->layout.tileHeight, s->layout.tileCount, s->layout.tailFirstLevel,
+           s->layout.tailSize);
+}
+#endif
+
+static void show_what_is_in_a_store(const struct texture_file *file, bool json)
+{
+#ifdef HAVE_STORE
+    SluiceStoreInfo info;
+    if (!file->is_store || sluiceGetStoreInfo(file->source, &info) != SLUICE_SUCCESS)
+        return;
+    if (json)
+        print_store_json(&info);
+    else
+        print_store(&info);
+#else
+    (void)file, (void)json;
+#endif
+}
+
+static void print_file(const struct texture_file *file, const char *path)
+{
+    const SluiceImageInfo *image = &file->image;
+    printf("%s: %s\n", path, file->kind);
+    printf("  size                    %u x %u texels, %u levels, %u layers\n", image->width,
+           image->height, image->mipLevelCount,
+           image->arrayLayerCount ? image->arrayLayerCount : 1);
+    printf("  format                  %s\n", sluiceFormatString(image->format));
+    printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
+    printf("  file                    %" PRIu64 " bytes\n", file_size(path));
+    show_what_is_in_a_store(file, false);
+}
+
+static void print_file_json(const struct texture_file *file, const char *path)
+{
+    const SluiceImageInfo *image = &file->image;
+    printf("{\"file\": ");
+    print_string(path);
+    printf(", \"kind\": \"%s\", \"width\": %u, \"height\": %u, \"mipLevelCount\": %u"
+           ", \"arrayLayerCount\": %u, \"format\": \"%s\", \"texelSize\": %" PRIu64
+           ", \"fileSize\": %" PRIu64,
+           file->kind, image->width, image->height, image->mipLevelCount,
+           image->arrayLayerCount ? image->arrayLayerCount : 1, sluiceFormatString(image->format),
+           texel_size(image), file_size(path));
+    show_what_is_in_a_store(file, true);
+    printf("}\n");
+}
+
+int show_file(const struct options *options, const char *path)
+{
+    struct texture_file file;
+    if (!open_texture_file(&file, path))
+        return NOT_SHOWN;
+    if (options->json)
+        print_file_json(&file, path);
+    else
+        print_file(&file, path);
+    close_texture_file(&file);
+    return ALL_SHOWN;
+}
