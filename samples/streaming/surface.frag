@@ -27,6 +27,16 @@ bool selectedForFeedback()
                                           frame.feedbackProbability);
 }
 
+/* Pixels of the lattice are alone, random ones come in quads, which share the work. */
+void writeFeedback(uint tableIndex, vec2 dx, vec2 dy)
+{
+    if (frame.latticeFrame != GALLERY_NO_TEXTURE)
+        sluiceWriteFeedback(tableIndex, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
+    else
+        sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, frame.lodBias, frame.maxAnisotropy,
+                                uvec2(gl_FragCoord.xy));
+}
+
 /** The normal as the relief bends it: its height changes along the surface. */
 vec3 bentNormal(float height)
 {
@@ -62,8 +72,8 @@ void main()
     outColor = vec4(develop(color), 1.0);
 
     if (selectedForFeedback()) {
-        sluiceWriteFeedback(draw.colorTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
+        writeFeedback(draw.colorTexture, dx, dy);
         if (draw.reliefFeedback != 0u)
-            sluiceWriteFeedback(draw.reliefTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
+            writeFeedback(draw.reliefTexture, dx, dy);
     }
 }

@@ -97,6 +97,18 @@ static void run(struct suite *s, enum conform_stage stage)
         at += conform_run(&s->c, stage, s->samples + at, s->count - at, check_sample, s);
 }
 
+/* Together the pixels of a quad mark what one sample does. */
+static void run_quads(struct suite *s)
+{
+    for (uint32_t i = 0; i < s->count; i++)
+        s->samples[i].in.mode =
+            s->samples[i].in.mode == CONFORM_GRAD ? CONFORM_QUAD : s->samples[i].in.mode;
+    run(s, CONFORM_STAGE_COMPUTE);
+    for (uint32_t i = 0; i < s->count; i++)
+        s->samples[i].in.mode =
+            s->samples[i].in.mode == CONFORM_QUAD ? CONFORM_GRAD : s->samples[i].in.mode;
+}
+
 void suite_end(struct suite *s, const char *name)
 {
     run(s, CONFORM_STAGE_COMPUTE);
@@ -104,6 +116,12 @@ void suite_end(struct suite *s, const char *name)
     s->needed = s->excess = s->marks = 0;
     run(s, CONFORM_STAGE_FRAGMENT);
     assert_int_equal(s->needed, needed);
+    uint64_t fragment_marks = s->marks;
+    s->needed = s->excess = s->marks = 0;
+    run_quads(s);
+    assert_int_equal(s->needed, needed);
+    assert_int_equal(s->marks, marks);
+    assert_true(fragment_marks > 0);
     print_message("# samples.%s %u samples\n# needed.%s %llu tiles\n# overmarked.%s %llu tiles\n",
                   name, s->count, name, (unsigned long long)needed, name,
                   (unsigned long long)excess);

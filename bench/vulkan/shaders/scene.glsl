@@ -73,6 +73,8 @@ void writeSceneFeedback(uvec2 pixel, Place p)
                         ? sluiceSelectLattice(pixel, params.seed)
                         : sluiceSelectRandomQuad(pixel, params.seed, params.probability);
 #endif
-    if (selected)
+    if (selected && feedbackKind == BENCH_FEEDBACK_LATTICE)
         sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
+    else if (selected)
+        sluiceWriteQuadFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy, pixel);
 }

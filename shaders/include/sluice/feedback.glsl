@@ -2,11 +2,11 @@
  * Writes down which level a sample wants, whether it is resident or not.
  *
  * Select few pixels first (stochastic.glsl), and take the derivatives before that branch; behind it
- * only if all of a quad takes it, as with sluiceSelectRandomFragmentQuad:
+ * only if all of a quad takes it. Then sluiceWriteQuadFeedback shares the work among its pixels:
  *
  *     vec2 dx = dFdx(uv), dy = dFdy(uv);
  *     if (sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, seed, 1.0 / 16.0))
- *         sluiceWriteFeedback(tableIndex, uv, dx, dy, 0.0, 8.0);
+ *         sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, 0.0, 8.0, uvec2(gl_FragCoord.xy));
  *
  * A texture set writes once, with the primary's index. In compute and ray tracing shaders the
  * derivatives are whatever the caller knows: of ray cones, for instance.
@@ -95,16 +95,18 @@ void sluiceMarkFootprint(uint first, SluiceGrid grid, SluiceFootprint footprint,
     }
 }
 
+/** The region of a place in texels, at most a size outside, of a texture of SLUICE_SHAPE_QUICK. */
+uvec2 sluiceCornerRegion(SluiceGrid grid, vec2 texel)
+{
+    if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u)
+        texel = clamp(texel, vec2(0.0), grid.size - 0.5);
+    return uvec2(ivec2(floor(texel)) >> ivec2(sluiceRegionShift(grid))) & grid.last;
+}
+
 /** Marks the corners of a box of texels, of a texture of SLUICE_SHAPE_QUICK. */
 void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint level)
 {
-    if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u) {
-        low = clamp(low, vec2(0.0), grid.size - 0.5);
-        high = clamp(high, vec2(0.0), grid.size - 0.5);
-    }
-    ivec2 shift = ivec2(sluiceRegionShift(grid));
-    uvec2 from = uvec2(ivec2(floor(low)) >> shift) & grid.last;
-    uvec2 to = uvec2(ivec2(floor(high)) >> shift) & grid.last;
+    uvec2 from = sluiceCornerRegion(grid, low), to = sluiceCornerRegion(grid, high);
     uint upper = first + from.y * (grid.last.x + 1u);
     sluiceMarkRegionAt(upper + from.x, level);
     if (from == to)
@@ -121,19 +123,38 @@ void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint le
         sluiceMarkUnlessKnown(lower + to.x, level, across);
 }
 
-/** What a sample of `level` to `coarsest` touches. A `halfBox` of 0 is no wider than a tile. */
+/** How far the box of a sample reaches, in texels, of a texture of SLUICE_SHAPE_QUICK. */
+vec2 sluiceBoxReach(SluiceGrid grid, vec2 halfBox, uint coarsest)
+{
+    float texel = uintBitsToFloat((coarsest + 127u) << 23u); /* 2 to the power of it */
+    return halfBox + SLUICE_APRON * min(vec2(texel), grid.size);
+}
+
+/** Whether a box's corners are in all tiles of `level` that it lies over. One of `halfBox` 0 is small. */
+bool sluiceCornersAreAll(SluiceGrid grid, vec2 halfBox, vec2 reach, uint level)
+{
+    if ((grid.shape & SLUICE_SHAPE_QUICK) == 0u)
+        return false;
+    return !(halfBox.x > 0.0 || halfBox.y > 0.0) ||
+           all(lessThanEqual(2.0 * reach, sluiceRegionSize(grid) * exp2(float(level))));
+}
+
+/** Where a sample lies, in texels: inside the image if that repeats. */
+vec2 sluiceQuickTexel(SluiceGrid grid, vec2 uv)
+{
+    return ((grid.shape & SLUICE_SHAPE_REPEATS) != 0u ? uv - floor(uv) : uv) * grid.size;
+}
+
+/** What a sample of `level` to `coarsest` touches. */
 void sluiceMarkBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest)
 {
-    bool quick = (grid.shape & SLUICE_SHAPE_QUICK) != 0u;
-    vec2 reach = halfBox + SLUICE_APRON * min(vec2(uintBitsToFloat((coarsest + 127u) << 23u)), grid.size);
-    if (halfBox.x > 0.0 || halfBox.y > 0.0)
-        quick = quick && all(lessThanEqual(2.0 * reach, sluiceRegionSize(grid) * exp2(float(level))));
-    if (!quick) {
+    vec2 reach = sluiceBoxReach(grid, halfBox, coarsest);
+    if (!sluiceCornersAreAll(grid, halfBox, reach, level)) {
         sluiceMarkFootprint(first, grid, sluiceComputeFootprint(grid, uv, halfBox, coarsest), level);
         return;
     }
-    vec2 at = (grid.shape & SLUICE_SHAPE_REPEATS) != 0u ? uv - floor(uv) : uv;
-    sluiceMarkCorners(first, grid, at * grid.size - reach, at * grid.size + reach, level);
+    vec2 at = sluiceQuickTexel(grid, uv);
+    sluiceMarkCorners(first, grid, at - reach, at + reach, level);
 }
 
 /**
@@ -150,6 +171,16 @@ void sluiceMarkSample(uint tableIndex, SluiceGrid grid, vec2 uv, vec2 dx, vec2 d
         sluiceMarkBox(first, grid, uv, halfBox, coarsest + 1u, widest);
 }
 
+/** The finest, the coarsest and the widest level of a sample; derivatives in texels. */
+uvec3 sluiceMarkedLevels(SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                         float maxAnisotropy)
+{
+    SluiceSquares squares = sluiceSquareLods(dx, dy, maxAnisotropy);
+    if (squares.sum < SLUICE_QUICK_SQUARES && abs(lodBias) <= SLUICE_QUICK_BIAS && sluiceIsFinite(uv))
+        return sluiceQuickLevels(squares, lodBias, maxAnisotropy, sluiceMipCount(grid));
+    return sluiceSafeLevels(uv, dx, dy, lodBias, maxAnisotropy, sluiceMipCount(grid));
+}
+
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
  * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
@@ -164,13 +195,47 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
     SluiceGrid grid = sluiceReadGrid(tableIndex);
     dx *= grid.size;
     dy *= grid.size;
-    SluiceSquares squares = sluiceSquareLods(dx, dy, maxAnisotropy);
-    uvec3 levels = squares.sum < SLUICE_QUICK_SQUARES && abs(lodBias) <= SLUICE_QUICK_BIAS &&
-                           sluiceIsFinite(uv)
-                       ? sluiceQuickLevels(squares, lodBias, maxAnisotropy, sluiceMipCount(grid))
-                       : sluiceSafeLevels(uv, dx, dy, lodBias, maxAnisotropy, sluiceMipCount(grid));
+    uvec3 levels = sluiceMarkedLevels(grid, uv, dx, dy, lodBias, maxAnisotropy);
     sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, levels.x, levels.y,
                      levels.z);
+}
+
+/** Marks one corner of the box of a sample of `level` to `coarsest`; false if it is no such box. */
+bool sluiceMarkCorner(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest,
+                      vec2 direction)
+{
+    vec2 reach = sluiceBoxReach(grid, halfBox, coarsest);
+    if (!sluiceCornersAreAll(grid, halfBox, reach, level))
+        return false;
+    uvec2 region = sluiceCornerRegion(grid, sluiceQuickTexel(grid, uv) + direction * reach);
+    sluiceMarkRegionAt(first + region.y * (grid.last.x + 1u) + region.x, level);
+    return true;
+}
+
+/**
+ * The same for the pixels of 2x2 quads that are selected together (sluiceSelectRandomQuad and its
+ * like): each of the four marks another corner of its footprint, so all of them cost little more than
+ * the writes of one. `pixel` tells which; only whether it is odd counts. Pixels whose neighbours are not
+ * drawn leave corners to other frames. Footprints that are no simple boxes are marked as a whole.
+ */
+void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                             float maxAnisotropy, uvec2 pixel)
+{
+    if (!sluiceTakesPart(tableIndex))
+        return;
+    SluiceGrid grid = sluiceReadGrid(tableIndex);
+    uint first = SLUICE_TEXTURE_ENTRY(tableIndex).feedbackOffset;
+    dx *= grid.size;
+    dy *= grid.size;
+    uvec3 levels = sluiceMarkedLevels(grid, uv, dx, dy, lodBias, maxAnisotropy);
+    vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
+    vec2 direction = vec2(pixel & 1u) * 2.0 - 1.0;
+    bool marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.x, levels.y, direction);
+    if (marked && maxAnisotropy > 1.0 && levels.z > levels.y)
+        marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.y + 1u, levels.z, direction);
+    if (!marked)
+        sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, levels.x, levels.y,
+                         levels.z);
 }
 
 /** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */

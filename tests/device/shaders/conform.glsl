@@ -21,6 +21,10 @@ void writeSample(uint at, vec2 uv, vec2 dx, vec2 dy)
 {
     if (inputs[at].mode == CONFORM_LOD)
         sluiceWriteFeedbackLod(inputs[at].tableIndex, uv, inputs[at].lod);
+    else if (inputs[at].mode == CONFORM_QUAD)
+        for (uint i = 0u; i < 4u; i++)
+            sluiceWriteQuadFeedback(inputs[at].tableIndex, uv, dx, dy, inputs[at].lodBias,
+                                    inputs[at].maxAnisotropy, uvec2(7u + i, 4u + i / 2u));
     else
         sluiceWriteFeedback(inputs[at].tableIndex, uv, dx, dy, inputs[at].lodBias,
                             inputs[at].maxAnisotropy);
