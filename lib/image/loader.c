@@ -335,6 +335,9 @@ void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
     struct slc_read *read = slc_read_queue_find(&loader->queue, ticket);
     if (read)
         drop_read(loader, read);
+    /* what stood behind it may fit into the bytes that are left */
+    if (loader->queue.startable.root)
+        signal_work(loader);
     signal_if_idle(loader);
     pthread_mutex_unlock(&loader->mutex);
 }

@@ -16,7 +16,7 @@
 static bool is_still_there(const struct slc_store_part *part, const struct stat *status)
 {
     struct stat named;
-    return stat(part->file.path, &named) == 0 && named.st_dev == status->st_dev &&
+    return lstat(part->file.path, &named) == 0 && named.st_dev == status->st_dev &&
            named.st_ino == status->st_ino;
 }
 
@@ -30,7 +30,8 @@ static void close_descriptor(struct slc_store_part *part)
 static SluiceResult open_and_lock(struct slc_store_part *part)
 {
     struct slc_store_file *file = &part->file;
-    file->descriptor = open(file->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    file->descriptor =
+        open(file->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666);
     if (file->descriptor < 0) {
         bool absent = errno == ENOENT || errno == ENOTDIR;
         slc_store_fail_system(file, "create");
@@ -124,8 +125,12 @@ static SluiceResult sync_folder(const struct slc_store_part *part)
 
 SluiceResult slc_store_part_publish(struct slc_store_part *part)
 {
-    if (fsync(part->file.descriptor) != 0)
-        return slc_store_fail_system(&part->file, "sync");
+    if (fsync(part->file.descriptor) != 0) {
+        SluiceResult result = slc_store_fail_system(&part->file, "sync");
+        /* what was not written may be taken as written by the next sync: nothing here is resumed */
+        (void)!ftruncate(part->file.descriptor, 0);
+        return result;
+    }
     if (rename(part->file.path, part->target) != 0)
         return slc_store_fail_system(&part->file, "rename to its name");
     return sync_folder(part);

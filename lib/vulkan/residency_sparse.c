@@ -32,6 +32,7 @@ struct dying_heap {
     uint32_t heap_id;
     uint32_t next_slot; ///< those before it are bound nowhere
     uint64_t value;     ///< of the batch that made the last one so
+    bool unbound;       ///< all of them are; `value` is final
 };
 
 struct sparse_residency {
@@ -202,6 +203,10 @@ static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
         s->images[image].last_value = s->submitted_value + 1;
         heap->value = s->submitted_value + 1;
     }
+    /* The last ones may have been unbound along with neighbours from other heaps, just now. */
+    if (!heap->unbound && last_value(s) > heap->value)
+        heap->value = last_value(s);
+    heap->unbound = true;
     return true;
 }
 
@@ -224,7 +229,7 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     struct sparse_residency *s = sparse(residency);
     assert(s->dying_count < s->dying_capacity);
     /* Tiles that lay there may have been bound elsewhere by what is still under way. */
-    s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s)};
+    s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s), false};
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)

@@ -285,7 +285,7 @@ static inline struct slc_twin_vec2 slc_twin_half_box(struct slc_twin_vec2 dx,
 {
     if (!(max_anisotropy > 1.0f))
         return (struct slc_twin_vec2){0.0f, 0.0f};
-    float scale = lod_bias > 0.0f ? exp2f(fminf(lod_bias, SLC_TWIN_LOD_LIMIT)) : 1.0f;
+    float scale = lod_bias <= 0.0f ? 1.0f : exp2f(slc_twin_clamp_lod_bias(lod_bias));
     return (struct slc_twin_vec2){scale * sqrtf(dx.x * dx.x + dy.x * dy.x),
                                   scale * sqrtf(dx.y * dx.y + dy.y * dy.y)};
 }
@@ -323,11 +323,11 @@ static inline struct slc_twin_levels slc_twin_quick_levels(struct slc_twin_squar
                                                            uint32_t count)
 {
     float scale = exp2f(2.0f * lod_bias);
-    float margin = max_anisotropy > 1.0f ? 0.77110541f : 0.84089642f;
+    float margin = max_anisotropy > 1.0f ? 0.77108f : 0.84087f;
     return (struct slc_twin_levels){
         slc_twin_min(slc_twin_floor_log4(s.fine * scale * margin), count - 1),
-        slc_twin_min(slc_twin_floor_log4(s.coarse * scale * 1.1892071f) + 1, count - 1),
-        slc_twin_min(slc_twin_floor_log4(s.widest * scale * 1.1892071f) + 1, count - 1)};
+        slc_twin_min(slc_twin_floor_log4(s.coarse * scale * 1.18924f) + 1, count - 1),
+        slc_twin_min(slc_twin_floor_log4(s.widest * scale * 1.18924f) + 1, count - 1)};
 }
 
 /* Derivatives in texels. */

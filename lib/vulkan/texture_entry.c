@@ -10,6 +10,12 @@ static uint32_t log2_of(uint32_t power)
     return log;
 }
 
+/* Chains that are cut short may halve evenly without. */
+static bool is_power_of_two(uint32_t size)
+{
+    return (size & (size - 1)) == 0;
+}
+
 /* A border's texels are none, and footprints count them as the edge's. */
 static bool clamps_to_edge(uint32_t mode)
 {
@@ -28,9 +34,10 @@ void slc_texture_entry_complete(struct SluiceTextureEntry *entry)
                    entry->addressModeV << SLUICE_SHAPE_MODE_V_SHIFT |
                    (entry->mipLevelCount - 1) << SLUICE_SHAPE_LAST_LEVEL_SHIFT;
     bool even = !(entry->flags & SLUICE_TEXTURE_FLAG_UNEVEN);
+    bool powers = is_power_of_two(entry->width) && is_power_of_two(entry->height);
     bool repeats = entry->addressModeU == SLUICE_ADDRESS_MODE_REPEAT &&
                    entry->addressModeV == SLUICE_ADDRESS_MODE_REPEAT;
     bool clamps = clamps_to_edge(entry->addressModeU) && clamps_to_edge(entry->addressModeV);
     entry->shape |= (even ? 0 : SLUICE_SHAPE_UNEVEN) | (repeats ? SLUICE_SHAPE_REPEATS : 0) |
-                    (even && (repeats || clamps) ? SLUICE_SHAPE_QUICK : 0);
+                    (even && powers && (repeats || clamps) ? SLUICE_SHAPE_QUICK : 0);
 }

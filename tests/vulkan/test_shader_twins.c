@@ -3,6 +3,7 @@
 
 #include "base/checked.h"
 #include "support/test.h"
+#include "vulkan/texture_entry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -283,6 +284,44 @@ static void what_a_sample_may_touch_is_marked(void **state)
     check_random_samples(8191, 8191, 64, 64, 40000);
 }
 
+/* 384x384 with 8 levels halves evenly, and its three columns are no mask. */
+static void only_powers_of_two_have_quick_shapes(void **state)
+{
+    (void)state;
+    for (uint32_t width = 1; width <= 1024; width += width < 70 ? 1 : 61)
+        for (uint32_t height = 1; height <= 512; height += 37) {
+            struct SluiceTextureEntry e = entry(width, height, 64, 32);
+            e.flags = 0;
+            slc_texture_entry_complete(&e);
+            bool powers = (width & (width - 1)) == 0 && (height & (height - 1)) == 0;
+            assert_int_equal((e.shape & SLUICE_SHAPE_QUICK) != 0, powers);
+            assert_true(!powers || ((e.regionLastX & (e.regionLastX + 1)) == 0 &&
+                                    (e.regionLastY & (e.regionLastY + 1)) == 0));
+        }
+}
+
+/* Marks by exponents, demands by logarithms: at steps of levels, too, marks must not be the less.
+ */
+static void marked_levels_enclose_those_that_are_sampled(void **state)
+{
+    (void)state;
+    for (int lod = -2; lod < 12; lod++)
+        for (int eighths = -40; eighths <= 40; eighths++)
+            for (int ulps = -2; ulps <= 2; ulps++)
+                for (int n = 1; n <= 16; n *= 2) {
+                    float d = ldexpf(1.0f + (float)ulps * 1.2e-7f, lod), bias = (float)eighths / 8;
+                    struct slc_twin_vec2 dx = {d, 0}, dy = {0, d * (float)(n > 4 ? 4 : 1)},
+                                         uv = {0, 0};
+                    struct slc_twin_levels marked = slc_twin_quick_levels(
+                        slc_twin_square_lods(dx, dy, (float)n), bias, (float)n, 15);
+                    struct slc_twin_levels sampled =
+                        slc_twin_safe_levels(uv, dx, dy, bias, (float)n, 15);
+                    assert_true(marked.level <= sampled.level);
+                    assert_true(marked.coarsest >= sampled.coarsest);
+                    assert_true(marked.widest >= sampled.widest);
+                }
+}
+
 static void one_region_is_marked_far_from_its_border(void **state)
 {
     (void)state;
@@ -310,6 +349,8 @@ int main(void)
         cmocka_unit_test(lod_follows_the_longer_axis_up_to_the_anisotropy),
         cmocka_unit_test(region_is_inside_the_map_whatever_the_coordinate),
         cmocka_unit_test(what_a_sample_may_touch_is_marked),
+        cmocka_unit_test(only_powers_of_two_have_quick_shapes),
+        cmocka_unit_test(marked_levels_enclose_those_that_are_sampled),
         cmocka_unit_test(one_region_is_marked_far_from_its_border),
     };
     return RUN_TESTS(tests);

@@ -20,7 +20,7 @@
 #define SLUICE_APRON_UNEVEN 1.5625
 
 /* More tiles than 64 along an axis are walked in longer steps, and some of them passed over: that
- * takes a LOD bias below -6 and anisotropy. */
+ * takes a LOD bias below -5 and anisotropy. */
 #define SLUICE_FOOTPRINT_STEPS_LOG2 6
 
 /** The regions of a texture, as footprints need them. */
@@ -154,7 +154,7 @@ vec2 sluiceHalfBox(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     if (!(maxAnisotropy > 1.0))
         return vec2(0.0);
-    float scale = lodBias > 0.0 ? exp2(min(lodBias, SLUICE_LOD_LIMIT)) : 1.0;
+    float scale = lodBias <= 0.0 ? 1.0 : exp2(sluiceClampLodBias(lodBias)); /* NaN is large */
     return scale * vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
 }
 

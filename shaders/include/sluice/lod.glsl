@@ -93,10 +93,11 @@ struct SluiceSquares {
 #define SLUICE_QUICK_SQUARES 1.0e14
 /* Beyond it nothing is quick. */
 #define SLUICE_QUICK_BIAS 16.0
-/* 4 to the power of the margins: -1/8 and, with anisotropy, -3/16; and of the coarser one. */
-#define SLUICE_MARGIN_4 0.84089642
-#define SLUICE_MARGIN_ANISOTROPIC_4 0.77110541
-#define SLUICE_MARGIN_COARSER_4 1.1892071
+/* 4 to the power of the margins: -1/8 and, with anisotropy, -3/16; and of the coarser one. With room for
+ * what devices' exp2 and log2 are off, so that no more is sampled than is marked. */
+#define SLUICE_MARGIN_4 0.84087
+#define SLUICE_MARGIN_ANISOTROPIC_4 0.77108
+#define SLUICE_MARGIN_COARSER_4 1.18924
 
 SluiceSquares sluiceSquareLods(vec2 dx, vec2 dy, float maxAnisotropy)
 {

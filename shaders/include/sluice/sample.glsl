@@ -66,6 +66,9 @@ struct SluiceSampling {
     bool plain;         /* texture() touches only what is there, and may be used instead */
 };
 
+/* In both halves: coarser than any level, but something. */
+#define SLUICE_SHOWN_UNKNOWN 0xFEFFFEFFu
+
 /** The larger of two words, half by half. */
 uint sluiceMaxHalves(uint a, uint b)
 {
@@ -91,10 +94,12 @@ uint sluiceMaxMinMip(uint first, SluiceGrid grid, SluiceFootprint footprint, uin
             continue;
         }
         if (at.y == footprint.last.y)
-            return words;
+            break;
         at = uvec2(footprint.first.x,
                    sluiceNextRegion(at.y, footprint.last.y, grid.last.y, step.y));
     }
+    /* of tiles that were passed over nothing is known: only packed levels are sure */
+    return max(step.x, step.y) > 1u << finestLevel ? sluiceMaxHalves(words, SLUICE_SHOWN_UNKNOWN) : words;
 }
 
 /**
@@ -289,7 +294,8 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
         return s;
     }
     if (sluiceLodLimit(shown, margin) > s.lod) {
-        s.lod = sluiceLodLimit(shown, margin);
+        s.lod = min(sluiceLodLimit(shown, margin),
+                    max(float(SLUICE_TEXTURE_ENTRY(tableIndex).regularMipCount) + margin, s.lod));
         coarsest = sluiceClampedBox(s.lod, margin, lods.y, maxAnisotropy, count, halfBox);
         uint words = sluiceReadBox(first, grid, s.uv, halfBox, s.lod, margin,
                                    sluiceFinestLevel(s.lod, margin, count), coarsest);
