@@ -95,7 +95,7 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_UINT, "standby", "N", &s->standby, "tiles kept although unwanted", 0, 4294967295.0},
         {OPTION_UINT, "heap-tiles", "N", &s->heap_tiles, "tiles of 64 KiB per heap", 1, 1048576},
         {OPTION_UINT, "max-heaps", "N", &s->max_heaps, "heaps at most; 0: no cap", 0, 65536},
-        {OPTION_UINT, "budget", "MB", &s->budget,
+        {OPTION_UINT, "budget", "MIB", &s->budget,
          "MiB for tiles at most, in whole heaps; 0: no cap. Paged: page\n"
          "table and coarsest levels are besides; dense: has all in memory",
          0, 1048576},
