@@ -81,7 +81,8 @@ static bool collect_folder(const char *folder, const char *suffixes, struct file
             entries[i]->d_name[0] != '.' && (size_t)length < sizeof path && lstat(path, &info) == 0;
         if (usable && enough_memory && S_ISDIR(info.st_mode))
             enough_memory = collect_folder(path, suffixes, list);
-        else if (usable && enough_memory && files_has_suffix(path, suffixes))
+        else if (usable && enough_memory && files_has_suffix(path, suffixes) &&
+                 stat(path, &info) == 0 && S_ISREG(info.st_mode))
             enough_memory = add_path(path, list);
         free(entries[i]);
     }

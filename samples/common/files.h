@@ -20,8 +20,8 @@ bool files_has_suffix(const char *path, const char *suffixes);
 
 /**
  * Adds a file as it is, or all files with one of the suffixes in a folder and those below it,
- * sorted by name. Says on stderr what cannot be read and counts it in `unreadable_count`; false
- * only when out of memory.
+ * sorted by name; links to folders are not followed there. Says on stderr what cannot be read and
+ * counts it in `unreadable_count`; false only when out of memory.
  */
 bool files_collect(const char *path, const char *suffixes, struct file_list *list);
 void files_finish(struct file_list *list);
