@@ -5,10 +5,14 @@
 #   scripts/demo.sh [options] [-- options of samples/streaming; -- --help lists them]
 #
 #   scripts/demo.sh -- --generate-scale 4      smaller pictures, sooner
-#   scripts/demo.sh -- --images FOLDER         your own OpenEXR files
+#   scripts/demo.sh -- --images FOLDER --budget 64
+#                                              a museum of your own pictures in 64 MB: photographs,
+#                                              OpenEXR, DDS, KTX2 files and tile stores
+#
+# Each frame is drawn a second time with everything resident, to compare, unless there is a --budget.
 #
 #   --output DIR   where pictures and report go      (default: build/demo-out)
-#   --cache DIR    where generated images are kept   (default: build/demo-cache)
+#   --cache DIR    where generated images and baked pictures are kept (default: build/demo-cache)
 #   --no-install   install nothing; say what is missing
 #   --help
 #
@@ -55,9 +59,12 @@ else
     say "No GPU was found: running on the CPU (lavapipe)."
 fi
 
-# What shows no gallery needs no folders and leaves no report.
+# What shows no gallery needs no folders and leaves no report. Memory that is to be short cannot hold
+# everything.
+comparing=(--compare)
 for option in "$@"; do
     case $option in
+    --budget) comparing=() ;;
     --help | -h | --list-devices)
         "$folder/samples/streaming/streaming" "$option"
         exit
@@ -69,11 +76,17 @@ title "Streaming the gallery"
 mkdir -p "$output" "$cache"
 # Pictures of an earlier run, which may have had other frames.
 [ ! -e "$output/report.html" ] || rm -f "$output"/{frame,truth}-[0-9][0-9][0-9][0-9].png
-"$folder/samples/streaming/streaming" --output "$output" --cache "$cache" --compare --json "$@" |
+"$folder/samples/streaming/streaming" --output "$output" --cache "$cache" "${comparing[@]}" --json "$@" |
     tee "$output/summary.txt" || die "the demo did not end well"
 
+figure() { sed -n "s/.*\"name\": \"$1\", \"value\": \([0-9]*\).*/\1/p" "$output/summary.txt"; }
+megabytes() { awk -v bytes="$(figure "$1")" 'BEGIN { printf "%.0f MB", bytes / 1e6 }'; }
+
 title "Done"
+say "$(figure pictures) pictures hang; their textures are $(megabytes virtual_bytes). In memory were \
+$(megabytes resident_bytes) at the end, $(megabytes resident_bytes_peak) at most, in heaps of \
+$(megabytes device_memory_peak)."
 say "The report, with pictures and figures: $output/report.html"
-say "Pictures, and the same with everything resident: $output/frame-*.png, truth-*.png"
+say "Pictures${comparing:+, and the same with everything resident}: $output/frame-*.png${comparing:+, truth-*.png}"
 say "Figures: $output/frames.csv (by frame), $output/summary.txt"
-say "Next: your own OpenEXR files by '-- --images FOLDER'; all that can be set by '-- --help'."
+say "Next: your own pictures by '-- --images FOLDER --budget 64'; all that can be set by '-- --help'."

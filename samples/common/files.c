@@ -44,30 +44,45 @@ static bool add_path(const char *path, struct file_list *list)
     return list->paths[list->count] && ++list->count;
 }
 
-static bool has_suffix(const char *name, const char *suffix)
+bool files_has_suffix(const char *path, const char *suffixes)
 {
-    size_t length = strlen(name), suffix_length = strlen(suffix);
-    return length >= suffix_length && strcasecmp(name + length - suffix_length, suffix) == 0;
+    size_t length = strlen(path);
+    for (const char *suffix = suffixes;;) {
+        size_t suffix_length = strcspn(suffix, "|");
+        if (suffix_length <= length &&
+            strncasecmp(path + length - suffix_length, suffix, suffix_length) == 0)
+            return true;
+        if (suffix[suffix_length] == '\0')
+            return false;
+        suffix += suffix_length + 1;
+    }
 }
 
-static bool collect_folder(const char *folder, const char *suffix, struct file_list *list)
+static bool unreadable(const char *path, struct file_list *list)
+{
+    fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    list->unreadable_count++;
+    return true;
+}
+
+static bool collect_folder(const char *folder, const char *suffixes, struct file_list *list)
 {
     struct dirent **entries;
     int count = scandir(folder, &entries, NULL, alphasort);
-    if (count < 0) {
-        fprintf(stderr, "%s: %s\n", folder, strerror(errno));
-        return true;
-    }
+    if (count < 0)
+        return unreadable(folder, list);
     bool enough_memory = true;
     for (int i = 0; i < count; i++) {
         char path[4096];
         struct stat info;
         int length = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+        /* Links to folders may lead in circles. */
         bool usable =
-            entries[i]->d_name[0] != '.' && (size_t)length < sizeof path && stat(path, &info) == 0;
+            entries[i]->d_name[0] != '.' && (size_t)length < sizeof path && lstat(path, &info) == 0;
         if (usable && enough_memory && S_ISDIR(info.st_mode))
-            enough_memory = collect_folder(path, suffix, list);
-        else if (usable && enough_memory && has_suffix(path, suffix))
+            enough_memory = collect_folder(path, suffixes, list);
+        else if (usable && enough_memory && files_has_suffix(path, suffixes) &&
+                 stat(path, &info) == 0 && S_ISREG(info.st_mode))
             enough_memory = add_path(path, list);
         free(entries[i]);
     }
@@ -75,14 +90,12 @@ static bool collect_folder(const char *folder, const char *suffix, struct file_l
     return enough_memory;
 }
 
-bool files_collect(const char *path, const char *suffix, struct file_list *list)
+bool files_collect(const char *path, const char *suffixes, struct file_list *list)
 {
     struct stat info;
-    if (stat(path, &info) != 0) {
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
-        return true;
-    }
-    return S_ISDIR(info.st_mode) ? collect_folder(path, suffix, list) : add_path(path, list);
+    if (stat(path, &info) != 0)
+        return unreadable(path, list);
+    return S_ISDIR(info.st_mode) ? collect_folder(path, suffixes, list) : add_path(path, list);
 }
 
 void files_finish(struct file_list *list)

@@ -12,13 +12,18 @@ bool files_make_folders(const char *path);
 struct file_list {
     char **paths; ///< owned
     size_t count, capacity;
+    size_t unreadable_count; ///< files and folders that were named or found and are not in the list
 };
 
+/** Whether a file's name ends in one of `suffixes`, which are separated by '|'; in any case. */
+bool files_has_suffix(const char *path, const char *suffixes);
+
 /**
- * Adds a file as it is, or all files with this suffix in a folder and those below it, sorted by
- * name. Says on stderr what cannot be read; false only when out of memory.
+ * Adds a file as it is, or all files with one of the suffixes in a folder and those below it,
+ * sorted by name; links to folders are not followed there. Says on stderr what cannot be read and
+ * counts it in `unreadable_count`; false only when out of memory.
  */
-bool files_collect(const char *path, const char *suffix, struct file_list *list);
+bool files_collect(const char *path, const char *suffixes, struct file_list *list);
 void files_finish(struct file_list *list);
 
 #endif /* SAMPLES_COMMON_FILES_H */

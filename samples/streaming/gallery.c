@@ -95,6 +95,18 @@ static bool open_views(struct gallery *gallery)
     return view_create(&request, NULL, &gallery->truth) && fill_truth(gallery);
 }
 
+static struct picture_limits device_limits(const struct gpu *gpu)
+{
+    VkPhysicalDeviceFeatures features;
+    vkGetPhysicalDeviceFeatures(gpu->physical_device, &features);
+    return (struct picture_limits){
+        .max_size = gpu->properties.limits.maxImageDimension2D,
+        .max_bytes =
+            gpu->capabilities.sparse ? gpu->capabilities.sparseAddressSpaceSize : UINT64_MAX,
+        .takes_blocks = features.textureCompressionBC,
+    };
+}
+
 enum gallery_outcome gallery_open(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
@@ -105,10 +117,7 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
     bool unsupported;
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
-    struct picture_limits limits = {gallery->gpu.properties.limits.maxImageDimension2D,
-                                    gallery->gpu.capabilities.sparse
-                                        ? gallery->gpu.capabilities.sparseAddressSpaceSize
-                                        : UINT64_MAX};
+    struct picture_limits limits = device_limits(&gallery->gpu);
     return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
                    open_views(gallery)
                ? GALLERY_READY

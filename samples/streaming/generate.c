@@ -10,6 +10,7 @@
 
 #include "../common/files.h"
 #include "../common/progress.h"
+#include "cache.h"
 
 /* In hanging order. About 105 million texels, 1.1 GB as half floats with all levels. */
 static const struct pattern_image pictures[GENERATED_COUNT] = {
@@ -51,17 +52,10 @@ SluiceResult pattern_create_source(const struct pattern_image *image, SluiceForm
 
 bool generate_folder(const char *cache, uint32_t scale, char *path, size_t size)
 {
-    const char *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    int length;
-    if (cache)
-        length = snprintf(path, size, "%s/gallery-2", cache);
-    else if (xdg && *xdg)
-        length = snprintf(path, size, "%s/sluice/gallery-2", xdg);
-    else
-        length = snprintf(path, size, "%s/.cache/sluice/gallery-2", home ? home : ".");
-    if (length > 0 && (size_t)length < size && scale != 1)
-        length += snprintf(path + length, size - (size_t)length, "-of-%u", scale);
-    return length > 0 && (size_t)length < size && files_make_folders(path);
+    char name[32] = "gallery-2";
+    if (scale != 1)
+        snprintf(name, sizeof name, "gallery-2-of-%u", scale);
+    return cache_path(cache, name, path, size) && files_make_folders(path);
 }
 
 struct generation {

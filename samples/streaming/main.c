@@ -191,6 +191,8 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
         fprintf(stderr, "out of memory\n");
     measure.counting = gallery->streamed.request.counting;
     measure.tile_count = view_tile_count(&gallery->streamed);
+    measure.picture_count = gallery->pictures.count;
+    measure.refused_count = gallery->pictures.refused;
     if (gallery->settings.compare) {
         SluiceVulkanStreamerStatistics truth;
         sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
@@ -204,7 +206,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
 
 static int generate_only(const struct settings *settings)
 {
-    struct picture_limits limits = {UINT32_MAX, UINT64_MAX};
+    struct picture_limits limits = {UINT32_MAX, UINT64_MAX, true};
     struct picture_list pictures;
     if (!pictures_open(settings, &limits, &pictures))
         return EXIT_FAILURE;

@@ -88,6 +88,15 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
             peak_memory = record->statistics.deviceMemorySize;
     }
     const struct figure list[] = {
+        {"pictures", measure->picture_count, "pictures", "that hang in the gallery"},
+        {"pictures_left_out", measure->refused_count, "pictures", "that could not be opened"},
+        {"virtual_bytes", MEASURE_TILE_BYTES * (double)measure->tile_count, "bytes",
+         "of all textures with all their levels, in tiles of 64 KiB"},
+        {"resident_bytes", MEASURE_TILE_BYTES * measure_resident_tiles(last), "bytes",
+         "of the tiles in memory at the end"},
+        {"resident_bytes_peak", MEASURE_TILE_BYTES * peak_tiles, "bytes", "the most at a time"},
+        {"budget_bytes", measure->settings->budget ? 1048576.0 * measure->settings->budget : NAN,
+         "bytes", "that heaps may take"},
         {"psnr_final_db", finite_psnr(last->psnr), "dB",
          "of the last frame to everything resident; 999: equal"},
         {"psnr_lowest_db", lowest_psnr(measure), "dB", "of the frame that differs most"},

@@ -21,9 +21,10 @@ struct measure {
     const struct settings *settings; ///< borrowed
     struct frame_record *frames;     ///< owned
     uint32_t frame_count;
-    uint32_t rest_frame;  ///< the first in which the camera stands still
-    bool counting;        ///< counts are valid
-    uint64_t tile_count;  ///< of all textures
+    uint32_t rest_frame; ///< the first in which the camera stands still
+    bool counting;       ///< counts are valid
+    uint64_t tile_count; ///< of all textures
+    uint32_t picture_count, refused_count;
     uint64_t truth_bytes; ///< that the fully resident pictures take; 0 without a comparison
 };
 
@@ -35,7 +36,8 @@ struct figure {
     const char *meaning; ///< for the report
 };
 
-#define MEASURE_MAX_FIGURES 24
+#define MEASURE_MAX_FIGURES 32
+#define MEASURE_TILE_BYTES 65536.0
 
 bool measure_begin(struct measure *measure, const struct settings *settings);
 void measure_finish(struct measure *measure);

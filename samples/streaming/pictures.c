@@ -1,159 +1,63 @@
 #define _POSIX_C_SOURCE 200809L
 #include "pictures.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <sluice/exr.h>
-
 #include "../common/files.h"
+#include "baked.h"
+#include "exposure.h"
 
-#define EXPOSURE_LEVEL_SIZE 64 ///< the level that exposure is measured on is no larger
-
-static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
+static bool is_compressed(SluiceFormat format)
 {
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
+    SluiceFormatInfo info;
+    return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.blockWidth > 1;
 }
 
-static SluiceResult open_source(const char *path, SluiceFormat format, SluiceImageSource **source,
-                                SluiceImageInfo *info)
+static bool refuse(const char *path, const SluiceImageInfo *info, const char *why)
 {
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .format = format, .log = {NULL, print_log}};
-    SluiceResult result = sluiceCreateExrImageSource(&create, source);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    result = sluiceGetImageInfo(*source, info);
-    if (result != SLUICE_SUCCESS) {
-        sluiceDestroyImageSource(*source);
-        *source = NULL;
-    }
-    return result;
+    fprintf(stderr, "%s: %u x %u texels of %s: %s\n", path, info->width, info->height,
+            sluiceFormatString(info->format), why);
+    return false;
 }
 
-/** Half of the memory and bandwidth for what a screen cannot show. */
-static SluiceFormat narrowed(SluiceFormat format)
+static bool fits(const char *path, const SluiceImageInfo *info, const struct picture_limits *limits)
 {
-    switch (format) {
-    case SLUICE_FORMAT_R32_SFLOAT: return SLUICE_FORMAT_R16_SFLOAT;
-    case SLUICE_FORMAT_R32G32B32A32_SFLOAT: return SLUICE_FORMAT_R16G16B16A16_SFLOAT;
-    default: return format;
-    }
+    uint64_t bytes = sluiceFormatRegionSize(info->format, info->width, info->height);
+    if (info->width > limits->max_size || info->height > limits->max_size ||
+        bytes > limits->max_bytes - limits->max_bytes / 4)
+        return refuse(path, info, "more than the device can address");
+    if (is_compressed(info->format) && !limits->takes_blocks)
+        return refuse(path, info, "the device has no textureCompressionBC");
+    if (info->arrayLayerCount > 1)
+        return refuse(path, info, "several layers, and only single pictures hang here");
+    return true;
 }
 
-static SluiceResult open_in_format(const char *path, enum pixel_format pixels,
-                                   SluiceImageSource **source, SluiceImageInfo *info)
+static bool is_grey(SluiceFormat format)
 {
-    if (pixels == PIXEL_FORMAT_RGBA8)
-        return open_source(path, SLUICE_FORMAT_R8G8B8A8_SRGB, source, info);
-    if (pixels == PIXEL_FORMAT_RGBA16F)
-        return open_source(path, SLUICE_FORMAT_R16G16B16A16_SFLOAT, source, info);
-    SluiceResult result = open_source(path, SLUICE_FORMAT_UNDEFINED, source, info);
-    if (result != SLUICE_SUCCESS || narrowed(info->format) == info->format)
-        return result;
-    SluiceFormat format = narrowed(info->format);
-    sluiceDestroyImageSource(*source);
-    *source = NULL;
-    return open_source(path, format, source, info);
+    SluiceFormatInfo info;
+    return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.channelCount == 1;
 }
 
-static float half_to_float(uint16_t half)
-{
-    int exponent = half >> 10 & 31;
-    float magnitude = exponent == 0 ? ldexpf((float)(half & 1023), -24)
-                                    : ldexpf((float)((half & 1023) | 1024), exponent - 25);
-    return exponent == 31 ? NAN : half & 0x8000 ? -magnitude : magnitude;
-}
-
-static float texel_luminance(const uint8_t *texel, SluiceFormat format)
-{
-    uint16_t half[4];
-    switch (format) {
-    case SLUICE_FORMAT_R16_SFLOAT: memcpy(half, texel, 2); return half_to_float(half[0]);
-    case SLUICE_FORMAT_R16G16B16A16_SFLOAT:
-        memcpy(half, texel, 8);
-        return 0.2126f * half_to_float(half[0]) + 0.7152f * half_to_float(half[1]) +
-               0.0722f * half_to_float(half[2]);
-    default: /* sRGB bytes, roughly decoded */
-        return powf(
-            (0.2126f * (float)texel[0] + 0.7152f * (float)texel[1] + 0.0722f * (float)texel[2]) /
-                255.0f,
-            2.2f);
-    }
-}
-
-/** From the mean and the brightest tenth of a small level; 1 for pictures that are well exposed. */
-static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat format)
-{
-    uint32_t texel_size = sluiceFormatTexelSize(format);
-    double sum = 0.0, log_sum = 0.0;
-    uint32_t used = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        float luminance = texel_luminance(texels + (size_t)i * texel_size, format);
-        if (!(luminance > 1e-6f))
-            continue;
-        sum += fminf(luminance, 65504.0f);
-        log_sum += log2(luminance);
-        used++;
-    }
-    if (used == 0)
-        return 1.0f;
-    /* The geometric mean alone makes a dark picture with a few lights far too bright. */
-    double mean = 0.5 * (sum / used) + 0.5 * exp2(log_sum / used);
-    return mean > 0.34   ? (float)(0.34 / mean)
-           : mean < 0.09 ? (float)fmin(0.09 / mean, 4096.0)
-                         : 1.0f;
-}
-
-static SluiceResult measure_exposure(struct picture *picture)
-{
-    SluiceImageRegion region = {0, 0, 0, picture->info.width, picture->info.height};
-    while ((region.width > EXPOSURE_LEVEL_SIZE || region.height > EXPOSURE_LEVEL_SIZE) &&
-           region.mipLevel + 1 < picture->info.mipLevelCount) {
-        region.mipLevel++;
-        region.width = region.width > 1 ? region.width / 2 : 1;
-        region.height = region.height > 1 ? region.height / 2 : 1;
-    }
-    size_t pitch = (size_t)region.width * sluiceFormatTexelSize(picture->info.format);
-    uint8_t *texels = malloc(pitch * region.height);
-    if (!texels)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = sluiceReadImageRegion(picture->color, &region, texels, pitch);
-    if (result == SLUICE_SUCCESS)
-        picture->exposure =
-            exposure_for(texels, region.width * region.height, picture->info.format);
-    free(texels);
-    return result;
-}
-
-static bool fits(const SluiceImageInfo *info, const struct picture_limits *limits)
-{
-    uint64_t bytes = (uint64_t)info->width * info->height * sluiceFormatTexelSize(info->format);
-    return info->width <= limits->max_size && info->height <= limits->max_size &&
-           bytes + bytes / 3 <= limits->max_bytes;
-}
-
-static SluiceResult open_picture(const char *path, enum pixel_format pixels,
+static SluiceResult open_picture(const struct picture_path *path,
+                                 const struct picture_opening *opening,
                                  const struct picture_limits *limits, struct picture *picture)
 {
-    memset(picture, 0, sizeof *picture);
-    picture->exposure = 1.0f;
-    SluiceResult result = open_in_format(path, pixels, &picture->color, &picture->info);
-    if (result == SLUICE_SUCCESS && !fits(&picture->info, limits)) {
-        fprintf(stderr, "%s: %u x %u texels are more than the device can address\n", path,
-                picture->info.width, picture->info.height);
+    *picture = (struct picture){.path = strdup(path->path)};
+    if (!picture->path)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceResult result = picture_file_open(path->store ? path->store : path->path,
+                                            path->store ? PICTURE_STORE : path->kind, opening,
+                                            &picture->color, &picture->info);
+    if (result == SLUICE_SUCCESS && !fits(path->path, &picture->info, limits))
         result = SLUICE_ERROR_UNSUPPORTED;
-    }
     if (result == SLUICE_SUCCESS)
-        result = measure_exposure(picture);
-    picture->grey = picture->info.format == SLUICE_FORMAT_R16_SFLOAT;
-    picture->path = strdup(path);
-    return picture->path ? result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        result = exposure_measure(picture->color, &picture->info, &picture->exposure);
+    picture->grey = is_grey(picture->info.format);
+    return result;
 }
 
 static void close_picture(struct picture *picture)
@@ -185,26 +89,59 @@ static bool create_reliefs(struct picture_list *list)
     return true;
 }
 
-static bool open_files(const struct file_list *files, enum pixel_format pixels,
-                       const struct picture_limits *limits, struct picture_list *list)
+static bool open_all(const struct picture_path *paths, size_t count, enum pixel_format pixels,
+                     const struct picture_limits *limits, struct picture_list *list)
 {
-    list->pictures = calloc(files->count ? files->count : 1, sizeof *list->pictures);
-    if (!list->pictures)
-        return false;
-    for (size_t i = 0; i < files->count; i++) {
+    struct picture_opening opening = {pixels, list->pool};
+    for (size_t i = 0; i < count; i++) {
         struct picture *picture = &list->pictures[list->count];
-        SluiceResult result = open_picture(files->paths[i], pixels, limits, picture);
-        if (result == SLUICE_SUCCESS) {
-            list->count++;
-            continue;
+        SluiceResult result = SLUICE_ERROR_IO;
+        if (!paths[i].refused) {
+            result = open_picture(&paths[i], &opening, limits, picture);
+            if (result == SLUICE_SUCCESS) {
+                list->count++;
+                continue;
+            }
+            fprintf(stderr, "%s: left out: %s\n", paths[i].path, sluiceResultString(result));
+            close_picture(picture);
         }
-        fprintf(stderr, "%s: left out: %s\n", files->paths[i], sluiceResultString(result));
-        close_picture(picture);
         list->refused++;
     }
     if (list->count == 0)
         fprintf(stderr, "there is no picture to hang\n");
     return list->count > 0 && create_reliefs(list);
+}
+
+static bool create_pool(struct picture_list *list)
+{
+#ifdef HAVE_STORE
+    return sluiceCreateStoreReadPool(NULL, &list->pool) == SLUICE_SUCCESS;
+#else
+    (void)list;
+    return true;
+#endif
+}
+
+static bool open_files(const struct file_list *files, const struct settings *settings,
+                       const struct picture_limits *limits, struct picture_list *list)
+{
+    enum pixel_format pixels = (enum pixel_format)settings->format;
+    size_t count = files->count;
+    struct picture_path *paths = calloc(count ? count : 1, sizeof *paths);
+    list->pictures = calloc(count ? count : 1, sizeof *list->pictures);
+    bool opened = paths && list->pictures && create_pool(list);
+    if (!opened)
+        fprintf(stderr, "out of memory\n");
+    for (size_t i = 0; opened && i < count; i++) {
+        paths[i].path = files->paths[i];
+        paths[i].refused = !picture_file_kind(paths[i].path, &paths[i].kind);
+    }
+    opened = opened && baked_prepare(paths, count, settings->cache, pixels) &&
+             open_all(paths, count, pixels, limits, list);
+    for (size_t i = 0; paths && i < count; i++)
+        free(paths[i].store);
+    free(paths);
+    return opened;
 }
 
 static bool collect_generated(const struct settings *settings, struct file_list *files)
@@ -216,7 +153,7 @@ static bool collect_generated(const struct settings *settings, struct file_list 
                            processors > 1 ? (uint32_t)processors : 1, paths))
         return false;
     for (uint32_t i = 0; i < GENERATED_COUNT; i++)
-        if (!files_collect(paths[i], ".exr", files))
+        if (!files_collect(paths[i], PICTURE_SUFFIXES, files))
             return false;
     return true;
 }
@@ -227,10 +164,9 @@ bool pictures_open(const struct settings *settings, const struct picture_limits 
     struct file_list files = {0};
     bool collected = settings->images.count > 0 || collect_generated(settings, &files);
     for (size_t i = 0; collected && i < settings->images.count; i++)
-        collected = files_collect(settings->images.items[i], ".exr", &files);
-    *list = (struct picture_list){0};
-    bool opened =
-        collected && open_files(&files, (enum pixel_format)settings->format, limits, list);
+        collected = files_collect(settings->images.items[i], PICTURE_SUFFIXES, &files);
+    *list = (struct picture_list){.refused = (uint32_t)files.unreadable_count};
+    bool opened = collected && open_files(&files, settings, limits, list);
     files_finish(&files);
     if (!opened)
         pictures_close(list);
@@ -242,5 +178,8 @@ void pictures_close(struct picture_list *list)
     for (uint32_t i = 0; i < list->count; i++)
         close_picture(&list->pictures[i]);
     free(list->pictures);
+#ifdef HAVE_STORE
+    sluiceDestroyStoreReadPool(list->pool);
+#endif
     *list = (struct picture_list){0};
 }

@@ -1,8 +1,8 @@
-/** The pictures that hang in the gallery: OpenEXR files that could be opened. */
+/** The pictures that hang in the gallery: files of many kinds that could be opened. */
 #ifndef SAMPLES_STREAMING_PICTURES_H
 #define SAMPLES_STREAMING_PICTURES_H
 
-#include <sluice/image.h>
+#include <sluice/store.h>
 
 #include "generate.h"
 #include "settings.h"
@@ -20,16 +20,21 @@ struct picture {
 struct picture_list {
     struct picture *pictures; ///< owned
     uint32_t count;
-    uint32_t refused; ///< files that could not be opened; the reasons were printed
+    uint32_t refused;          ///< files that could not be opened; the reasons were printed
+    SluiceStoreReadPool *pool; ///< owned; that all stores share
 };
 
 /** What the device can hold of one image. */
 struct picture_limits {
     uint32_t max_size;  ///< texels in a direction
     uint64_t max_bytes; ///< with all levels
+    bool takes_blocks;  ///< BC formats
 };
 
-/** Generates first if the settings name no images. Says on stderr what is wrong. */
+/**
+ * Generates first if the settings name no images, and bakes what cannot be streamed as it is. Files
+ * that cannot be shown are left out and named on stderr; false if none is left.
+ */
 bool pictures_open(const struct settings *settings, const struct picture_limits *limits,
                    struct picture_list *list);
 void pictures_close(struct picture_list *list);

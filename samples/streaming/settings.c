@@ -6,7 +6,24 @@ static const char usage[] =
     "streaming [OPTION ...]\n\n"
     "Walks through a room hung with pictures whose textures are streamed: only the tiles that the\n"
     "frames sample are in GPU memory. Without a window: writes pictures, a CSV line per frame and\n"
-    "report.html. Numbers in brackets are defaults.\n";
+    "report.html. Numbers in brackets are defaults.\n"
+    "Exit status: 0, also if pictures were left out, which are named on stderr; 1 if there is none "
+    "to\n"
+    "hang or the walk failed; 2 for a wrong option; 77 without a Vulkan device that can stream.\n";
+
+#define TILES_PER_MEBIBYTE 16u
+
+/* Rounded down to whole heaps. */
+static void keep_to_budget(struct settings *s)
+{
+    uint32_t tiles = s->budget * TILES_PER_MEBIBYTE;
+    if (s->budget == 0)
+        return;
+    if (s->heap_tiles > tiles)
+        s->heap_tiles = tiles;
+    if (s->max_heaps == 0 || s->max_heaps > tiles / s->heap_tiles)
+        s->max_heaps = tiles / s->heap_tiles;
+}
 
 enum option_outcome settings_parse(int argc, char *const *argv, struct settings *s)
 {
@@ -30,15 +47,21 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     const struct option options[] = {
         {OPTION_SECTION, .help = "Pictures"},
         {OPTION_LIST, "images", "FILE|DIR ...", &s->images,
-         "OpenEXR files, and folders that are searched for *.exr;\n"
-         "without it a set of large pictures is generated once and kept"},
+         "tile stores, OpenEXR, DDS and KTX2 files, photographs and\n"
+         "whatever else libvips reads, and folders that hold such; what\n"
+         "has no tiles and levels of its own is baked into a tile store\n"
+         "once; without it a set of large pictures is generated"},
         {OPTION_TEXT, "cache", "DIR", &s->cache,
-         "where generated pictures are kept [$XDG_CACHE_HOME/sluice,\n~/.cache/sluice]"},
+         "where generated pictures and tile stores are kept\n"
+         "[$XDG_CACHE_HOME/sluice, ~/.cache/sluice]"},
         {OPTION_UINT, "generate-scale", "N", &s->generate_scale,
          "generated pictures are 1/N as wide and high", 1, 64},
-        {OPTION_FLAG, "generate-only", NULL, &s->generate_only, "end after generating them"},
+        {OPTION_FLAG, "generate-only", NULL, &s->generate_only,
+         "end after generating, or baking, the pictures"},
         {OPTION_CHOICE, "format", "auto|rgba16f|rgba8", &s->format,
-         "texels on the GPU; auto: half floats, one channel for grey\npictures"},
+         "texels on the GPU; auto: half floats of OpenEXR files, one\n"
+         "channel if they are grey, else sRGB bytes; stores, DDS and KTX2\n"
+         "files stay what they are"},
 
         {OPTION_SECTION, .help = "Frames"},
         {OPTION_SIZE, "size", "WxH", s->size, "pixels", 16, 8192},
@@ -72,6 +95,10 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_UINT, "standby", "N", &s->standby, "tiles kept although unwanted", 0, 4294967295.0},
         {OPTION_UINT, "heap-tiles", "N", &s->heap_tiles, "tiles of 64 KiB per heap", 1, 1048576},
         {OPTION_UINT, "max-heaps", "N", &s->max_heaps, "heaps at most; 0: no cap", 0, 65536},
+        {OPTION_UINT, "budget", "MIB", &s->budget,
+         "MiB for tiles at most, in whole heaps; 0: no cap. Paged: page\n"
+         "table and coarsest levels are besides; dense: has all in memory",
+         0, 1048576},
         {OPTION_UINT, "loader-threads", "N", &s->loader_threads,
          "threads that read tiles; 0: by the number of processors", 0, 256},
         {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
@@ -104,6 +131,7 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         fprintf(stderr, "--samples %u: wants 1, 2, 4 or 8\n", s->samples);
         return OPTIONS_ERROR;
     }
+    keep_to_budget(s);
     if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
         s->rest_frames = s->frames - 1;
     return outcome;

@@ -1,0 +1,44 @@
+/** One file of a picture: what it is, and the source that reads it in place. */
+#ifndef SAMPLES_STREAMING_PICTURE_FILE_H
+#define SAMPLES_STREAMING_PICTURE_FILE_H
+
+#include <sluice/store.h>
+
+#include "settings.h"
+
+/** Files of folders that are looked at: what is streamed in place, and what libvips reads. */
+#define PICTURE_SUFFIXES                                                                           \
+    ".store|.exr|.dds|.ktx2|.png|.jpg|.jpeg|.tif|.tiff|.webp|.hdr|.gif|.ppm|.pgm|.pfm|.pnm|.bmp|"  \
+    ".tga|.jp2|.j2k|.jxl|.heic|.heif|.avif|.psd|.v|.vips"
+
+enum picture_kind {
+    PICTURE_STORE,
+    PICTURE_EXR,            ///< tiled and with levels: any tile is read by itself
+    PICTURE_EXR_LEVEL_ZERO, ///< has to be read whole before anything of it can be shown
+    PICTURE_DDS,
+    PICTURE_KTX2,
+    PICTURE_OTHER ///< for libvips
+};
+
+/** By the first bytes. Says on stderr why it failed. */
+bool picture_file_kind(const char *path, enum picture_kind *kind);
+
+/** What is read in place: neither stores of a build that has none, nor what only libvips reads. */
+struct picture_opening {
+    enum pixel_format pixels;  ///< of OpenEXR files; others deliver what is in them
+    SluiceStoreReadPool *pool; ///< for all stores; outlives them
+};
+
+/** Says on stderr why it failed. UNSUPPORTED for PICTURE_OTHER. */
+SluiceResult picture_file_open(const char *path, enum picture_kind kind,
+                               const struct picture_opening *opening, SluiceImageSource **source,
+                               SluiceImageInfo *info);
+
+/** What OpenEXR files are streamed as: never floats of 32 bits, which a screen cannot show. */
+SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
+                                     SluiceFormat *format);
+
+/** Prints warnings and errors. */
+void picture_file_log(void *user_data, SluiceLogSeverity severity, const char *message);
+
+#endif /* SAMPLES_STREAMING_PICTURE_FILE_H */
