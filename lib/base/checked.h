@@ -56,4 +56,10 @@ static inline uint32_t slc_mip_count(uint32_t size)
     return count;
 }
 
+/** floor(log2(x)); x > 0. */
+static inline uint32_t slc_log2_u32(uint32_t x)
+{
+    return slc_mip_count(x) - 1;
+}
+
 #endif /* SLC_BASE_CHECKED_H */

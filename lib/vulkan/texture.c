@@ -352,14 +352,6 @@ void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index)
         destroy_parts(s, index);
 }
 
-static uint32_t log2_of(uint32_t power)
-{
-    uint32_t log = 0;
-    while (power >>= 1)
-        log++;
-    return log;
-}
-
 bool slc_texture_is_ragged(const struct slc_texture *texture)
 {
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
@@ -410,7 +402,7 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
         .addressModeU = (uint)texture->address_modes[0],
         .addressModeV = (uint)texture->address_modes[1],
         .pageTableOffset = page_table_offset(s, index),
-        .tileShift = log2_of(desc->tileWidth) | log2_of(desc->tileHeight) << 8,
+        .tileShift = slc_log2_u32(desc->tileWidth) | slc_log2_u32(desc->tileHeight) << 8,
         .quickReach2 = quick_reach2(desc),
         .quickPacked2 = quick_packed2(desc),
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |

@@ -1,14 +1,8 @@
 #include "vulkan/texture_entry.h"
 
-#include <stdbool.h>
+#include "base/checked.h"
 
-static uint32_t log2_of(uint32_t power)
-{
-    uint32_t log = 0;
-    while (power >>= 1)
-        log++;
-    return log;
-}
+#include <stdbool.h>
 
 /* Chains that are cut short may halve evenly without. */
 static bool is_power_of_two(uint32_t size)
@@ -28,8 +22,8 @@ void slc_texture_entry_complete(struct SluiceTextureEntry *entry)
     entry->sizeY = (float)entry->height;
     entry->regionLastX = entry->regionCountX - 1;
     entry->regionLastY = entry->regionCountY - 1;
-    entry->shape = log2_of(entry->regionWidth) |
-                   log2_of(entry->regionHeight) << SLUICE_SHAPE_HEIGHT_SHIFT |
+    entry->shape = slc_log2_u32(entry->regionWidth) |
+                   slc_log2_u32(entry->regionHeight) << SLUICE_SHAPE_HEIGHT_SHIFT |
                    entry->addressModeU << SLUICE_SHAPE_MODE_U_SHIFT |
                    entry->addressModeV << SLUICE_SHAPE_MODE_V_SHIFT |
                    (entry->mipLevelCount - 1) << SLUICE_SHAPE_LAST_LEVEL_SHIFT;

@@ -2,23 +2,8 @@
 # test_info_files.sh SLUICE_INFO SLUICE_BAKE MAKE_PICTURE COMPARE_PICTURES DDS: what sluice-info says of
 # files, and the pictures it makes of them. Prints TAP. DDS: a file of 44 x 20 texels, or "".
 info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(realpath "$4") dds=$5
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-number=0 status=0
-
-# fact NAME: the exit status before it says whether it is so
-fact() {
-    local result=$?
-    number=$((number + 1))
-    if [ $result -eq 0 ]; then
-        echo "ok $number - $1"
-    else
-        echo "not ok $number - $1"
-        sed 's/^/# /' out err 2>/dev/null
-        status=1
-    fi
-}
+# shellcheck source=/dev/null
+. "$(dirname "${BASH_SOURCE[0]}")/facts.sh"
 
 # run STATUS ARGUMENTS...: whether sluice-info ends with this status; its words are in out and err
 run() {
@@ -70,5 +55,4 @@ if [ -n "$dds" ]; then
     fact it_knows_dds
 fi
 
-echo "1..$number"
-exit $status
+end_facts

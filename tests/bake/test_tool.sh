@@ -1,23 +1,8 @@
 #!/usr/bin/env bash
 # test_tool.sh SLUICE_BAKE MAKE_PICTURE: files, folders, failures and what is said of them. Prints TAP.
 bake=$(realpath "$1") make=$(realpath "$2")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-number=0 status=0
-
-# fact NAME: the exit status before it says whether it is so
-fact() {
-    local result=$?
-    number=$((number + 1))
-    if [ $result -eq 0 ]; then
-        echo "ok $number - $1"
-    else
-        echo "not ok $number - $1"
-        sed 's/^/# /' out err 2>/dev/null
-        status=1
-    fi
-}
+# shellcheck source=/dev/null
+. "$(dirname "${BASH_SOURCE[0]}")/facts.sh"
 
 # run STATUS ARGUMENTS...: whether the tool ends with this status; its words are in out and err
 run() {
@@ -114,5 +99,4 @@ fact help_gives_defaults
 run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*MiB' err && [ ! -e small.store ]
 fact too_little_memory_is_an_error_that_says_so
 
-echo "1..$number"
-exit $status
+end_facts
