@@ -134,7 +134,7 @@ static bool feed_scene(struct scene *scene, bool fragment, uint32_t which)
     struct variant variants[6] = {
         {.name = "plain", .constants = {.streamed = false}},
         {.name = "none", .constants = {.streamed = true}},
-        {.name = "all", .constants = {.feedback = BENCH_FEEDBACK_QUADS}, .probability = 1.0f},
+        {.name = "all", .constants = {.feedback = BENCH_FEEDBACK_ALL}},
         {.name = "quads_16",
          .constants = {.feedback = BENCH_FEEDBACK_QUADS},
          .probability = 1.0f / 16},

@@ -53,11 +53,11 @@ static bool watch(struct scene *scene, struct scene_draw *draw, const char *name
     return true;
 }
 
-static bool watch_cold(const struct bench *bench, float probability, const char *name)
+static bool watch_cold(const struct bench *bench, uint32_t feedback, float probability,
+                       const char *name)
 {
     struct scene scene;
-    struct scene_constants constants = {
-        .counting = true, .feedback = BENCH_FEEDBACK_QUADS, .anisotropy = 1.0f};
+    struct scene_constants constants = {.counting = true, .feedback = feedback, .anisotropy = 1.0f};
     bool done = scene_create(&scene, bench, 1.0f, false) && rig_load(&scene.rig, NULL);
     if (done) {
         struct scene_draw draw = {.scene = &scene,
@@ -72,5 +72,6 @@ static bool watch_cold(const struct bench *bench, float probability, const char 
 
 bool measure_sharp(const struct bench *bench)
 {
-    return watch_cold(bench, 1.0f, "all") && watch_cold(bench, 1.0f / 16, "quads_16");
+    return watch_cold(bench, BENCH_FEEDBACK_ALL, 1.0f, "all") &&
+           watch_cold(bench, BENCH_FEEDBACK_QUADS, 1.0f / 16, "quads_16");
 }

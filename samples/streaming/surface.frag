@@ -34,7 +34,7 @@ void writeFeedback(uint tableIndex, vec2 dx, vec2 dy)
         sluiceWriteFeedback(tableIndex, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
     else
         sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, frame.lodBias, frame.maxAnisotropy,
-                                uvec2(gl_FragCoord.xy));
+                                uvec2(gl_FragCoord.xy), frame.feedbackSeed);
 }
 
 /** The normal as the relief bends it: its height changes along the surface. */

@@ -97,16 +97,21 @@ static void run(struct suite *s, enum conform_stage stage)
         at += conform_run(&s->c, stage, s->samples + at, s->count - at, check_sample, s);
 }
 
-/* Together the pixels of a quad mark what one sample does. */
-static void run_quads(struct suite *s)
+static void replace_mode(struct suite *s, uint32_t from, uint32_t to)
 {
     for (uint32_t i = 0; i < s->count; i++)
-        s->samples[i].in.mode =
-            s->samples[i].in.mode == CONFORM_GRAD ? CONFORM_QUAD : s->samples[i].in.mode;
+        s->samples[i].in.mode = s->samples[i].in.mode == from ? to : s->samples[i].in.mode;
+}
+
+/* Together the pixels of a quad, and a pixel in four frames, mark what one sample does. */
+static void run_corners(struct suite *s, uint32_t mode, uint64_t needed, uint64_t marks)
+{
+    s->needed = s->excess = s->marks = 0;
+    replace_mode(s, CONFORM_GRAD, mode);
     run(s, CONFORM_STAGE_COMPUTE);
-    for (uint32_t i = 0; i < s->count; i++)
-        s->samples[i].in.mode =
-            s->samples[i].in.mode == CONFORM_QUAD ? CONFORM_GRAD : s->samples[i].in.mode;
+    replace_mode(s, mode, CONFORM_GRAD);
+    assert_int_equal(s->needed, needed);
+    assert_int_equal(s->marks, marks);
 }
 
 void suite_end(struct suite *s, const char *name)
@@ -117,11 +122,9 @@ void suite_end(struct suite *s, const char *name)
     run(s, CONFORM_STAGE_FRAGMENT);
     assert_int_equal(s->needed, needed);
     uint64_t fragment_marks = s->marks;
-    s->needed = s->excess = s->marks = 0;
-    run_quads(s);
-    assert_int_equal(s->needed, needed);
-    assert_int_equal(s->marks, marks);
     assert_true(fragment_marks > 0);
+    run_corners(s, CONFORM_QUAD, needed, marks);
+    run_corners(s, CONFORM_TURNS, needed, marks);
     print_message("# samples.%s %u samples\n# needed.%s %llu tiles\n# overmarked.%s %llu tiles\n",
                   name, s->count, name, (unsigned long long)needed, name,
                   (unsigned long long)excess);

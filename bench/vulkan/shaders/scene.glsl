@@ -61,20 +61,23 @@ void writeSceneFeedback(uvec2 pixel, Place p)
         p.dx = dFdx(p.uv);
         p.dy = dFdy(p.uv);
     }
-    bool selected = lattice ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.seed)
-                            : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.seed,
-                                                             params.probability);
+    bool selected = feedbackKind == BENCH_FEEDBACK_ALL ||
+                    (lattice ? sluiceSelectFragmentLattice(gl_FragCoord.xy, params.seed)
+                             : sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, params.seed,
+                                                              params.probability));
     if (selected && !lattice) {
         p.dx = dFdx(p.uv);
         p.dy = dFdy(p.uv);
     }
 #else
-    bool selected = feedbackKind == BENCH_FEEDBACK_LATTICE
-                        ? sluiceSelectLattice(pixel, params.seed)
-                        : sluiceSelectRandomQuad(pixel, params.seed, params.probability);
+    bool selected = feedbackKind == BENCH_FEEDBACK_ALL ||
+                    (feedbackKind == BENCH_FEEDBACK_LATTICE
+                         ? sluiceSelectLattice(pixel, params.seed)
+                         : sluiceSelectRandomQuad(pixel, params.seed, params.probability));
 #endif
-    if (selected && feedbackKind == BENCH_FEEDBACK_LATTICE)
-        sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
+    if (selected && feedbackKind == BENCH_FEEDBACK_QUADS)
+        sluiceWriteQuadFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy, pixel,
+                                params.seed);
     else if (selected)
-        sluiceWriteQuadFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy, pixel);
+        sluiceWriteFeedback(params.tableIndex, p.uv, p.dx, p.dy, 0.0, anisotropy);
 }

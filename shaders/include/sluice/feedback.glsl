@@ -6,7 +6,7 @@
  *
  *     vec2 dx = dFdx(uv), dy = dFdy(uv);
  *     if (sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, seed, 1.0 / 16.0))
- *         sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, 0.0, 8.0, uvec2(gl_FragCoord.xy));
+ *         sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, 0.0, 8.0, uvec2(gl_FragCoord.xy), seed);
  *
  * A texture set writes once, with the primary's index. In compute and ray tracing shaders the
  * derivatives are whatever the caller knows: of ray cones, for instance.
@@ -215,11 +215,14 @@ bool sluiceMarkCorner(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint l
 /**
  * The same for the pixels of 2x2 quads that are selected together (sluiceSelectRandomQuad and its
  * like): each of the four marks another corner of its footprint, so all of them cost little more than
- * the writes of one. `pixel` tells which; only whether it is odd counts. Pixels whose neighbours are not
- * drawn leave corners to other frames. Footprints that are no simple boxes are marked as a whole.
+ * the writes of one. `pixel` tells which, and the two low bits of `frameSeed` turn the corners around,
+ * so that what one corner of one pixel reaches is marked, too, by one in four of the frames that select
+ * it. Footprints that are no simple boxes are marked as a whole.
+ *
+ * For probabilities near 1 sluiceWriteFeedback marks the same at once.
  */
 void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                             float maxAnisotropy, uvec2 pixel)
+                             float maxAnisotropy, uvec2 pixel, uint frameSeed)
 {
     if (!sluiceTakesPart(tableIndex))
         return;
@@ -229,7 +232,7 @@ void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float l
     dy *= grid.size;
     uvec3 levels = sluiceMarkedLevels(grid, uv, dx, dy, lodBias, maxAnisotropy);
     vec2 halfBox = sluiceHalfBox(dx, dy, lodBias, maxAnisotropy);
-    vec2 direction = vec2(pixel & 1u) * 2.0 - 1.0;
+    vec2 direction = vec2((pixel ^ uvec2(frameSeed, frameSeed >> 1u)) & 1u) * 2.0 - 1.0;
     bool marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.x, levels.y, direction);
     if (marked && maxAnisotropy > 1.0 && levels.z > levels.y)
         marked = sluiceMarkCorner(first, grid, uv, halfBox, levels.y + 1u, levels.z, direction);

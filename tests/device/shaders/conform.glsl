@@ -24,7 +24,11 @@ void writeSample(uint at, vec2 uv, vec2 dx, vec2 dy)
     else if (inputs[at].mode == CONFORM_QUAD)
         for (uint i = 0u; i < 4u; i++)
             sluiceWriteQuadFeedback(inputs[at].tableIndex, uv, dx, dy, inputs[at].lodBias,
-                                    inputs[at].maxAnisotropy, uvec2(7u + i, 4u + i / 2u));
+                                    inputs[at].maxAnisotropy, uvec2(7u + i, 4u + i / 2u), at);
+    else if (inputs[at].mode == CONFORM_TURNS)
+        for (uint i = 0u; i < 4u; i++)
+            sluiceWriteQuadFeedback(inputs[at].tableIndex, uv, dx, dy, inputs[at].lodBias,
+                                    inputs[at].maxAnisotropy, uvec2(at, at / 2u), at * 3u + i);
     else
         sluiceWriteFeedback(inputs[at].tableIndex, uv, dx, dy, inputs[at].lodBias,
                             inputs[at].maxAnisotropy);
