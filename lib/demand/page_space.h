@@ -1,0 +1,38 @@
+/**
+ * Ids of pages. A range has one rank; sections of SLUICE_DEMAND_SECTION_PAGES ids have one rank, so
+ * that the scan of requests can serve coarse pages of all textures before fine ones.
+ *
+ * Ranges begin at multiples of SLUICE_DEMAND_BLOCK_PAGES. What is freed is used again once the
+ * launches that may still name it are over. Knows nothing of textures, devices or time.
+ */
+#ifndef SLC_DEMAND_PAGE_SPACE_H
+#define SLC_DEMAND_PAGE_SPACE_H
+
+#include <sluice/base.h>
+
+struct slc_page_space;
+
+/** Ids from 0 on; `capacity` is a multiple of the section size. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_page_space_create(const SluiceAllocationCallbacks *cb, uint64_t capacity,
+                                   struct slc_page_space **space);
+void slc_page_space_destroy(struct slc_page_space *space);
+
+/** Errors: LIMIT_EXCEEDED, with nothing changed, if no range of that size is left;
+ *  OUT_OF_HOST_MEMORY. `count` up to `capacity`. */
+SluiceResult slc_page_space_allocate(struct slc_page_space *space, uint32_t rank, uint64_t count,
+                                     uint32_t *first);
+/** No launch after `launch` names the range. Never fails: room was kept for it. */
+void slc_page_space_free(struct slc_page_space *space, uint32_t first, uint64_t count,
+                         uint64_t launch);
+void slc_page_space_complete(struct slc_page_space *space, uint64_t launch);
+
+/** One rank per section, `capacity` / SLUICE_DEMAND_SECTION_PAGES of them; and which have changed
+ *  since the last call: false if none, else the span of sections [*first, *first + *count). */
+const uint8_t *slc_page_space_ranks(const struct slc_page_space *space);
+bool slc_page_space_take_changes(struct slc_page_space *space, uint32_t *first, uint32_t *count);
+
+/** One past the last id ever given: nothing beyond is requested. */
+uint64_t slc_page_space_end(const struct slc_page_space *space);
+uint64_t slc_page_space_used(const struct slc_page_space *space); ///< ids of ranges that exist
+
+#endif /* SLC_DEMAND_PAGE_SPACE_H */

@@ -1,0 +1,122 @@
+/**
+ * Which pages are resident: the deterministic core of demand loading. Knows no device, no clock, no
+ * files and no threads; the same calls give the same answers.
+ *
+ * A page is absent (nothing is kept of it), loading, resident or refused. Pages belong to classes:
+ * those of a class compete for the same memory (tiles: one class for all formats, because each is 64
+ * KiB; each resource with a limit of its own has its class). Each resident page has a place that the
+ * owner of the memory gave: an opaque word.
+ *
+ * The protocol of a launch:
+ *
+ *     slc_residency_begin(launch)            launches are numbered from 1
+ *     slc_residency_use                      every resident page that the launch looked up
+ *     slc_residency_request                  every page that it missed, in the order of the scan
+ *     slc_residency_settle                   the launch is complete: budgets and bias
+ *     slc_residency_loaded, _failed          whenever reads are over
+ *     slc_residency_take_changes             what the page table must show from the next launch on
+ */
+#ifndef SLC_DEMAND_RESIDENCY_H
+#define SLC_DEMAND_RESIDENCY_H
+
+#include <sluice/base.h>
+
+struct slc_demand_residency;
+
+#define SLC_NO_PLACE UINT32_MAX
+
+/** The memory of a class. All functions are called from within the calls below. */
+struct slc_page_memory {
+    void *user;
+    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind` is
+     *  the page's (its format): pages that differ in it may not get each other's places. */
+    uint32_t (*take)(void *user, uint32_t kind);
+    /** The place is free; `page` may ask for it again until it is taken by another. */
+    void (*give)(void *user, uint32_t place, uint32_t page);
+    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all that
+     *  was in it. */
+    bool (*retake)(void *user, uint32_t place, uint32_t page);
+};
+
+enum slc_request_answer {
+    SLC_REQUEST_LOAD,     ///< the caller reads it, and says loaded or failed
+    SLC_REQUEST_PENDING,  ///< is being loaded
+    SLC_REQUEST_RESIDENT, ///< is there: the launch did not see it yet
+    SLC_REQUEST_RESTORED, ///< is there again, without a read
+    SLC_REQUEST_REFUSED,  ///< will not be there: the page table says so from the next launch on
+    SLC_REQUEST_POSTPONED ///< no place now, but perhaps later
+};
+
+struct slc_residency_create_info {
+    const SluiceAllocationCallbacks *cb;
+    uint32_t class_count; ///< class 0 is that of tiles
+    bool no_eviction, no_lod_bias;
+};
+
+SluiceResult slc_residency_create(const struct slc_residency_create_info *info,
+                                  struct slc_demand_residency **residency);
+void slc_residency_destroy(struct slc_demand_residency *residency);
+
+/** `limit`: pages that may have a place at once. May be called again with another limit. */
+SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uint32_t class_index,
+                                     uint64_t limit, const struct slc_page_memory *memory);
+
+void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch);
+/** Of a page that is not resident any more: ignored. */
+void slc_residency_use(struct slc_demand_residency *residency, uint32_t page);
+
+struct slc_page_request {
+    uint32_t page;
+    uint8_t class_index;
+    uint8_t rank;    ///< coarse ones are low
+    uint8_t pinned;  ///< once resident it is never evicted: tails, opened textures
+    uint32_t kind;   ///< see slc_page_memory.take
+};
+/**
+ * Evicts, if it must, pages that the launch did not use and that were used longest ago. Errors, in
+ * `*result`, with nothing changed: OUT_OF_HOST_MEMORY; the answer is POSTPONED then.
+ */
+enum slc_request_answer slc_residency_request(struct slc_demand_residency *residency,
+                                              const struct slc_page_request *request,
+                                              SluiceResult *result);
+/** The place of a page that is loading: where its texels go. */
+uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint32_t page);
+
+/** `missing`: pages that the launch asked for, listed or not. Decides about the LOD bias. */
+void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing);
+float slc_residency_lod_bias(const struct slc_demand_residency *residency);
+
+/** `value`: what the page table shows, for pages without a place (resources); else the place. */
+void slc_residency_loaded(struct slc_demand_residency *residency, uint32_t page, uint64_t value);
+/** `refuse`: never to be asked for again, until it is forgotten; else it is absent again. */
+void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page, bool refuse);
+/** Absent from now on, whatever it was; a page that is loading still gets its loaded or failed, and
+ *  is dropped then. Its place is given back, not to be retaken. */
+void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count);
+
+enum slc_page_shown {
+    SLC_SHOW_ABSENT,
+    SLC_SHOW_RESIDENT,
+    SLC_SHOW_REFUSED
+};
+struct slc_page_change {
+    uint32_t page;
+    enum slc_page_shown shown;
+    uint64_t value;
+    uint8_t class_index;
+    bool evicted; ///< it was resident: `value` is what it was
+};
+/** Each page once, with what it is now, ascending; in pieces of `capacity`. Returns how many. */
+uint32_t slc_residency_take_changes(struct slc_demand_residency *residency,
+                                    struct slc_page_change *changes, uint32_t capacity);
+
+struct slc_residency_counts {
+    uint64_t resident, loading, refused, evicted, restored;
+};
+void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
+                              struct slc_residency_counts *counts);
+
+/** Every invariant, slowly. For tests. */
+bool slc_residency_check(const struct slc_demand_residency *residency);
+
+#endif /* SLC_DEMAND_RESIDENCY_H */
