@@ -82,34 +82,14 @@ static bool create_commands(struct rig *rig)
                      "vkCreateQueryPool");
 }
 
-/* Never where the device would have to reach it over a bus. */
-static bool create_picture(struct rig *rig, uint32_t words)
-{
-    const struct gpu *gpu = &rig->bench->gpu;
-    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                               .size = (VkDeviceSize)words * 4,
-                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-    rig->picture.size = info.size;
-    if (!gpu_check(vkCreateBuffer(gpu->device, &info, NULL, &rig->picture.buffer),
-                   "vkCreateBuffer"))
-        return false;
-    VkMemoryRequirements requirements;
-    vkGetBufferMemoryRequirements(gpu->device, rig->picture.buffer, &requirements);
-    VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                   .allocationSize = requirements.size,
-                                   .memoryTypeIndex =
-                                       device_local_type(gpu, requirements.memoryTypeBits)};
-    return gpu_check(vkAllocateMemory(gpu->device, &memory, NULL, &rig->picture.memory),
-                     "vkAllocateMemory") &&
-           gpu_check(vkBindBufferMemory(gpu->device, rig->picture.buffer, rig->picture.memory, 0),
-                     "vkBindBufferMemory");
-}
-
 static bool create_buffers(struct rig *rig, const struct rig_info *info)
 {
     const struct gpu *gpu = &rig->bench->gpu;
     uint32_t words = info->output_words ? info->output_words : 1;
-    if (!create_picture(rig, info->picture_words ? info->picture_words : 1) ||
+    uint32_t picture_words = info->picture_words ? info->picture_words : 1;
+    /* Never where the device would have to reach it over a bus. */
+    if (!gpu_create_device_buffer(gpu, (VkDeviceSize)picture_words * 4,
+                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, &rig->picture) ||
         !gpu_create_buffer(gpu, (VkDeviceSize)words * 4,
                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            &rig->outputs) ||

@@ -63,12 +63,18 @@ bool gpu_check(VkResult result, const char *what);
 /** Host-visible buffers are coherent, and cached where `usage` is only a transfer destination. */
 bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFlags usage,
                        struct gpu_buffer *buffer);
+/** In the device's own memory, not mapped. */
+bool gpu_create_device_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFlags usage,
+                              struct gpu_buffer *buffer);
 void gpu_destroy_buffer(const struct gpu *gpu, struct gpu_buffer *buffer);
 
 /** A 2D image of one level in device memory. */
 bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                       VkSampleCountFlagBits samples, VkImageUsageFlags usage,
                       VkImageAspectFlags aspect, struct gpu_image *image);
+/** A colour image of several levels to be copied to and sampled; the view shows them all. */
+bool gpu_create_texture(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
+                        uint32_t levels, struct gpu_image *image);
 void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image);
 
 VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size);

@@ -1,0 +1,98 @@
+/* What demand loading costs on a Vulkan device. run.sh builds this and makes a table of its lines.
+ */
+#include "rig.h"
+
+#include "../../samples/common/options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    measurement *measure;
+} measurements[] = {
+    {"create", measure_create}, {"fill", measure_fill},     {"sampling", measure_sampling},
+    {"trips", measure_trips},   {"budget", measure_budget},
+};
+#define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
+
+bool check(SluiceResult result, const char *what)
+{
+    if (result >= 0)
+        return true;
+    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    return false;
+}
+
+struct arguments {
+    const char *device;
+    int only; ///< 0: all, else a measurement's place + 1
+    uint32_t threads;
+    bool json, quick, list, validation;
+};
+
+static int measure(const struct arguments *arguments)
+{
+    struct bench bench = {.threads = arguments->threads};
+    struct gpu_request request = {
+        .device = arguments->device,
+        .validation = arguments->validation,
+        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE}};
+    bool unsupported;
+    if (!gpu_create(&request, &bench.gpu, &unsupported))
+        return unsupported ? 77 : 1;
+    const SluiceVulkanDeviceCapabilities *caps = &bench.gpu.capabilities;
+    bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
+    /* 4.2 million samples of 16 textures of 8192 x 8192, or what a CPU can hold */
+    bench.edge = options.quick ? 256 : bench.wall ? 512 : 2048;
+    bench.texture_size = options.quick ? 1024 : bench.wall ? 4096 : 8192;
+    bench.columns = options.quick ? 2 : 4;
+    fprintf(stderr, "%s, %s %s%s\n", caps->deviceName, caps->driverName, caps->driverInfo,
+            bench.wall ? ", wall time" : "");
+    int status = 0;
+    for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
+        if (arguments->only && arguments->only != (int)i + 1)
+            continue;
+        fprintf(stderr, "%s\n", measurements[i].name);
+        if (!measurements[i].measure(&bench)) {
+            fprintf(stderr, "%s failed\n", measurements[i].name);
+            status = 1;
+        }
+        fflush(stdout);
+    }
+    if (atomic_load(&bench.gpu.validation_messages) > 0)
+        status = 1;
+    gpu_destroy(&bench.gpu);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    struct arguments a = {0};
+    const struct option table[] = {
+        {OPTION_TEXT, "device", "NAME", &a.device, "an index of --list-devices, or part of a name",
+         0, 0},
+        {OPTION_CHOICE, "only", "all|create|fill|sampling|trips|budget", &a.only, "what to measure",
+         0, 0},
+        {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
+         0, 256},
+        {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
+        {OPTION_FLAG, "validation", NULL, &a.validation,
+         "with validation layers, which must be silent; times mean nothing then", 0, 0},
+        {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
+        {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
+    };
+    switch (options_parse(table, sizeof table / sizeof *table,
+                          "Usage: demand_figures [options]\n"
+                          "Measures what demand loading costs; a figure per line.\n\n",
+                          argc, argv)) {
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    case OPTIONS_RUN: break;
+    }
+    if (a.list)
+        return gpu_list_devices() > 0 ? 0 : 77;
+    options.json = a.json;
+    options.quick = a.quick;
+    return measure(&a);
+}

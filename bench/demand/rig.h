@@ -1,0 +1,90 @@
+/**
+ * A demand loader with some textures of one free source, and launches of samples.comp around it.
+ */
+#ifndef BENCH_DEMAND_RIG_H
+#define BENCH_DEMAND_RIG_H
+
+#include "../../samples/common/gpu.h"
+#include "../manager/figures.h"
+#include "../vulkan/source.h"
+
+#include "demand_bench_shared.h"
+
+#include <sluice/demand.h>
+
+struct bench {
+    struct gpu gpu;
+    uint32_t edge;         ///< samples of a launch: edge x edge
+    uint32_t texture_size; ///< texels
+    uint32_t columns;      ///< columns x columns textures
+    uint32_t threads;      ///< that load; 0: as the library does
+    bool wall;             ///< time stamps are no use
+};
+
+/** Says on stderr what it is about, and returns false unless `result` is a success or news. */
+bool check(SluiceResult result, const char *what);
+
+#define RIG_SLOTS 2u
+
+struct rig_slot {
+    VkCommandBuffer commands;
+    VkDescriptorSet pages;
+    uint64_t generation;
+    SluiceDemandLaunch launch;
+    bool timed;
+};
+
+struct rig {
+    const struct bench *bench;
+    SluiceDemandLoader *loader;
+    struct free_source source;
+    SluiceDemandTextureId ids[DEMAND_BENCH_TEXTURES];
+    uint32_t texture_count;
+    struct gpu_buffer outputs, picture;
+    struct gpu_image plain[DEMAND_BENCH_TEXTURES]; ///< empty unless asked for
+    VkSampler sampler;
+    VkDescriptorSetLayout set_layouts[2];
+    VkPipelineLayout layout;
+    VkDescriptorPool descriptor_pool;
+    VkDescriptorSet set;
+    VkPipeline pipelines[3]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE until used
+    VkQueryPool queries;
+    struct rig_slot slots[RIG_SLOTS];
+    uint64_t launch; ///< how many
+    struct DemandBenchParams params;
+};
+
+/** `info`: of what is not zero; handles are filled in. `plain`: with ordinary images, too. A rig
+ *  that was not created can be destroyed. */
+bool rig_create(struct rig *rig, const struct bench *bench,
+                const SluiceDemandLoaderCreateInfo *info, bool plain);
+void rig_destroy(struct rig *rig);
+
+/* descriptors.c */
+bool rig_create_descriptors(struct rig *rig);
+void rig_destroy_descriptors(struct rig *rig);
+void rig_write_pages(struct rig *rig, struct rig_slot *slot);
+VkPipeline rig_pipeline(struct rig *rig, uint32_t kind);
+
+/* plain.c */
+bool rig_create_plain(struct rig *rig);
+void rig_destroy_plain(struct rig *rig);
+
+/** What a launch came to. */
+struct rig_outcome {
+    SluiceDemandRequests requests;
+    SluiceDemandTicket ticket;
+    double gpu_seconds; ///< of the dispatch; of prepare and end are not in it
+    uint32_t missing;   ///< samples; only while params.counting
+};
+
+/** A launch from prepare to process. DEMAND_BENCH_NOTHING dispatches nothing at all. */
+bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome);
+/** Launches until nothing is missing, at most `limit` times; how many it took, 0: it did not end.
+ */
+uint32_t rig_load(struct rig *rig, uint32_t limit);
+
+typedef bool measurement(const struct bench *bench);
+measurement measure_create, measure_fill, measure_sampling, measure_trips, measure_budget;
+
+#endif /* BENCH_DEMAND_RIG_H */

@@ -1,0 +1,55 @@
+/* Samples per second when everything is resident, against textureGrad of ordinary images. */
+#include "rig.h"
+
+#define LAUNCHES 40u
+#define TURNS 8u /* of each, one after the other: clocks drift */
+
+static bool add_times(struct rig *rig, uint32_t kind, struct samples *samples)
+{
+    for (uint32_t i = 0; i < repetitions(LAUNCHES); i++) {
+        struct rig_outcome outcome;
+        if (!rig_launch(rig, kind, &outcome))
+            return false;
+        if (i > 0) /* the first is cold */
+            samples_add(samples, outcome.gpu_seconds * 1e9);
+    }
+    return true;
+}
+
+static bool measure(const struct bench *bench, bool tracking, double *plain, double *sampled)
+{
+    SluiceDemandLoaderCreateInfo info = {.noEviction = !tracking};
+    struct rig rig;
+    struct samples times[2];
+    samples_init(&times[0], LAUNCHES * TURNS);
+    samples_init(&times[1], LAUNCHES * TURNS);
+    bool done = rig_create(&rig, bench, &info, true) && rig_load(&rig, 1000) > 0;
+    for (uint32_t i = 0; done && i < repetitions(TURNS); i++)
+        done = add_times(&rig, DEMAND_BENCH_PLAIN, &times[0]) &&
+               add_times(&rig, DEMAND_BENCH_SAMPLED, &times[1]);
+    double share = bench->wall ? 0.0 : 0.5; /* what disturbs wall times only makes them longer */
+    if (done) {
+        *plain = samples_quantile(&times[0], share);
+        *sampled = samples_quantile(&times[1], share);
+    }
+    samples_finish(&times[0]);
+    samples_finish(&times[1]);
+    rig_destroy(&rig);
+    return done;
+}
+
+bool measure_sampling(const struct bench *bench)
+{
+    double count = (double)bench->edge * bench->edge; /* per ns: G/s */
+    static const char *const names[2] = {"sampling.untracked", "sampling.tracked"};
+    for (int tracking = 0; tracking < 2; tracking++) {
+        double plain, sampled;
+        if (!measure(bench, tracking, &plain, &sampled))
+            return false;
+        figure(names[tracking], "rate", count / sampled, "Gsamples/s");
+        figure(names[tracking], "of_plain", plain / sampled, "of textureGrad");
+        if (!tracking)
+            figure("sampling.plain", "rate", count / plain, "Gsamples/s");
+    }
+    return true;
+}

@@ -1,0 +1,34 @@
+/* What the host and samples.comp share. */
+#ifndef DEMAND_BENCH_SHARED_H
+#define DEMAND_BENCH_SHARED_H
+
+#if defined(__STDC_VERSION__)
+#include <sluice/shared/types.h>
+#else
+#include "sluice/shared/types.h"
+#endif
+
+#define DEMAND_BENCH_CHUNKS 64
+#define DEMAND_BENCH_TEXTURES 16
+
+#define DEMAND_BENCH_NOTHING 0 /* no sample at all */
+#define DEMAND_BENCH_SAMPLED 1 /* through the demand loader */
+#define DEMAND_BENCH_PLAIN 2   /* textureGrad of an ordinary image */
+
+/* Words that shaders write for the host. */
+#define DEMAND_BENCH_MISSING 0 /* samples that were not resident */
+#define DEMAND_BENCH_WORDS 1
+
+/* The samples are a square of edge x edge, cut into columns x columns fields of one texture each. */
+struct DemandBenchParams {
+    uint edge;
+    uint columns;
+    uint textures[DEMAND_BENCH_TEXTURES]; /* indices */
+    float textureSize;                    /* texels */
+    float lod;      /* of most samples */
+    float fineLod;  /* of those in the patch around the origin */
+    float fineEdge; /* of the patch, in uv */
+    uint counting;  /* 1: samples that are missing are counted */
+};
+
+#endif
