@@ -103,12 +103,18 @@ done
 
 [ -n "$bin" ] || build
 [ -x "$bin/demand_figures" ] || die "there is no program $bin/demand_figures"
-[ "$json" = no ] || exec "$bin/demand_figures" "${arguments[@]}" --json
+status=0
+if [ "$json" = yes ]; then
+    "$bin/demand_figures" "${arguments[@]}" --json || status=$?
+    exit "$status"
+fi
 case " ${arguments[*]-} " in
-*" --list-devices "*) exec "$bin/demand_figures" --list-devices ;;
+*" --list-devices "*)
+    "$bin/demand_figures" --list-devices || status=$?
+    exit "$status"
+    ;;
 *" --quick "*) say "quick: few and small textures; not what the table says" ;;
 esac
-status=0
 "$bin/demand_figures" "${arguments[@]}" >"$scratch/lines" || status=$?
 table | awk -F'|' -v figures="$scratch/lines" '
     BEGIN {
