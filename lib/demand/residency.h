@@ -3,9 +3,9 @@
  * files and no threads; the same calls give the same answers.
  *
  * A page is absent (nothing is kept of it), loading, resident or refused. Pages belong to classes:
- * those of a class compete for the same memory (tiles: one class for all formats, because each is 64
- * KiB; each resource with a limit of its own has its class). Each resident page has a place that the
- * owner of the memory gave: an opaque word.
+ * those of a class compete for the same memory (tiles: one class for all formats, because each is
+ * 64 KiB; each resource with a limit of its own has its class). Each resident page has a place that
+ * the owner of the memory gave: an opaque word.
  *
  * The protocol of a launch:
  *
@@ -28,13 +28,13 @@ struct slc_demand_residency;
 /** The memory of a class. All functions are called from within the calls below. */
 struct slc_page_memory {
     void *user;
-    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind` is
-     *  the page's (its format): pages that differ in it may not get each other's places. */
+    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind`
+     * is the page's (its format): pages that differ in it may not get each other's places. */
     uint32_t (*take)(void *user, uint32_t kind);
     /** The place is free; `page` may ask for it again until it is taken by another. */
     void (*give)(void *user, uint32_t place, uint32_t page);
-    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all that
-     *  was in it. */
+    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all
+     * that was in it. */
     bool (*retake)(void *user, uint32_t place, uint32_t page);
 };
 
@@ -68,9 +68,9 @@ void slc_residency_use(struct slc_demand_residency *residency, uint32_t page);
 struct slc_page_request {
     uint32_t page;
     uint8_t class_index;
-    uint8_t rank;    ///< coarse ones are low
-    uint8_t pinned;  ///< once resident it is never evicted: tails, opened textures
-    uint32_t kind;   ///< see slc_page_memory.take
+    uint8_t rank;   ///< coarse ones are low
+    uint8_t pinned; ///< once resident it is never evicted: tails, opened textures
+    uint32_t kind;  ///< see slc_page_memory.take
 };
 /**
  * Evicts, if it must, pages that the launch did not use and that were used longest ago. Errors, in
@@ -94,11 +94,7 @@ void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page,
  *  is dropped then. Its place is given back, not to be retaken. */
 void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count);
 
-enum slc_page_shown {
-    SLC_SHOW_ABSENT,
-    SLC_SHOW_RESIDENT,
-    SLC_SHOW_REFUSED
-};
+enum slc_page_shown { SLC_SHOW_ABSENT, SLC_SHOW_RESIDENT, SLC_SHOW_REFUSED };
 struct slc_page_change {
     uint32_t page;
     enum slc_page_shown shown;

@@ -25,7 +25,7 @@ struct slc_demand_scan_create_info {
 };
 
 struct slc_demand_scan {
-    struct slc_buffer requests;  ///< a bit per page: shaders set it. STORAGE | TRANSFER_DST
+    struct slc_buffer requests;  ///< a bit per page: shaders set it. STORAGE | TRANSFER_SRC, _DST
     struct slc_buffer sections;  ///< a bit per section: shaders set it with any bit of its pages
     struct slc_buffer postponed; ///< a bit per section
     struct slc_buffer ranks;     ///< a byte per section
