@@ -165,11 +165,11 @@ static uint64_t level_tile_count(const struct slc_demand_image *image, uint32_t 
     return (uint64_t)slc_image_level_width(image, level) * slc_image_level_height(image, level);
 }
 
-/* Coarse levels first: 1 + ceil(log4(tiles)). */
-static uint32_t level_rank(uint64_t tile_count)
+uint32_t slc_image_level_rank(const struct slc_demand_image *image, uint32_t level)
 {
     uint32_t rank = 1;
-    for (uint64_t n = 1; n < tile_count && rank < SLUICE_DEMAND_RANKS - 1; n *= 4)
+    uint64_t tiles = level_tile_count(image, level);
+    for (uint64_t n = 1; n < tiles && rank < SLUICE_DEMAND_RANKS - 1; n *= 4)
         rank++;
     return rank;
 }
@@ -188,8 +188,8 @@ static SluiceResult take_level_pages(SluiceDemandLoader *loader, struct slc_dema
     assert(count <= SLC_MAX_REGULAR_LEVELS);
     for (uint32_t l = 0; l < count; l++) {
         uint64_t tiles = level_tile_count(image, l);
-        SluiceResult result = slc_pages_take(loader, level_rank(tiles), tiles, SLC_OWNER_LEVEL,
-                                             image->slot, &image->first_pages[l]);
+        SluiceResult result = slc_pages_take(loader, slc_image_level_rank(image, l), tiles,
+                                             SLC_OWNER_LEVEL, image->slot, &image->first_pages[l]);
         if (result != SLUICE_SUCCESS) {
             give_level_pages(loader, image);
             return result;
@@ -205,8 +205,8 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     SluiceFormatInfo format;
     SluiceResult result = sluiceGetFormatInfo(image->info.format, &format);
     if (result == SLUICE_SUCCESS)
-        result = sluiceGetStandardTileShape(image->info.format, &image->tile_width,
-                                            &image->tile_height);
+        result =
+            sluiceGetStandardTileShape(image->info.format, &image->tile_width, &image->tile_height);
     image->blocks = format.blockWidth > 1;
     if (result == SLUICE_SUCCESS)
         result = take_level_pages(loader, image);
@@ -238,12 +238,6 @@ static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *im
     image->source = NULL;
 }
 
-static bool may_pass(SluiceResult result)
-{
-    return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELLED ||
-           result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-}
-
 static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
 {
     const char *name = image->source && image->info.pName ? image->info.pName : "image";
@@ -258,7 +252,7 @@ static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, Slu
 /* It was not opened, or cannot be used: as if nobody had asked, but for the failure. */
 static void give_up(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
 {
-    if (!may_pass(result))
+    if (!slc_result_may_pass(result))
         fail(loader, image, result);
     loader->textures[image->texture].image = SLC_NONE;
     close_source(loader, image);
@@ -352,6 +346,15 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
     image->state = SLC_IMAGE_DETACHED;
     if (image->job_count == 0)
         bury(loader, image);
+}
+
+void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    uint32_t texture = image->texture;
+    loader->textures[texture].failed = true;
+    loader->counts.texturesFailed++;
+    slc_image_detach(loader, image);
+    slc_texture_show_failed(loader, texture);
 }
 
 void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image)

@@ -83,7 +83,8 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
 {
     uint32_t tiles = loader->info.maxTilesInFlight;
     const struct slc_job_list empty = {SLC_NONE, SLC_NONE};
-    loader->free_tiles = loader->free_others = loader->arrived = loader->copied = empty;
+    loader->free_tiles = loader->free_others = empty;
+    loader->arrived = loader->admitted = loader->copied = empty;
     loader->job_count = 2 * tiles; /* the second half opens images and fills pages */
     loader->jobs = slc_calloc(&loader->cb, loader->job_count, sizeof *loader->jobs);
     if (!loader->jobs)
@@ -92,10 +93,9 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
         slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
                             &loader->jobs[i]);
     loader->free_tile_count = loader->free_other_count = tiles;
-    SluiceResult result =
-        slc_buffer_init(&loader->staging, &loader->vk, &loader->caps,
-                        (uint64_t)tiles * SLC_TILE_SIZE, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                        SLC_BUFFER_UPLOAD);
+    SluiceResult result = slc_buffer_init(&loader->staging, &loader->vk, &loader->caps,
+                                          (uint64_t)tiles * SLC_TILE_SIZE,
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
     return result == SLUICE_SUCCESS ? create_reader(loader) : result;
 }
 

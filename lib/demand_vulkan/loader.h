@@ -38,11 +38,11 @@ struct slc_demand_texture {
     uint32_t image;      ///< IMAGE: slot of the image while it is opened or open; else SLC_NONE
     bool failed;         ///< IMAGE: it cannot be opened
     uint32_t grid_uses;  ///< cells of grids that name it
-    uint32_t first_word, word_count; ///< GRID: its cells in the buffer of levels
-    uint32_t base;                   ///< VARIANT
-    uint32_t next;                   ///< IMAGE, VARIANT: next variant; FREE, BURIED: in the list
-    uint64_t launch;                 ///< BURIED: the last that may name it
-    SluiceDemandImage source;        ///< IMAGE
+    uint32_t first_element, cell_count; ///< GRID: where its cells are, 16 in an element of `grids`
+    uint32_t base;                      ///< VARIANT
+    uint32_t next;                      ///< IMAGE, VARIANT: next variant; FREE, BURIED: in the list
+    uint64_t launch;                    ///< BURIED: the last that may name it
+    SluiceDemandImage source;           ///< IMAGE
     float failure_color[4];
 };
 
@@ -88,7 +88,8 @@ struct slc_demand_resource {
     uint32_t index, generation, next_free;
     SluiceDemandResourceCreateInfo info;
     uint32_t first_page, job_count;
-    uint32_t eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
+    uint32_t
+        eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
 };
 
@@ -103,14 +104,14 @@ enum slc_job_kind { SLC_JOB_FREE = 0, SLC_JOB_OPEN, SLC_JOB_TILE, SLC_JOB_RESOUR
 /* A read. Jobs below maxTilesInFlight have a tile of staging memory at their index. */
 struct slc_demand_job {
     enum slc_job_kind kind;
-    uint32_t page, owner; ///< image slot, or index of the resource
-    uint32_t place;       ///< of a tile: chunk << 16 | layer
-    uint32_t next;        ///< free, arrived or copied: in the list
-    bool stale;           ///< what is read is not wanted any more
-    uint64_t launch;      ///< copied: the one that does
-    uint64_t start;       ///< ns
-    uint64_t value;       ///< of a resource
-    uint64_t id;          ///< of the texture or resource
+    uint32_t page, owner;           ///< image slot, or index of the resource
+    uint32_t place;                 ///< of a tile: chunk << 16 | layer
+    uint32_t next;                  ///< free, arrived or copied: in the list
+    bool stale;                     ///< what is read is not wanted any more
+    uint64_t launch;                ///< copied: the one that does
+    uint64_t start;                 ///< ns
+    uint64_t value;                 ///< of a resource
+    uint64_t id;                    ///< of the texture or resource
     struct slc_demand_image *image; ///< NULL: of a resource
 
     /* With the lock of the tickets. */
@@ -157,13 +158,14 @@ struct SluiceDemandLoader {
     struct slc_page_directory directory;
     struct slc_page_space *space;
     struct slc_demand_residency *residency;
+    struct slc_page_memory tile_interface;
     uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
     uint32_t owner_capacity;
     struct slc_page_run *forgotten; ///< owned; pages whose requests the next launch clears
     uint32_t forgotten_count, forgotten_capacity;
 
     struct slc_demand_texture *textures; ///< owned
-    uint32_t texture_high, texture_capacity, texture_count, texture_page_count, grid_count;
+    uint32_t texture_high, texture_capacity, texture_count, texture_page_count;
     uint32_t free_texture, first_buried_texture, last_buried_texture;
 
     struct slc_demand_image **images; ///< owned, by slot
@@ -183,7 +185,8 @@ struct SluiceDemandLoader {
     SluiceTileLoader *reader;
     struct slc_demand_job *jobs; ///< owned
     uint32_t job_count;
-    struct slc_job_list free_tiles, free_others, arrived, copied;
+    struct slc_job_list free_tiles, free_others;
+    struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
     uint32_t free_tile_count, free_other_count;
     struct slc_tickets tickets;
 
@@ -193,13 +196,24 @@ struct SluiceDemandLoader {
     uint64_t launch, ended, processed; ///< the last of each
     bool cleared;                      ///< the device's buffers
     bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
-    uint32_t wide_tracking;            ///< of resources with a limit
+    uint32_t limited_count;            ///< resources with a limit
     SluiceDemandStatistics counts;
 };
+
+/** A read that ended so may well succeed when shaders ask again. */
+static inline bool slc_result_may_pass(SluiceResult result)
+{
+    return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELLED ||
+           result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
 
 /* textures.c */
 SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id,
                               uint32_t *index);
+SluiceDemandTextureId slc_texture_id(const SluiceDemandLoader *loader, uint32_t index);
+/** An index of its own generation, with an entry in the table. Errors: LIMIT_EXCEEDED,
+ *  OUT_OF_HOST_MEMORY. */
+SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index);
 /** The texture of an image and all its variants look like this from the next launch on. */
 void slc_texture_show_unknown(SluiceDemandLoader *loader, uint32_t index);
 void slc_texture_show_failed(SluiceDemandLoader *loader, uint32_t index);
@@ -207,6 +221,12 @@ void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_
 /** Indices of textures that no launch after `processed` names. */
 void slc_textures_exhume(SluiceDemandLoader *loader);
 void slc_textures_finish(SluiceDemandLoader *loader);
+
+/* grids.c */
+/** Cells that name the texture show their grid's own colour. */
+void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index);
+/** The grid names nothing any more; its cells stay what they are for launches under way. */
+void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture *grid);
 
 /* images.c */
 /** Begins to open the image of a texture, unless that is done. */
@@ -217,6 +237,8 @@ void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *ima
                         const struct slc_demand_job *job, SluiceResult result);
 /** A job of it is over, of whatever kind. */
 void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** It cannot be sampled after all: the texture shows its failureColor from now on. */
+void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** No texture's any more: its pages are forgotten, it is closed when its reads are over. */
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** Its texels have changed. */
@@ -285,13 +307,15 @@ void slc_uploads_exhume(SluiceDemandLoader *loader);
 
 /* requests.c */
 /** What the launch asked for, counted into `requests`. */
-SluiceResult slc_requests_process(SluiceDemandLoader *loader, uint64_t launch,
-                                  SluiceDemandTicket ticket, SluiceDemandRequests *requests);
+void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDemandTicket ticket,
+                          SluiceDemandRequests *requests);
 /** One page, whatever it is of. */
 enum slc_request_answer slc_page_request_any(SluiceDemandLoader *loader, uint32_t page,
                                              SluiceDemandTicket ticket, SluiceResult *result);
 /** The page table shows what the residency says from the next record on. */
 void slc_changes_apply(SluiceDemandLoader *loader);
+/** Resources hear of the values that went. */
+void slc_evicted_take(SluiceDemandLoader *loader);
 
 /* preload.c */
 void slc_preloads_continue(SluiceDemandLoader *loader);

@@ -24,5 +24,7 @@ static inline uint32_t slc_image_level_height(const struct slc_demand_image *ima
 {
     return slc_div_up_u32(slc_mip_size(image->info.height, level), image->tile_height);
 }
+/** Coarse levels first: 1 + ceil(log4(tiles)), below SLUICE_DEMAND_RANKS. */
+uint32_t slc_image_level_rank(const struct slc_demand_image *image, uint32_t level);
 
 #endif /* SLC_DEMAND_VULKAN_OPENING_H */

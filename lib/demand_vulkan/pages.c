@@ -55,8 +55,7 @@ void slc_pages_give(SluiceDemandLoader *loader, uint32_t first, uint64_t count)
     slc_page_space_free(loader->space, first, count, loader->launch);
 }
 
-enum slc_page_owner slc_pages_find(const SluiceDemandLoader *loader, uint32_t page,
-                                   uint32_t *index)
+enum slc_page_owner slc_pages_find(const SluiceDemandLoader *loader, uint32_t page, uint32_t *index)
 {
     uint32_t block = page / SLUICE_DEMAND_BLOCK_PAGES;
     *index = page;

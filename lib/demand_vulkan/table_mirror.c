@@ -73,10 +73,9 @@ static void flush(const struct slc_table_mirror *mirror, const struct slc_vk *vk
                   VkCommandBuffer commands, const struct run *run)
 {
     if (run->first < run->end)
-        vk->CmdUpdateBuffer(commands, mirror->buffer,
-                            mirror->offset + (uint64_t)run->first * SLC_MIRROR_ELEMENT,
-                            (uint64_t)(run->end - run->first) * SLC_MIRROR_ELEMENT,
-                            &mirror->elements[run->first]);
+        vk->CmdUpdateBuffer(
+            commands, mirror->buffer, mirror->offset + (uint64_t)run->first * SLC_MIRROR_ELEMENT,
+            (uint64_t)(run->end - run->first) * SLC_MIRROR_ELEMENT, &mirror->elements[run->first]);
 }
 
 static void extend(const struct slc_table_mirror *mirror, const struct slc_vk *vk,

@@ -15,9 +15,9 @@ struct slc_mirror_element {
 
 struct slc_table_mirror {
     const SluiceAllocationCallbacks *cb;
-    VkBuffer buffer;      ///< borrowed
-    uint64_t offset;      ///< bytes, of element 0
-    uint32_t max_count;   ///< elements
+    VkBuffer buffer;                     ///< borrowed
+    uint64_t offset;                     ///< bytes, of element 0
+    uint32_t max_count;                  ///< elements
     struct slc_mirror_element *elements; ///< owned; zero until written
     uint64_t *changed;                   ///< owned; a bit per element
     uint32_t capacity;                   ///< a multiple of 64

@@ -11,18 +11,17 @@
 
 /* Of the shape: what the sampler says, not the image. */
 #define SAMPLER_BITS                                                                               \
-    (7u << SLUICE_DEMAND_MODE_U_SHIFT | 7u << SLUICE_DEMAND_MODE_V_SHIFT |                         \
-     SLUICE_DEMAND_NEAREST | SLUICE_DEMAND_NEAREST_LEVEL)
+    (7u << SLUICE_DEMAND_MODE_U_SHIFT | 7u << SLUICE_DEMAND_MODE_V_SHIFT | SLUICE_DEMAND_NEAREST | \
+     SLUICE_DEMAND_NEAREST_LEVEL)
 
 static_assert(sizeof(struct SluiceDemandTexture) == SLC_MIRROR_ELEMENT, "elements of the table");
 
-static SluiceDemandTextureId texture_id(const SluiceDemandLoader *loader, uint32_t index)
+SluiceDemandTextureId slc_texture_id(const SluiceDemandLoader *loader, uint32_t index)
 {
     return (uint64_t)loader->textures[index].generation << 32 | index;
 }
 
-SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id,
-                              uint32_t *index)
+SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id, uint32_t *index)
 {
     *index = (uint32_t)id;
     uint32_t generation = (uint32_t)(id >> 32);
@@ -53,11 +52,11 @@ static void write_sampler(struct SluiceDemandTexture *entry, const SluiceDemandS
 {
     *entry = (struct SluiceDemandTexture){
         .state = SLUICE_DEMAND_TEXTURE_UNKNOWN,
-        .shape = (uint32_t)s->addressModeU << SLUICE_DEMAND_MODE_U_SHIFT |
-                 (uint32_t)s->addressModeV << SLUICE_DEMAND_MODE_V_SHIFT |
-                 (s->filter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST : 0) |
-                 (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL
-                                                                  : 0),
+        .shape =
+            (uint32_t)s->addressModeU << SLUICE_DEMAND_MODE_U_SHIFT |
+            (uint32_t)s->addressModeV << SLUICE_DEMAND_MODE_V_SHIFT |
+            (s->filter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST : 0) |
+            (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL : 0),
         .maxAnisotropy = fmaxf(1, s->maxAnisotropy),
         .lodBias = s->lodBias};
     memcpy(entry->borderColor, s->borderColor, sizeof entry->borderColor);
@@ -77,8 +76,7 @@ static SluiceResult grow(SluiceDemandLoader *loader)
     return SLUICE_SUCCESS;
 }
 
-/* An index with an entry in the table. */
-static SluiceResult take_index(SluiceDemandLoader *loader, uint32_t *index)
+SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
 {
     slc_textures_exhume(loader);
     *index = loader->free_texture;
@@ -114,7 +112,7 @@ SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
     if (!sampler_is_valid(&pCreateInfo->sampler))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     uint32_t index;
-    SluiceResult result = take_index(loader, &index);
+    SluiceResult result = slc_texture_take(loader, &index);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_demand_texture *texture = &loader->textures[index];
@@ -122,7 +120,7 @@ SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
     texture->source = pCreateInfo->image;
     memcpy(texture->failure_color, pCreateInfo->failureColor, sizeof texture->failure_color);
     write_sampler(change_entry(loader, index), &pCreateInfo->sampler);
-    *pTextureId = texture_id(loader, index);
+    *pTextureId = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
 }
 
@@ -195,7 +193,7 @@ SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (loader->textures[base].kind == SLC_TEXTURE_VARIANT)
         base = loader->textures[base].base;
-    result = take_index(loader, &index);
+    result = slc_texture_take(loader, &index);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_demand_texture *texture = &loader->textures[index], *of = &loader->textures[base];
@@ -208,136 +206,17 @@ SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
         show_failed(loader, index, of->failure_color);
     else if (of->image != SLC_NONE && loader->images[of->image]->state == SLC_IMAGE_OPEN)
         show_image(loader, index, loader->images[of->image]);
-    *pTextureId = texture_id(loader, index);
+    *pTextureId = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
-}
-
-static uint32_t *grid_words(SluiceDemandLoader *loader, uint32_t element)
-{
-    return ((struct slc_mirror_element *)slc_table_mirror_change(&loader->grids, element))->words;
-}
-
-/* The cells of a grid begin at an element of the part of the buffer that grids have. */
-static void write_cell(SluiceDemandLoader *loader, uint32_t first_element, uint32_t cell,
-                       uint32_t value)
-{
-    grid_words(loader, first_element + cell / 16)[cell % 16] = value;
-}
-
-static uint32_t read_cell(const SluiceDemandLoader *loader, uint32_t first_element, uint32_t cell)
-{
-    const struct slc_mirror_element *element =
-        slc_table_mirror_get(&loader->grids, first_element + cell / 16);
-    return element->words[cell % 16];
-}
-
-static SluiceResult check_cells(SluiceDemandLoader *loader, const SluiceDemandTextureId *ids,
-                                uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t index;
-        if (ids[i] == SLUICE_NO_DEMAND_TEXTURE)
-            continue;
-        SluiceResult result = slc_texture_find(loader, ids[i], &index);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-            return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
-    return SLUICE_SUCCESS;
-}
-
-static SluiceResult take_cells(SluiceDemandLoader *loader, uint32_t count, uint32_t *first)
-{
-    uint32_t elements = slc_div_up_u32(count, 16);
-    if (!slc_region_arena_take(&loader->grid_arena, elements, first))
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
-    SluiceResult result = slc_table_mirror_reserve(&loader->grids, *first + elements);
-    if (result != SLUICE_SUCCESS)
-        slc_region_arena_give(&loader->grid_arena, *first, elements);
-    return result;
-}
-
-static void fill_grid(SluiceDemandLoader *loader, uint32_t index, uint32_t first,
-                      const SluiceDemandTextureId *ids, uint32_t columns, uint32_t rows)
-{
-    struct slc_demand_texture *texture = &loader->textures[index];
-    texture->kind = SLC_TEXTURE_GRID;
-    texture->first_word = first;
-    texture->word_count = columns * rows;
-    for (uint32_t i = 0; i < columns * rows; i++) {
-        write_cell(loader, first, i, ids[i] ? (uint32_t)ids[i] : SLUICE_DEMAND_NO_TEXTURE);
-        if (ids[i])
-            loader->textures[(uint32_t)ids[i]].grid_uses++;
-    }
-    loader->grid_count++;
-}
-
-SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
-                                    const SluiceDemandTextureId *pTextureIds, uint32_t columns,
-                                    uint32_t rows, const float missingColor[4],
-                                    SluiceDemandTextureId *pTextureId)
-{
-    uint32_t index, first;
-    if (!loader || !pTextureIds || !missingColor || !pTextureId)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (columns == 0 || rows == 0)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    if ((uint64_t)columns * rows > loader->grid_arena.size * (uint64_t)16)
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
-    SluiceResult result = check_cells(loader, pTextureIds, columns * rows);
-    if (result == SLUICE_SUCCESS)
-        result = take_cells(loader, columns * rows, &first);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    result = take_index(loader, &index);
-    if (result != SLUICE_SUCCESS) {
-        slc_region_arena_give(&loader->grid_arena, first, slc_div_up_u32(columns * rows, 16));
-        return result;
-    }
-    fill_grid(loader, index, first, pTextureIds, columns, rows);
-    struct SluiceDemandTexture *entry = change_entry(loader, index);
-    *entry = (struct SluiceDemandTexture){
-        .state = SLUICE_DEMAND_TEXTURE_UDIM,
-        .width = columns,
-        .height = rows,
-        .levels = SLC_MAX_REGULAR_LEVELS * (1 + loader->max_image_count + first),
-        .maxAnisotropy = 1};
-    memcpy(entry->baseColor, missingColor, sizeof entry->baseColor);
-    *pTextureId = texture_id(loader, index);
-    return SLUICE_SUCCESS;
-}
-
-/* Cells that name it show the grid's own colour. */
-static void leave_grids(SluiceDemandLoader *loader, uint32_t index)
-{
-    for (uint32_t i = 1; i < loader->texture_high && loader->textures[index].grid_uses; i++) {
-        const struct slc_demand_texture *grid = &loader->textures[i];
-        for (uint32_t c = 0; grid->kind == SLC_TEXTURE_GRID && c < grid->word_count; c++)
-            if (read_cell(loader, grid->first_word, c) == index) {
-                write_cell(loader, grid->first_word, c, SLUICE_DEMAND_NO_TEXTURE);
-                loader->textures[index].grid_uses--;
-            }
-    }
-}
-
-static void forget_cells(SluiceDemandLoader *loader, const struct slc_demand_texture *grid)
-{
-    for (uint32_t c = 0; c < grid->word_count; c++) {
-        uint32_t index = read_cell(loader, grid->first_word, c);
-        if (index != SLUICE_DEMAND_NO_TEXTURE)
-            loader->textures[index].grid_uses--;
-    }
-    loader->grid_count--;
 }
 
 static void bury(SluiceDemandLoader *loader, uint32_t index, const float color[4])
 {
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->grid_uses)
-        leave_grids(loader, index);
+        slc_grids_leave(loader, index);
     if (texture->kind == SLC_TEXTURE_GRID)
-        forget_cells(loader, texture);
+        slc_grid_empty(loader, texture);
     show_failed(loader, index, color);
     slc_pages_forget_requests(loader, index, 1);
     texture->kind = SLC_TEXTURE_BURIED;
@@ -359,10 +238,10 @@ void slc_textures_exhume(SluiceDemandLoader *loader)
         if (texture->launch > loader->processed)
             return;
         loader->first_buried_texture = texture->next;
-        if (texture->word_count)
-            slc_region_arena_give(&loader->grid_arena, texture->first_word,
-                                  slc_div_up_u32(texture->word_count, 16));
-        texture->word_count = 0;
+        if (texture->cell_count)
+            slc_region_arena_give(&loader->grid_arena, texture->first_element,
+                                  slc_div_up_u32(texture->cell_count, 16));
+        texture->cell_count = 0;
         texture->kind = SLC_TEXTURE_FREE;
         if (texture->generation == UINT32_MAX)
             continue; /* its ids are used up */

@@ -62,8 +62,8 @@ static uint32_t take_slot(struct slc_tickets *tickets)
     }
     if (tickets->used == tickets->capacity) {
         uint32_t capacity = tickets->capacity ? 2 * tickets->capacity : 64;
-        struct slc_ticket *slots = slc_regrow(&tickets->cb, tickets->slots, tickets->capacity,
-                                              capacity, sizeof *slots);
+        struct slc_ticket *slots =
+            slc_regrow(&tickets->cb, tickets->slots, tickets->capacity, capacity, sizeof *slots);
         if (!slots)
             return NONE;
         tickets->slots = slots;

@@ -25,7 +25,7 @@ struct slc_tickets {
     pthread_cond_t changed; ///< a ticket has nothing running any more, a job is over, or all end
     bool ready;             ///< mutex and condition exist
     bool aborted;
-    uint32_t job_waiters; ///< threads that wait for the end of any job
+    uint32_t job_waiters;     ///< threads that wait for the end of any job
     struct slc_ticket *slots; ///< owned
     uint32_t capacity, used;
     uint32_t first_done, last_done, done_count;

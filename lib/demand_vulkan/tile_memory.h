@@ -9,9 +9,9 @@
 
 struct slc_tile_memory {
     struct slc_page_cache cache;
-    uint64_t limit;    ///< tiles that the budget holds
-    bool short_of;     ///< a place was asked for and not there since the last look
-    uint32_t wanted;   ///< the format it was asked for
+    uint64_t limit;  ///< tiles that the budget holds
+    bool short_of;   ///< a place was asked for and not there since the last look
+    uint32_t wanted; ///< the format it was asked for
 };
 
 /** `budget`: bytes. Errors: OUT_OF_HOST_MEMORY. */
