@@ -114,14 +114,42 @@ static void used_bits_arrive_whoever_has_the_blocks_by_then(void **state)
         }
         if (round % 5 == 0)
             directory_rig_record(&r); /* used bits are there, and nothing changes them */
-        if (round % 4 == 0)
+        bool takes = round % 4 != 2;  /* else the bits stay, unless their block goes */
+        if (takes && round % 4 == 0)
             change_some(&r, 60); /* not seen by this launch */
         fill_uses(&r);
-        directory_rig_launch(&r, true);
+        directory_rig_launch(&r, takes);
         for (uint32_t i = 0; i < r.page_capacity; i++)
             used += r.used[r.slot][i];
     }
     assert_true(used > 2000);
+    directory_rig_finish(&r);
+}
+
+static void launch_with(struct directory_rig *r, uint32_t page, bool takes)
+{
+    *(uint32_t *)r->uses.mapped = page;
+    r->use_count = 1;
+    directory_rig_launch(r, takes);
+}
+
+static void nobody_inherits_the_used_bits_of_a_block(void **state)
+{
+    struct directory_rig r;
+    directory_rig_init(&r, *state, &cb, 1u << 12, 2);
+    directory_rig_show(&r, 5, 1, false);
+    directory_rig_show(&r, 100, 2, false);
+    directory_rig_record(&r);
+    launch_with(&r, 5, false);
+    directory_rig_hide(&r, 5);
+    directory_rig_show(&r, 37, 3, false); /* the same bit of the same block */
+    directory_rig_record(&r);
+    launch_with(&r, 37, false);
+    directory_rig_hide(&r, 37);
+    directory_rig_record(&r); /* the block is nobody's */
+    launch_with(&r, 100, true);
+    assert_true(r.used[0][100]);
+    directory_rig_check_used(&r, 0);
     directory_rig_finish(&r);
 }
 
@@ -130,15 +158,13 @@ static void used_bits_of_an_empty_table_are_none(void **state)
     struct directory_rig r;
     directory_rig_init(&r, *state, &cb, 1u << 12, 4);
     directory_rig_record(&r);
-    *(uint32_t *)r.uses.mapped = 5;
-    r.use_count = 1;
-    directory_rig_launch(&r, true);
+    launch_with(&r, 5, true);
     directory_rig_check_used(&r, 0);
     directory_rig_show(&r, 5, 1, false);
-    directory_rig_launch(&r, true); /* not recorded yet */
+    launch_with(&r, 5, true); /* not recorded yet */
     directory_rig_check_used(&r, 0);
     directory_rig_record(&r);
-    directory_rig_launch(&r, true);
+    launch_with(&r, 5, true);
     assert_true(r.used[0][5]);
     directory_rig_check_used(&r, 0);
     directory_rig_finish(&r);
@@ -301,6 +327,7 @@ int main(void)
         cmocka_unit_test(the_device_shows_what_a_naive_table_shows),
         cmocka_unit_test(a_block_is_there_again_as_soon_as_its_last_page_is_hidden),
         cmocka_unit_test(used_bits_arrive_whoever_has_the_blocks_by_then),
+        cmocka_unit_test(nobody_inherits_the_used_bits_of_a_block),
         cmocka_unit_test(used_bits_of_an_empty_table_are_none),
         cmocka_unit_test(more_changes_than_a_slot_holds_make_it_grow_or_wait),
         cmocka_unit_test(nothing_is_dispatched_where_nothing_changed),
