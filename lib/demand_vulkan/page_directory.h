@@ -12,12 +12,14 @@
  * are hidden before others are shown.
  *
  * Host memory: a word and a bit per 32 pages (8.3 MiB for 64 Mi; looking a page up is one load,
- * where a map would cost more for all of its entries as soon as one in ten has a block), and 280
- * bytes per block that was ever in use, with four more per launch in flight. Threads: external.
+ * where a map would cost more for all of its entries as soon as one in ten has a block), and 290
+ * bytes per block, with four more per launch in flight, for as many as were ever in use at once.
+ * Threads: external.
  */
 #ifndef SLC_DEMAND_VULKAN_PAGE_DIRECTORY_H
 #define SLC_DEMAND_VULKAN_PAGE_DIRECTORY_H
 
+#include "demand_vulkan/page_blocks.h"
 #include "vulkan/buffer.h"
 #include "vulkan/compute.h"
 
@@ -30,9 +32,6 @@ struct slc_page_directory_create_info {
     uint32_t block_capacity; ///< 1 to SLC_PAGE_BLOCKS_MAX; at worst each resident page has its own
     uint32_t slot_count;     ///< launches in flight, 1 to 16
 };
-
-struct slc_page_block;
-struct slc_page_directory_slot;
 
 struct slc_page_directory {
     const struct slc_vk *vk;     ///< borrowed
@@ -47,17 +46,17 @@ struct slc_page_directory {
     uint32_t block_capacity, slot_count;
     bool cleared; ///< the device's buffers
 
-    uint32_t *entries;         ///< owned; the directory
+    uint32_t *entries;         ///< owned; the directory: a block each, or none
     uint64_t *changed_entries; ///< owned; a bit per entry
     uint32_t *entry_list;      ///< owned; those that changed, each once
     uint32_t entry_list_count, entry_list_capacity;
-    struct slc_page_block *block_table;     ///< owned; block_room of them
-    uint64_t *free_blocks, *changed_blocks; ///< owned; a bit per block of block_room
-    uint32_t block_room;                    ///< grows up to block_capacity + 1
-    uint32_t block_end;                     ///< none in use from here on
-    uint32_t block_count;                   ///< in use
-    uint32_t free_hint;                     ///< none free before
-    struct slc_page_directory_slot *slots;  ///< owned; slot_count
+    struct slc_page_blocks pool;
+    bool changed;          ///< any block is marked
+    uint32_t recorded_end; ///< the device has no blocks in use from here on
+    struct slc_page_directory_slot {
+        struct slc_buffer upload;
+        uint32_t used_end; ///< blocks whose used bits were taken
+    } slots[SLC_COMPUTE_SETS];
 };
 
 /** Bytes of device memory: directory, blocks and masks. */
@@ -91,10 +90,12 @@ bool slc_page_directory_has(const struct slc_page_directory *dir, uint32_t page)
 
 /**
  * Records what changed since the last time, and, the first time, clears the device's buffers. With
- * barriers: from all shaders before to all shaders after, nothing if nothing changed. Binds a
- * compute pipeline and set 0. What is recorded must be submitted, in the order of the calls.
- * `slot`: its last submission is complete. Errors, with nothing recorded and all changes kept:
- * OUT_OF_DEVICE_MEMORY, VULKAN, when the slot must grow.
+ * barriers: from all shaders before to all shaders and transfers after, nothing if nothing changed.
+ * Binds a compute pipeline and set 0. What is recorded must be submitted, in the order of the
+ * calls. `slot`: its last submission is complete. Errors, with nothing recorded and all changes
+ * kept: OUT_OF_DEVICE_MEMORY, VULKAN, when the slot must grow; LIMIT_EXCEEDED if so much has
+ * changed that the slot would be beyond the device's maxStorageBufferRange, eight bytes for each
+ * word.
  */
 SluiceResult slc_page_directory_record(struct slc_page_directory *dir, VkCommandBuffer commands,
                                        uint32_t slot);
