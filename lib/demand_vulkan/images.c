@@ -372,14 +372,18 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
 
 void slc_images_refresh(SluiceDemandLoader *loader)
 {
-    while (loader->first_refresh != SLC_NONE) {
-        struct slc_demand_image *image = loader->images[loader->first_refresh];
+    uint32_t next, waiting = SLC_NONE;
+    for (uint32_t slot = loader->first_refresh; slot != SLC_NONE; slot = next) {
+        struct slc_demand_image *image = loader->images[slot];
+        next = image->next;
         /* One at a time writes the colour. */
-        if (image->job_count || submit_opening(loader, image, 0) != SLUICE_SUCCESS)
-            return;
-        loader->first_refresh = image->next;
-        image->refresh = false;
+        image->refresh = image->job_count || submit_opening(loader, image, 0) != SLUICE_SUCCESS;
+        if (!image->refresh)
+            continue;
+        image->next = waiting;
+        waiting = slot;
     }
+    loader->first_refresh = waiting;
 }
 
 void slc_images_exhume(SluiceDemandLoader *loader)

@@ -206,6 +206,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->info = *info;
     if (info->pAllocator)
         loader->info.pAllocator = &loader->cb;
+    loader->texture_high = 1; /* 0 is no texture's */
     loader->free_texture = loader->first_buried_texture = SLC_NONE;
     loader->free_image = loader->first_buried_image = loader->first_refresh = SLC_NONE;
     loader->free_resource = SLC_NONE;

@@ -86,7 +86,7 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
         if (loader->texture_high > loader->info.maxTextureCount)
             return SLUICE_ERROR_LIMIT_EXCEEDED;
         SluiceResult result = slc_table_mirror_reserve(&loader->table, loader->texture_high + 1);
-        if (result == SLUICE_SUCCESS && loader->texture_high == loader->texture_capacity)
+        if (result == SLUICE_SUCCESS && loader->texture_high >= loader->texture_capacity)
             result = grow(loader);
         if (result != SLUICE_SUCCESS)
             return result;
