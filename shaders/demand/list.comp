@@ -3,6 +3,7 @@
  * stay, and flag their section for the next scan.
  */
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "requests.glsl"
@@ -23,7 +24,6 @@ shared uint staged[WINDOW];                          /* section of the group << 
 /* Bits of one part that are still to be listed, lowest first. */
 struct Cursor {
     uint words[8];
-    uint word;
     uint left;
     uint at; /* where the next one goes, among those of the group */
 };
@@ -52,25 +52,24 @@ Cursor beginPart(uvec4 low, uvec4 high)
     for (uint i = section * SLUICE_SCAN_PARTS; i < at; i++)
         before += counts[i];
     uint room = listedCounts[section] - min(before, listedCounts[section]);
-    return Cursor(uint[8](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w), 0u,
+    return Cursor(uint[8](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w),
                   min(counts[at], room), starts[section] + before);
 }
 
-/** Takes bits out of the cursor until the window ends. */
+/** Takes bits out of the cursor until the window ends. Unrolled, so that words stay in registers. */
 void stage(inout Cursor cursor, uint windowFirst)
 {
     uint at = gl_LocalInvocationIndex, section = at / SLUICE_SCAN_PARTS;
     uint first = section * SLUICE_DEMAND_SECTION_PAGES + at % SLUICE_SCAN_PARTS * PART_PAGES;
-    while (cursor.left > 0u && cursor.at - windowFirst < WINDOW) {
-        uint bits = cursor.words[cursor.word];
-        if (bits == 0u) {
-            cursor.word++;
-            continue;
+    [[unroll]] for (uint word = 0u; word < 8u; word++) {
+        uint bits = cursor.words[word];
+        while (bits != 0u && cursor.left > 0u && cursor.at - windowFirst < WINDOW) {
+            staged[cursor.at - windowFirst] = first + word * 32u + uint(findLSB(bits));
+            bits &= bits - 1u;
+            cursor.left--;
+            cursor.at++;
         }
-        staged[cursor.at - windowFirst] = first + cursor.word * 32u + uint(findLSB(bits));
-        cursor.words[cursor.word] = bits & bits - 1u;
-        cursor.left--;
-        cursor.at++;
+        cursor.words[word] = bits;
     }
 }
 
