@@ -28,12 +28,21 @@ struct Cursor {
     uint at; /* where the next one goes, among those of the group */
 };
 
+/** Requests with this key in the first `end` sections of the group. */
+uint countKey(uint key, uint end)
+{
+    uint sum = 0u;
+    for (uint i = 0u; i < end; i++)
+        sum += entries[i] >> SLUICE_SCAN_KEY_SHIFT == key ? totals[i] : 0u;
+    return sum;
+}
+
 void placeSections(uint groups, uint scanGroup)
 {
     uint at = gl_LocalInvocationIndex;
     if (at < SLUICE_SCAN_GROUP_SECTIONS) {
         uint key = entries[at] >> SLUICE_SCAN_KEY_SHIFT;
-        places[at] = scratch.words[params.firstSum + key * groups + scanGroup] + sluiceCountKey(key, at);
+        places[at] = scratch.words[params.firstSum + key * groups + scanGroup] + countKey(key, at);
         listedCounts[at] = min(totals[at], params.capacity - min(places[at], params.capacity));
     }
     barrier();
