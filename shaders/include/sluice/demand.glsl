@@ -15,7 +15,8 @@
  *
  *     a texture that nobody has opened      (0, 0, 0, 0), not resident; asks for it to be opened
  *     one that cannot be opened             its failureColor, resident
- *     LOD at or beyond the last level       the colour of the last level; no page is looked up
+ *     LOD at or beyond the last level       the colour of the last level, and of the border around it;
+ *                                           no page is looked up
  *     derivatives that are infinite or NaN  the same
  *     a LOD that is NaN                     the same
  *     uv not finite, or beyond 1e33         as at (0, 0)
@@ -34,7 +35,8 @@
  *     #define SLUICE_DEMAND_PREVIEW true                       // or a constant_id constant
  *
  * what is missing is replaced by the finest coarser level that is there, or by the colour of the
- * last level: samples still say that they are not resident, and ask for what they miss.
+ * last level: samples still say that they are not resident, and ask for what they miss. Needs
+ * GL_EXT_control_flow_attributes, a matter of the compiler alone.
  */
 #ifndef SLUICE_DEMAND_GLSL
 #define SLUICE_DEMAND_GLSL
@@ -88,7 +90,7 @@ vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, b
 {
     vec4 sum = vec4(0.0);
     float step = 1.0 / float(taps.count);
-    for (uint pass = 0u; pass < 2u; pass++) {
+    [[dont_unroll]] for (uint pass = 0u; pass < 2u; pass++) {
         float share = pass == 0u ? 1.0 - taps.fraction : taps.fraction;
         if (!(share > 0.0))
             continue;

@@ -5,6 +5,9 @@
 #ifndef SLUICE_DEMAND_TEXELS_GLSL
 #define SLUICE_DEMAND_TEXELS_GLSL
 
+/* Unrolled, the long ways would be three times as long; they are seldom taken. */
+#extension GL_EXT_control_flow_attributes : require
+
 #include "demand_pages.glsl"
 #include "page_filter.glsl"
 
@@ -127,7 +130,7 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
     ivec2 shift = sluiceDemandTileShift(s.shape);
     vec4 sum = vec4(0.0);
     worst = 0u;
-    for (uint i = 0u; i < 4u; i++) {
+    [[dont_unroll]] for (uint i = 0u; i < 4u; i++) {
         bool right = (i & 1u) != 0u, below = (i & 2u) != 0u;
         ivec2 texel = ivec2(right ? x.high : x.low, below ? y.high : y.low);
         float weight = (right ? x.weight : 1.0 - x.weight) * (below ? y.weight : 1.0 - y.weight);
