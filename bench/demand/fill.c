@@ -31,11 +31,13 @@ static bool fill_once(const struct bench *bench, const SluiceDemandLoaderCreateI
     struct rig rig;
     double seconds;
     bool done =
-        rig_create(&rig, bench, info, false) && rig_pipeline(&rig, DEMAND_BENCH_SAMPLED) &&
-        fill(&rig, &seconds, launches) &&
+        rig_create(&rig, bench, info, false) && rig_warm_up(&rig) &&
         check(sluiceGetDemandStatistics(rig.loader, statistics), "sluiceGetDemandStatistics");
+    uint64_t before = done ? statistics->residentTileCount : 0;
+    done = done && fill(&rig, &seconds, launches) &&
+           check(sluiceGetDemandStatistics(rig.loader, statistics), "sluiceGetDemandStatistics");
     if (done)
-        *rate = (double)statistics->residentTileCount / seconds;
+        *rate = (double)(statistics->residentTileCount - before) / seconds;
     rig_destroy(&rig);
     return done;
 }

@@ -45,7 +45,7 @@ static int measure(const struct arguments *arguments)
     bench.wall = caps->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU || !(caps->timestampPeriod > 0);
     /* 4.2 million samples of 16 textures of 8192 x 8192, or what a CPU can hold */
     bench.edge = options.quick ? 256 : bench.wall ? 512 : 2048;
-    bench.texture_size = options.quick ? 1024 : bench.wall ? 4096 : 8192;
+    bench.texture_size = options.quick || bench.wall ? 4096 : 8192;
     bench.columns = options.quick ? 2 : 4;
     fprintf(stderr, "%s, %s %s%s\n", caps->deviceName, caps->driverName, caps->driverInfo,
             bench.wall ? ", wall time" : "");

@@ -197,6 +197,21 @@ bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome)
     return true;
 }
 
+bool rig_warm_up(struct rig *rig)
+{
+    struct DemandBenchParams params = rig->params;
+    SluiceDemandTextureCreateInfo info = {.image.source = &rig->source.base};
+    SluiceDemandTextureId id;
+    if (!check(sluiceCreateDemandTexture(rig->loader, &info, &id), "sluiceCreateDemandTexture"))
+        return false;
+    rig->params.edge = 8;
+    rig->params.columns = 1;
+    rig->params.textures[0] = (uint32_t)id;
+    bool done = rig_load(rig, 1000) > 0;
+    rig->params = params;
+    return done;
+}
+
 uint32_t rig_load(struct rig *rig, uint32_t limit)
 {
     for (uint32_t i = 1; i <= limit; i++) {

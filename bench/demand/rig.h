@@ -80,6 +80,8 @@ struct rig_outcome {
 
 /** A launch from prepare to process. DEMAND_BENCH_NOTHING dispatches nothing at all. */
 bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome);
+/** Some samples of a texture of its own: drivers compile what is first run. */
+bool rig_warm_up(struct rig *rig);
 /** Launches until nothing is missing, at most `limit` times; how many it took, 0: it did not end.
  */
 uint32_t rig_load(struct rig *rig, uint32_t limit);
