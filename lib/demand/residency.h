@@ -24,16 +24,16 @@
  * id. Never: pages that the launch used or asked for, pinned ones, and those that no launch that is
  * over could have used. An evicted page keeps its place in mind, and has it back if nobody took it.
  *
- * Tiles that need more places than there are. If what a launch used and missed exceeds the limit,
- * or there is no memory for it, the LOD bias rises by as many quarters of a level as should do, and
- * what has no place is POSTPONED: the next launches ask for coarser pages. It falls again when two
- * launches in a row show that a finer one fits, and what did not fit is remembered: a view that
- * does not change comes to rest, see bias.h. Without a bias (no_lod_bias, no_eviction), at the
- * largest one, and where pinned pages alone fill the class, pages that have no place are REFUSED,
- * so that shaders take coarser ones. They are absent again, and may be asked for, when a launch
- * leaves more places idle than when they were refused, an eighth of all at least; half as many at a
- * time as there are such places. Pages of other classes are POSTPONED until a launch does not use
- * those that are there.
+ * Tiles that need more places than there are. If what a launch used and missed exceeds the
+ * limit, or there is no memory for it, the LOD bias rises by as many quarters of a level as
+ * should do, and what has no place is POSTPONED: the next launches ask for coarser pages. It
+ * falls again when two launches in a row, more after failures, show that a finer one fits, and
+ * what did not fit is remembered: a view that does not change comes to rest, see bias.h. Without
+ * a bias (no_lod_bias, no_eviction), at the largest one, and where pinned pages alone fill the
+ * class, pages that have no place are REFUSED, so that shaders take coarser ones. They are
+ * absent again, and may be asked for, when a launch leaves more places idle than when they were
+ * refused, an eighth of all at least; half as many at a time as there are such places. Pages of
+ * other classes are POSTPONED until a launch does not use those that are there.
  *
  * A bias only tells of the launches that had it: what of their requests was not listed should not
  * be asked for again when it has changed.
