@@ -52,8 +52,9 @@ static bool create_sets(struct rig *rig)
     if (!gpu_check(vkCreateDescriptorPool(device, &pool, NULL, &rig->descriptor_pool),
                    "vkCreateDescriptorPool"))
         return false;
-    VkDescriptorSetLayout layouts[1 + RIG_SLOTS] = {rig->set_layouts[0], rig->set_layouts[1],
-                                                    rig->set_layouts[1]};
+    VkDescriptorSetLayout layouts[1 + RIG_SLOTS] = {rig->set_layouts[0]};
+    for (uint32_t i = 0; i < RIG_SLOTS; i++)
+        layouts[1 + i] = rig->set_layouts[1];
     VkDescriptorSet sets[1 + RIG_SLOTS];
     VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                         .descriptorPool = rig->descriptor_pool,

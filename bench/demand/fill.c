@@ -9,20 +9,19 @@
 
 #define MAX_LAUNCHES 100000u
 
-/* Launches on without waiting for reads, as long as something is missing. */
+/* As renderers do that never wait for reads: two launches are under way, until one misses nothing.
+ */
 static bool fill(struct rig *rig, double *seconds, uint32_t *launches)
 {
     struct rig_outcome outcome;
     double start = clock_seconds();
-    for (*launches = 0; *launches < MAX_LAUNCHES;) {
-        if (!rig_launch(rig, DEMAND_BENCH_SAMPLED, &outcome))
-            return false;
-        (*launches)++;
-        if (outcome.requests.missingCount == 0)
-            break;
+    bool done = rig_begin(rig, DEMAND_BENCH_SAMPLED), all = false;
+    for (*launches = 0; done && !all && *launches < MAX_LAUNCHES; (*launches)++) {
+        done = rig_begin(rig, DEMAND_BENCH_SAMPLED) && rig_end(rig, &outcome);
+        all = done && outcome.requests.missingCount == 0;
     }
     *seconds = clock_seconds() - start;
-    return outcome.requests.missingCount == 0;
+    return done && rig_end(rig, &outcome) && all;
 }
 
 static bool fill_once(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,

@@ -12,6 +12,9 @@
 #define FINE_LOD 1.25f
 #define FINE_EDGE (9.5f / 32)
 
+/* Time stamps of a launch: before and after prepare, dispatch, end. */
+#define QUERIES 6u
+
 static void print_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
@@ -64,7 +67,7 @@ static bool create_commands(struct rig *rig)
     }
     VkQueryPoolCreateInfo queries = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                      .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                     .queryCount = 2 * RIG_SLOTS};
+                                     .queryCount = QUERIES * RIG_SLOTS};
     return gpu_check(vkCreateQueryPool(gpu->device, &queries, NULL, &rig->queries),
                      "vkCreateQueryPool");
 }
@@ -112,20 +115,31 @@ void rig_destroy(struct rig *rig)
     *rig = (struct rig){.bench = rig->bench};
 }
 
-static void record_dispatch(struct rig *rig, struct rig_slot *slot, uint32_t kind)
+static uint32_t first_query(const struct rig *rig, const struct rig_slot *slot)
 {
-    uint32_t query = (uint32_t)(slot - rig->slots) * 2, groups = (rig->params.edge + 7) / 8;
+    return (uint32_t)(slot - rig->slots) * QUERIES;
+}
+
+static void stamp(const struct rig *rig, const struct rig_slot *slot, uint32_t which)
+{
+    if (rig->timed)
+        vkCmdWriteTimestamp(slot->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, rig->queries,
+                            first_query(rig, slot) + which);
+}
+
+static void record_dispatch(struct rig *rig, struct rig_slot *slot)
+{
+    uint32_t groups = (rig->params.edge + 7) / 8;
     VkDescriptorSet sets[2] = {rig->set, slot->pages};
-    vkCmdBindPipeline(slot->commands, VK_PIPELINE_BIND_POINT_COMPUTE, rig_pipeline(rig, kind));
+    vkCmdBindPipeline(slot->commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                      rig_pipeline(rig, slot->kind));
     vkCmdBindDescriptorSets(slot->commands, VK_PIPELINE_BIND_POINT_COMPUTE, rig->layout, 0, 2, sets,
                             0, NULL);
     vkCmdPushConstants(slot->commands, rig->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                        sizeof rig->params, &rig->params);
-    vkCmdResetQueryPool(slot->commands, rig->queries, query, 2);
-    vkCmdWriteTimestamp(slot->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, rig->queries, query);
+    stamp(rig, slot, 2);
     vkCmdDispatch(slot->commands, groups, groups, 1);
-    vkCmdWriteTimestamp(slot->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, rig->queries,
-                        query + 1);
+    stamp(rig, slot, 3);
     VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
                                .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
@@ -149,52 +163,75 @@ static bool submit(struct rig *rig, struct rig_slot *slot)
                      "vkQueueSubmit");
 }
 
-static double dispatch_seconds(struct rig *rig, const struct rig_slot *slot)
+static double seconds_between(const struct rig *rig, const struct rig_slot *slot, uint32_t which)
 {
     uint64_t ticks[2];
-    if (rig->bench->wall ||
+    if (rig->bench->wall || !rig->timed ||
         !gpu_check(vkGetQueryPoolResults(rig->bench->gpu.device, rig->queries,
-                                         (uint32_t)(slot - rig->slots) * 2, 2, sizeof ticks, ticks,
+                                         first_query(rig, slot) + which, 2, sizeof ticks, ticks,
                                          sizeof *ticks, VK_QUERY_RESULT_64_BIT),
                    "vkGetQueryPoolResults"))
         return NAN;
     return (double)(ticks[1] - ticks[0]) * rig->bench->gpu.capabilities.timestampPeriod * 1e-9;
 }
 
-static bool record(struct rig *rig, struct rig_slot *slot, uint32_t kind)
+static bool record(struct rig *rig, struct rig_slot *slot)
 {
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
-        !check(sluicePrepareDemandLaunch(rig->loader, slot->commands, &slot->launch),
+    if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer"))
+        return false;
+    if (rig->timed)
+        vkCmdResetQueryPool(slot->commands, rig->queries, first_query(rig, slot), QUERIES);
+    stamp(rig, slot, 0);
+    if (!check(sluicePrepareDemandLaunch(rig->loader, slot->commands, &slot->launch),
                "sluicePrepareDemandLaunch"))
         return false;
+    stamp(rig, slot, 1);
     rig_write_pages(rig, slot);
-    if (kind != DEMAND_BENCH_NOTHING)
-        record_dispatch(rig, slot, kind);
-    return check(sluiceEndDemandLaunch(rig->loader, slot->commands), "sluiceEndDemandLaunch") &&
-           gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer");
+    if (slot->kind != DEMAND_BENCH_NOTHING)
+        record_dispatch(rig, slot);
+    stamp(rig, slot, 4);
+    bool done = check(sluiceEndDemandLaunch(rig->loader, slot->commands), "sluiceEndDemandLaunch");
+    stamp(rig, slot, 5);
+    return done && gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer");
+}
+
+bool rig_begin(struct rig *rig, uint32_t kind)
+{
+    struct rig_slot *slot = &rig->slots[rig->begun % RIG_SLOTS];
+    if (kind != DEMAND_BENCH_NOTHING && !rig_pipeline(rig, kind))
+        return false;
+    slot->kind = kind;
+    slot->start = clock_seconds();
+    if (!record(rig, slot) || !submit(rig, slot))
+        return false;
+    rig->begun++;
+    return true;
+}
+
+bool rig_end(struct rig *rig, struct rig_outcome *outcome)
+{
+    struct rig_slot *slot = &rig->slots[rig->ended % RIG_SLOTS];
+    if (!check(sluiceProcessDemandRequests(rig->loader, &slot->launch, UINT64_MAX,
+                                           &outcome->requests, &outcome->ticket),
+               "sluiceProcessDemandRequests"))
+        return false;
+    rig->ended++;
+    outcome->gpu_seconds = NAN;
+    if (slot->kind != DEMAND_BENCH_NOTHING)
+        outcome->gpu_seconds =
+            rig->bench->wall ? clock_seconds() - slot->start : seconds_between(rig, slot, 2);
+    outcome->gpu_parts[0] = seconds_between(rig, slot, 0);
+    outcome->gpu_parts[1] = seconds_between(rig, slot, 4);
+    outcome->missing = ((const uint32_t *)rig->outputs.mapped)[DEMAND_BENCH_MISSING];
+    return true;
 }
 
 bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome)
 {
-    struct rig_slot *slot = &rig->slots[rig->launch % RIG_SLOTS];
-    if (kind != DEMAND_BENCH_NOTHING && !rig_pipeline(rig, kind))
-        return false;
     memset(rig->outputs.mapped, 0, (size_t)rig->outputs.size);
-    double start = clock_seconds();
-    if (!record(rig, slot, kind) || !submit(rig, slot) ||
-        !check(sluiceProcessDemandRequests(rig->loader, &slot->launch, UINT64_MAX,
-                                           &outcome->requests, &outcome->ticket),
-               "sluiceProcessDemandRequests"))
-        return false;
-    rig->launch++;
-    outcome->gpu_seconds = NAN;
-    if (kind != DEMAND_BENCH_NOTHING)
-        outcome->gpu_seconds =
-            rig->bench->wall ? clock_seconds() - start : dispatch_seconds(rig, slot);
-    outcome->missing = ((const uint32_t *)rig->outputs.mapped)[DEMAND_BENCH_MISSING];
-    return true;
+    return rig_begin(rig, kind) && rig_end(rig, outcome);
 }
 
 bool rig_warm_up(struct rig *rig)

@@ -24,14 +24,15 @@ struct bench {
 /** Says on stderr what it is about, and returns false unless `result` is a success or news. */
 bool check(SluiceResult result, const char *what);
 
-#define RIG_SLOTS 2u
+#define RIG_SLOTS 3u
 
 struct rig_slot {
     VkCommandBuffer commands;
     VkDescriptorSet pages;
     uint64_t generation;
     SluiceDemandLaunch launch;
-    bool timed;
+    uint32_t kind;
+    double start;
 };
 
 struct rig {
@@ -50,7 +51,8 @@ struct rig {
     VkPipeline pipelines[3]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE until used
     VkQueryPool queries;
     struct rig_slot slots[RIG_SLOTS];
-    uint64_t launch; ///< how many
+    uint64_t begun, ended; ///< launches
+    bool timed;            ///< time stamps in every launch
     struct DemandBenchParams params;
 };
 
@@ -74,11 +76,17 @@ void rig_destroy_plain(struct rig *rig);
 struct rig_outcome {
     SluiceDemandRequests requests;
     SluiceDemandTicket ticket;
-    double gpu_seconds; ///< of the dispatch; of prepare and end are not in it
-    uint32_t missing;   ///< samples; only while params.counting
+    double gpu_seconds;  ///< of the dispatch
+    double gpu_parts[2]; ///< of prepare and of end
+    uint32_t missing;    ///< samples; only while params.counting
 };
 
-/** A launch from prepare to process. DEMAND_BENCH_NOTHING dispatches nothing at all. */
+/** A launch from prepare to submission; RIG_SLOTS of them may be under way. DEMAND_BENCH_NOTHING
+ *  dispatches nothing at all. */
+bool rig_begin(struct rig *rig, uint32_t kind);
+/** The rest of the oldest one. */
+bool rig_end(struct rig *rig, struct rig_outcome *outcome);
+/** Both. */
 bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome);
 /** Some samples of a texture of its own: drivers compile what is first run. */
 bool rig_warm_up(struct rig *rig);

@@ -52,6 +52,7 @@ trip.floor|empty submission and wait, us||
 trip.64.median|launch that misses nothing, 64 requests at most, us|72|at most 50
 trip.512.median|... 512|64|at most 50
 trip.8192.median|... 8192|136 to 238|at most 50
+trip.8192_tracked.median|... 8192, memory nearly full||at most 50
 budget.launches|437 MB in 256 MB: launches until complete|never|at most 30
 budget.missing|... samples that are missing then|43 to 57 %|0
 budget.uploads_later|... MB uploaded by 100 more launches|13 GB/s|0

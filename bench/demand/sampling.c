@@ -24,6 +24,7 @@ static bool measure(const struct bench *bench, bool tracking, double *plain, dou
     samples_init(&times[0], LAUNCHES * TURNS);
     samples_init(&times[1], LAUNCHES * TURNS);
     bool done = rig_create(&rig, bench, &info, true) && rig_load(&rig, 1000) > 0;
+    rig.timed = true;
     for (uint32_t i = 0; done && i < repetitions(TURNS); i++)
         done = add_times(&rig, DEMAND_BENCH_PLAIN, &times[0]) &&
                add_times(&rig, DEMAND_BENCH_SAMPLED, &times[1]);
