@@ -136,8 +136,8 @@ static void record_dispatch(const struct slc_page_directory *d, const struct slc
     slc_compute_barrier(d->vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, shaders);
     slc_compute_bind(compute, d->vk, commands, set, params);
-    slc_compute_dispatch(compute, d->vk, commands, 0, slc_min_u32(groups, SLUICE_SCAN_ROW),
-                         slc_div_up_u32(groups, SLUICE_SCAN_ROW));
+    slc_compute_dispatch(compute, d->vk, commands, 0, slc_min_u32(groups, SLUICE_PATCH_ROW),
+                         slc_div_up_u32(groups, SLUICE_PATCH_ROW));
     slc_compute_barrier(d->vk, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT,
                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,

@@ -68,8 +68,7 @@ static SluiceResult create_buffers(struct slc_demand_scan *s, const struct slc_v
                    {&s->sections, flags_size(s->page_capacity), usage, SLC_BUFFER_DEVICE},
                    {&s->postponed, flags_size(s->page_capacity), usage, SLC_BUFFER_DEVICE},
                    {&s->ranks, ranks_size(s->page_capacity), usage, SLC_BUFFER_DEVICE},
-                   {&s->scratch, scratch_size(s->page_capacity),
-                    usage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, SLC_BUFFER_DEVICE},
+                   {&s->scratch, scratch_size(s->page_capacity), usage, SLC_BUFFER_DEVICE},
                    {&s->readback, (uint64_t)s->slot_count * slot_words(s->list_capacity) * 4,
                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, SLC_BUFFER_READBACK}};
     SluiceResult result = SLUICE_SUCCESS;
@@ -106,6 +105,13 @@ static SluiceResult create_passes(struct slc_demand_scan *s, const struct slc_vk
     return SLUICE_SUCCESS;
 }
 
+/* A processor has few threads, and takes each workgroup in hand. */
+static uint32_t workgroup_count(const struct slc_caps *caps)
+{
+    bool software = caps->public.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    return software ? 2 : SLUICE_SCAN_WORKGROUPS;
+}
+
 SluiceResult slc_demand_scan_init(struct slc_demand_scan *scan, const struct slc_vk *vk,
                                   const struct slc_caps *caps,
                                   const struct slc_demand_scan_create_info *info)
@@ -114,7 +120,8 @@ SluiceResult slc_demand_scan_init(struct slc_demand_scan *scan, const struct slc
     assert(info->page_capacity % SLUICE_DEMAND_SECTION_PAGES == 0 && info->slot_count > 0);
     *scan = (struct slc_demand_scan){.page_capacity = info->page_capacity,
                                      .slot_count = info->slot_count,
-                                     .list_capacity = info->list_capacity};
+                                     .list_capacity = info->list_capacity,
+                                     .workgroup_count = workgroup_count(caps)};
     SluiceResult result = create_buffers(scan, vk, caps);
     if (result == SLUICE_SUCCESS)
         result = create_passes(scan, vk);
@@ -183,17 +190,11 @@ void slc_demand_scan_record_forget(const struct slc_demand_scan *scan, const str
 static void record_pass(const struct slc_demand_scan *s, const struct slc_vk *vk,
                         VkCommandBuffer commands, uint32_t pass, uint32_t group_count)
 {
-    const VkAccessFlags shaders = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
-    if (group_count) {
-        slc_compute_dispatch(&s->compute, vk, commands, pass, group_count, 1);
-    } else {
-        slc_compute_dispatch_indirect(&s->compute, vk, commands, pass, s->scratch.buffer);
-    }
+    slc_compute_dispatch(&s->compute, vk, commands, pass, group_count, 1);
     if (pass < LIST)
-        slc_compute_barrier(
-            vk, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-            shaders | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+        slc_compute_barrier(vk, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                            VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 }
 
 void slc_demand_scan_record(const struct slc_demand_scan *scan, const struct slc_vk *vk,
@@ -210,13 +211,12 @@ void slc_demand_scan_record(const struct slc_demand_scan *scan, const struct slc
         .resultOffset = slot * slot_words(scan->list_capacity),
         .capacity = capacity};
     slc_compute_bind(&scan->compute, vk, commands, 0, &params);
-    /* indirect arguments, too: those that the scan before has read */
     slc_compute_barrier(vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, shaders);
     record_pass(scan, vk, commands, COMPACT, 1);
-    record_pass(scan, vk, commands, COUNT, 0);
+    record_pass(scan, vk, commands, COUNT, scan->workgroup_count);
     record_pass(scan, vk, commands, PLACE, 1);
-    record_pass(scan, vk, commands, LIST, 0);
+    record_pass(scan, vk, commands, LIST, scan->workgroup_count);
     slc_compute_barrier(vk, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT,
                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,

@@ -34,6 +34,7 @@ struct slc_demand_scan {
     struct slc_compute compute;
     uint64_t page_capacity;
     uint32_t slot_count, list_capacity;
+    uint32_t workgroup_count; ///< of the passes over requests
 };
 
 /** Bytes of device memory of all buffers, but the readback, which is host memory. For 64 Mi pages

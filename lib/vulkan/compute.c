@@ -140,13 +140,6 @@ void slc_compute_dispatch(const struct slc_compute *compute, const struct slc_vk
     vk->CmdDispatch(commands, x, y, 1);
 }
 
-void slc_compute_dispatch_indirect(const struct slc_compute *compute, const struct slc_vk *vk,
-                                   VkCommandBuffer commands, uint32_t pass, VkBuffer arguments)
-{
-    vk->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compute->pipelines[pass]);
-    vk->CmdDispatchIndirect(commands, arguments, 0);
-}
-
 uint32_t slc_compute_group_size(const struct slc_vk *vk, uint32_t wanted)
 {
     VkPhysicalDeviceProperties2 properties = {.sType =

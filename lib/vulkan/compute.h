@@ -48,10 +48,6 @@ void slc_compute_bind(const struct slc_compute *compute, const struct slc_vk *vk
 void slc_compute_dispatch(const struct slc_compute *compute, const struct slc_vk *vk,
                           VkCommandBuffer commands, uint32_t pass, uint32_t x, uint32_t y);
 
-/** The counts of workgroups are the first three words of the buffer `arguments`. */
-void slc_compute_dispatch_indirect(const struct slc_compute *compute, const struct slc_vk *vk,
-                                   VkCommandBuffer commands, uint32_t pass, VkBuffer arguments);
-
 /** The largest power of two up to `wanted` that a workgroup may have on the device; 128 on any. */
 uint32_t slc_compute_group_size(const struct slc_vk *vk, uint32_t wanted);
 

@@ -77,11 +77,6 @@ void main()
             listQuad(quad, flags, listed + before);
         listed += total;
     }
-    if (gl_LocalInvocationIndex > 0u)
-        return;
-    uint groups = sluiceScanGroups(listed);
-    scratch.words[0] = min(groups, SLUICE_SCAN_ROW);
-    scratch.words[1] = (groups + SLUICE_SCAN_ROW - 1u) / SLUICE_SCAN_ROW;
-    scratch.words[2] = 1u;
-    scratch.words[SLUICE_SCAN_SECTION_COUNT] = listed;
+    if (gl_LocalInvocationIndex == 0u)
+        scratch.words[SLUICE_SCAN_SECTION_COUNT] = listed;
 }

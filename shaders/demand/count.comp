@@ -17,13 +17,9 @@ void sumKeys(uint section)
     atomicAdd(keySums[SLUICE_SCAN_KEYS], 1u);
 }
 
-void main()
+void countGroup(uint scanGroup, uint sectionCount, uint groups)
 {
-    uint at = gl_LocalInvocationIndex, scanGroup = sluiceScanGroup();
-    uint sectionCount = scratch.words[SLUICE_SCAN_SECTION_COUNT];
-    uint groups = sluiceScanGroups(sectionCount);
-    if (scanGroup >= groups)
-        return;
+    uint at = gl_LocalInvocationIndex;
     if (at < SLUICE_SCAN_SUMS)
         keySums[at] = 0u;
     uint index = scanGroup * SLUICE_SCAN_GROUP_SECTIONS + at / SLUICE_SCAN_PARTS;
@@ -38,4 +34,13 @@ void main()
     barrier();
     if (at < SLUICE_SCAN_SUMS)
         scratch.words[params.firstSum + at * groups + scanGroup] = keySums[at];
+    barrier(); /* the next group may begin */
+}
+
+void main()
+{
+    uint sectionCount = scratch.words[SLUICE_SCAN_SECTION_COUNT];
+    uint groups = sluiceScanGroups(sectionCount);
+    for (uint i = gl_WorkGroupID.x; i < groups; i += gl_NumWorkGroups.x)
+        countGroup(i, sectionCount, groups);
 }

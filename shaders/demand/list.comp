@@ -102,13 +102,9 @@ void postpone(uint section)
     atomicOr(postponed.words[id / 32u], 1u << id % 32u);
 }
 
-void main()
+void listGroup(uint scanGroup, uint sectionCount, uint groups)
 {
-    uint at = gl_LocalInvocationIndex, scanGroup = sluiceScanGroup();
-    uint sectionCount = scratch.words[SLUICE_SCAN_SECTION_COUNT];
-    uint groups = sluiceScanGroups(sectionCount);
-    if (scanGroup >= groups)
-        return;
+    uint at = gl_LocalInvocationIndex;
     uint index = scanGroup * SLUICE_SCAN_GROUP_SECTIONS + at / SLUICE_SCAN_PARTS;
     bool listed = index < sectionCount;
     uint entry = listed ? scratch.words[SLUICE_SCAN_LIST + index] : 0u;
@@ -133,4 +129,13 @@ void main()
     }
     if (at < SLUICE_SCAN_GROUP_SECTIONS && listedCounts[at] < totals[at])
         postpone(at);
+    barrier(); /* the next group may begin */
+}
+
+void main()
+{
+    uint sectionCount = scratch.words[SLUICE_SCAN_SECTION_COUNT];
+    uint groups = sluiceScanGroups(sectionCount);
+    for (uint i = gl_WorkGroupID.x; i < groups; i += gl_NumWorkGroups.x)
+        listGroup(i, sectionCount, groups);
 }

@@ -13,7 +13,7 @@ layout(std430, binding = 3) readonly buffer Patches { uvec2 patches[]; } list;
 
 void main()
 {
-    uint row = gl_WorkGroupID.y * SLUICE_SCAN_ROW + gl_WorkGroupID.x;
+    uint row = gl_WorkGroupID.y * SLUICE_PATCH_ROW + gl_WorkGroupID.x;
     uint index = row * SLUICE_PATCH_GROUP_SIZE + gl_LocalInvocationIndex;
     if (index >= params.count)
         return;

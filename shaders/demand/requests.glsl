@@ -14,11 +14,6 @@ shared uint entries[SLUICE_SCAN_GROUP_SECTIONS]; /* as listed */
 shared uint counts[SLUICE_SCAN_GROUP_SIZE];      /* of parts */
 shared uint totals[SLUICE_SCAN_GROUP_SECTIONS];  /* of sections; 0 beyond the last */
 
-uint sluiceScanGroup()
-{
-    return gl_WorkGroupID.y * SLUICE_SCAN_ROW + gl_WorkGroupID.x;
-}
-
 uint sluiceCountBits(uvec4 words)
 {
     ivec4 counts = bitCount(words);

@@ -11,7 +11,7 @@ layout(std430, binding = 1) writeonly buffer Readback { uint words[]; } readback
 
 void main()
 {
-    uint row = gl_WorkGroupID.y * SLUICE_SCAN_ROW + gl_WorkGroupID.x;
+    uint row = gl_WorkGroupID.y * SLUICE_PATCH_ROW + gl_WorkGroupID.x;
     uint block = row * SLUICE_PATCH_GROUP_SIZE + gl_LocalInvocationIndex;
     if (block >= params.count)
         return;

@@ -20,17 +20,19 @@
 #define SLUICE_SCAN_KEYS 32        /* SLUICE_DEMAND_RANKS, twice */
 /* Per group: requests of each key, then sections that had any. */
 #define SLUICE_SCAN_SUMS 33
-/* Workgroups in a row of a dispatch; what every device can do is just below the double. */
-#define SLUICE_SCAN_ROW 32768
+/* Workgroups of count.comp and list.comp, that share the groups of sections. As many every time:
+ * a device waits longer for the arguments of an indirect dispatch than these take to find that there
+ * is nothing to do. */
+#define SLUICE_SCAN_WORKGROUPS 128
 /* Sizes of the one workgroup of compact.comp and of place.comp, at most: specialization constant 0,
  * a power of two. */
 #define SLUICE_SCAN_COMPACT_SIZE 256
 #define SLUICE_SCAN_PLACE_SIZE 1024
 
-/* Words at the start of the scratch buffer: arguments of indirect dispatches, and how many sections
- * are listed. The list follows: section | key << SLUICE_SCAN_KEY_SHIFT. Then the sums. */
-#define SLUICE_SCAN_SECTION_COUNT 3
-#define SLUICE_SCAN_LIST 4
+/* Words at the start of the scratch buffer: how many sections are listed. The list follows: section
+ * | key << SLUICE_SCAN_KEY_SHIFT. Then the sums. */
+#define SLUICE_SCAN_SECTION_COUNT 0
+#define SLUICE_SCAN_LIST 1
 #define SLUICE_SCAN_KEY_SHIFT 27
 
 struct SluiceDemandScanParams {
@@ -43,6 +45,8 @@ SLUICE_SHARED_SIZE(struct SluiceDemandScanParams, 16)
 
 /* Changes of the page table: each names a word, no word twice. */
 #define SLUICE_PATCH_GROUP_SIZE 128
+/* Workgroups in a row of a dispatch; what every device can do is just below the double. */
+#define SLUICE_PATCH_ROW 32768
 #define SLUICE_PATCH_BUFFER_SHIFT 30
 #define SLUICE_PATCH_DIRECTORY 0
 #define SLUICE_PATCH_BLOCKS 1
