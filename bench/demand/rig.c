@@ -206,6 +206,7 @@ bool rig_begin(struct rig *rig, uint32_t kind)
     slot->start = clock_seconds();
     if (!record(rig, slot) || !submit(rig, slot))
         return false;
+    slot->submitted = clock_seconds();
     rig->begun++;
     return true;
 }
@@ -213,11 +214,22 @@ bool rig_begin(struct rig *rig, uint32_t kind)
 bool rig_end(struct rig *rig, struct rig_outcome *outcome)
 {
     struct rig_slot *slot = &rig->slots[rig->ended % RIG_SLOTS];
-    if (!check(sluiceProcessDemandRequests(rig->loader, &slot->launch, UINT64_MAX,
-                                           &outcome->requests, &outcome->ticket),
+    VkSemaphoreWaitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                .semaphoreCount = 1,
+                                .pSemaphores = &slot->launch.semaphore,
+                                .pValues = &slot->launch.signalValue};
+    double start = clock_seconds();
+    if (!gpu_check(vkWaitSemaphores(rig->bench->gpu.device, &wait, UINT64_MAX), "vkWaitSemaphores"))
+        return false;
+    double waited = clock_seconds();
+    if (!check(sluiceProcessDemandRequests(rig->loader, &slot->launch, 0, &outcome->requests,
+                                           &outcome->ticket),
                "sluiceProcessDemandRequests"))
         return false;
     rig->ended++;
+    outcome->host_parts[0] = slot->submitted - slot->start;
+    outcome->host_parts[1] = waited - start;
+    outcome->host_parts[2] = clock_seconds() - waited;
     outcome->gpu_seconds = NAN;
     if (slot->kind != DEMAND_BENCH_NOTHING)
         outcome->gpu_seconds =

@@ -32,7 +32,7 @@ struct rig_slot {
     uint64_t generation;
     SluiceDemandLaunch launch;
     uint32_t kind;
-    double start;
+    double start, submitted;
 };
 
 struct rig {
@@ -76,9 +76,10 @@ void rig_destroy_plain(struct rig *rig);
 struct rig_outcome {
     SluiceDemandRequests requests;
     SluiceDemandTicket ticket;
-    double gpu_seconds;  ///< of the dispatch
-    double gpu_parts[2]; ///< of prepare and of end
-    uint32_t missing;    ///< samples; only while params.counting
+    double gpu_seconds;   ///< of the dispatch
+    double gpu_parts[2];  ///< of prepare and of end
+    double host_parts[3]; ///< from prepare to submission; wait; process
+    uint32_t missing;     ///< samples; only while params.counting
 };
 
 /** A launch from prepare to submission; RIG_SLOTS of them may be under way. DEMAND_BENCH_NOTHING
