@@ -268,7 +268,8 @@ typedef struct SluiceStoreImageSourceCreateInfo {
 SLUICE_API SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
                                                      SluiceImageSource **pSource);
 
-/** What a file says of itself. */
+/** What a file says of itself. The enumerations hold values that are listed above: what a newer
+ *  minor version may add reads as UNDEFINED, DATA or CLAMP_TO_EDGE. */
 typedef struct SluiceStoreInfo {
     uint32_t versionMajor, versionMinor;
     SluiceStoreLayout layout;
