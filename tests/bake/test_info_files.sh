@@ -28,6 +28,13 @@ run 0 a.store b.store --json && [ "$(grep -c '^{.*}$' out)" -eq 2 ] &&
 for line in open("out"): json.loads(line)'; }
 fact json_has_an_object_per_file
 
+cp a.png $'\e]0;x\a\n\xff \xc3\xbc.png' && "$bake" $'\e]0;x\a\n\xff \xc3\xbc.png' -o odd.store >out 2>err &&
+    run 0 odd.store && ! LC_ALL=C grep -q $'[\e\a\xff]' out && [ "$(grep -c 'made from' out)" -eq 1 ] &&
+    LC_ALL=C grep -qF '\x1b]0;x\x07\n\xff '$'\xc3\xbc.png, ' out && run 0 odd.store --json && [ "$(grep -c . out)" -eq 1 ] &&
+    { ! command -v python3 >/dev/null || python3 -c 'import json
+assert json.loads(open("out", "rb").read())["sourceName"] == "\x1b]0;x\x07\n\ufffd \xfc.png"'; }
+fact names_of_sources_do_not_reach_the_terminal_raw
+
 run 0 a.store --png whole.png && "$compare" a.png whole.png
 fact level_0_is_the_picture
 

@@ -2,6 +2,8 @@
 
 #include "files.h"
 
+#include "text.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -12,7 +14,7 @@
 
 static bool fail(const char *path, const char *why)
 {
-    fprintf(stderr, "sluice-bake: %s: %s\n", path, why);
+    text_say("sluice-bake: %s: %s", path, why);
     return false;
 }
 
@@ -132,8 +134,8 @@ static bool outputs_differ(const struct files *files)
 {
     for (size_t i = 1; i < files->count; i++)
         if (strcmp(files->files[i - 1].output, files->files[i].output) == 0) {
-            fprintf(stderr, "sluice-bake: %s and %s would both become %s\n",
-                    files->files[i - 1].input, files->files[i].input, files->files[i].output);
+            text_say("sluice-bake: %s and %s would both become %s", files->files[i - 1].input,
+                     files->files[i].input, files->files[i].output);
             return false;
         }
     return true;

@@ -4,6 +4,7 @@
 #include "report.h"
 #include "verify.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };

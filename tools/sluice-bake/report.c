@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include "text.h"
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -18,21 +20,6 @@ static const char *reason(const struct outcome *outcome)
     if (!outcome->is_done)
         return "it was not begun";
     return outcome->message[0] ? outcome->message : sluiceResultString(outcome->result);
-}
-
-void print_json_string(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text; text++) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\')
-            fprintf(out, "\\%c", c);
-        else if (c < 0x20)
-            fprintf(out, "\\u%04x", c);
-        else
-            fputc(c, out);
-    }
-    fputc('"', out);
 }
 
 /* In the largest unit that leaves three digits. */
@@ -55,23 +42,24 @@ static void print_row(const struct file *file, const struct outcome *outcome)
         snprintf(size, sizeof size, "%ux%u", r->width, r->height);
     if (r->outputSize)
         size_text(r->outputSize, out);
-    printf("%-9s  %13s  %-20s  %9s  %9s  %s\n", names[status_of(outcome)], size,
-           r->width ? sluiceFormatString(r->format) : "", size_text(file->size, in), out,
-           file->output);
+    printf("%-9s  %13s  %-20s  %9s  %9s  ", names[status_of(outcome)], size,
+           r->width ? sluiceFormatString(r->format) : "", size_text(file->size, in), out);
+    text_write(stdout, file->output);
+    putchar('\n');
 }
 
 static void print_object(const struct file *file, const struct outcome *outcome)
 {
     const SluiceBakeReport *r = &outcome->report;
     printf("{\"input\": ");
-    print_json_string(stdout, file->input);
+    text_write_json(stdout, file->input);
     printf(", \"output\": ");
-    print_json_string(stdout, file->output);
+    text_write_json(stdout, file->output);
     printf(", \"status\": \"%s\", \"result\": \"%s\"", names[status_of(outcome)],
            sluiceResultString(outcome->result));
     if (status_of(outcome) == FAILED) {
         printf(", \"error\": ");
-        print_json_string(stdout, reason(outcome));
+        text_write_json(stdout, reason(outcome));
     }
     printf(", \"width\": %u, \"height\": %u, \"levels\": %u, \"layers\": %u, \"format\": \"%s\"",
            r->width, r->height, r->mipLevelCount, r->arrayLayerCount,
@@ -100,12 +88,12 @@ static void print_remarks(const struct file *file, const struct outcome *outcome
     const char *why = reason(outcome);
     if (status_of(outcome) != FAILED) {
         if (outcome->report.replacedTexelCount)
-            fprintf(stderr, "sluice-bake: %s: %" PRIu64 " texels held no finite number\n",
-                    file->input, outcome->report.replacedTexelCount);
+            text_say("sluice-bake: %s: %" PRIu64 " texels held no finite number", file->input,
+                     outcome->report.replacedTexelCount);
     } else if (strncmp(why, file->input, strlen(file->input)) == 0) {
-        fprintf(stderr, "sluice-bake: %s\n", why);
+        text_say("sluice-bake: %s", why);
     } else {
-        fprintf(stderr, "sluice-bake: %s: %s\n", file->input, why);
+        text_say("sluice-bake: %s: %s", file->input, why);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "run.h"
 
 #include "progress.h"
+#include "text.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -51,7 +52,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
     if (severity == SLUICE_LOG_ERROR && is_own && !task->outcome->message[0])
         snprintf(task->outcome->message, sizeof task->outcome->message, "%s", message);
     else if (severity != SLUICE_LOG_INFO && !is_own)
-        fprintf(stderr, "sluice-bake: %s\n", message);
+        text_say("sluice-bake: %s", message);
 }
 
 static bool on_progress(void *user, uint64_t done, uint64_t total)
@@ -161,7 +162,7 @@ bool bake_files(const struct options *options, const struct files *files, struct
         .threadCount = options->threads, .maxMemory = options->memory, .log = {NULL, on_log}};
     SluiceResult result = sluiceCreateBaker(&info, &run.baker);
     if (result != SLUICE_SUCCESS) {
-        fprintf(stderr, "sluice-bake: %s\n", sluiceResultString(result));
+        text_say("sluice-bake: %s", sluiceResultString(result));
         return false;
     }
     pthread_mutex_init(&run.mutex, NULL);

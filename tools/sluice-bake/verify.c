@@ -1,6 +1,6 @@
 #include "verify.h"
 
-#include "report.h"
+#include "text.h"
 
 #include <sluice/store.h>
 
@@ -10,17 +10,27 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
     if (severity == SLUICE_LOG_ERROR)
-        fprintf(stderr, "sluice-bake: %s\n", message);
+        text_say("sluice-bake: %s", message);
 }
 
 static void print_object(const char *path, SluiceResult result, const SluiceStoreReport *report)
 {
     printf("{\"file\": ");
-    print_json_string(stdout, path);
+    text_write_json(stdout, path);
     printf(", \"status\": \"%s\", \"result\": \"%s\", \"tiles\": %" PRIu64 ", \"defects\": %" PRIu64
            ", \"stored_size\": %" PRIu64 ", \"texel_size\": %" PRIu64 "}\n",
            result == SLUICE_SUCCESS ? "whole" : "damaged", sluiceResultString(result),
            report->tileCount, report->defectCount, report->storedSize, report->texelSize);
+}
+
+static void print_row(const char *path, SluiceResult result, const SluiceStoreReport *report)
+{
+    bool is_whole = result == SLUICE_SUCCESS;
+    printf("%s  %9" PRIu64 " tiles  ", is_whole ? "whole  " : "damaged", report->tileCount);
+    text_write(stdout, path);
+    if (!is_whole)
+        printf(": %" PRIu64 " cannot be read; %s", report->defectCount, sluiceResultString(result));
+    putchar('\n');
 }
 
 static bool verify(const char *path, bool json)
@@ -30,11 +40,8 @@ static bool verify(const char *path, bool json)
     SluiceResult result = sluiceVerifyStore(&info, &report);
     if (json)
         print_object(path, result, &report);
-    else if (result == SLUICE_SUCCESS)
-        printf("whole    %9" PRIu64 " tiles  %s\n", report.tileCount, path);
     else
-        printf("damaged  %9" PRIu64 " tiles  %s: %" PRIu64 " cannot be read; %s\n",
-               report.tileCount, path, report.defectCount, sluiceResultString(result));
+        print_row(path, result, &report);
     return result == SLUICE_SUCCESS;
 }
 

@@ -1,5 +1,7 @@
 #include "open_file.h"
 
+#include "text.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +23,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
     bool *has_spoken = user;
     if (severity == SLUICE_LOG_INFO)
         return;
-    fprintf(stderr, "sluice-info: %s\n", message);
+    text_say("sluice-info: %s", message);
     *has_spoken = true;
 }
 
@@ -33,7 +35,7 @@ static bool read_start(const char *path, char bytes[12])
         (void)!fread(bytes, 1, 12, file);
     bool failed = !file || ferror(file);
     if (failed)
-        fprintf(stderr, "sluice-info: %s: %s\n", path, strerror(errno));
+        text_say("sluice-info: %s: %s", path, strerror(errno));
     if (file)
         fclose(file);
     return !failed;
@@ -100,7 +102,7 @@ bool open_texture_file(struct texture_file *file, const char *path)
     if (result == SLUICE_SUCCESS)
         return true;
     if (!has_spoken)
-        fprintf(stderr, "sluice-info: %s: %s\n", path, sluiceResultString(result));
+        text_say("sluice-info: %s: %s", path, sluiceResultString(result));
     close_texture_file(file);
     return false;
 }

@@ -1,6 +1,7 @@
 #include "show.h"
 
 #include "open_file.h"
+#include "text.h"
 #include "to_bytes.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@
 
 static bool fail(const char *path, const char *why)
 {
-    fprintf(stderr, "sluice-info: %s: %s\n", path, why);
+    text_say("sluice-info: %s: %s", path, why);
     return false;
 }
 
