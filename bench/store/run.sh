@@ -119,11 +119,11 @@ rgba8.zstd3.zstd_alone|... ZSTD_decompress of the same texels|
 rgba8.zstd3.of_zstd_alone|... the store, of that|0.85 at least
 rgba8.zstd3.written|... written, picture in memory|
 rgba8.zstd3.size|... size of the file|
-rgba8.raw.tiles|RGBA8, uncompressed, always checked|
+rgba8.raw.tiles|RGBA8, uncompressed, each tile checked once|
 rgba8.raw.pread_alone|... pread of 64 KiB|
-rgba8.raw.of_pread_alone|... the store, of that|
-rgba8.raw.checked_once.tiles|RGBA8, uncompressed, checked once|
-rgba8.raw.checked_once.of_pread_alone|... of pread of 64 KiB|0.9 at least
+rgba8.raw.of_pread_alone|... the store, of that|0.9 at least
+rgba8.raw.checked_always.tiles|RGBA8, uncompressed, checked at each read|
+rgba8.raw.checked_always.of_pread_alone|... of pread of 64 KiB|
 rgba16f.zstd3.tiles|RGBA16F, zstd 3|
 rgba16f.zstd3.openexr_zip|... OpenEXR, ZIP, half, tiles of the same shape|
 rgba16f.zstd3.of_openexr_zip|... the store, of that|4 at least

@@ -53,7 +53,7 @@ static void figure(const char *name, double value, const char *unit)
 /* Whole tiles of all pictures, and the ways to get at them. */
 struct picture {
     SluiceImageSource *store;
-    SluiceImageSource *other; ///< NULL, OpenEXR, or the store with checkRawTilesOnce
+    SluiceImageSource *other; ///< NULL, OpenEXR, or the store with alwaysCheckRawTiles
     SluiceImageRegion *tiles;
     size_t tile_count;
     int file;              ///< of the store
@@ -245,8 +245,8 @@ static void measure_uncompressed(const char *folder, SluiceImageSource **sources
     figure("rgba8.raw.tiles", tiles / seconds[0], "tiles/s");
     figure("rgba8.raw.pread_alone", tiles / seconds[1], "tiles/s");
     figure("rgba8.raw.of_pread_alone", seconds[1] / seconds[0], "ratio");
-    figure("rgba8.raw.checked_once.tiles", tiles / seconds[2], "tiles/s");
-    figure("rgba8.raw.checked_once.of_pread_alone", seconds[1] / seconds[2], "ratio");
+    figure("rgba8.raw.checked_always.tiles", tiles / seconds[2], "tiles/s");
+    figure("rgba8.raw.checked_always.of_pread_alone", seconds[1] / seconds[2], "ratio");
     for (size_t n = 0; n < count; n++)
         close_tiles(&pictures[n]);
     free(pictures);
