@@ -132,6 +132,7 @@ open_and_first_tile.median|opening and the first tile|100 at most
 open_and_first_tile.least|... the least|
 open_and_first_tile.shared_pool.median|... with a pool that others use, too|100 at most
 open_and_first_tile.shared_pool.least|... the least|
+open_and_first_tile.zstd_alone.median|... ZSTD_decompress alone, of the same tiles|
 END
 }
 
