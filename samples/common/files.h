@@ -8,11 +8,15 @@
 /** Makes a folder and those above it. Says on stderr why it failed. */
 bool files_make_folders(const char *path);
 
+/** Makes the folders above a file. errno says why it failed. */
+bool files_make_folders_of(const char *path);
+
 /** A growing list of paths. Zeroed is empty. */
 struct file_list {
     char **paths; ///< owned
     size_t count, capacity;
     size_t unreadable_count; ///< files and folders that were named or found and are not in the list
+    const char *speaker;     ///< stands in front of messages; NULL: ""
 };
 
 /** Whether a file's name ends in one of `suffixes`, which are separated by '|'; in any case. */

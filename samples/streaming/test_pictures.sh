@@ -88,6 +88,11 @@ walk 0 --images made absent.png && grep -q '^made/short.store: left out' err && 
     [ "$(figure pictures)" = 2 ] && [ "$(figure pictures_left_out)" = 2 ]
 fact damaged_stores_and_missing_files_are_named
 
+ln -s a.png in/twin.png
+walk 0 --images in/a.png in/twin.png in/a.png --cache twins && grep -q '^1 pictures baked' err &&
+    [ "$(figure pictures)" = 3 ] && [ "$(figure pictures_left_out)" = 0 ] && rm in/twin.png
+fact a_picture_that_is_named_twice_is_baked_once
+
 walk 1 --images in/broken.jpg && grep -q 'there is no picture to hang' err
 fact without_a_good_picture_there_is_no_walk
 

@@ -79,6 +79,12 @@ run 1 in -o other.d && grep -q 'in/a.*would both become other.d/a.store' err
 fact two_pictures_for_one_file_are_refused
 rm in/a.tif
 
+ln -s absent in/gone.png && mkfifo in/pipe.png && ln -s .. in/sub/circle
+run 1 in -o out.d --wrap repeat && grep -q '^0 baked, 5 unchanged, 0 failed' out && [ "$(count . err)" -eq 1 ] &&
+    grep -q 'in/gone.png: No such file' err
+fact what_a_folder_holds_and_nobody_can_read_is_named_and_the_others_are_baked
+rm in/gone.png in/pipe.png in/sub/circle
+
 run 0 in -o one.d --threads 1 --force && run 0 in -o two.d --threads 7 --force &&
     [ "$(find one.d -type f | wc -l)" -eq 5 ] && run 0 --verify two.d/*.store two.d/*/*.store
 fact any_number_of_threads_will_do

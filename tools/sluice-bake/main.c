@@ -1,6 +1,8 @@
 /* Makes tile stores of pictures. */
 #define _XOPEN_SOURCE 700
 
+#include "find.h"
+#include "options.h"
 #include "report.h"
 #include "verify.h"
 
@@ -9,20 +11,38 @@
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };
 
+static struct bake_job *make_jobs(const struct options *options, const struct files *files)
+{
+    struct bake_job *jobs = calloc(files->count ? files->count : 1, sizeof *jobs);
+    if (!jobs)
+        fprintf(stderr, "sluice-bake: out of memory\n");
+    for (size_t i = 0; i < files->count && jobs; i++)
+        jobs[i] = (struct bake_job){.input = files->files[i].input,
+                                    .output = files->files[i].output,
+                                    .size = files->files[i].size,
+                                    .settings = options->settings,
+                                    .force = options->force};
+    return jobs;
+}
+
 static int bake(const struct options *options)
 {
     struct files files;
+    struct bake_conditions conditions = {.threads = options->threads,
+                                         .memory = options->memory,
+                                         .quiet = true,
+                                         .speaker = "sluice-bake: "};
     int status = FAILED;
     if (!find_files(&files, options->inputs, options->input_count, options->output)) {
         free_files(&files);
         return FAILED;
     }
-    struct outcome *outcomes = calloc(files.count ? files.count : 1, sizeof *outcomes);
-    if (!outcomes)
-        fprintf(stderr, "sluice-bake: out of memory\n");
-    else if (bake_files(options, &files, outcomes))
-        status = print_outcomes(&files, outcomes, options->json) ? FAILED : OK;
-    free(outcomes);
+    struct bake_job *jobs = make_jobs(options, &files);
+    if (jobs && bake_jobs_run(jobs, files.count, &conditions))
+        status = print_outcomes(jobs, files.count, options->json) ? FAILED : OK;
+    if (files.unreadable_count > 0)
+        status = FAILED;
+    free(jobs);
     free_files(&files);
     return status;
 }
