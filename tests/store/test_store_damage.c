@@ -57,6 +57,8 @@ static void flip_bits(uint32_t compression, int count)
         fputc(victim.bytes[at], file);
     }
     fclose(file);
+    print_message("# %d bits flipped: %u errors, %u where nobody reads\n", count,
+                  (unsigned)count - harmless, (unsigned)harmless);
     assert_true(compression == 0 ? harmless < (uint32_t)count / 4 : harmless == 0);
     CHECK_OK(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL));
     naive_store_finish(&store);
