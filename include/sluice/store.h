@@ -152,7 +152,8 @@ typedef struct SluiceStoreWriter SluiceStoreWriter;
  *
  * Errors: NULL_POINTER; INVALID_ARGUMENT for values outside their ranges; UNSUPPORTED for unknown
  *         formats; FILE_NOT_FOUND if the folder is not there; IO, also if another writer is at
- *         work; OUT_OF_HOST_MEMORY. Thread safety: any thread.
+ *         work, or what is under the name is no regular file; OUT_OF_HOST_MEMORY. Thread safety:
+ * any thread.
  */
 SLUICE_API SluiceResult sluiceCreateStoreWriter(const SluiceStoreCreateInfo *pInfo,
                                                 SluiceStoreWriter **pWriter);

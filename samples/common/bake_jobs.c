@@ -27,6 +27,7 @@ struct run {
     pthread_mutex_t mutex;
     pthread_cond_t ended;
     size_t ended_count;
+    pthread_mutex_t log_mutex; ///< around the messages of jobs
 };
 
 /** A picture on its thread. */
@@ -36,24 +37,38 @@ struct task {
     uint64_t counted; ///< bytes that are in `done`
 };
 
-static _Thread_local const struct task *current;
-
-static bool begins_with(const char *text, const char *start)
+static bool is_of_file(const char *message, const char *path, const char *ending)
 {
-    return strncmp(text, start, strlen(start)) == 0;
+    size_t size = strlen(path), ending_size = strlen(ending);
+    return strncmp(message, path, size) == 0 && strncmp(message + size, ending, ending_size) == 0;
 }
 
-/* Messages begin with a file's name. On a thread that waits they may be of another picture that it
- * helps. */
+/* Messages begin with a file's name. They come from any thread, because each helps all pictures. */
+static struct bake_job *job_of(const struct run *run, const char *message)
+{
+    for (size_t i = 0; i < run->count; i++) {
+        const struct bake_job *job = &run->jobs[i];
+        if (is_of_file(message, job->input, ":") || is_of_file(message, job->output, ":") ||
+            is_of_file(message, job->output, ".part:"))
+            return &run->jobs[i];
+    }
+    return NULL;
+}
+
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
-    const struct bake_conditions *conditions = user;
-    struct bake_job *job = current ? current->job : NULL;
-    bool is_own = job && (begins_with(message, job->input) || begins_with(message, job->output));
-    if (severity == SLUICE_LOG_ERROR && is_own && !job->message[0])
+    struct run *run = user;
+    if (severity == SLUICE_LOG_INFO)
+        return;
+    struct bake_job *job = job_of(run, message);
+    if (!job) {
+        text_say("%s%s", run->conditions->speaker, message);
+        return;
+    }
+    pthread_mutex_lock(&run->log_mutex);
+    if (severity == SLUICE_LOG_ERROR && !job->message[0])
         snprintf(job->message, sizeof job->message, "%s", message);
-    else if (severity != SLUICE_LOG_INFO && !is_own)
-        text_say("%s%s", conditions->speaker, message);
+    pthread_mutex_unlock(&run->log_mutex);
 }
 
 static bool on_progress(void *user, uint64_t done, uint64_t total)
@@ -78,7 +93,6 @@ static void bake(struct run *run, struct bake_job *job)
                            .force = job->force,
                            .pUserData = &task,
                            .pfnProgress = on_progress};
-    current = &task;
     if (files_make_folders_of(job->output)) {
         job->result = sluiceBakeFile(run->baker, &info, &job->report);
     } else {
@@ -86,7 +100,6 @@ static void bake(struct run *run, struct bake_job *job)
         snprintf(job->message, sizeof job->message, "%s: its folder cannot be made: %s",
                  job->output, strerror(errno));
     }
-    current = NULL;
     job->is_done = true;
     atomic_fetch_add(&run->done, job->size > task.counted ? job->size - task.counted : 0);
 }
@@ -166,19 +179,20 @@ static bool start(struct run *run)
 bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_conditions *conditions)
 {
     struct run run = {.conditions = conditions, .jobs = jobs, .count = count};
-    SluiceBakerCreateInfo info = {.threadCount = conditions->threads,
-                                  .maxMemory = conditions->memory,
-                                  .log = {(void *)conditions, on_log}};
+    SluiceBakerCreateInfo info = {
+        .threadCount = conditions->threads, .maxMemory = conditions->memory, .log = {&run, on_log}};
     SluiceResult result = sluiceCreateBaker(&info, &run.baker);
     if (result != SLUICE_SUCCESS) {
         text_say("%spictures cannot be baked: %s", conditions->speaker, sluiceResultString(result));
         return false;
     }
+    pthread_mutex_init(&run.log_mutex, NULL);
     pthread_mutex_init(&run.mutex, NULL);
     pthread_cond_init(&run.ended, NULL);
     bool done = start(&run);
     pthread_cond_destroy(&run.ended);
     pthread_mutex_destroy(&run.mutex);
+    pthread_mutex_destroy(&run.log_mutex);
     sluiceDestroyBaker(run.baker);
     return done;
 }

@@ -51,6 +51,10 @@ run 1 a.store --level 9 --png no.png && grep -q 'a.store: .*level' err && [ ! -e
     run 1 a.store --tile 3,0 --png no.png && grep -q 'a.store: .*tile' err && [ ! -e no.png ]
 fact levels_and_tiles_that_are_not_there_are_errors
 
+cp a.store broken.store && printf 'XXXX' | dd of=broken.store bs=1 seek=9000 conv=notrunc 2>dd.log
+run 1 broken.store --png no.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'broken.store: at [0-9]*: ' err && [ ! -e no.png ]
+fact a_tile_that_is_damaged_is_an_error
+
 echo nothing >text
 : >empty
 run 1 a.store text empty absent && [ "$(grep -c . err)" -eq 3 ] && grep -q '300 x 200' out

@@ -102,7 +102,7 @@ fact wrong_usage_is_refused_before_anything_is_done
 run 0 --help && grep -q 'usage: sluice-bake' out && grep -q '(box)' out && grep -q '(1G)' out
 fact help_gives_defaults
 
-run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*MiB' err && [ ! -e small.store ]
+run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*the limit is 1024 KiB' err && [ ! -e small.store ]
 fact too_little_memory_is_an_error_that_says_so
 
 end_facts

@@ -6,6 +6,7 @@
 #include "report.h"
 #include "verify.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -51,6 +52,7 @@ int main(int argc, char **argv)
 {
     struct options options;
     int status = OK;
+    signal(SIGXFSZ, SIG_IGN);       /* files that may not grow are an error like a full disk */
     setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     if (!parse_options(&options, argc, argv))
         return WRONG_USAGE;

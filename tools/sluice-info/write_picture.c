@@ -87,11 +87,11 @@ static bool write_region(const struct texture_file *file, const char *in,
     } else {
         SluiceResult result = sluiceReadImageRegion(
             file->source, region, texels, (size_t)region->width * sluiceFormatTexelSize(format));
-        if (result != SLUICE_SUCCESS) {
-            fail(in, sluiceResultString(result));
-        } else {
+        if (result == SLUICE_SUCCESS) {
             texels_to_bytes(format, texels, rgba, count);
             done = write_png(out, rgba, region->width, region->height);
+        } else if (!file->has_spoken) {
+            fail(in, sluiceResultString(result));
         }
     }
     free(texels);
