@@ -56,7 +56,7 @@ bool files_make_folders_of(const char *path)
     return !slash || slash == path || make_folders(path, (size_t)(slash - path));
 }
 
-static bool add_path(const char *path, struct file_list *list)
+bool files_add(const char *path, struct file_list *list)
 {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity ? 2 * list->capacity : 64;
@@ -111,7 +111,7 @@ static bool collect_entry(const char *folder, const char *name, const char *suff
     else if (files_has_suffix(name, suffixes) && stat(path, &info) != 0)
         enough_memory = unreadable(path, list);
     else if (files_has_suffix(name, suffixes) && S_ISREG(info.st_mode))
-        enough_memory = add_path(path, list);
+        enough_memory = files_add(path, list);
     free(path);
     return enough_memory;
 }
@@ -137,7 +137,7 @@ bool files_collect(const char *path, const char *suffixes, struct file_list *lis
     struct stat info;
     if (stat(path, &info) != 0)
         return unreadable(path, list);
-    return S_ISDIR(info.st_mode) ? collect_folder(path, suffixes, list) : add_path(path, list);
+    return S_ISDIR(info.st_mode) ? collect_folder(path, suffixes, list) : files_add(path, list);
 }
 
 void files_finish(struct file_list *list)

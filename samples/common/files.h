@@ -28,6 +28,8 @@ bool files_has_suffix(const char *path, const char *suffixes);
  * counts it in `unreadable_count`; false only when out of memory.
  */
 bool files_collect(const char *path, const char *suffixes, struct file_list *list);
+/** Adds a file without looking at it. False when out of memory. */
+bool files_add(const char *path, struct file_list *list);
 void files_finish(struct file_list *list);
 
 #endif /* SAMPLES_COMMON_FILES_H */

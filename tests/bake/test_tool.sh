@@ -51,6 +51,10 @@ truncate -s 100 out.d/a.store
 run 1 --verify out.d/a.store out.d/d.store && grep -q '^whole .*d.store' out && grep -q '^damaged .*a.store' out
 fact verify_finds_a_damaged_file
 
+run 1 --verify out.d && [ "$(count '^whole' out)" -eq 4 ] && [ "$(count '^damaged .*out.d/a.store' out)" -eq 1 ] &&
+    mkdir none && run 1 --verify none && grep -q 'no store' err
+fact verify_looks_into_folders
+
 run 0 in -o out.d --wrap repeat && grep -q '^1 baked, 4 unchanged' out && run 0 --verify out.d/a.store
 fact a_damaged_store_is_baked_again
 

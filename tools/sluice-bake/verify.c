@@ -1,10 +1,15 @@
+#define _XOPEN_SOURCE 700
+
 #include "verify.h"
 
+#include "files.h"
 #include "text.h"
 
 #include <sluice/store.h>
 
 #include <inttypes.h>
+#include <stdio.h>
+#include <sys/stat.h>
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
@@ -45,10 +50,31 @@ static bool verify(const char *path, bool json)
     return result == SLUICE_SUCCESS;
 }
 
+/* A file whatever its name, and of folders all stores. */
+static bool collect(char **paths, int count, struct file_list *list)
+{
+    struct stat status;
+    bool enough_memory = true;
+    for (int i = 0; i < count && enough_memory; i++)
+        enough_memory = stat(paths[i], &status) == 0 && S_ISDIR(status.st_mode)
+                            ? files_collect(paths[i], SLUICE_STORE_EXTENSION, list)
+                            : files_add(paths[i], list);
+    if (!enough_memory)
+        fprintf(stderr, "sluice-bake: out of memory\n");
+    return enough_memory;
+}
+
 bool verify_files(char **paths, int count, bool json)
 {
-    bool all_are_whole = true;
-    for (int i = 0; i < count; i++)
-        all_are_whole = verify(paths[i], json) && all_are_whole;
+    struct file_list list = {.speaker = "sluice-bake: "};
+    bool all_are_whole = collect(paths, count, &list);
+    for (size_t i = 0; i < list.count; i++)
+        all_are_whole = verify(list.paths[i], json) && all_are_whole;
+    all_are_whole = all_are_whole && list.unreadable_count == 0;
+    if (list.count == 0 && list.unreadable_count == 0) {
+        fprintf(stderr, "sluice-bake: there is no store to verify\n");
+        all_are_whole = false;
+    }
+    files_finish(&list);
     return all_are_whole;
 }
