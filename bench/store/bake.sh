@@ -112,6 +112,11 @@ best() {
         END { print least }' "$work/runs"
 }
 
+# ratio NAME NAME: of two figures
+ratio() {
+    awk -v a="$1" -v b="$2" '{ value[$1] = $2 } END { printf "%.4g", value[a] / value[b] }' "$figures"
+}
+
 compare() {
     : >"$work/runs"
     say "making a picture of $size x $size texels"
@@ -129,6 +134,8 @@ compare() {
     done
     figure bake.sluice.size "$(stat -c %s "$work/picture.store")" bytes
     figure bake.maketx.size "$(stat -c %s "$work/picture.tx")" bytes
+    figure bake.times_as_fast "$(ratio bake.maketx.time bake.sluice.time)" ratio
+    figure bake.size_of_maketx "$(ratio bake.sluice.size bake.maketx.size)" ratio
     rm -f "$work"/picture.*
 }
 
@@ -136,7 +143,7 @@ measure_huge() {
     [ "$huge" -gt 0 ] || return 0
     : >"$work/runs"
     say "making a picture of $huge x $huge texels"
-    { vips crop "$picture" "$work/square.v" 0 0 2048 2048 &&
+    { vips thumbnail "$picture" "$work/square.v" 2048 --height 2048 --crop centre &&
         vips replicate "$work/square.v" \
             "$work/huge.tif[tile,tile-width=256,tile-height=256,compression=jpeg,Q=90,bigtiff]" \
             $((huge / 2048)) $((huge / 2048)); } >"$work/log" 2>&1 || die "$(tail -n 1 "$work/log")"
@@ -145,6 +152,7 @@ measure_huge() {
     figure huge.edge "$huge" texels
     figure huge.time "$(best huge 2)" s
     figure huge.memory "$(best huge 4)" KiB
+    figure huge.memory_in_mib "$(($(best huge 4) / 1024))" MiB
     rm -f "$work/square.v" "$work"/huge.*
 }
 

@@ -89,10 +89,12 @@ SluiceImageSource *open_picture(const char *path)
     return open_ppm(path);
 }
 
-SluiceImageSource *open_store(const char *path, SluiceStoreReadPool *pool, bool checks_once)
+SluiceImageSource *open_store(const char *path, SluiceStoreReadPool *pool, bool checks_always)
 {
-    SluiceStoreImageSourceCreateInfo create = {
-        .pPath = path, .log = log_to_stderr, .readPool = pool, .checkRawTilesOnce = checks_once};
+    SluiceStoreImageSourceCreateInfo create = {.pPath = path,
+                                               .log = log_to_stderr,
+                                               .readPool = pool,
+                                               .alwaysCheckRawTiles = checks_always};
     SluiceImageSource *source = NULL;
     must(sluiceCreateStoreImageSource(&create, &source), path);
     return source;

@@ -11,7 +11,7 @@ SluiceImageSource *open_picture(const char *path);
 /** Any OpenEXR file; as above. */
 SluiceImageSource *open_exr(const char *path, SluiceFormat format);
 /** `pool` may be NULL. */
-SluiceImageSource *open_store(const char *path, SluiceStoreReadPool *pool, bool checks_once);
+SluiceImageSource *open_store(const char *path, SluiceStoreReadPool *pool, bool checks_always);
 
 /** Every level of `source`. Ends the program on errors. */
 void write_store(const char *path, SluiceImageSource *source, uint32_t compression);

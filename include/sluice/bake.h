@@ -147,7 +147,8 @@ typedef struct SluiceBakeReport {
  * The file is complete under its name or not there. What an interrupted bake leaves behind, beside
  * it with ".part" added, the next one goes on with.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for values outside their ranges; FILE_NOT_FOUND, IO;
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for values outside their ranges, and if the output is the
+ *         input; FILE_NOT_FOUND, IO;
  *         CORRUPT_DATA for files that no reader can make sense of, or that are cut off;
  *         UNSUPPORTED for pictures of more than four channels or of complex numbers, formats that
  *         cannot be encoded here; LIMIT_EXCEEDED if maxMemory does not do for the picture's width;

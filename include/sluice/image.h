@@ -98,7 +98,16 @@ typedef struct SluiceImageRegion {
 
 typedef struct SluiceImageSource SluiceImageSource;
 
-/** What an implementation offers. Every function is required. */
+/** The offset of what has none, or where nobody knows it. */
+#define SLUICE_UNKNOWN_OFFSET UINT64_MAX
+
+/** Where a read failed. */
+typedef struct SluiceImageFault {
+    const char *pName; ///< the source's, of an array the layer's; "" if it did not even tell that
+    uint64_t offset;   ///< bytes from the beginning of that file; or SLUICE_UNKNOWN_OFFSET
+} SluiceImageFault;
+
+/** What an implementation offers. Of the two ways to read one is enough; all else is required. */
 typedef struct SluiceImageSourceInterface {
     /** Opens the image if need be. Any thread. */
     SluiceResult (*pfnGetInfo)(SluiceImageSource *source, SluiceImageInfo *pInfo);
@@ -112,6 +121,13 @@ typedef struct SluiceImageSourceInterface {
                                   void *pTexels, size_t rowPitch);
     /** No call is under way. */
     void (*pfnDestroy)(SluiceImageSource *source);
+    /**
+     * NULL, or takes the place of pfnReadRegion: after an error `*pFault` is where. Before, it is
+     * the name that pfnGetInfo tells, and SLUICE_UNKNOWN_OFFSET.
+     */
+    SluiceResult (*pfnReadRegionLocated)(SluiceImageSource *source,
+                                         const SluiceImageRegion *pRegion, void *pTexels,
+                                         size_t rowPitch, SluiceImageFault *pFault);
 } SluiceImageSourceInterface;
 
 /** The first member of every implementation's own struct. */
@@ -131,6 +147,15 @@ SLUICE_API SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImag
 SLUICE_API SluiceResult sluiceReadImageRegion(SluiceImageSource *source,
                                               const SluiceImageRegion *pRegion, void *pTexels,
                                               size_t rowPitch);
+
+/**
+ * The same, and after an error `*pFault` is where: tile stores, DDS and KTX2 files know the offset.
+ * A source that wraps others passes them `pFault`. Its name lives as long as the source.
+ */
+SLUICE_API SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
+                                                     const SluiceImageRegion *pRegion,
+                                                     void *pTexels, size_t rowPitch,
+                                                     SluiceImageFault *pFault);
 
 /** NULL is allowed. No call may be under way. */
 SLUICE_API void sluiceDestroyImageSource(SluiceImageSource *source);

@@ -28,13 +28,15 @@ typedef struct SluiceTileRetryPolicy {
 /** An attempt at a read that failed. Pointers are valid during the call. */
 typedef struct SluiceTileReadFailure {
     SluiceImageSource *source;
-    const char *pName;        ///< the source's; "" if it did not even tell that
-    SluiceImageRegion region; ///< that failed; the source's log says where in a file that is
+    const char *pName; ///< the source's, of an array the layer's; "" if it did not even tell that
+    SluiceImageRegion region; ///< that failed
     SluiceResult result;
     uint32_t attempt; ///< from 1
     bool willRetry;   ///< after retryDelay; else the read ends with this result
     uint64_t retryDelay;
     uint64_t userValue; ///< the read's
+    /** Where in the file, in bytes; SLUICE_UNKNOWN_OFFSET if the source does not say. */
+    uint64_t offset;
 } SluiceTileReadFailure;
 
 /**
@@ -152,6 +154,10 @@ typedef struct SluiceTileLoaderStatistics {
     uint64_t retriedCount;  ///< attempts after which another was to be made
     uint64_t delayedCount;  ///< reads that wait for one now
     uint64_t meanLatency, medianLatency, latency99, maxLatency;
+    /** Of the latest attempt that failedCount counts: its result, and where in the file it failed,
+     *  or SLUICE_UNKNOWN_OFFSET; SUCCESS and 0 while there is none. */
+    SluiceResult lastFailure;
+    uint64_t lastFailureOffset;
 } SluiceTileLoaderStatistics;
 
 /**

@@ -39,6 +39,12 @@ static SluiceResult look_at_input(struct bake *bake)
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
         return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
+    struct stat output;
+    if (stat(bake->info->pOutputPath, &output) == 0 && output.st_dev == status.st_dev &&
+        output.st_ino == status.st_ino) {
+        slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: the store would take its place", path);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     bake->source_size = (uint64_t)status.st_size;
     bake->source_time =
         (int64_t)status.st_mtim.tv_sec * INT64_C(1000000000) + status.st_mtim.tv_nsec;
@@ -236,9 +242,10 @@ static SluiceResult bake_with_memory(struct bake *bake, const SluiceStoreLayout 
     bake->report.memorySize = size;
     SluiceResult result = slc_baker_reserve(baker, size);
     if (result != SLUICE_SUCCESS) {
-        slc_log(&baker->log, SLUICE_LOG_ERROR, "%s: a picture this wide takes %llu MiB, not %llu",
-                bake->picture->name, (unsigned long long)(size >> 20),
-                (unsigned long long)(baker->max_memory >> 20));
+        slc_log(&baker->log, SLUICE_LOG_ERROR,
+                "%s: a picture this wide takes %llu KiB of memory; the limit is %llu KiB",
+                bake->picture->name, (unsigned long long)(size >> 10),
+                (unsigned long long)(baker->max_memory >> 10));
         return result;
     }
     result = write_store(bake, layout);

@@ -65,9 +65,10 @@ static SluiceResult fetch_changed(const struct level_bytes *from, unsigned chang
     return SLUICE_SUCCESS;
 }
 
+/* `*failed` is where in the level the row begins that could not be read. */
 static SluiceResult fetch_region(const struct slc_container_layout *layout,
                                  const struct level_bytes *from, const SluiceImageRegion *region,
-                                 char *texels, size_t row_pitch)
+                                 char *texels, size_t row_pitch, uint64_t *failed)
 {
     SluiceFormatInfo format;
     sluiceGetFormatInfo(layout->format, &format);
@@ -84,6 +85,7 @@ static SluiceResult fetch_region(const struct slc_container_layout *layout,
     SluiceResult result = SLUICE_SUCCESS;
     for (uint32_t y = 0; y < rows && result == SLUICE_SUCCESS; y++, offset += stride) {
         char *row = texels + y * row_pitch;
+        *failed = offset;
         result = layout->changes
                      ? fetch_changed(from, layout->changes, offset, (uint8_t *)row, size)
                      : fetch(from, offset, row, size);
@@ -142,23 +144,36 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     return result;
 }
 
+/* Out of a level that is decompressed as a whole. */
+static SluiceResult read_from_cache(struct container_source *source, struct level_bytes *from,
+                                    const SluiceImageRegion *region, void *texels, size_t row_pitch)
+{
+    uint64_t failed;
+    SluiceResult result =
+        slc_level_cache_acquire(&source->cache, &source->layout, region->mipLevel, &from->memory);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = fetch_region(&source->layout, from, region, texels, row_pitch, &failed);
+    slc_level_cache_release(&source->cache, region->mipLevel);
+    return result;
+}
+
 static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
-                                void *texels, size_t row_pitch)
+                                void *texels, size_t row_pitch, SluiceImageFault *fault)
 {
     struct container_source *source = (struct container_source *)base;
     const struct slc_container_layout *layout = &source->layout;
     SluiceResult result = ensure_open(source);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint32_t level = region->mipLevel;
-    struct level_bytes from = {.file = &source->file, .start = layout->levels[level].offset};
-    if (!layout->levels_are_compressed)
-        return fetch_region(layout, &from, region, texels, row_pitch);
-    result = slc_level_cache_acquire(&source->cache, layout, level, &from.memory);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    result = fetch_region(layout, &from, region, texels, row_pitch);
-    slc_level_cache_release(&source->cache, level);
+    uint64_t failed = 0; /* bytes from the beginning of the level */
+    struct level_bytes from = {.file = &source->file,
+                               .start = layout->levels[region->mipLevel].offset};
+    result = layout->levels_are_compressed
+                 ? read_from_cache(source, &from, region, texels, row_pitch)
+                 : fetch_region(layout, &from, region, texels, row_pitch, &failed);
+    if (result == SLUICE_ERROR_IO || result == SLUICE_ERROR_CORRUPT_DATA)
+        fault->offset = from.start + failed;
     return result;
 }
 
@@ -172,7 +187,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface container_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface container_interface = {
+    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
 
 SluiceResult slc_container_source_create(const struct slc_container_create_info *info,
                                          SluiceImageSource **source_out)

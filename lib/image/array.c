@@ -17,12 +17,12 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 }
 
 static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
-                                void *texels, size_t row_pitch)
+                                void *texels, size_t row_pitch, SluiceImageFault *fault)
 {
     SluiceImageRegion inner = *region;
     inner.arrayLayer = 0;
-    return sluiceReadImageRegion(((struct array_source *)base)->layers[region->arrayLayer], &inner,
-                                 texels, row_pitch);
+    return sluiceReadImageRegionLocated(((struct array_source *)base)->layers[region->arrayLayer],
+                                        &inner, texels, row_pitch, fault);
 }
 
 static void destroy(SluiceImageSource *base)
@@ -33,7 +33,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface array_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface array_interface = {
+    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
 
 static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t count,
                                  SluiceImageInfo *info)

@@ -33,7 +33,8 @@ struct SluiceTileLoader {
 struct attempt {
     SluiceResult result;
     SluiceImageInfo info; ///< zeroed if the source did not tell
-    uint64_t latency;     ///< ns
+    SluiceImageFault fault;
+    uint64_t latency; ///< ns
 };
 
 static uint64_t nanoseconds(void)
@@ -48,7 +49,8 @@ static bool is_dropped(const struct slc_read *read)
     return atomic_load_explicit(&read->dropped, memory_order_relaxed);
 }
 
-static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info)
+static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
+                                 SluiceImageFault *fault)
 {
     SluiceImageSource *source = read->source->source;
     SluiceResult result = sluiceGetImageInfo(source, info);
@@ -60,8 +62,9 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info)
         if (is_dropped(read))
             return SLUICE_ERROR_CANCELLED;
         const SluiceImageRegion *region = &read->regions[read->done_count];
-        result = sluiceReadImageRegion(source, region, read->texels[read->done_count],
-                                       sluiceFormatRegionSize(info->format, region->width, 1));
+        result = sluiceReadImageRegionLocated(
+            source, region, read->texels[read->done_count],
+            sluiceFormatRegionSize(info->format, region->width, 1), fault);
         if (result != SLUICE_SUCCESS)
             return result;
         read->done_size += sluiceFormatRegionSize(info->format, region->width, region->height);
@@ -71,9 +74,9 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info)
 
 static struct attempt make_attempt(struct slc_read *read)
 {
-    struct attempt attempt = {0};
+    struct attempt attempt = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
     uint64_t start = nanoseconds();
-    attempt.result = read_regions(read, &attempt.info);
+    attempt.result = read_regions(read, &attempt.info, &attempt.fault);
     attempt.latency = nanoseconds() - start;
     read->attempts.count++;
     read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
@@ -91,13 +94,14 @@ static void report_failure(const struct SluiceTileLoader *loader, const struct s
         return;
     SluiceTileReadFailure failure = {
         .source = read->source->source,
-        .pName = attempt->info.pName ? attempt->info.pName : "",
+        .pName = attempt->fault.pName,
         .region = read->regions[read->done_count],
         .result = attempt->result,
         .attempt = read->attempts.count,
         .willRetry = will_retry,
         .retryDelay = will_retry ? delay : 0,
         .userValue = read->result.userValue,
+        .offset = attempt->fault.offset,
     };
     loader->failure.pfnFailed(loader->failure.pUserData, &failure);
 }
@@ -126,7 +130,8 @@ static void run(struct SluiceTileLoader *loader, struct slc_read *read)
     pthread_mutex_lock(&loader->mutex);
     if (attempt.info.format != SLUICE_FORMAT_UNDEFINED)
         read->source->format = attempt.info.format;
-    slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.latency);
+    slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.fault.offset,
+                               attempt.latency);
     if (!will_retry) {
         end_read(loader, read, attempt.result);
     } else if (is_dropped(read)) {

@@ -192,10 +192,10 @@ uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue)
 }
 
 void slc_read_queue_add_attempt(struct slc_read_queue *queue, struct slc_read *read,
-                                SluiceResult result, uint64_t latency)
+                                SluiceResult result, uint64_t offset, uint64_t latency)
 {
-    slc_read_statistics_add_attempt(&read->source->statistics, result, latency);
-    slc_read_statistics_add_attempt(&queue->statistics, result, latency);
+    slc_read_statistics_add_attempt(&read->source->statistics, result, offset, latency);
+    slc_read_statistics_add_attempt(&queue->statistics, result, offset, latency);
 }
 
 void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, uint64_t due)

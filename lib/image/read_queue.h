@@ -81,9 +81,10 @@ struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now
 /** When the first delayed read is due; UINT64_MAX: none is delayed. */
 uint64_t slc_read_queue_next_due(const struct slc_read_queue *queue);
 
-/** An attempt at a running read took `latency` ns and ended with `result`. The read still runs. */
+/** An attempt at a running read took `latency` ns and ended with `result`, an error at `offset`.
+ * The read still runs. */
 void slc_read_queue_add_attempt(struct slc_read_queue *queue, struct slc_read *read,
-                                SluiceResult result, uint64_t latency);
+                                SluiceResult result, uint64_t offset, uint64_t latency);
 
 /** Puts a running read aside until `due`. */
 void slc_read_queue_delay(struct slc_read_queue *queue, struct slc_read *read, uint64_t due);

@@ -11,14 +11,17 @@ static uint32_t bucket_of(uint64_t latency)
 }
 
 void slc_read_statistics_add_attempt(struct slc_read_statistics *statistics, SluiceResult result,
-                                     uint64_t latency)
+                                     uint64_t offset, uint64_t latency)
 {
     SluiceTileLoaderStatistics *counts = &statistics->counts;
     counts->attemptCount++;
-    if (result == SLUICE_NOT_READY)
+    if (result == SLUICE_NOT_READY) {
         counts->notReadyCount++;
-    else if (result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELLED)
+    } else if (result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELLED) {
         counts->failedCount++;
+        counts->lastFailure = result;
+        counts->lastFailureOffset = offset;
+    }
     if (latency > counts->maxLatency)
         counts->maxLatency = latency;
     uint64_t room = UINT64_MAX - statistics->latency_sum;

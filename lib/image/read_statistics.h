@@ -14,9 +14,9 @@ struct slc_read_statistics {
     uint64_t latencies[SLC_LATENCY_BUCKETS];
 };
 
-/** An attempt that took `latency` ns ended with `result`. */
+/** An attempt that took `latency` ns ended with `result`, an error at `offset`. */
 void slc_read_statistics_add_attempt(struct slc_read_statistics *statistics, SluiceResult result,
-                                     uint64_t latency);
+                                     uint64_t offset, uint64_t latency);
 
 /** A read ended for good, with `size` bytes if it succeeded. */
 void slc_read_statistics_add_end(struct slc_read_statistics *statistics, SluiceResult result,

@@ -35,18 +35,31 @@ static bool region_is_inside(const SluiceImageRegion *region, const SluiceImageI
 SluiceResult sluiceReadImageRegion(SluiceImageSource *source, const SluiceImageRegion *pRegion,
                                    void *pTexels, size_t rowPitch)
 {
-    if (!source || !pRegion || !pTexels)
+    SluiceImageFault fault;
+    return sluiceReadImageRegionLocated(source, pRegion, pTexels, rowPitch, &fault);
+}
+
+SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
+                                          const SluiceImageRegion *pRegion, void *pTexels,
+                                          size_t rowPitch, SluiceImageFault *pFault)
+{
+    if (!source || !pRegion || !pTexels || !pFault)
         return SLUICE_ERROR_NULL_POINTER;
+    *pFault = (SluiceImageFault){"", SLUICE_UNKNOWN_OFFSET};
     SluiceImageInfo info;
     SluiceResult result = source->pInterface->pfnGetInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;
+    pFault->pName = info.pName ? info.pName : "";
     SluiceFormatInfo format;
     if (sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS ||
         !region_is_inside(pRegion, &info) || !region_is_aligned(pRegion, &info, &format) ||
         rowPitch < slc_format_row_size(&format, pRegion->width))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    return source->pInterface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
+    const SluiceImageSourceInterface *source_interface = source->pInterface;
+    return source_interface->pfnReadRegionLocated
+               ? source_interface->pfnReadRegionLocated(source, pRegion, pTexels, rowPitch, pFault)
+               : source_interface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
 }
 
 void sluiceDestroyImageSource(SluiceImageSource *source)

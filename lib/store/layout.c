@@ -158,13 +158,39 @@ static SluiceResult check_consequences(const struct slc_store_header *header,
     return SLUICE_SUCCESS;
 }
 
+/* Values that a newer minor version added mean what says least; in others they are damage. */
+static SluiceResult read_choices(struct slc_store_header *header, const unsigned char *bytes,
+                                 uint32_t *offset, const char **message)
+{
+    const struct {
+        uint32_t at, last, otherwise;
+    } choices[] = {
+        {AT_COLOR_SPACE, SLUICE_STORE_COLOR_SPACE_ACESCG, SLUICE_STORE_COLOR_SPACE_UNDEFINED},
+        {AT_MEANING, SLUICE_STORE_MEANING_DATA, SLUICE_STORE_MEANING_DATA},
+        {AT_ADDRESS_U, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER,
+         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE},
+        {AT_ADDRESS_V, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER,
+         SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE}};
+    uint32_t values[sizeof choices / sizeof choices[0]];
+    *message = "colour space, meaning or address mode has a value that this version does not have";
+    for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++) {
+        *offset = choices[i].at;
+        values[i] = slc_get_u32(bytes + choices[i].at);
+        bool is_known = values[i] <= choices[i].last;
+        if (!is_known && header->minor <= SLUICE_STORE_VERSION_MINOR)
+            return SLUICE_ERROR_CORRUPT_DATA;
+        values[i] = is_known ? values[i] : choices[i].otherwise;
+    }
+    header->color_space = (SluiceStoreColorSpace)values[0];
+    header->meaning = (SluiceStoreMeaning)values[1];
+    header->address_mode_u = (SluiceStoreAddressMode)values[2];
+    header->address_mode_v = (SluiceStoreAddressMode)values[3];
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult read_properties(struct slc_store_header *header, const unsigned char *bytes,
                                     uint32_t *offset, const char **message)
 {
-    header->color_space = (SluiceStoreColorSpace)slc_get_u32(bytes + AT_COLOR_SPACE);
-    header->meaning = (SluiceStoreMeaning)slc_get_u32(bytes + AT_MEANING);
-    header->address_mode_u = (SluiceStoreAddressMode)slc_get_u32(bytes + AT_ADDRESS_U);
-    header->address_mode_v = (SluiceStoreAddressMode)slc_get_u32(bytes + AT_ADDRESS_V);
     header->compression_level = slc_get_u32(bytes + AT_COMPRESSION);
     header->name_size = slc_get_u32(bytes + AT_NAME_SIZE);
     header->name = (const char *)bytes + AT_NAME;
@@ -193,6 +219,8 @@ SluiceResult slc_store_header_read(struct slc_store_header *header,
         result = read_grid(header, bytes, offset, message);
     if (result == SLUICE_SUCCESS)
         result = check_consequences(header, bytes, offset, message);
+    if (result == SLUICE_SUCCESS)
+        result = read_choices(header, bytes, offset, message);
     if (result == SLUICE_SUCCESS)
         result = read_properties(header, bytes, offset, message);
     return result;

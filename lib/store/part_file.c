@@ -4,6 +4,7 @@
 #include "store/part_file.h"
 
 #include "base/alloc.h"
+#include "base/log.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -74,6 +75,17 @@ static SluiceResult open_folder(struct slc_store_part *part)
     return error == ENOENT || error == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
 }
 
+/* Devices, pipes and folders would be replaced by a file at the end, or refuse that then. */
+static SluiceResult check_target(const struct slc_store_part *part)
+{
+    struct stat status;
+    if (stat(part->target, &status) != 0 || S_ISREG(status.st_mode))
+        return SLUICE_SUCCESS;
+    slc_log(&part->file.log, SLUICE_LOG_ERROR, "%s: is there already and is no regular file",
+            part->target);
+    return SLUICE_ERROR_IO;
+}
+
 SluiceResult slc_store_part_open(struct slc_store_part *part, const char *path,
                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log)
 {
@@ -86,7 +98,9 @@ SluiceResult slc_store_part_open(struct slc_store_part *part, const char *path,
     if (!part->target || !part->file.path)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     snprintf(part->file.path, size, "%s.part", path);
-    SluiceResult result = open_folder(part);
+    SluiceResult result = check_target(part);
+    if (result == SLUICE_SUCCESS)
+        result = open_folder(part);
     if (result == SLUICE_SUCCESS)
         result = SLUICE_NOT_READY;
     for (int attempt = 0; result == SLUICE_NOT_READY && attempt < MAX_ATTEMPTS; attempt++)

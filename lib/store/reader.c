@@ -34,7 +34,7 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
 {
     SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
     *reader = (struct slc_store_reader){
-        .file.descriptor = -1, .pool = info->readPool, .checks_once = info->checkRawTilesOnce};
+        .file.descriptor = -1, .pool = info->readPool, .checks_always = info->alwaysCheckRawTiles};
     SluiceResult result = slc_store_file_open(&reader->file, info->pPath, &cb, &info->log);
     if (result == SLUICE_SUCCESS)
         result = read_header(reader);
@@ -151,10 +151,10 @@ static SluiceResult read_stored(struct slc_store_reader *reader, const struct sl
 static SluiceResult read_raw(struct slc_store_reader *reader, const struct slc_store_find *find,
                              void *texels)
 {
-    if (reader->checks_once && find->is_checked)
+    if (!reader->checks_always && find->is_checked)
         return slc_store_file_read(&reader->file, find->offset, texels, find->entry.size);
     SluiceResult result = read_stored(reader, find, texels);
-    if (reader->checks_once && result == SLUICE_SUCCESS)
+    if (!reader->checks_always && result == SLUICE_SUCCESS)
         note_checked(reader, find);
     return result;
 }

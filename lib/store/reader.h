@@ -16,7 +16,7 @@ struct slc_store_reader {
     struct slc_store_header header; ///< constant
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's
-    bool checks_once;                     ///< raw chunks, as long as their block is kept
+    bool checks_always;                   ///< raw chunks; else once while their block is kept
     bool has_mutex;
     pthread_mutex_t mutex; ///< around what follows
     struct {
@@ -32,7 +32,7 @@ struct slc_store_find {
     uint64_t number;
     struct slc_store_entry entry;
     uint64_t offset; ///< of its bytes, or of the part of the index that is wrong
-    bool is_checked; ///< its checksum was right before, and that is enough
+    bool is_checked; ///< its checksum was right before
 };
 
 /** `info` without NULL where there may not be. Errors: as sluiceCreateStoreImageSource, logged. */

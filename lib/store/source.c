@@ -52,12 +52,11 @@ static void copy_patch(const SluiceFormatInfo *format, const struct patch *patch
 
 static SluiceResult read_from_tail(struct slc_store_reader *reader, const SluiceImageRegion *region,
                                    struct slc_store_read_bench *bench, char *texels,
-                                   size_t row_pitch)
+                                   size_t row_pitch, struct slc_store_find *find)
 {
     const struct slc_store_grid *grid = &reader->header.grid;
     struct slc_store_place place = {region->arrayLayer, grid->layout.tailFirstLevel, 0, 0};
-    struct slc_store_find find;
-    SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
+    SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, find);
     if (result != SLUICE_SUCCESS)
         return result;
     struct patch patch = {bench->texels + slc_store_tail_offset(grid, region->mipLevel), 0, 0,
@@ -71,7 +70,7 @@ static SluiceResult read_from_tail(struct slc_store_reader *reader, const Sluice
 static SluiceResult read_from_tiles(struct slc_store_reader *reader,
                                     const SluiceImageRegion *region,
                                     struct slc_store_read_bench *bench, char *texels,
-                                    size_t row_pitch)
+                                    size_t row_pitch, struct slc_store_find *find)
 {
     const struct slc_store_grid *grid = &reader->header.grid;
     const SluiceStoreLayout *layout = &grid->layout;
@@ -80,8 +79,7 @@ static SluiceResult read_from_tiles(struct slc_store_reader *reader,
     for (uint32_t y = region->y / layout->tileHeight; y <= y1; y++)
         for (uint32_t x = region->x / layout->tileWidth; x <= x1; x++) {
             struct slc_store_place place = {region->arrayLayer, region->mipLevel, x, y};
-            struct slc_store_find find;
-            SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, &find);
+            SluiceResult result = slc_store_read_chunk(reader, &place, bench, bench->texels, find);
             if (result != SLUICE_SUCCESS)
                 return result;
             SluiceImageRegion whole = slc_store_chunk_region(grid, &place);
@@ -106,7 +104,7 @@ static bool is_one_tile(const struct slc_store_grid *grid, const SluiceImageRegi
 }
 
 static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion *region,
-                                void *texels, size_t row_pitch)
+                                void *texels, size_t row_pitch, SluiceImageFault *fault)
 {
     struct slc_store_reader *reader = &((struct store_source *)base)->reader;
     const struct slc_store_grid *grid = &reader->header.grid;
@@ -117,12 +115,14 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     struct slc_store_find find;
     SluiceResult result;
     if (region->mipLevel >= grid->layout.tailFirstLevel)
-        result = read_from_tail(reader, region, bench, texels, row_pitch);
+        result = read_from_tail(reader, region, bench, texels, row_pitch, &find);
     else if (is_one_tile(grid, region, row_pitch, &place))
         result = slc_store_read_chunk(reader, &place, bench, texels, &find);
     else
-        result = read_from_tiles(reader, region, bench, texels, row_pitch);
+        result = read_from_tiles(reader, region, bench, texels, row_pitch, &find);
     slc_store_read_pool_give(reader->pool, bench);
+    if (result == SLUICE_ERROR_IO || result == SLUICE_ERROR_CORRUPT_DATA)
+        fault->offset = find.offset;
     return result;
 }
 
@@ -134,7 +134,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface store_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface store_interface = {
+    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
 
 SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
                                           SluiceImageSource **pSource)

@@ -12,7 +12,7 @@ static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)
     return level;
 }
 
-/* Levels whose size is rounded down have tiles that begin before the regions under them. */
+/* Levels whose size is rounded down have tiles that begin behind the regions under them. */
 static bool halves_evenly(uint32_t size, uint32_t level_count)
 {
     for (uint32_t level = 1; level < level_count; level++)

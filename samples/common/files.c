@@ -9,28 +9,54 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-bool files_make_folders(const char *path)
+#include "text.h"
+
+static bool make_folder(const char *path)
 {
-    char part[4096];
-    size_t length = strlen(path);
-    if (length >= sizeof part) {
-        fprintf(stderr, "%s: too long\n", path);
-        return false;
-    }
-    for (size_t i = 1; i <= length; i++) {
-        if (path[i] != '/' && path[i] != '\0')
-            continue;
-        memcpy(part, path, i);
-        part[i] = '\0';
-        if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-            fprintf(stderr, "%s: %s\n", part, strerror(errno));
-            return false;
-        }
-    }
-    return true;
+    struct stat info;
+    if (mkdir(path, 0777) == 0)
+        return true;
+    int error = errno;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+        return true;
+    errno = error == EEXIST ? ENOTDIR : error;
+    return false;
 }
 
-static bool add_path(const char *path, struct file_list *list)
+/* All folders of the first `length` bytes of a path. */
+static bool make_folders(const char *path, size_t length)
+{
+    char *part = strndup(path, length);
+    bool made = part != NULL;
+    for (size_t i = 1; i <= length && made; i++) {
+        if (part[i] != '/' && part[i] != '\0')
+            continue;
+        part[i] = '\0';
+        made = make_folder(part);
+        if (i < length)
+            part[i] = '/';
+    }
+    int error = errno;
+    free(part);
+    errno = error;
+    return made;
+}
+
+bool files_make_folders(const char *path)
+{
+    bool made = make_folders(path, strlen(path));
+    if (!made)
+        text_say("%s: %s", path, strerror(errno));
+    return made;
+}
+
+bool files_make_folders_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return !slash || slash == path || make_folders(path, (size_t)(slash - path));
+}
+
+bool files_add(const char *path, struct file_list *list)
 {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity ? 2 * list->capacity : 64;
@@ -60,9 +86,34 @@ bool files_has_suffix(const char *path, const char *suffixes)
 
 static bool unreadable(const char *path, struct file_list *list)
 {
-    fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    text_say("%s%s: %s", list->speaker ? list->speaker : "", path, strerror(errno));
     list->unreadable_count++;
     return true;
+}
+
+static bool collect_folder(const char *folder, const char *suffixes, struct file_list *list);
+
+/* Links to folders may lead in circles; pipes and the like are no pictures. */
+static bool collect_entry(const char *folder, const char *name, const char *suffixes,
+                          struct file_list *list)
+{
+    struct stat info;
+    size_t size = strlen(folder) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (!path)
+        return false;
+    snprintf(path, size, "%s%s%s", folder, folder[strlen(folder) - 1] == '/' ? "" : "/", name);
+    bool enough_memory = true;
+    if (lstat(path, &info) != 0)
+        enough_memory = unreadable(path, list);
+    else if (S_ISDIR(info.st_mode))
+        enough_memory = collect_folder(path, suffixes, list);
+    else if (files_has_suffix(name, suffixes) && stat(path, &info) != 0)
+        enough_memory = unreadable(path, list);
+    else if (files_has_suffix(name, suffixes) && S_ISREG(info.st_mode))
+        enough_memory = files_add(path, list);
+    free(path);
+    return enough_memory;
 }
 
 static bool collect_folder(const char *folder, const char *suffixes, struct file_list *list)
@@ -73,17 +124,8 @@ static bool collect_folder(const char *folder, const char *suffixes, struct file
         return unreadable(folder, list);
     bool enough_memory = true;
     for (int i = 0; i < count; i++) {
-        char path[4096];
-        struct stat info;
-        int length = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        /* Links to folders may lead in circles. */
-        bool usable =
-            entries[i]->d_name[0] != '.' && (size_t)length < sizeof path && lstat(path, &info) == 0;
-        if (usable && enough_memory && S_ISDIR(info.st_mode))
-            enough_memory = collect_folder(path, suffixes, list);
-        else if (usable && enough_memory && files_has_suffix(path, suffixes) &&
-                 stat(path, &info) == 0 && S_ISREG(info.st_mode))
-            enough_memory = add_path(path, list);
+        if (entries[i]->d_name[0] != '.' && enough_memory)
+            enough_memory = collect_entry(folder, entries[i]->d_name, suffixes, list);
         free(entries[i]);
     }
     free(entries);
@@ -95,7 +137,7 @@ bool files_collect(const char *path, const char *suffixes, struct file_list *lis
     struct stat info;
     if (stat(path, &info) != 0)
         return unreadable(path, list);
-    return S_ISDIR(info.st_mode) ? collect_folder(path, suffixes, list) : add_path(path, list);
+    return S_ISDIR(info.st_mode) ? collect_folder(path, suffixes, list) : files_add(path, list);
 }
 
 void files_finish(struct file_list *list)

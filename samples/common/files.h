@@ -8,11 +8,15 @@
 /** Makes a folder and those above it. Says on stderr why it failed. */
 bool files_make_folders(const char *path);
 
+/** Makes the folders above a file. errno says why it failed. */
+bool files_make_folders_of(const char *path);
+
 /** A growing list of paths. Zeroed is empty. */
 struct file_list {
     char **paths; ///< owned
     size_t count, capacity;
     size_t unreadable_count; ///< files and folders that were named or found and are not in the list
+    const char *speaker;     ///< stands in front of messages; NULL: ""
 };
 
 /** Whether a file's name ends in one of `suffixes`, which are separated by '|'; in any case. */
@@ -24,6 +28,8 @@ bool files_has_suffix(const char *path, const char *suffixes);
  * counts it in `unreadable_count`; false only when out of memory.
  */
 bool files_collect(const char *path, const char *suffixes, struct file_list *list);
+/** Adds a file without looking at it. False when out of memory. */
+bool files_add(const char *path, struct file_list *list);
 void files_finish(struct file_list *list);
 
 #endif /* SAMPLES_COMMON_FILES_H */

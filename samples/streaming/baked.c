@@ -9,25 +9,12 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include <sluice/bake.h>
-
+#include "../common/bake_jobs.h"
 #include "../common/files.h"
-#include "../common/progress.h"
 #include "cache.h"
 
 /* Somebody waits: a third of the time of the baker's own level, for files a sixth larger. */
 #define COMPRESSION_LEVEL 3
-
-struct baking {
-    SluiceBaker *baker;
-    const char *cache;
-    enum pixel_format pixels;
-    struct progress progress;
-    bool shown;              ///< nothing is, until there is something to bake
-    uint64_t size, done;     ///< bytes of all pictures, and of those before this one
-    uint64_t picture_size;   ///< bytes
-    uint32_t baked, skipped; ///< pictures
-};
 
 /* Halves of an OpenEXR file that --format makes bytes of would be linear bytes: too few for
  * shadows. They are read whole instead. */
@@ -44,7 +31,7 @@ static uint64_t file_size(const char *path)
     return stat(path, &status) == 0 ? (uint64_t)status.st_size : 0;
 }
 
-/** "cache/baked/whole/path.png.store", and the folders above it. */
+/** "cache/baked/whole/path.png.store". */
 static char *store_path(const char *picture, const char *cache)
 {
     char folder[4096];
@@ -59,103 +46,111 @@ static char *store_path(const char *picture, const char *cache)
         if (path)
             snprintf(path, size, "%s%s" SLUICE_STORE_EXTENSION, folder, whole);
     }
-    char *slash = path ? strrchr(path, '/') : NULL;
-    if (slash)
-        *slash = '\0';
-    bool made = slash && files_make_folders(path);
-    if (slash)
-        *slash = '/';
-    if (!made) {
-        free(path);
-        path = NULL;
-    }
     free(whole);
     return path;
 }
 
 /** Of photographs and drawings colours are sRGB, also grey ones; others hold light itself. */
-static SluiceResult choose_settings(const struct baking *baking, const struct picture_path *picture,
+static SluiceResult choose_settings(const struct picture_path *picture, enum pixel_format pixels,
                                     SluiceBakeSettings *settings)
 {
     *settings = (SluiceBakeSettings){.format = SLUICE_FORMAT_R16G16B16A16_SFLOAT,
                                      .compressionLevel = COMPRESSION_LEVEL};
     if (picture->kind == PICTURE_EXR_LEVEL_ZERO)
-        return picture_file_exr_format(picture->path, baking->pixels, &settings->format);
+        return picture_file_exr_format(picture->path, pixels, &settings->format);
     if (!files_has_suffix(picture->path, ".hdr|.pfm")) {
         settings->transfer = SLUICE_BAKE_TRANSFER_SRGB;
-        if (baking->pixels != PIXEL_FORMAT_RGBA16F)
+        if (pixels != PIXEL_FORMAT_RGBA16F)
             settings->format = SLUICE_FORMAT_R8G8B8A8_SRGB;
     }
     return SLUICE_SUCCESS;
 }
 
-static bool note_progress(void *user_data, uint64_t done, uint64_t total)
+static void refuse(struct picture_path *picture, SluiceResult result)
 {
-    struct baking *baking = user_data;
-    double share = total ? (double)done / (double)total : 1.0;
-    if (!baking->shown)
-        progress_begin(&baking->progress, "baking", "B", baking->size - baking->done);
-    baking->shown = true;
-    progress_update(&baking->progress, baking->progress.total - (baking->size - baking->done) +
-                                           (uint64_t)(share * (double)baking->picture_size));
-    return true;
+    picture->refused = true;
+    fprintf(stderr, "%s: left out: %s\n", picture->path, sluiceResultString(result));
 }
 
-static SluiceResult bake(struct baking *baking, struct picture_path *picture)
+static const struct bake_job *find_job(const struct bake_job *jobs, size_t count,
+                                       const char *output)
 {
-    SluiceBakeReport report = {0};
-    SluiceBakeInfo info = {
-        .pInputPath = picture->path, .pUserData = baking, .pfnProgress = note_progress};
-    picture->store = store_path(picture->path, baking->cache);
-    info.pOutputPath = picture->store;
-    if (!picture->store)
-        return SLUICE_ERROR_IO;
-    SluiceResult result = choose_settings(baking, picture, &info.settings);
-    if (result == SLUICE_SUCCESS)
-        result = sluiceBakeFile(baking->baker, &info, &report);
-    baking->skipped += result == SLUICE_SUCCESS && report.skipped;
-    baking->baked += result == SLUICE_SUCCESS && !report.skipped;
-    return result;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(jobs[i].output, output) == 0)
+            return &jobs[i];
+    return NULL;
 }
 
-static void bake_all(struct baking *baking, struct picture_path *paths, size_t count)
+/** Pictures that are one file have one job. What cannot even be begun is refused. */
+static size_t make_jobs(struct picture_path *paths, size_t count, const char *cache,
+                        enum pixel_format pixels, struct bake_job *jobs)
 {
+    size_t job_count = 0;
     for (size_t i = 0; i < count; i++) {
-        if (!needs_store(&paths[i], baking->pixels))
+        struct picture_path *picture = &paths[i];
+        struct bake_job job = {.input = picture->path, .size = file_size(picture->path)};
+        if (!needs_store(picture, pixels))
             continue;
-        baking->picture_size = file_size(paths[i].path);
-        SluiceResult result = bake(baking, &paths[i]);
-        paths[i].refused = result != SLUICE_SUCCESS;
-        if (paths[i].refused)
-            fprintf(stderr, "%s: left out: %s\n", paths[i].path, sluiceResultString(result));
-        baking->done += baking->picture_size;
+        picture->store = store_path(picture->path, cache);
+        job.output = picture->store;
+        SluiceResult result =
+            picture->store ? choose_settings(picture, pixels, &job.settings) : SLUICE_ERROR_IO;
+        if (result != SLUICE_SUCCESS)
+            refuse(picture, result);
+        else if (!find_job(jobs, job_count, job.output))
+            jobs[job_count++] = job;
     }
-    if (baking->shown)
-        progress_end(&baking->progress);
-    fprintf(stderr, "%u pictures baked, %u were up to date\n", baking->baked, baking->skipped);
+    return job_count;
+}
+
+static SluiceResult outcome(const struct bake_job *job)
+{
+    return job->is_done ? job->result : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+static void report(const struct bake_job *jobs, size_t count)
+{
+    uint32_t baked = 0, skipped = 0;
+    for (size_t i = 0; i < count; i++) {
+        baked += outcome(&jobs[i]) == SLUICE_SUCCESS && !jobs[i].report.skipped;
+        skipped += outcome(&jobs[i]) == SLUICE_SUCCESS && jobs[i].report.skipped;
+        if (jobs[i].message[0])
+            fprintf(stderr, "%s\n", jobs[i].message);
+    }
+    fprintf(stderr, "%u pictures baked, %u were up to date\n", baked, skipped);
+}
+
+static bool is_any_needed(const struct picture_path *paths, size_t count, enum pixel_format pixels)
+{
+    for (size_t i = 0; i < count; i++)
+        if (needs_store(&paths[i], pixels))
+            return true;
+    return false;
 }
 
 bool baked_prepare(struct picture_path *paths, size_t count, const char *cache,
                    enum pixel_format pixels)
 {
-    struct baking baking = {.cache = cache, .pixels = pixels};
-    SluiceBakerCreateInfo info = {.log = {NULL, picture_file_log}};
-    bool needed = false;
-    for (size_t i = 0; i < count; i++)
-        if (needs_store(&paths[i], pixels)) {
-            needed = true;
-            baking.size += file_size(paths[i].path);
-        }
-    if (!needed)
+    struct bake_conditions conditions = {.speaker = ""};
+    if (!is_any_needed(paths, count, pixels))
         return true;
-    SluiceResult result = sluiceCreateBaker(&info, &baking.baker);
-    if (result != SLUICE_SUCCESS) {
-        fprintf(stderr, "pictures cannot be baked: %s\n", sluiceResultString(result));
+    struct bake_job *jobs = calloc(count, sizeof *jobs);
+    if (!jobs) {
+        fprintf(stderr, "out of memory\n");
         return false;
     }
-    bake_all(&baking, paths, count);
-    sluiceDestroyBaker(baking.baker);
-    return true;
+    size_t job_count = make_jobs(paths, count, cache, pixels, jobs);
+    bool done = bake_jobs_run(jobs, job_count, &conditions);
+    if (done)
+        report(jobs, job_count);
+    for (size_t i = 0; i < count && done; i++)
+        if (paths[i].store && !paths[i].refused) {
+            SluiceResult result = outcome(find_job(jobs, job_count, paths[i].store));
+            if (result != SLUICE_SUCCESS)
+                refuse(&paths[i], result);
+        }
+    free(jobs);
+    return done;
 }
 
 #else

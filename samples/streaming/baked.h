@@ -13,11 +13,11 @@ struct picture_path {
 };
 
 /**
- * Bakes what needs it, with a progress line, and says how many were baked and how many stores were
- * up to date: made of a file of this size and time with these settings. Pictures that cannot be
- * baked are refused, the others go on. In a build without sluice-bake OpenEXR files are streamed as
- * they are and the others left to picture_file_open, which says so. False only when nothing can be
- * baked at all.
+ * Bakes what needs it, side by side, with one progress bar, and says how many were baked and how
+ * many stores were up to date: made of a file of this size and time with these settings. Pictures
+ * that cannot be baked are refused, the others go on. In a build without sluice-bake OpenEXR files
+ * are streamed as they are and the others left to picture_file_open, which says so. False only when
+ * nothing can be baked at all.
  *
  * A store lies in "cache/baked" under its picture's whole path, with .store added.
  */

@@ -4,12 +4,11 @@
 
 #include <sluice/store.h>
 
+#include "../common/picture_names.h"
 #include "settings.h"
 
-/** Files of folders that are looked at: what is streamed in place, and what libvips reads. */
-#define PICTURE_SUFFIXES                                                                           \
-    ".store|.exr|.dds|.ktx2|.png|.jpg|.jpeg|.tif|.tiff|.webp|.hdr|.gif|.ppm|.pgm|.pfm|.pnm|.bmp|"  \
-    ".tga|.jp2|.j2k|.jxl|.heic|.heif|.avif|.psd|.v|.vips"
+/** Files of folders that are looked at. */
+#define HANGABLE_SUFFIXES SLUICE_STORE_EXTENSION "|" PICTURE_SUFFIXES
 
 enum picture_kind {
     PICTURE_STORE,

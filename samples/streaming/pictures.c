@@ -153,7 +153,7 @@ static bool collect_generated(const struct settings *settings, struct file_list 
                            processors > 1 ? (uint32_t)processors : 1, paths))
         return false;
     for (uint32_t i = 0; i < GENERATED_COUNT; i++)
-        if (!files_collect(paths[i], PICTURE_SUFFIXES, files))
+        if (!files_collect(paths[i], HANGABLE_SUFFIXES, files))
             return false;
     return true;
 }
@@ -164,7 +164,7 @@ bool pictures_open(const struct settings *settings, const struct picture_limits 
     struct file_list files = {0};
     bool collected = settings->images.count > 0 || collect_generated(settings, &files);
     for (size_t i = 0; collected && i < settings->images.count; i++)
-        collected = files_collect(settings->images.items[i], PICTURE_SUFFIXES, &files);
+        collected = files_collect(settings->images.items[i], HANGABLE_SUFFIXES, &files);
     *list = (struct picture_list){.refused = (uint32_t)files.unreadable_count};
     bool opened = collected && open_files(&files, settings, limits, list);
     files_finish(&files);

@@ -18,6 +18,14 @@ fact() {
     fi
 }
 
+# run STATUS ARGUMENTS...: whether $tool ends with this status; its words are in out and err
+run() {
+    local expected=$1 got=0
+    shift
+    "${tool:?}" "$@" >out 2>err || got=$?
+    [ $got -eq "$expected" ]
+}
+
 # The plan, and the exit status of the test.
 end_facts() {
     echo "1..$number"

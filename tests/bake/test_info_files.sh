@@ -4,14 +4,8 @@
 info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(realpath "$4") dds=$5
 # shellcheck source=/dev/null
 . "$(dirname "${BASH_SOURCE[0]}")/facts.sh"
-
-# run STATUS ARGUMENTS...: whether sluice-info ends with this status; its words are in out and err
-run() {
-    local expected=$1 got=0
-    shift
-    "$info" "$@" >out 2>err || got=$?
-    [ $got -eq "$expected" ]
-}
+# shellcheck disable=SC2034 # it is what run runs
+tool=$info
 
 "$make" rgba 300 200 1 a.png && "$make" grey 70 30 2 b.png &&
     "$bake" a.png b.png -o . --wrap repeat,mirror >out 2>err
@@ -28,6 +22,13 @@ run 0 a.store b.store --json && [ "$(grep -c '^{.*}$' out)" -eq 2 ] &&
 for line in open("out"): json.loads(line)'; }
 fact json_has_an_object_per_file
 
+cp a.png $'\e]0;x\a\n\xff \xc3\xbc.png' && "$bake" $'\e]0;x\a\n\xff \xc3\xbc.png' -o odd.store >out 2>err &&
+    run 0 odd.store && ! LC_ALL=C grep -q $'[\e\a\xff]' out && [ "$(grep -c 'made from' out)" -eq 1 ] &&
+    LC_ALL=C grep -qF '\x1b]0;x\x07\n\xff '$'\xc3\xbc.png, ' out && run 0 odd.store --json && [ "$(grep -c . out)" -eq 1 ] &&
+    { ! command -v python3 >/dev/null || python3 -c 'import json
+assert json.loads(open("out", "rb").read())["sourceName"] == "\x1b]0;x\x07\n\ufffd \xfc.png"'; }
+fact names_of_sources_do_not_reach_the_terminal_raw
+
 run 0 a.store --png whole.png && "$compare" a.png whole.png
 fact level_0_is_the_picture
 
@@ -43,6 +44,10 @@ fact the_last_level_is_a_texel
 run 1 a.store --level 9 --png no.png && grep -q 'a.store: .*level' err && [ ! -e no.png ] &&
     run 1 a.store --tile 3,0 --png no.png && grep -q 'a.store: .*tile' err && [ ! -e no.png ]
 fact levels_and_tiles_that_are_not_there_are_errors
+
+cp a.store broken.store && printf 'XXXX' | dd of=broken.store bs=1 seek=9000 conv=notrunc 2>dd.log
+run 1 broken.store --png no.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'broken.store: at [0-9]*: ' err && [ ! -e no.png ]
+fact a_tile_that_is_damaged_is_an_error
 
 echo nothing >text
 : >empty

@@ -3,14 +3,8 @@
 bake=$(realpath "$1") make=$(realpath "$2")
 # shellcheck source=/dev/null
 . "$(dirname "${BASH_SOURCE[0]}")/facts.sh"
-
-# run STATUS ARGUMENTS...: whether the tool ends with this status; its words are in out and err
-run() {
-    local expected=$1 got=0
-    shift
-    "$bake" "$@" >out 2>err || got=$?
-    [ $got -eq "$expected" ]
-}
+# shellcheck disable=SC2034 # it is what run runs
+tool=$bake
 
 count() { grep -c -- "$1" "$2"; }
 
@@ -51,6 +45,10 @@ truncate -s 100 out.d/a.store
 run 1 --verify out.d/a.store out.d/d.store && grep -q '^whole .*d.store' out && grep -q '^damaged .*a.store' out
 fact verify_finds_a_damaged_file
 
+run 1 --verify out.d && [ "$(count '^whole' out)" -eq 4 ] && [ "$(count '^damaged .*out.d/a.store' out)" -eq 1 ] &&
+    mkdir none && run 1 --verify none && grep -q 'no store' err
+fact verify_looks_into_folders
+
 run 0 in -o out.d --wrap repeat && grep -q '^1 baked, 4 unchanged' out && run 0 --verify out.d/a.store
 fact a_damaged_store_is_baked_again
 
@@ -79,6 +77,12 @@ run 1 in -o other.d && grep -q 'in/a.*would both become other.d/a.store' err
 fact two_pictures_for_one_file_are_refused
 rm in/a.tif
 
+ln -s absent in/gone.png && mkfifo in/pipe.png && ln -s .. in/sub/circle
+run 1 in -o out.d --wrap repeat && grep -q '^0 baked, 5 unchanged, 0 failed' out && [ "$(count . err)" -eq 1 ] &&
+    grep -q 'in/gone.png: No such file' err
+fact what_a_folder_holds_and_nobody_can_read_is_named_and_the_others_are_baked
+rm in/gone.png in/pipe.png in/sub/circle
+
 run 0 in -o one.d --threads 1 --force && run 0 in -o two.d --threads 7 --force &&
     [ "$(find one.d -type f | wc -l)" -eq 5 ] && run 0 --verify two.d/*.store two.d/*/*.store
 fact any_number_of_threads_will_do
@@ -96,7 +100,7 @@ fact wrong_usage_is_refused_before_anything_is_done
 run 0 --help && grep -q 'usage: sluice-bake' out && grep -q '(box)' out && grep -q '(1G)' out
 fact help_gives_defaults
 
-run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*MiB' err && [ ! -e small.store ]
+run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*the limit is 1024 KiB' err && [ ! -e small.store ]
 fact too_little_memory_is_an_error_that_says_so
 
 end_facts

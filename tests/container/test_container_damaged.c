@@ -5,12 +5,11 @@
 #include <sluice/dds.h>
 #include <sluice/ktx2.h>
 
-#include "container/container_files.h"
+#include "container/container_checks.h"
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -350,22 +349,9 @@ static void every_refused_allocation_is_survived(void **state)
     }
 }
 
-struct reader {
-    SluiceImageSource *source;
-    const struct picture *picture;
-};
-
-static void *read_picture(void *argument)
-{
-    const struct reader *reader = argument;
-    check_picture(reader->source, reader->picture);
-    return NULL;
-}
-
 static void any_number_of_threads_may_open_and_read(void **state)
 {
     (void)state;
-    enum { THREADS = 6 };
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         if (!kind_is_built(kind))
             continue;
@@ -373,15 +359,11 @@ static void any_number_of_threads_may_open_and_read(void **state)
         struct file_bytes file = make_file(kind, &picture);
         struct scratch scratch;
         struct log_tally tally;
-        struct reader reader = {NULL, &picture};
-        pthread_t threads[THREADS];
+        SluiceImageSource *source;
         scratch_init(&scratch, &file);
-        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &reader.source));
-        for (int i = 0; i < THREADS; i++)
-            assert_int_equal(pthread_create(&threads[i], NULL, read_picture, &reader), 0);
-        for (int i = 0; i < THREADS; i++)
-            pthread_join(threads[i], NULL);
-        sluiceDestroyImageSource(reader.source);
+        CHECK_OK(create(scratch.path, kind >= KTX2, NULL, &tally, &source));
+        check_on_threads(source, &picture, 6);
+        sluiceDestroyImageSource(source);
         scratch_finish(&scratch);
         free(file.bytes);
     }

@@ -1,13 +1,7 @@
-#define _XOPEN_SOURCE 700
-
 #include <sluice/dds.h>
 
-#include "container/container_files.h"
+#include "container/container_checks.h"
 #include "support/test.h"
-
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 static SluiceImageSource *open_dds(const char *path, SluiceFormat format, struct log_tally *tally)
 {
@@ -21,52 +15,27 @@ static SluiceImageSource *open_dds(const char *path, SluiceFormat format, struct
     return source;
 }
 
-static void check_file(struct file_bytes file, const struct picture *picture)
-{
-    struct scratch scratch;
-    scratch_init(&scratch, &file);
-    SluiceImageSource *source = open_dds(scratch.path, SLUICE_FORMAT_UNDEFINED, NULL);
-    check_picture(source, picture);
-    sluiceDestroyImageSource(source);
-    scratch_finish(&scratch);
-    free(file.bytes);
-}
-
 static void every_dxgi_format_is_delivered_as_it_is(void **state)
 {
     (void)state;
     for (uint32_t i = 0; i < format_names_count; i++) {
         struct picture picture = {&format_names[i], 37, 70};
         if (picture.format->dxgi)
-            check_file(make_dds(&picture), &picture);
+            check_file(make_dds(&picture), &picture, open_dds);
     }
 }
 
 static void every_size_and_array_is_delivered(void **state)
 {
     (void)state;
-    static const struct picture shapes[] = {
-        {NULL, 1, 1},
-        {NULL, 2, 1},
-        {NULL, 1, 5},
-        {NULL, 5, 3},
-        {NULL, 13, 1},
-        {NULL, 64, 64},
-        {NULL, 1023, 2},
-        {NULL, 129, 255},
-        {NULL, 3, 3},
-        {NULL, 20, 12, 3},
-        {NULL, 16, 16, 0, true},
-        {NULL, 7, 7, 2, true},
-    };
     static const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK,
                                            SLUICE_FORMAT_BC7_SRGB_BLOCK, SLUICE_FORMAT_R8_UNORM,
                                            SLUICE_FORMAT_R8G8B8A8_SRGB};
-    for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
+    for (size_t i = 0; i < picture_shapes_count; i++)
         for (size_t k = 0; k < sizeof formats / sizeof formats[0]; k++) {
-            struct picture picture = shapes[i];
+            struct picture picture = picture_shapes[i];
             picture.format = format_names_of(formats[k]);
-            check_file(make_dds(&picture), &picture);
+            check_file(make_dds(&picture), &picture, open_dds);
         }
 }
 
@@ -103,7 +72,7 @@ static void old_names_are_understood(void **state)
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         struct picture picture = {format_names_of(names[i].format), 33, 18};
         uint32_t code = names[i].name ? FOUR_CC(names[i].name) : names[i].number;
-        check_file(make_old_dds(&picture, (uint32_t[7]){0x4, code}), &picture);
+        check_file(make_old_dds(&picture, (uint32_t[7]){0x4, code}), &picture, open_dds);
     }
 }
 
@@ -131,7 +100,7 @@ static void masks_are_understood(void **state)
     for (size_t i = 0; i < sizeof masks / sizeof masks[0]; i++) {
         /* wider than the pieces in which texels are changed */
         struct picture picture = {masks[i].format, 1500, 3};
-        check_file(make_old_dds(&picture, masks[i].pixel_format), &picture);
+        check_file(make_old_dds(&picture, masks[i].pixel_format), &picture, open_dds);
     }
 }
 
@@ -139,96 +108,53 @@ static void old_cube_maps_have_six_layers(void **state)
 {
     (void)state;
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC3_UNORM_BLOCK), 32, 32, 0, true};
-    check_file(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT5")}), &picture);
+    check_file(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT5")}), &picture, open_dds);
 }
 
 static void a_format_of_the_same_bytes_can_be_asked_for(void **state)
 {
     (void)state;
-    struct format_names srgb = *format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK);
-    struct picture picture = {&srgb, 24, 24};
-    struct file_bytes file = make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")});
-    struct scratch scratch;
-    struct log_tally tally;
-    scratch_init(&scratch, &file);
-    srgb.format = SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK;
-    SluiceImageSource *source = open_dds(scratch.path, srgb.format, NULL);
-    check_picture(source, &picture);
-    sluiceDestroyImageSource(source);
-    source = open_dds(scratch.path, SLUICE_FORMAT_BC4_UNORM_BLOCK, &tally);
-    CHECK_RESULT(read_everything(source), SLUICE_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(tally.last, "BC4_UNORM"));
-    sluiceDestroyImageSource(source);
-    scratch_finish(&scratch);
-    free(file.bytes);
-}
-
-/* Little-endian words written over a good file, what that makes of it, and a word of the message.
- */
-struct refusal {
-    uint32_t at, value, at2, value2;
-    SluiceResult result;
-    const char *message;
-};
-
-static void check_refusals(struct file_bytes file, const struct refusal *refusals, size_t count)
-{
-    struct scratch scratch;
-    scratch_init(&scratch, &file);
-    for (size_t i = 0; i < count; i++) {
-        struct log_tally tally;
-        const struct refusal *r = &refusals[i];
-        scratch_replace(&scratch, file.bytes, file.size);
-        assert_int_equal(pwrite(scratch.descriptor, &r->value, 4, r->at), 4);
-        if (r->at2)
-            assert_int_equal(pwrite(scratch.descriptor, &r->value2, 4, r->at2), 4);
-        SluiceImageSource *source = open_dds(scratch.path, SLUICE_FORMAT_UNDEFINED, &tally);
-        SluiceResult result = read_everything(source);
-        if (result != r->result || tally.errors != 1 || !strstr(tally.last, r->message))
-            fail_msg("%zu: %s, %d errors: %s", i, sluiceResultString(result), tally.errors,
-                     tally.last);
-        sluiceDestroyImageSource(source);
-    }
-    scratch_finish(&scratch);
-    free(file.bytes);
+    struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 24, 24};
+    check_renaming(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")}), &picture, open_dds,
+                   SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK, SLUICE_FORMAT_BC4_UNORM_BLOCK);
 }
 
 static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
 {
     (void)state;
     static const struct refusal old[] = {
-        {0, 0x20534445, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "not a DDS file"},
-        {4, 123, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "header of 123"},
-        {76, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "format of 0"},
-        {16, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "0 x 32 texels"},
-        {12, 0x80000000u, 0, 0, SLUICE_ERROR_UNSUPPORTED, "at most 1048576"},
-        {28, 1, 0, 0, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
-        {28, 0, 0, 0, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
-        {28, 5, 0, 0, SLUICE_ERROR_UNSUPPORTED, "texconv"},
-        {28, 7, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "has 7 levels"},
-        {28, 0xFFFFFFFFu, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "levels"},
-        {16, 33, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "need"},
-        {84, FOUR_CC("RXGB"), 0, 0, SLUICE_ERROR_UNSUPPORTED, "RXGB"},
-        {84, FOUR_CC("D\n\x01\xFF"), 0, 0, SLUICE_ERROR_UNSUPPORTED, "D???"},
-        {80, 0x40, 0, 0, SLUICE_ERROR_UNSUPPORTED, "masks"},
-        {112, 0x200000, 0, 0, SLUICE_ERROR_UNSUPPORTED, "volume"},
-        {8, 0x821007, 24, 4, SLUICE_ERROR_UNSUPPORTED, "volume"},
-        {112, 0x200 | 0x400, 0, 0, SLUICE_ERROR_UNSUPPORTED, "all six"},
-        {112, 0xFE00, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "6 layers"},
+        {0, 0x20534445, SLUICE_ERROR_CORRUPT_DATA, "not a DDS file"},
+        {4, 123, SLUICE_ERROR_CORRUPT_DATA, "header of 123"},
+        {76, 0, SLUICE_ERROR_CORRUPT_DATA, "format of 0"},
+        {16, 0, SLUICE_ERROR_CORRUPT_DATA, "0 x 32 texels"},
+        {12, 0x80000000u, SLUICE_ERROR_UNSUPPORTED, "at most 1048576"},
+        {28, 1, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
+        {28, 0, SLUICE_ERROR_UNSUPPORTED, "has 1 of 6 levels"},
+        {28, 5, SLUICE_ERROR_UNSUPPORTED, "texconv"},
+        {28, 7, SLUICE_ERROR_CORRUPT_DATA, "has 7 levels"},
+        {28, 0xFFFFFFFFu, SLUICE_ERROR_CORRUPT_DATA, "levels"},
+        {16, 33, SLUICE_ERROR_CORRUPT_DATA, "need"},
+        {84, FOUR_CC("RXGB"), SLUICE_ERROR_UNSUPPORTED, "RXGB"},
+        {84, FOUR_CC("D\n\x01\xFF"), SLUICE_ERROR_UNSUPPORTED, "D???"},
+        {80, 0x40, SLUICE_ERROR_UNSUPPORTED, "masks"},
+        {112, 0x200000, SLUICE_ERROR_UNSUPPORTED, "volume"},
+        {8, 0x821007, SLUICE_ERROR_UNSUPPORTED, "volume", 24, 4},
+        {112, 0x200 | 0x400, SLUICE_ERROR_UNSUPPORTED, "all six"},
+        {112, 0xFE00, SLUICE_ERROR_CORRUPT_DATA, "6 layers"},
     };
     static const struct refusal dx10[] = {
-        {128, 70, 0, 0, SLUICE_ERROR_UNSUPPORTED, "DXGI format 70"},
-        {132, 4, 0, 0, SLUICE_ERROR_UNSUPPORTED, "dimension 4"},
-        {132, 2, 0, 0, SLUICE_ERROR_UNSUPPORTED, "dimension 2"},
-        {140, 0, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "0 layers"},
-        {140, 2, 0, 0, SLUICE_ERROR_CORRUPT_DATA, "2 layers"},
-        {140, 65537, 0, 0, SLUICE_ERROR_UNSUPPORTED, "65537 layers"},
-        {140, 0xFFFFFFFFu, 136, 4, SLUICE_ERROR_UNSUPPORTED, "layers"},
+        {128, 70, SLUICE_ERROR_UNSUPPORTED, "DXGI format 70"},
+        {132, 4, SLUICE_ERROR_UNSUPPORTED, "dimension 4"},
+        {132, 2, SLUICE_ERROR_UNSUPPORTED, "dimension 2"},
+        {140, 0, SLUICE_ERROR_CORRUPT_DATA, "0 layers"},
+        {140, 2, SLUICE_ERROR_CORRUPT_DATA, "2 layers"},
+        {140, 65537, SLUICE_ERROR_UNSUPPORTED, "65537 layers"},
+        {140, 0xFFFFFFFFu, SLUICE_ERROR_UNSUPPORTED, "layers", 136, 4},
     };
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 32, 32};
-    check_refusals(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")}), old,
+    check_refusals(make_old_dds(&picture, (uint32_t[7]){0x4, FOUR_CC("DXT1")}), open_dds, old,
                    sizeof old / sizeof old[0]);
-    check_refusals(make_dds(&picture), dx10, sizeof dx10 / sizeof dx10[0]);
+    check_refusals(make_dds(&picture), open_dds, dx10, sizeof dx10 / sizeof dx10[0]);
 }
 
 static void wrong_arguments_are_refused(void **state)

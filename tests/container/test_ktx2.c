@@ -1,14 +1,11 @@
-#define _XOPEN_SOURCE 700
-
 #include <sluice/ktx2.h>
 
-#include "container/container_files.h"
+#include "container/container_checks.h"
 #include "support/test.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #ifdef TEST_HAS_ZSTD
 enum { SCHEME_COUNT = 2 };
@@ -17,11 +14,10 @@ enum { SCHEME_COUNT = 1 };
 #endif
 static const uint32_t schemes[2] = {0, 2};
 
-static SluiceImageSource *open_ktx2(const char *path, SluiceFormat format, uint64_t cache_size,
-                                    struct log_tally *tally)
+static SluiceImageSource *open_ktx2(const char *path, SluiceFormat format, struct log_tally *tally)
 {
     SluiceKtx2ImageSourceCreateInfo info = {
-        .pPath = path, .format = format, .maxCacheSize = cache_size};
+        .pPath = path, .format = format, .maxCacheSize = 1 << 23};
     if (tally) {
         *tally = (struct log_tally){.path = path};
         info.log = log_to(tally);
@@ -31,18 +27,6 @@ static SluiceImageSource *open_ktx2(const char *path, SluiceFormat format, uint6
     return source;
 }
 
-static void check_file(const struct picture *picture, uint32_t scheme)
-{
-    struct file_bytes file = make_ktx2(picture, scheme);
-    struct scratch scratch;
-    scratch_init(&scratch, &file);
-    SluiceImageSource *source = open_ktx2(scratch.path, SLUICE_FORMAT_UNDEFINED, 0, NULL);
-    check_picture(source, picture);
-    sluiceDestroyImageSource(source);
-    scratch_finish(&scratch);
-    free(file.bytes);
-}
-
 static void every_format_is_delivered_as_it_is(void **state)
 {
     (void)state;
@@ -50,36 +34,22 @@ static void every_format_is_delivered_as_it_is(void **state)
         for (int k = 0; k < SCHEME_COUNT; k++) {
             struct picture picture = {&format_names[i], 37, 70};
             if (picture.format->vulkan)
-                check_file(&picture, schemes[k]);
+                check_file(make_ktx2(&picture, schemes[k]), &picture, open_ktx2);
         }
 }
 
 static void every_size_and_array_is_delivered(void **state)
 {
     (void)state;
-    static const struct picture shapes[] = {
-        {NULL, 1, 1},
-        {NULL, 2, 1},
-        {NULL, 1, 5},
-        {NULL, 5, 3},
-        {NULL, 13, 1},
-        {NULL, 64, 64},
-        {NULL, 1023, 2},
-        {NULL, 129, 255},
-        {NULL, 20, 12, 3},
-        {NULL, 9, 9, 1},
-        {NULL, 16, 16, 0, true},
-        {NULL, 7, 7, 2, true},
-    };
     static const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
                                            SLUICE_FORMAT_BC6H_UFLOAT_BLOCK, SLUICE_FORMAT_R8_UNORM,
                                            SLUICE_FORMAT_R16G16B16A16_SFLOAT};
-    for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
+    for (size_t i = 0; i < picture_shapes_count; i++)
         for (size_t k = 0; k < sizeof formats / sizeof formats[0]; k++)
             for (int s = 0; s < SCHEME_COUNT; s++) {
-                struct picture picture = shapes[i];
+                struct picture picture = picture_shapes[i];
                 picture.format = format_names_of(formats[k]);
-                check_file(&picture, schemes[s]);
+                check_file(make_ktx2(&picture, schemes[s]), &picture, open_ktx2);
             }
 }
 
@@ -89,63 +59,16 @@ static void no_levels_is_one_level(void **state)
     (void)state;
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC7_UNORM_BLOCK), 1, 1};
     struct file_bytes file = make_ktx2(&picture, 0);
-    struct scratch scratch;
     memset(file.bytes + 40, 0, 4);
-    scratch_init(&scratch, &file);
-    SluiceImageSource *source = open_ktx2(scratch.path, SLUICE_FORMAT_UNDEFINED, 0, NULL);
-    check_picture(source, &picture);
-    sluiceDestroyImageSource(source);
-    scratch_finish(&scratch);
-    free(file.bytes);
+    check_file(file, &picture, open_ktx2);
 }
 
 static void a_format_of_the_same_bytes_can_be_asked_for(void **state)
 {
     (void)state;
-    struct format_names unorm = *format_names_of(SLUICE_FORMAT_BC7_SRGB_BLOCK);
-    struct picture picture = {&unorm, 24, 24};
-    struct file_bytes file = make_ktx2(&picture, 0);
-    struct scratch scratch;
-    struct log_tally tally;
-    scratch_init(&scratch, &file);
-    unorm.format = SLUICE_FORMAT_BC7_UNORM_BLOCK;
-    SluiceImageSource *source = open_ktx2(scratch.path, unorm.format, 0, NULL);
-    check_picture(source, &picture);
-    sluiceDestroyImageSource(source);
-    source = open_ktx2(scratch.path, SLUICE_FORMAT_BC5_UNORM_BLOCK, 0, &tally);
-    CHECK_RESULT(read_everything(source), SLUICE_ERROR_UNSUPPORTED);
-    sluiceDestroyImageSource(source);
-    scratch_finish(&scratch);
-    free(file.bytes);
-}
-
-struct refusal {
-    uint32_t at, value;
-    SluiceResult result;
-    const char *message;
-};
-
-static void check_refusals(const struct picture *picture, uint32_t scheme,
-                           const struct refusal *refusals, size_t count)
-{
-    struct file_bytes file = make_ktx2(picture, scheme);
-    struct scratch scratch;
-    scratch_init(&scratch, &file);
-    for (size_t i = 0; i < count; i++) {
-        struct log_tally tally;
-        const struct refusal *r = &refusals[i];
-        scratch_replace(&scratch, file.bytes, file.size);
-        assert_int_equal(pwrite(scratch.descriptor, &r->value, 4, r->at), 4);
-        SluiceImageSource *source =
-            open_ktx2(scratch.path, SLUICE_FORMAT_UNDEFINED, 1 << 20, &tally);
-        SluiceResult result = read_everything(source);
-        if (result != r->result || tally.errors != 1 || !strstr(tally.last, r->message))
-            fail_msg("%zu: %s, %d errors: %s", i, sluiceResultString(result), tally.errors,
-                     tally.last);
-        sluiceDestroyImageSource(source);
-    }
-    scratch_finish(&scratch);
-    free(file.bytes);
+    struct picture picture = {format_names_of(SLUICE_FORMAT_BC7_SRGB_BLOCK), 24, 24};
+    check_renaming(make_ktx2(&picture, 0), &picture, open_ktx2, SLUICE_FORMAT_BC7_UNORM_BLOCK,
+                   SLUICE_FORMAT_BC5_UNORM_BLOCK);
 }
 
 static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
@@ -182,7 +105,8 @@ static void what_cannot_be_delivered_is_refused_with_a_reason(void **state)
         {100, 1, SLUICE_ERROR_CORRUPT_DATA, "level 0 has"},
     };
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 32, 32};
-    check_refusals(&picture, 0, refusals, sizeof refusals / sizeof refusals[0]);
+    check_refusals(make_ktx2(&picture, 0), open_ktx2, refusals,
+                   sizeof refusals / sizeof refusals[0]);
 }
 
 #ifdef TEST_HAS_ZSTD
@@ -197,7 +121,8 @@ static void compressed_levels_that_make_no_sense_are_refused(void **state)
         {80, 80 + 24 * 6, SLUICE_ERROR_CORRUPT_DATA, "level 0"},
     };
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 32, 32};
-    check_refusals(&picture, 2, refusals, sizeof refusals / sizeof refusals[0]);
+    check_refusals(make_ktx2(&picture, 2), open_ktx2, refusals,
+                   sizeof refusals / sizeof refusals[0]);
 }
 
 /* 2^22 bytes, which 60 cannot hold. */
@@ -210,7 +135,7 @@ static void a_bomb_is_refused_before_memory_is_asked_for(void **state)
     struct log_tally tally;
     memcpy(file.bytes + 88, (uint8_t[8]){60}, 8);
     scratch_init(&scratch, &file);
-    SluiceImageSource *source = open_ktx2(scratch.path, SLUICE_FORMAT_UNDEFINED, 0, &tally);
+    SluiceImageSource *source = open_ktx2(scratch.path, SLUICE_FORMAT_UNDEFINED, &tally);
     CHECK_RESULT(read_everything(source), SLUICE_ERROR_CORRUPT_DATA);
     assert_non_null(strstr(tally.last, "cannot have"));
     sluiceDestroyImageSource(source);
@@ -244,18 +169,6 @@ static void meter_free(void *user, void *memory, size_t size)
     free(memory);
 }
 
-struct reader {
-    SluiceImageSource *source;
-    const struct picture *picture;
-};
-
-static void *read_picture(void *argument)
-{
-    const struct reader *reader = argument;
-    check_picture(reader->source, reader->picture);
-    return NULL;
-}
-
 /* Room for level 0 and little else, while every thread walks through all levels. */
 static void decompressed_levels_stay_within_their_bound(void **state)
 {
@@ -269,25 +182,21 @@ static void decompressed_levels_stay_within_their_bound(void **state)
     scratch_init(&scratch, &file);
     SluiceKtx2ImageSourceCreateInfo info = {
         .pPath = scratch.path, .pAllocator = &callbacks, .maxCacheSize = BOUND};
-    struct reader reader = {NULL, &picture};
-    CHECK_OK(sluiceCreateKtx2ImageSource(&info, &reader.source));
-    pthread_t threads[THREADS];
-    for (int i = 0; i < THREADS; i++)
-        assert_int_equal(pthread_create(&threads[i], NULL, read_picture, &reader), 0);
-    for (int i = 0; i < THREADS; i++)
-        pthread_join(threads[i], NULL);
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateKtx2ImageSource(&info, &source));
+    check_on_threads(source, &picture, THREADS);
     /* levels, and the compressed bytes of those on their way: random ones, as large */
     assert_true(meter.most <= 2 * BOUND + 8192);
     assert_true(meter.live <= BOUND + 8192);
-    sluiceDestroyImageSource(reader.source);
+    sluiceDestroyImageSource(source);
     assert_int_equal(meter.live, 0);
     info.maxCacheSize = LEVEL_0 - 1;
     struct log_tally tally = {.path = scratch.path};
     info.log = log_to(&tally);
-    CHECK_OK(sluiceCreateKtx2ImageSource(&info, &reader.source));
-    CHECK_RESULT(read_everything(reader.source), SLUICE_ERROR_UNSUPPORTED);
+    CHECK_OK(sluiceCreateKtx2ImageSource(&info, &source));
+    CHECK_RESULT(read_everything(source), SLUICE_ERROR_UNSUPPORTED);
     assert_non_null(strstr(tally.last, "maxCacheSize is 65535"));
-    sluiceDestroyImageSource(reader.source);
+    sluiceDestroyImageSource(source);
     scratch_finish(&scratch);
     free(file.bytes);
 }
@@ -297,7 +206,7 @@ static void compressed_files_are_refused_without_zstandard(void **state)
     (void)state;
     static const struct refusal refusal = {44, 2, SLUICE_ERROR_UNSUPPORTED, "does not have"};
     struct picture picture = {format_names_of(SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK), 32, 32};
-    check_refusals(&picture, 0, &refusal, 1);
+    check_refusals(make_ktx2(&picture, 0), open_ktx2, &refusal, 1);
 }
 #endif
 

@@ -104,7 +104,11 @@ static void failures_are_reported_with_source_region_and_what_follows(void **sta
         assert_int_equal(failure->willRetry, i < 2);
         assert_int_equal(failure->retryDelay, delays[i]);
         assert_int_equal(failure->userValue, 9);
+        assert_true(failure->offset == SLUICE_UNKNOWN_OFFSET); /* it is no file */
     }
+    SluiceTileLoaderStatistics s = fixture_statistics(&f, &f.source);
+    CHECK_RESULT(s.lastFailure, SLUICE_ERROR_IO);
+    assert_true(s.lastFailureOffset == SLUICE_UNKNOWN_OFFSET);
     fixture_finish(&f);
 }
 

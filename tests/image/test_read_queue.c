@@ -156,7 +156,7 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     assert_true(slc_read_queue_next_due(&queue) == UINT64_MAX && slc_read_queue_is_idle(&queue));
     uint64_t ticket = submit(&queue, 0, 0, 1);
     struct slc_read *read = slc_read_queue_start(&queue, 100);
-    slc_read_queue_add_attempt(&queue, read, SLUICE_ERROR_IO, 7);
+    slc_read_queue_add_attempt(&queue, read, SLUICE_ERROR_IO, 4096, 7);
     slc_read_queue_delay(&queue, read, 150);
     assert_int_equal(slc_read_queue_next_due(&queue), 150);
     assert_null(slc_read_queue_start(&queue, 149));
@@ -164,8 +164,9 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     SluiceTileLoaderStatistics s;
     slc_read_queue_write_statistics(&queue, &sources[0], &s);
     assert_true(s.delayedCount == 1 && s.retriedCount == 1 && s.failedCount == 1);
+    assert_true(s.lastFailure == SLUICE_ERROR_IO && s.lastFailureOffset == 4096);
     assert_ptr_equal(slc_read_queue_start(&queue, 150), read);
-    slc_read_queue_add_attempt(&queue, read, SLUICE_SUCCESS, 9);
+    slc_read_queue_add_attempt(&queue, read, SLUICE_SUCCESS, 0, 9);
     slc_read_queue_end(&queue, read, SLUICE_SUCCESS);
     slc_read_queue_write_statistics(&queue, NULL, &s);
     assert_true(s.delayedCount == 0 && s.retriedCount == 1 && s.succeededCount == 1);

@@ -30,7 +30,7 @@ static void percentiles_are_at_most_twice_too_large(void **state)
             random = random * 1664525u + 1013904223u;
             latencies[i] = sorted[i] = (uint64_t)random >> (random & 31);
             sum += latencies[i];
-            slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, latencies[i]);
+            slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, 0, latencies[i]);
         }
         qsort(sorted, count, sizeof *sorted, compare);
         SluiceTileLoaderStatistics s;
@@ -51,7 +51,7 @@ static void equal_latencies_are_told_exactly(void **state)
     for (size_t i = 0; i < sizeof latencies / sizeof latencies[0]; i++) {
         struct slc_read_statistics statistics = {0};
         SluiceTileLoaderStatistics s;
-        slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, latencies[i]);
+        slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, 0, latencies[i]);
         slc_read_statistics_write(&statistics, &s);
         assert_true(s.medianLatency == latencies[i] && s.latency99 == latencies[i]);
         assert_true(s.meanLatency == latencies[i] && s.maxLatency == latencies[i]);
@@ -66,7 +66,7 @@ static void attempts_and_ends_are_counted_by_their_results(void **state)
         SLUICE_SUCCESS,  SLUICE_NOT_READY,          SLUICE_NOT_READY,      SLUICE_ERROR_IO,
         SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA, SLUICE_ERROR_CANCELLED};
     for (size_t i = 0; i < sizeof attempts / sizeof attempts[0]; i++)
-        slc_read_statistics_add_attempt(&statistics, attempts[i], 0);
+        slc_read_statistics_add_attempt(&statistics, attempts[i], 1000 + i, 0);
     slc_read_statistics_add_end(&statistics, SLUICE_SUCCESS, 100);
     slc_read_statistics_add_end(&statistics, SLUICE_SUCCESS, 11);
     slc_read_statistics_add_end(&statistics, SLUICE_ERROR_IO, 0);
@@ -81,6 +81,8 @@ static void attempts_and_ends_are_counted_by_their_results(void **state)
     assert_int_equal(s.byteCount, 111);
     assert_int_equal(s.givenUpCount, 2);
     assert_int_equal(s.cancelledCount, 1);
+    CHECK_RESULT(s.lastFailure, SLUICE_ERROR_CORRUPT_DATA);
+    assert_int_equal(s.lastFailureOffset, 1005);
 }
 
 static void nothing_is_all_zeros(void **state)
@@ -90,6 +92,7 @@ static void nothing_is_all_zeros(void **state)
     SluiceTileLoaderStatistics s;
     slc_read_statistics_write(&statistics, &s);
     assert_true(s.meanLatency == 0 && s.medianLatency == 0 && s.latency99 == 0 && s.readCount == 0);
+    assert_true(s.lastFailure == SLUICE_SUCCESS && s.lastFailureOffset == 0);
 }
 
 int main(void)

@@ -162,7 +162,7 @@ static void what_was_checked_is_forgotten_with_its_part_of_the_index(void **stat
     CHECK_OK(write_one(writer, &layout, PICTURE_MIXED, 0, 0, 64 * 204 % 512, 64 * 204 / 512));
     sluiceDestroyStoreWriter(writer);
     seal_by_hand(&scratch);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path, .checkRawTilesOnce = true};
+    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     int file = open(scratch.path, O_RDWR);

@@ -57,6 +57,8 @@ static void flip_bits(uint32_t compression, int count)
         fputc(victim.bytes[at], file);
     }
     fclose(file);
+    print_message("# %d bits flipped: %u errors, %u where nobody reads\n", count,
+                  (unsigned)count - harmless, (unsigned)harmless);
     assert_true(compression == 0 ? harmless < (uint32_t)count / 4 : harmless == 0);
     CHECK_OK(read_store(victim.scratch.path, PICTURE_SMOOTH, NULL));
     naive_store_finish(&store);
@@ -153,6 +155,14 @@ static void contradictions_under_right_checksums_are_noticed(void **state)
         {40, 0, 4},
         {44, 0, 4},
         {44, 21, 4},
+        {48, 5, 4},
+        {48, 0xFFFFFFFF, 4},
+        {52, 5, 4},
+        {52, 0x80000000, 4},
+        {56, 4, 4},
+        {56, 0xFFFFFFFF, 4},
+        {60, 4, 4},
+        {60, 256, 4},
         {68, 3901, 4},
         {68, 0xFFFFFFFF, 4},
         {96, 1, 8},

@@ -85,14 +85,14 @@ static void change_tile(const struct victim *victim, unsigned char value)
     fclose(file);
 }
 
-static void raw_tiles_are_checked_each_time_or_once(void **state)
+static void raw_tiles_are_checked_once_or_each_time(void **state)
 {
     (void)state;
-    for (int once = 0; once < 2; once++) {
+    for (int always = 0; always < 2; always++) {
         struct victim victim;
         victim_init(&victim, 0);
         SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
-                                                   .checkRawTilesOnce = once};
+                                                   .alwaysCheckRawTiles = always};
         SluiceImageSource *source;
         static unsigned char texels[65536];
         SluiceImageRegion region = {0, 0, 0, 128, 128, 0};
@@ -105,7 +105,7 @@ static void raw_tiles_are_checked_each_time_or_once(void **state)
         CHECK_OK(read_first_tile(source));
         change_tile(&victim, right ^ 1);
         CHECK_RESULT(sluiceReadImageRegion(source, &region, texels, 512),
-                     once ? SLUICE_SUCCESS : SLUICE_ERROR_CORRUPT_DATA);
+                     always ? SLUICE_ERROR_CORRUPT_DATA : SLUICE_SUCCESS);
         assert_int_equal(texels[100], right ^ 1);
         region.x = 128; /* that is not known to be right yet */
         CHECK_OK(sluiceReadImageRegion(source, &region, texels, 512));
@@ -133,7 +133,7 @@ int main(void)
         cmocka_unit_test(a_file_that_is_cut_while_it_is_open_gives_an_error),
         cmocka_unit_test(a_file_that_is_replaced_stays_what_it_was_for_who_has_it_open),
         cmocka_unit_test(a_file_that_is_written_over_while_it_is_open_gives_an_error),
-        cmocka_unit_test(raw_tiles_are_checked_each_time_or_once),
+        cmocka_unit_test(raw_tiles_are_checked_once_or_each_time),
         cmocka_unit_test(what_is_no_file_is_not_opened),
     };
     return RUN_TESTS(tests);

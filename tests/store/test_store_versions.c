@@ -6,27 +6,87 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The byte `at` is `value`. */
+struct change {
+    size_t at;
+    unsigned char value;
+};
+
+static void write_changed(const struct scratch *scratch, const struct change *changes, int count,
+                          bool reseals)
+{
+    SluiceStoreCreateInfo info = {.pPath = scratch->path,
+                                  .width = 200,
+                                  .height = 140,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .colorSpace = SLUICE_STORE_COLOR_SPACE_SRGB,
+                                  .addressModeV = SLUICE_STORE_ADDRESS_MODE_MIRRORED_REPEAT,
+                                  .compressionLevel = 1};
+    CHECK_OK(write_store(&info, PICTURE_MIXED));
+    size_t size;
+    unsigned char *bytes = read_bytes(scratch->path, &size);
+    for (int i = 0; i < count; i++)
+        bytes[changes[i].at] = changes[i].value;
+    if (reseals)
+        naive_store_reseal(bytes, size);
+    write_bytes(scratch->path, bytes, size);
+    free(bytes);
+}
+
 static SluiceResult read_changed(size_t at, unsigned char value, bool reseals,
                                  struct messages *messages)
 {
     struct scratch scratch;
+    struct change change = {at, value};
     scratch_init(&scratch);
-    SluiceStoreCreateInfo info = {.pPath = scratch.path,
-                                  .width = 200,
-                                  .height = 140,
-                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .compressionLevel = 1};
-    CHECK_OK(write_store(&info, PICTURE_MIXED));
-    size_t size;
-    unsigned char *bytes = read_bytes(scratch.path, &size);
-    bytes[at] = value;
-    if (reseals)
-        naive_store_reseal(bytes, size);
-    write_bytes(scratch.path, bytes, size);
+    write_changed(&scratch, &change, 1, reseals);
     SluiceResult result = read_store(scratch.path, PICTURE_MIXED, messages);
-    free(bytes);
     scratch_finish(&scratch);
     return result;
+}
+
+static SluiceStoreInfo info_of(const char *path)
+{
+    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceImageSource *source;
+    SluiceStoreInfo info;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    CHECK_OK(sluiceGetStoreInfo(source, &info));
+    sluiceDestroyImageSource(source);
+    return info;
+}
+
+/* The texels stay readable, what stands for them in words is left open. */
+static void choices_that_a_newer_minor_version_adds_are_what_says_least(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    scratch_init(&scratch);
+    const struct change changes[] = {{12, 1}, {48, 5}, {52, 77}, {56, 4}, {63, 0x80}};
+    write_changed(&scratch, changes, 5, true);
+    CHECK_OK(read_store(scratch.path, PICTURE_MIXED, NULL));
+    SluiceStoreInfo info = info_of(scratch.path);
+    assert_int_equal(info.versionMinor, 1);
+    assert_int_equal(info.colorSpace, SLUICE_STORE_COLOR_SPACE_UNDEFINED);
+    assert_int_equal(info.meaning, SLUICE_STORE_MEANING_DATA);
+    assert_int_equal(info.addressModeU, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE);
+    assert_int_equal(info.addressModeV, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE);
+    scratch_finish(&scratch);
+}
+
+static void choices_that_are_known_are_kept_whatever_the_minor_version(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    scratch_init(&scratch);
+    const struct change changes[] = {{12, 1}, {52, 5}}; /* the meaning alone is new */
+    write_changed(&scratch, changes, 2, true);
+    SluiceStoreInfo info = info_of(scratch.path);
+    assert_int_equal(info.colorSpace, SLUICE_STORE_COLOR_SPACE_SRGB);
+    assert_int_equal(info.meaning, SLUICE_STORE_MEANING_DATA);
+    assert_int_equal(info.addressModeU, SLUICE_STORE_ADDRESS_MODE_REPEAT);
+    assert_int_equal(info.addressModeV, SLUICE_STORE_ADDRESS_MODE_MIRRORED_REPEAT);
+    scratch_finish(&scratch);
 }
 
 static void a_newer_minor_version_is_read(void **state)
@@ -77,6 +137,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_newer_minor_version_is_read),
         cmocka_unit_test(what_a_newer_minor_version_adds_is_passed_over),
+        cmocka_unit_test(choices_that_a_newer_minor_version_adds_are_what_says_least),
+        cmocka_unit_test(choices_that_are_known_are_kept_whatever_the_minor_version),
         cmocka_unit_test(a_newer_major_version_is_refused_and_the_log_says_what_to_do),
         cmocka_unit_test(a_major_version_that_never_was_is_damage),
         cmocka_unit_test(a_format_that_is_not_known_is_refused_and_the_log_says_so),

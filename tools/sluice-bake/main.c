@@ -1,27 +1,49 @@
 /* Makes tile stores of pictures. */
 #define _XOPEN_SOURCE 700
 
+#include "find.h"
+#include "options.h"
 #include "report.h"
 #include "verify.h"
 
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { OK = 0, FAILED = 1, WRONG_USAGE = 2 };
 
+static struct bake_job *make_jobs(const struct options *options, const struct files *files)
+{
+    struct bake_job *jobs = calloc(files->count ? files->count : 1, sizeof *jobs);
+    if (!jobs)
+        fprintf(stderr, "sluice-bake: out of memory\n");
+    for (size_t i = 0; i < files->count && jobs; i++)
+        jobs[i] = (struct bake_job){.input = files->files[i].input,
+                                    .output = files->files[i].output,
+                                    .size = files->files[i].size,
+                                    .settings = options->settings,
+                                    .force = options->force};
+    return jobs;
+}
+
 static int bake(const struct options *options)
 {
     struct files files;
+    struct bake_conditions conditions = {.threads = options->threads,
+                                         .memory = options->memory,
+                                         .quiet = true,
+                                         .speaker = "sluice-bake: "};
     int status = FAILED;
     if (!find_files(&files, options->inputs, options->input_count, options->output)) {
         free_files(&files);
         return FAILED;
     }
-    struct outcome *outcomes = calloc(files.count ? files.count : 1, sizeof *outcomes);
-    if (!outcomes)
-        fprintf(stderr, "sluice-bake: out of memory\n");
-    else if (bake_files(options, &files, outcomes))
-        status = print_outcomes(&files, outcomes, options->json) ? FAILED : OK;
-    free(outcomes);
+    struct bake_job *jobs = make_jobs(options, &files);
+    if (jobs && bake_jobs_run(jobs, files.count, &conditions))
+        status = print_outcomes(jobs, files.count, options->json) ? FAILED : OK;
+    if (files.unreadable_count > 0)
+        status = FAILED;
+    free(jobs);
     free_files(&files);
     return status;
 }
@@ -30,6 +52,7 @@ int main(int argc, char **argv)
 {
     struct options options;
     int status = OK;
+    signal(SIGXFSZ, SIG_IGN);       /* files that may not grow are an error like a full disk */
     setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     if (!parse_options(&options, argc, argv))
         return WRONG_USAGE;

@@ -238,7 +238,7 @@ void print_help(void)
 {
     printf(
         "usage: sluice-bake IN... -o OUT|DIR [options]\n"
-        "       sluice-bake --verify FILE... [--json]\n"
+        "       sluice-bake --verify FILE|DIR... [--json]\n"
         "\n"
         "Makes tile stores of pictures: anything that libvips reads, OpenEXR, DDS, KTX2, larger\n"
         "than memory, too. IN is a picture or a folder, which is searched for pictures and keeps\n"
@@ -264,7 +264,7 @@ void print_help(void)
         "  --force               bake also what is up to date (no)\n"
         "  --threads N           (one per processor)\n"
         "  --memory SIZE         for all pictures under way, like 512M or 2G (%uG)\n"
-        "  --verify              read every tile of stores and compare checksums\n"
+        "  --verify              read every tile of stores, of folders all, and compare checksums\n"
         "  --json                one JSON object per line and file instead of the table\n"
         "  --help                this text\n"
         "\n"

@@ -1,38 +1,26 @@
 #include "report.h"
 
+#include "text.h"
+
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 enum status { BAKED, UNCHANGED, FAILED };
 static const char *const names[] = {"baked", "unchanged", "failed"};
 
-static enum status status_of(const struct outcome *outcome)
+static enum status status_of(const struct bake_job *job)
 {
-    if (!outcome->is_done || outcome->result != SLUICE_SUCCESS)
+    if (!job->is_done || job->result != SLUICE_SUCCESS)
         return FAILED;
-    return outcome->report.skipped ? UNCHANGED : BAKED;
+    return job->report.skipped ? UNCHANGED : BAKED;
 }
 
-static const char *reason(const struct outcome *outcome)
+static const char *reason(const struct bake_job *job)
 {
-    if (!outcome->is_done)
+    if (!job->is_done)
         return "it was not begun";
-    return outcome->message[0] ? outcome->message : sluiceResultString(outcome->result);
-}
-
-void print_json_string(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text; text++) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\')
-            fprintf(out, "\\%c", c);
-        else if (c < 0x20)
-            fprintf(out, "\\u%04x", c);
-        else
-            fputc(c, out);
-    }
-    fputc('"', out);
+    return job->message[0] ? job->message : sluiceResultString(job->result);
 }
 
 /* In the largest unit that leaves three digits. */
@@ -47,82 +35,83 @@ static const char *size_text(uint64_t size, char text[16])
     return text;
 }
 
-static void print_row(const struct file *file, const struct outcome *outcome)
+static void print_row(const struct bake_job *job)
 {
-    const SluiceBakeReport *r = &outcome->report;
+    const SluiceBakeReport *r = &job->report;
     char size[32] = "", in[16], out[16] = "";
     if (r->width)
         snprintf(size, sizeof size, "%ux%u", r->width, r->height);
     if (r->outputSize)
         size_text(r->outputSize, out);
-    printf("%-9s  %13s  %-20s  %9s  %9s  %s\n", names[status_of(outcome)], size,
-           r->width ? sluiceFormatString(r->format) : "", size_text(file->size, in), out,
-           file->output);
+    printf("%-9s  %13s  %-20s  %9s  %9s  ", names[status_of(job)], size,
+           r->width ? sluiceFormatString(r->format) : "", size_text(job->size, in), out);
+    text_write(stdout, job->output);
+    putchar('\n');
 }
 
-static void print_object(const struct file *file, const struct outcome *outcome)
+static void print_object(const struct bake_job *job)
 {
-    const SluiceBakeReport *r = &outcome->report;
+    const SluiceBakeReport *r = &job->report;
     printf("{\"input\": ");
-    print_json_string(stdout, file->input);
+    text_write_json(stdout, job->input);
     printf(", \"output\": ");
-    print_json_string(stdout, file->output);
-    printf(", \"status\": \"%s\", \"result\": \"%s\"", names[status_of(outcome)],
-           sluiceResultString(outcome->result));
-    if (status_of(outcome) == FAILED) {
+    text_write_json(stdout, job->output);
+    printf(", \"status\": \"%s\", \"result\": \"%s\"", names[status_of(job)],
+           sluiceResultString(job->result));
+    if (status_of(job) == FAILED) {
         printf(", \"error\": ");
-        print_json_string(stdout, reason(outcome));
+        text_write_json(stdout, reason(job));
     }
     printf(", \"width\": %u, \"height\": %u, \"levels\": %u, \"layers\": %u, \"format\": \"%s\"",
            r->width, r->height, r->mipLevelCount, r->arrayLayerCount,
            sluiceFormatString(r->format));
     printf(", \"input_size\": %" PRIu64 ", \"output_size\": %" PRIu64 ", \"memory\": %" PRIu64
            ", \"resumed_tiles\": %" PRIu64 ", \"replaced_texels\": %" PRIu64 "}\n",
-           file->size, r->outputSize, r->memorySize, r->resumedTileCount, r->replacedTexelCount);
+           job->size, r->outputSize, r->memorySize, r->resumedTileCount, r->replacedTexelCount);
 }
 
-static void print_totals(const struct files *files, const struct outcome *outcomes)
+static void print_totals(const struct bake_job *jobs, size_t count)
 {
     size_t counts[3] = {0};
     uint64_t in = 0, out = 0;
     char in_text[16], out_text[16];
-    for (size_t i = 0; i < files->count; i++) {
-        counts[status_of(&outcomes[i])]++;
-        in += files->files[i].size;
-        out += outcomes[i].report.outputSize;
+    for (size_t i = 0; i < count; i++) {
+        counts[status_of(&jobs[i])]++;
+        in += jobs[i].size;
+        out += jobs[i].report.outputSize;
     }
     printf("%zu baked, %zu unchanged, %zu failed; %s in, %s out\n", counts[BAKED],
            counts[UNCHANGED], counts[FAILED], size_text(in, in_text), size_text(out, out_text));
 }
 
-static void print_remarks(const struct file *file, const struct outcome *outcome)
+static void print_remarks(const struct bake_job *job)
 {
-    const char *why = reason(outcome);
-    if (status_of(outcome) != FAILED) {
-        if (outcome->report.replacedTexelCount)
-            fprintf(stderr, "sluice-bake: %s: %" PRIu64 " texels held no finite number\n",
-                    file->input, outcome->report.replacedTexelCount);
-    } else if (strncmp(why, file->input, strlen(file->input)) == 0) {
-        fprintf(stderr, "sluice-bake: %s\n", why);
+    const char *why = reason(job);
+    if (status_of(job) != FAILED) {
+        if (job->report.replacedTexelCount)
+            text_say("sluice-bake: %s: %" PRIu64 " texels held no finite number", job->input,
+                     job->report.replacedTexelCount);
+    } else if (strncmp(why, job->input, strlen(job->input)) == 0) {
+        text_say("sluice-bake: %s", why);
     } else {
-        fprintf(stderr, "sluice-bake: %s: %s\n", file->input, why);
+        text_say("sluice-bake: %s: %s", job->input, why);
     }
 }
 
-size_t print_outcomes(const struct files *files, const struct outcome *outcomes, bool json)
+size_t print_outcomes(const struct bake_job *jobs, size_t count, bool json)
 {
     size_t failed = 0;
     if (!json)
         printf("%-9s  %13s  %-20s  %9s  %9s  %s\n", "", "texels", "format", "in", "out", "store");
-    for (size_t i = 0; i < files->count; i++) {
-        failed += status_of(&outcomes[i]) == FAILED;
-        print_remarks(&files->files[i], &outcomes[i]);
+    for (size_t i = 0; i < count; i++) {
+        failed += status_of(&jobs[i]) == FAILED;
+        print_remarks(&jobs[i]);
         if (json)
-            print_object(&files->files[i], &outcomes[i]);
+            print_object(&jobs[i]);
         else
-            print_row(&files->files[i], &outcomes[i]);
+            print_row(&jobs[i]);
     }
     if (!json)
-        print_totals(files, outcomes);
+        print_totals(jobs, count);
     return failed;
 }

@@ -1,26 +1,41 @@
+#define _XOPEN_SOURCE 700
+
 #include "verify.h"
 
-#include "report.h"
+#include "files.h"
+#include "text.h"
 
 #include <sluice/store.h>
 
 #include <inttypes.h>
+#include <stdio.h>
+#include <sys/stat.h>
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
     if (severity == SLUICE_LOG_ERROR)
-        fprintf(stderr, "sluice-bake: %s\n", message);
+        text_say("sluice-bake: %s", message);
 }
 
 static void print_object(const char *path, SluiceResult result, const SluiceStoreReport *report)
 {
     printf("{\"file\": ");
-    print_json_string(stdout, path);
+    text_write_json(stdout, path);
     printf(", \"status\": \"%s\", \"result\": \"%s\", \"tiles\": %" PRIu64 ", \"defects\": %" PRIu64
            ", \"stored_size\": %" PRIu64 ", \"texel_size\": %" PRIu64 "}\n",
            result == SLUICE_SUCCESS ? "whole" : "damaged", sluiceResultString(result),
            report->tileCount, report->defectCount, report->storedSize, report->texelSize);
+}
+
+static void print_row(const char *path, SluiceResult result, const SluiceStoreReport *report)
+{
+    bool is_whole = result == SLUICE_SUCCESS;
+    printf("%s  %9" PRIu64 " tiles  ", is_whole ? "whole  " : "damaged", report->tileCount);
+    text_write(stdout, path);
+    if (!is_whole)
+        printf(": %" PRIu64 " cannot be read; %s", report->defectCount, sluiceResultString(result));
+    putchar('\n');
 }
 
 static bool verify(const char *path, bool json)
@@ -30,18 +45,36 @@ static bool verify(const char *path, bool json)
     SluiceResult result = sluiceVerifyStore(&info, &report);
     if (json)
         print_object(path, result, &report);
-    else if (result == SLUICE_SUCCESS)
-        printf("whole    %9" PRIu64 " tiles  %s\n", report.tileCount, path);
     else
-        printf("damaged  %9" PRIu64 " tiles  %s: %" PRIu64 " cannot be read; %s\n",
-               report.tileCount, path, report.defectCount, sluiceResultString(result));
+        print_row(path, result, &report);
     return result == SLUICE_SUCCESS;
+}
+
+/* A file whatever its name, and of folders all stores. */
+static bool collect(char **paths, int count, struct file_list *list)
+{
+    struct stat status;
+    bool enough_memory = true;
+    for (int i = 0; i < count && enough_memory; i++)
+        enough_memory = stat(paths[i], &status) == 0 && S_ISDIR(status.st_mode)
+                            ? files_collect(paths[i], SLUICE_STORE_EXTENSION, list)
+                            : files_add(paths[i], list);
+    if (!enough_memory)
+        fprintf(stderr, "sluice-bake: out of memory\n");
+    return enough_memory;
 }
 
 bool verify_files(char **paths, int count, bool json)
 {
-    bool all_are_whole = true;
-    for (int i = 0; i < count; i++)
-        all_are_whole = verify(paths[i], json) && all_are_whole;
+    struct file_list list = {.speaker = "sluice-bake: "};
+    bool all_are_whole = collect(paths, count, &list);
+    for (size_t i = 0; i < list.count; i++)
+        all_are_whole = verify(list.paths[i], json) && all_are_whole;
+    all_are_whole = all_are_whole && list.unreadable_count == 0;
+    if (list.count == 0 && list.unreadable_count == 0) {
+        fprintf(stderr, "sluice-bake: there is no store to verify\n");
+        all_are_whole = false;
+    }
+    files_finish(&list);
     return all_are_whole;
 }

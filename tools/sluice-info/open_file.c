@@ -1,5 +1,7 @@
 #include "open_file.h"
 
+#include "text.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,11 +20,11 @@
 /* The library's words name the file. */
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
-    bool *has_spoken = user;
+    struct texture_file *file = user;
     if (severity == SLUICE_LOG_INFO)
         return;
-    fprintf(stderr, "sluice-info: %s\n", message);
-    *has_spoken = true;
+    text_say("sluice-info: %s", message);
+    file->has_spoken = true;
 }
 
 static bool read_start(const char *path, char bytes[12])
@@ -33,7 +35,7 @@ static bool read_start(const char *path, char bytes[12])
         (void)!fread(bytes, 1, 12, file);
     bool failed = !file || ferror(file);
     if (failed)
-        fprintf(stderr, "sluice-info: %s: %s\n", path, strerror(errno));
+        text_say("sluice-info: %s: %s", path, strerror(errno));
     if (file)
         fclose(file);
     return !failed;
@@ -83,8 +85,7 @@ bool open_texture_file(struct texture_file *file, const char *path)
 {
     static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
     char start[12];
-    bool has_spoken = false;
-    SluiceLogCallback log = {&has_spoken, on_log};
+    SluiceLogCallback log = {file, on_log};
     SluiceResult result;
     *file = (struct texture_file){0};
     if (!read_start(path, start))
@@ -99,8 +100,8 @@ bool open_texture_file(struct texture_file *file, const char *path)
         result = sluiceGetImageInfo(file->source, &file->image);
     if (result == SLUICE_SUCCESS)
         return true;
-    if (!has_spoken)
-        fprintf(stderr, "sluice-info: %s: %s\n", path, sluiceResultString(result));
+    if (!file->has_spoken)
+        text_say("sluice-info: %s: %s", path, sluiceResultString(result));
     close_texture_file(file);
     return false;
 }

@@ -9,9 +9,10 @@ struct texture_file {
     SluiceImageInfo image;
     const char *kind; ///< "tile store" and so on
     bool is_store;
+    bool has_spoken; ///< the library has said what is wrong
 };
 
-/** Says on standard error what is wrong. */
+/** Says on standard error what is wrong. The struct stays where it is until it is closed. */
 bool open_texture_file(struct texture_file *file, const char *path);
 void close_texture_file(struct texture_file *file);
 

@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include "text.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -119,17 +121,9 @@ void print_table(const struct device_report *r, bool follows)
 
 static void print_string(const char *name, const char *text)
 {
-    printf("\"%s\":\"", name);
-    for (; *text; text++) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\')
-            printf("\\%c", c);
-        else if (c < 0x20)
-            printf("\\u%04x", c);
-        else
-            putchar(c);
-    }
-    printf("\",");
+    printf("\"%s\":", name);
+    text_write_json(stdout, text);
+    printf(",");
 }
 
 static void print_flag(const char *name, bool value)

@@ -3,6 +3,7 @@
 #include "show.h"
 
 #include "open_file.h"
+#include "text.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -31,20 +32,6 @@ static uint64_t texel_size(const SluiceImageInfo *image)
         size += sluiceFormatRegionSize(image->format, level_size(image->width, l),
                                        level_size(image->height, l));
     return size * (image->arrayLayerCount ? image->arrayLayerCount : 1);
-}
-
-static void print_string(const char *text)
-{
-    putchar('"');
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\')
-            printf("\\%c", *text);
-        else if ((unsigned char)*text < 0x20)
-            printf("\\u%04x", (unsigned char)*text);
-        else
-            putchar(*text);
-    }
-    putchar('"');
 }
 
 #ifdef HAVE_STORE
@@ -88,7 +75,9 @@ static void print_store(const SluiceStoreInfo *s)
     printf("  colour space            %s\n", name_of(spaces, 5, s->colorSpace));
     printf("  beyond the edges        %s, %s\n", name_of(modes, 4, s->addressModeU),
            name_of(modes, 4, s->addressModeV));
-    printf("  made from               %s, %" PRIu64 " bytes", s->pSourceName, s->sourceSize);
+    printf("  made from               ");
+    text_write(stdout, s->pSourceName);
+    printf(", %" PRIu64 " bytes", s->sourceSize);
     print_time(s->sourceModifiedTime);
     printf("  settings                %016" PRIx64 "\n", s->settingsHash);
     printf("  compression             %u\n", s->compressionLevel);
@@ -103,7 +92,7 @@ static void print_store_json(const SluiceStoreInfo *s)
            s->versionMinor, name_of(meanings, 5, s->meaning), name_of(spaces, 5, s->colorSpace));
     printf(", \"addressModeU\": \"%s\", \"addressModeV\": \"%s\", \"sourceName\": ",
            name_of(modes, 4, s->addressModeU), name_of(modes, 4, s->addressModeV));
-    print_string(s->pSourceName);
+    text_write_json(stdout, s->pSourceName);
     printf(", \"sourceSize\": %" PRIu64 ", \"sourceModifiedTime\": %" PRId64
            ", \"settingsHash\": \"%016" PRIx64 "\", \"compressionLevel\": %u",
            s->sourceSize, s->sourceModifiedTime, s->settingsHash, s->compressionLevel);
@@ -132,7 +121,8 @@ static void show_what_is_in_a_store(const struct texture_file *file, bool json)
 static void print_file(const struct texture_file *file, const char *path)
 {
     const SluiceImageInfo *image = &file->image;
-    printf("%s: %s\n", path, file->kind);
+    text_write(stdout, path);
+    printf(": %s\n", file->kind);
     printf("  size                    %u x %u texels, %u levels, %u layers\n", image->width,
            image->height, image->mipLevelCount,
            image->arrayLayerCount ? image->arrayLayerCount : 1);
@@ -146,7 +136,7 @@ static void print_file_json(const struct texture_file *file, const char *path)
 {
     const SluiceImageInfo *image = &file->image;
     printf("{\"file\": ");
-    print_string(path);
+    text_write_json(stdout, path);
     printf(", \"kind\": \"%s\", \"width\": %u, \"height\": %u, \"mipLevelCount\": %u"
            ", \"arrayLayerCount\": %u, \"format\": \"%s\", \"texelSize\": %" PRIu64
            ", \"fileSize\": %" PRIu64,

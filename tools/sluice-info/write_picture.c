@@ -1,6 +1,7 @@
 #include "show.h"
 
 #include "open_file.h"
+#include "text.h"
 #include "to_bytes.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@
 
 static bool fail(const char *path, const char *why)
 {
-    fprintf(stderr, "sluice-info: %s: %s\n", path, why);
+    text_say("sluice-info: %s: %s", path, why);
     return false;
 }
 
@@ -86,11 +87,11 @@ static bool write_region(const struct texture_file *file, const char *in,
     } else {
         SluiceResult result = sluiceReadImageRegion(
             file->source, region, texels, (size_t)region->width * sluiceFormatTexelSize(format));
-        if (result != SLUICE_SUCCESS) {
-            fail(in, sluiceResultString(result));
-        } else {
+        if (result == SLUICE_SUCCESS) {
             texels_to_bytes(format, texels, rgba, count);
             done = write_png(out, rgba, region->width, region->height);
+        } else if (!file->has_spoken) {
+            fail(in, sluiceResultString(result));
         }
     }
     free(texels);

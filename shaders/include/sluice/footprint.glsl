@@ -3,7 +3,7 @@
  *
  * A tile of level l stands over the regions whose index, shifted right by l, is its own. Level sizes
  * are rounded down, so on textures that do not halve evenly a tile begins up to one texel of its
- * level before its regions: the box around a sample reaches that much further down.
+ * level behind the begin of its regions: the box around a sample reaches that much further down.
  *
  * Along an axis it suffices to look at one region of each tile of the finest level that is sampled,
  * and at the last region, which may be narrow. Everything is in texels of level 0. C twin:

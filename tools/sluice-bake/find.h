@@ -1,6 +1,6 @@
 /** Which pictures there are, and where their stores go. */
-#ifndef TOOLS_SLUICE_BAKE_FILES_H
-#define TOOLS_SLUICE_BAKE_FILES_H
+#ifndef TOOLS_SLUICE_BAKE_FIND_H
+#define TOOLS_SLUICE_BAKE_FIND_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,17 +14,16 @@ struct file {
 struct files {
     struct file *files;
     size_t count, capacity;
+    size_t unreadable_count; ///< folders and files in them, which were named on standard error
 };
 
 /**
  * Pictures named and found in folders, sorted by output. A folder holds pictures if their names
- * end as pictures' do; hidden ones and stores do not count. False, having said why, if a folder
- * cannot be read, two pictures would go to one file, or there is no memory.
+ * end as pictures' do; hidden ones and stores do not count. Links to folders are not
+ * followed there. False, having said why, if two pictures would go to one file or there is no
+ * memory.
  */
 bool find_files(struct files *files, char **inputs, int input_count, const char *output);
 void free_files(struct files *files);
 
-/** Makes the folders above a file. */
-bool make_folders_of(const char *path);
-
-#endif /* TOOLS_SLUICE_BAKE_FILES_H */
+#endif /* TOOLS_SLUICE_BAKE_FIND_H */

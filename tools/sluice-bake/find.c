@@ -1,19 +1,20 @@
 #define _XOPEN_SOURCE 700
 
-#include "files.h"
+#include "find.h"
 
-#include <dirent.h>
-#include <errno.h>
+#include "files.h"
+#include "picture_names.h"
+#include "text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
-static bool fail(const char *path, const char *why)
+static char *copy(const char *text)
 {
-    fprintf(stderr, "sluice-bake: %s: %s\n", path, why);
-    return false;
+    char *own = malloc(strlen(text) + 1);
+    return own ? strcpy(own, text) : NULL;
 }
 
 static bool is_folder(const char *path)
@@ -37,18 +38,6 @@ static const char *extension(const char *name)
 {
     const char *slash = strrchr(name, '/'), *dot = strrchr(name, '.');
     return dot && dot != name && (!slash || dot > slash + 1) ? dot : name + strlen(name);
-}
-
-static bool is_picture(const char *name)
-{
-    static const char *const extensions[] = {
-        ".png", ".jpg",  ".jpeg", ".tif",  ".tiff", ".webp", ".exr", ".dds", ".ktx2",
-        ".hdr", ".gif",  ".ppm",  ".pgm",  ".pfm",  ".pnm",  ".bmp", ".tga", ".jp2",
-        ".jxl", ".heic", ".v",    ".avif", ".vips", ".heif", ".j2k", ".psd", ".tx"};
-    for (size_t i = 0; i < sizeof extensions / sizeof extensions[0]; i++)
-        if (strcasecmp(extension(name), extensions[i]) == 0)
-            return true;
-    return false;
 }
 
 /* Takes both strings, which may be NULL for want of memory. */
@@ -88,38 +77,16 @@ static char *output_in(const char *folder, const char *name)
     return path;
 }
 
-static bool search(struct files *files, const char *input, const char *output);
-
-static bool add_entry(struct files *files, const char *input, const char *output, const char *name)
-{
-    struct stat status;
-    char *path = join(input, name);
-    if (!path)
-        return add(files, NULL, NULL);
-    if (lstat(path, &status) == 0 && S_ISDIR(status.st_mode)) { /* links may lead in circles */
-        char *below = join(output, name);
-        bool done = below ? search(files, path, below) : add(files, NULL, NULL);
-        free(below);
-        free(path);
-        return done;
-    }
-    if (is_picture(name))
-        return add(files, path, output_in(output, name));
-    free(path);
-    return true;
-}
-
+/* All pictures of a folder and of those below it. */
 static bool search(struct files *files, const char *input, const char *output)
 {
-    DIR *folder = opendir(input);
-    struct dirent *entry;
-    bool done = true;
-    if (!folder)
-        return fail(input, strerror(errno));
-    while (done && (entry = readdir(folder)))
-        if (entry->d_name[0] != '.')
-            done = add_entry(files, input, output, entry->d_name);
-    closedir(folder);
+    struct file_list found = {.speaker = "sluice-bake: "};
+    size_t skipped = strlen(input) + (input[strlen(input) - 1] != '/');
+    bool done = files_collect(input, PICTURE_SUFFIXES, &found) || add(files, NULL, NULL);
+    for (size_t i = 0; i < found.count && done; i++)
+        done = add(files, copy(found.paths[i]), output_in(output, found.paths[i] + skipped));
+    files->unreadable_count += found.unreadable_count;
+    files_finish(&found);
     return done;
 }
 
@@ -132,17 +99,11 @@ static bool outputs_differ(const struct files *files)
 {
     for (size_t i = 1; i < files->count; i++)
         if (strcmp(files->files[i - 1].output, files->files[i].output) == 0) {
-            fprintf(stderr, "sluice-bake: %s and %s would both become %s\n",
-                    files->files[i - 1].input, files->files[i].input, files->files[i].output);
+            text_say("sluice-bake: %s and %s would both become %s", files->files[i - 1].input,
+                     files->files[i].input, files->files[i].output);
             return false;
         }
     return true;
-}
-
-static char *copy(const char *text)
-{
-    char *own = malloc(strlen(text) + 1);
-    return own ? strcpy(own, text) : NULL;
 }
 
 static bool add_input(struct files *files, char *input, const char *output, bool to_folder)
@@ -175,18 +136,4 @@ void free_files(struct files *files)
     }
     free(files->files);
     *files = (struct files){0};
-}
-
-bool make_folders_of(const char *path)
-{
-    char *own = copy(path);
-    bool done = own != NULL;
-    for (char *slash = own ? strchr(own + 1, '/') : NULL; slash && done;
-         slash = strchr(slash + 1, '/')) {
-        *slash = '\0';
-        done = mkdir(own, 0777) == 0 || errno == EEXIST || is_folder(own);
-        *slash = '/';
-    }
-    free(own);
-    return done;
 }

@@ -1,5 +1,6 @@
 /* Files that other programs wrote, of a picture that follows a formula (data/README.md). */
 #include <sluice/dds.h>
+#include <sluice/ktx2.h>
 
 #include "container/container_files.h"
 #include "support/test.h"
@@ -14,11 +15,13 @@
 static SluiceImageSource *open_file(const char *name, struct log_tally *tally, char path[1024])
 {
     const char *root = getenv("SLUICE_SOURCE_ROOT");
-    snprintf(path, 1024, "%s/tests/container/data/%s.dds", root ? root : ".", name);
+    snprintf(path, 1024, "%s/tests/container/data/%s", root ? root : ".", name);
     *tally = (struct log_tally){.path = path};
-    SluiceDdsImageSourceCreateInfo info = {.pPath = path, .log = log_to(tally)};
+    SluiceDdsImageSourceCreateInfo dds = {.pPath = path, .log = log_to(tally)};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .log = log_to(tally)};
     SluiceImageSource *source = NULL;
-    CHECK_OK(sluiceCreateDdsImageSource(&info, &source));
+    CHECK_OK(strstr(name, ".dds") ? sluiceCreateDdsImageSource(&dds, &source)
+                                  : sluiceCreateKtx2ImageSource(&ktx2, &source));
     return source;
 }
 
@@ -67,7 +70,7 @@ static void texel_of(SluiceFormat format, const uint8_t *texels, uint32_t width,
                      uint32_t y, uint8_t rgba[4])
 {
     uint32_t block = y / 4 * ((width + 3) / 4) + x / 4;
-    if (format == SLUICE_FORMAT_R8G8B8A8_UNORM) {
+    if (sluiceFormatTexelSize(format) == 4) {
         memcpy(rgba, texels + 4 * ((size_t)y * width + x), 4);
     } else if (format == SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK) {
         decode_color(texels + 8 * (size_t)block, x % 4, y % 4, false, rgba);
@@ -89,7 +92,7 @@ static void check_level(SluiceImageSource *source, const SluiceImageInfo *info, 
     /* A block has four colours on the line that its texels cover: a sixth of it is lost. */
     double covered = (8.0 / width + 4.0 / height) / 3;
     double limit = SMALL_ERROR, squares = 0;
-    if (info->format != SLUICE_FORMAT_R8G8B8A8_UNORM)
+    if (sluiceFormatTexelSize(info->format) == 0)
         limit += 255 * (covered < 1 ? covered : 1) / 6;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {
@@ -114,11 +117,16 @@ static void files_of_other_programs_show_their_picture(void **state)
         SluiceFormat format;
         uint32_t width, height;
     } files[] = {
-        {"nvtt_bc1", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 44, 20},
-        {"nvtt_bc3", SLUICE_FORMAT_BC3_UNORM_BLOCK, 44, 20},
-        {"nvtt_rgb", SLUICE_FORMAT_R8G8B8A8_UNORM, 44, 20},
-        {"magick_dxt5", SLUICE_FORMAT_BC3_UNORM_BLOCK, 32, 16},
-        {"magick_rgba", SLUICE_FORMAT_R8G8B8A8_UNORM, 32, 16},
+        {"nvtt_bc1.dds", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 44, 20},
+        {"nvtt_bc3.dds", SLUICE_FORMAT_BC3_UNORM_BLOCK, 44, 20},
+        {"nvtt_rgb.dds", SLUICE_FORMAT_R8G8B8A8_UNORM, 44, 20},
+        {"magick_dxt5.dds", SLUICE_FORMAT_BC3_UNORM_BLOCK, 32, 16},
+        {"magick_rgba.dds", SLUICE_FORMAT_R8G8B8A8_UNORM, 32, 16},
+        {"parse_bc1.ktx2", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 44, 20},
+#ifdef TEST_HAS_ZSTD
+        {"parse_bc1_zstd.ktx2", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 44, 20},
+#endif
+        {"parse_rgba.ktx2", SLUICE_FORMAT_R8G8B8A8_SRGB, 44, 20},
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         char path[1024];
@@ -143,10 +151,44 @@ static void a_file_without_its_levels_is_refused(void **state)
     char path[1024];
     struct log_tally tally;
     SluiceImageInfo info;
-    SluiceImageSource *source = open_file("magick_one_level", &tally, path);
+    SluiceImageSource *source = open_file("magick_one_level.dds", &tally, path);
     CHECK_RESULT(sluiceGetImageInfo(source, &info), SLUICE_ERROR_UNSUPPORTED);
     assert_non_null(strstr(tally.last, "has 1 of 6 levels; write it again"));
     sluiceDestroyImageSource(source);
+}
+
+/* Its texels have to be decoded first. */
+static void basis_universal_is_refused_with_a_way_out(void **state)
+{
+    (void)state;
+    char path[1024];
+    struct log_tally tally;
+    SluiceImageInfo info;
+    SluiceImageSource *source = open_file("basisu_etc1s.ktx2", &tally, path);
+    CHECK_RESULT(sluiceGetImageInfo(source, &info), SLUICE_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(tally.last, "Basis Universal"));
+    assert_non_null(strstr(tally.last, "transcode"));
+    sluiceDestroyImageSource(source);
+}
+
+static void the_same_blocks_in_a_dds_and_a_ktx2_file_are_the_same(void **state)
+{
+    (void)state;
+    char path[1024];
+    struct log_tally tally;
+    SluiceImageSource *dds = open_file("nvtt_bc1.dds", &tally, path);
+    SluiceImageSource *ktx2 = open_file("parse_bc1.ktx2", &tally, path);
+    for (uint32_t level = 0; level < 6; level++) {
+        uint8_t a[11 * 5 * 8] = {0}, b[11 * 5 * 8] = {1};
+        uint32_t width = 44 >> level ? 44 >> level : 1, height = 20 >> level ? 20 >> level : 1;
+        SluiceImageRegion region = {level, 0, 0, width, height};
+        size_t row = (width + 3) / 4 * 8;
+        CHECK_OK(sluiceReadImageRegion(dds, &region, a, row));
+        CHECK_OK(sluiceReadImageRegion(ktx2, &region, b, row));
+        assert_memory_equal(a, b, row * ((height + 3) / 4));
+    }
+    sluiceDestroyImageSource(dds);
+    sluiceDestroyImageSource(ktx2);
 }
 
 int main(void)
@@ -154,6 +196,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_of_other_programs_show_their_picture),
         cmocka_unit_test(a_file_without_its_levels_is_refused),
+        cmocka_unit_test(basis_universal_is_refused_with_a_way_out),
+        cmocka_unit_test(the_same_blocks_in_a_dds_and_a_ktx2_file_are_the_same),
     };
     return RUN_TESTS(tests);
 }

@@ -1,0 +1,33 @@
+/** Many pictures baked side by side on all processors, with one progress bar. */
+#ifndef SAMPLES_COMMON_BAKE_JOBS_H
+#define SAMPLES_COMMON_BAKE_JOBS_H
+
+#include <sluice/bake.h>
+
+/** A picture, where its store goes, and then what became of it. */
+struct bake_job {
+    const char *input, *output; ///< borrowed; folders are made
+    uint64_t size;              ///< bytes of the input, its share of the progress bar
+    SluiceBakeSettings settings;
+    bool force;
+    bool is_done; ///< there was a thread for it
+    SluiceResult result;
+    SluiceBakeReport report;
+    char message[512]; ///< the first thing that was said of it, which names it; "": nothing
+};
+
+/** Zeros are the baker's defaults. */
+struct bake_conditions {
+    uint32_t threads;    ///< 0: one per processor
+    uint64_t memory;     ///< bytes for all pictures under way
+    bool quiet;          ///< no progress where stderr is no terminal
+    const char *speaker; ///< stands in front of messages; "sluice-bake: " and the like
+};
+
+/**
+ * Bakes all. The bar appears with the first picture that is not up to date. What is said of none of
+ * the pictures goes to stderr. False, having said why, if nothing could be begun.
+ */
+bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_conditions *conditions);
+
+#endif /* SAMPLES_COMMON_BAKE_JOBS_H */

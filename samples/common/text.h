@@ -1,0 +1,26 @@
+/**
+ * Words that come from elsewhere, names of files among them, so that no terminal and no program
+ * takes them for something else. Texts are UTF-8, or what claims to be.
+ */
+#ifndef SAMPLES_COMMON_TEXT_H
+#define SAMPLES_COMMON_TEXT_H
+
+#include <stdio.h>
+
+/**
+ * For people: \n, \t, \x1b and \u202e stand for characters that move the cursor, change colours or
+ * turn the direction of writing, \xff for a byte that is no UTF-8. Nothing else is changed.
+ */
+void text_write(FILE *out, const char *text);
+
+/** A line on stderr, as printf makes it, written as above; at most 8 KiB of it. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 2)))
+#endif
+void
+text_say(const char *format, ...);
+
+/** A JSON string with its quotes; U+FFFD stands for bytes that are no UTF-8. */
+void text_write_json(FILE *out, const char *text);
+
+#endif /* SAMPLES_COMMON_TEXT_H */
