@@ -254,8 +254,8 @@ SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
 
 /** What a launch missed. Pages, each counted once, whatever how many samples missed it. */
 typedef struct SluiceDemandRequests {
-    /** All that shaders asked for, listed or not: 0 means that every sample was resident, or is as
-     *  sharp as memory allows. */
+    /** All that shaders asked for, listed or not, but for pages of resources that are refused: 0
+     *  means that every sample was resident, or is as sharp as memory allows. */
     uint32_t missingCount;
     uint32_t servedCount;    ///< reads and fills that begin now
     uint32_t pendingCount;   ///< under way already
