@@ -59,12 +59,12 @@ static void tiles(const struct pattern *p, float u, float v, float footprint, fl
         if (tx >= 0.0f && tx < 1.0f && ty >= 0.0f && ty < 1.0f && is_ink(number % 10000u, tx, ty))
             mix_into(rgb, ink, 0.8f * visible * noise_visible(0.3f, size * 45.0f));
     }
-    scale(rgb, 0.94f + 0.12f * periodic_octaves(u, v, 16, 16, 9, 0.6f, footprint, p->seed));
+    scale(rgb, 0.94f + 0.12f * periodic_octaves(u, v, 64, 64, 6, 0.7f, footprint, p->seed));
 }
 
 static void stone(const struct pattern *p, float u, float v, float footprint, float rgb[3])
 {
-    float bend = periodic_octaves(u, v, 4, 4, 6, 0.55f, footprint, p->seed);
+    float bend = periodic_octaves(u, v, 4, 4, 4, 0.55f, footprint, p->seed);
     float cloud = periodic_octaves(u + 0.06f * bend, v + 0.05f * bend, 4, 4, 11, 0.58f, footprint,
                                    p->seed + 7);
     float vein =
@@ -118,7 +118,7 @@ static void cloth(const struct pattern *p, float u, float v, float footprint, fl
 static void world(const struct pattern *p, float u, float v, float footprint, float rgb[3])
 {
     static const float snow[3] = {0.86f, 0.88f, 0.92f};
-    float bend = periodic_octaves(u, v, 4, 4, 5, 0.5f, footprint, p->seed);
+    float bend = periodic_octaves(u, v, 4, 4, 4, 0.5f, footprint, p->seed);
     float land = periodic_octaves(u + 0.05f * bend, v - 0.04f * bend, 4, 4, 12, 0.55f, footprint,
                                   p->seed + 2);
     float soft = 0.01f + 6.0f * footprint;
