@@ -1,4 +1,8 @@
-/* Ways down the hierarchies that bvh.c builds, for devices that trace no rays themselves. */
+/*
+ * A way down the hierarchies that bvh.c builds, for devices that trace no rays themselves. It stops
+ * at triangles that may have holes, so that textures are sampled in one place of the shader alone:
+ * compilers put all functions in line.
+ */
 #ifndef TRACER_BVH_GLSL
 #define TRACER_BVH_GLSL
 
@@ -7,103 +11,154 @@ layout(std430, set = 1, binding = TRACER_BINDING_NODES) readonly buffer Nodes
     TracerNode nodes[];
 };
 
-struct Ray {
-    vec3 origin, direction;
-    Cone cone;
-    float far;        /* of what was hit last */
-    bool any;         /* whatever is hit first will do */
-    bool hit;
-    bool complete;    /* all holes on the way were resident */
+struct Hit {
+    float distance; /* below 0: nothing */
     uint instance, triangle;
     vec2 weights;
 };
 
-/** How far a ray is when it enters a box; beyond `far` if it does not. */
-float enterBox(TracerNode node, vec3 origin, vec3 inverse, float far)
+struct Walk {
+    vec3 worldOrigin, worldDirection;
+    vec3 origin, direction, inverse; /* in the instance's space while inside one */
+    bool any;                        /* whatever is hit first will do */
+    bool inside;
+    uint instance, firstIndex, flags; /* of the instance */
+    uint height, base; /* of the stack, and where it was outside the instance */
+    uint triangle, end;
+    float far;
+    Hit best;
+};
+
+uint walkStack[TRACER_STACK_SIZE];
+
+void setWalkRay(inout Walk walk, vec3 origin, vec3 direction)
 {
-    vec3 a = (vec3(node.low[0], node.low[1], node.low[2]) - origin) * inverse;
-    vec3 b = (vec3(node.high[0], node.high[1], node.high[2]) - origin) * inverse;
-    vec3 near3 = min(a, b), far3 = max(a, b);
-    float enter = max(max(near3.x, near3.y), max(near3.z, 0.0));
+    walk.origin = origin;
+    walk.direction = direction;
+    walk.inverse = 1.0 / direction;
+}
+
+Walk startWalk(vec3 origin, vec3 direction, float far, bool any, uint root)
+{
+    Walk walk;
+    walk.worldOrigin = origin;
+    walk.worldDirection = direction;
+    setWalkRay(walk, origin, direction);
+    walk.any = any;
+    walk.inside = false;
+    walk.instance = walk.firstIndex = walk.flags = 0u;
+    walk.height = 1u;
+    walk.base = 0u;
+    walk.triangle = walk.end = 0u;
+    walk.far = far;
+    walk.best.distance = -1.0;
+    walkStack[0] = root;
+    return walk;
+}
+
+/** How far the ray is when it enters a box; beyond 1e29 if that is not before `far`. */
+float enterBox(Walk walk, TracerNode node)
+{
+    vec3 a = (vec3(node.low[0], node.low[1], node.low[2]) - walk.origin) * walk.inverse;
+    vec3 b = (vec3(node.high[0], node.high[1], node.high[2]) - walk.origin) * walk.inverse;
+    vec3 first = min(a, b), last = max(a, b);
+    float enter = max(max(first.x, first.y), max(first.z, 0.0));
     /* a little wider than it is: rounding must not lose what lies in the box's side */
-    float leave = min(min(far3.x, far3.y), far3.z) * 1.000001 + 1.0e-7;
-    return enter <= min(leave, far) ? enter : 1.0e30;
+    float leave = min(min(last.x, last.y), last.z) * 1.000001 + 1.0e-7;
+    return enter <= min(leave, walk.far) ? enter : 1.0e30;
 }
 
 /** Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
-bool hitTriangle(uint firstIndex, uint triangle, vec3 origin, vec3 direction, out float distance,
-                 out vec2 weights)
+bool hitTriangle(Walk walk, uint triangle, out float distance, out vec2 weights)
 {
-    uint first = firstIndex + 3u * triangle;
+    uint first = walk.firstIndex + 3u * triangle;
     vec3 corner = vertexPosition(indices[first]);
     vec3 edge1 = vertexPosition(indices[first + 1u]) - corner;
     vec3 edge2 = vertexPosition(indices[first + 2u]) - corner;
-    vec3 p = cross(direction, edge2), t = origin - corner, q = cross(t, edge1);
+    vec3 p = cross(walk.direction, edge2), t = walk.origin - corner, q = cross(t, edge1);
     float volume = dot(edge1, p);
-    weights = vec2(dot(t, p), dot(direction, q)) / volume;
+    weights = vec2(dot(t, p), dot(walk.direction, q)) / volume;
     distance = dot(edge2, q) / volume;
     return volume != 0.0 && weights.x >= 0.0 && weights.y >= 0.0 && weights.x + weights.y <= 1.0 &&
-           distance > 0.0;
+           distance > 0.0 && distance < walk.far;
 }
 
-void hitTriangles(inout Ray ray, uint instanceIndex, TracerInstance instance, TracerNode node,
-                  vec3 origin, vec3 direction)
+void takeHit(inout Walk walk, Hit hit)
 {
-    for (uint i = node.first; i < node.first + node.count; i++) {
-        float distance;
-        vec2 weights;
-        if (!hitTriangle(instance.firstIndex, i, origin, direction, distance, weights) ||
-            distance >= ray.far)
-            continue;
-        if ((instance.flags & TRACER_CUT_OUT) != 0u &&
-            isHole(instanceIndex, i, weights, ray.direction,
-                   ray.cone.width + ray.cone.spread * distance, ray.complete))
-            continue;
-        ray.far = distance;
-        ray.hit = true;
-        ray.instance = instanceIndex;
-        ray.triangle = i;
-        ray.weights = weights;
-    }
+    walk.best = hit;
+    walk.far = hit.distance;
 }
 
-/* Both walks go to the nearer child first. */
-#define WALK(root, from, along, leafStatement)                                                     \
-    uint stack[TRACER_STACK_SIZE];                                                                 \
-    uint height = 0u, at = root;                                                                   \
-    vec3 inverse = 1.0 / (along);                                                                  \
-    while (!(ray.any && ray.hit)) {                                                                \
-        TracerNode node = nodes[at];                                                               \
-        if (node.count == 0u) {                                                                    \
-            float left = enterBox(nodes[node.first], from, inverse, ray.far);                      \
-            float right = enterBox(nodes[node.first + 1u], from, inverse, ray.far);                \
-            uint nearer = node.first + (right < left ? 1u : 0u);                                   \
-            if (max(left, right) < 1.0e30)                                                         \
-                stack[height++] = 2u * node.first + 1u - nearer;                                   \
-            if (min(left, right) < 1.0e30) {                                                       \
-                at = nearer;                                                                       \
-                continue;                                                                          \
-            }                                                                                      \
-        } else {                                                                                   \
-            leafStatement;                                                                         \
-        }                                                                                          \
-        if (height == 0u)                                                                          \
-            break;                                                                                 \
-        at = stack[--height];                                                                      \
-    }
+bool isOver(Walk walk)
+{
+    return walk.any && walk.best.distance >= 0.0;
+}
 
-void hitInstance(inout Ray ray, uint index)
+void enterInstance(inout Walk walk, uint index)
 {
     TracerInstance instance = instances[index];
-    vec3 origin = toObject(instance, ray.origin, 1.0);
-    vec3 direction = toObject(instance, ray.direction, 0.0); /* keeps distances */
-    WALK(instance.rootNode, origin, direction,
-         hitTriangles(ray, index, instance, node, origin, direction))
+    setWalkRay(walk, toObject(instance, walk.worldOrigin, 1.0),
+               toObject(instance, walk.worldDirection, 0.0)); /* not of length 1: keeps distances */
+    walk.inside = true;
+    walk.base = walk.height;
+    walk.instance = index;
+    walk.firstIndex = instance.firstIndex;
+    walk.flags = instance.flags;
+    walkStack[walk.height++] = instance.rootNode;
 }
 
-void hitScene(inout Ray ray, uint root)
+/** The nearer child comes first. */
+void pushChildren(inout Walk walk, uint first)
 {
-    WALK(root, ray.origin, ray.direction, hitInstance(ray, node.first))
+    float left = enterBox(walk, nodes[first]), right = enterBox(walk, nodes[first + 1u]);
+    uint nearer = first + (right < left ? 1u : 0u);
+    if (max(left, right) < 1.0e29)
+        walkStack[walk.height++] = 2u * first + 1u - nearer;
+    if (min(left, right) < 1.0e29)
+        walkStack[walk.height++] = nearer;
+}
+
+void visitNode(inout Walk walk, TracerNode node)
+{
+    if (node.count == 0u) {
+        pushChildren(walk, node.first);
+    } else if (walk.inside) {
+        walk.triangle = node.first;
+        walk.end = node.first + node.count;
+    } else {
+        enterInstance(walk, node.first);
+    }
+}
+
+/**
+ * Goes on: true with a hit that may be a hole, which is nearer than the best so far and counts once
+ * takeHit() has been called; false when the way is over.
+ */
+bool walkOn(inout Walk walk, out Hit hit)
+{
+    hit = walk.best;
+    while (!isOver(walk)) {
+        if (walk.triangle < walk.end) {
+            hit.instance = walk.instance;
+            hit.triangle = walk.triangle++;
+            if (!hitTriangle(walk, hit.triangle, hit.distance, hit.weights))
+                continue;
+            if ((walk.flags & TRACER_CUT_OUT) != 0u)
+                return true;
+            takeHit(walk, hit);
+            continue;
+        }
+        if (walk.inside && walk.height == walk.base) {
+            walk.inside = false;
+            setWalkRay(walk, walk.worldOrigin, walk.worldDirection);
+        }
+        if (walk.height == 0u)
+            return false;
+        TracerNode node = nodes[walkStack[--walk.height]];
+        if (enterBox(walk, node) < 1.0e29) /* since it was pushed something nearer may be hit */
+            visitNode(walk, node);
+    }
+    return false;
 }
 
 #endif

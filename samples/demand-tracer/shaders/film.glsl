@@ -24,29 +24,38 @@ layout(push_constant) uniform Launch
     TracerLaunch launch;
 };
 
-void tracePixel(uint place)
+bool isTraced(uint place)
 {
-    if (place >= launch.count)
-        return;
-    uint pixelCount = launch.width * launch.height;
-    uint pixel = lists[launch.listIndex * pixelCount + place];
+    return place < launch.count;
+}
+
+uint pixelAt(uint place)
+{
+    return lists[launch.listIndex * launch.width * launch.height + place];
+}
+
+/** From the camera through a pixel, elsewhere in it for each sample. */
+Path startPixel(uint pixel)
+{
     Random random = Random(pixel ^ launch.seed * 0x85ebca77u, launch.sampleIndex, 0u);
     vec2 at = vec2(pixel % launch.width, pixel / launch.width) + random2(random);
     at = at / vec2(launch.width, launch.height) * 2.0 - 1.0;
     vec3 right = vec3(launch.right[0], launch.right[1], launch.right[2]);
     vec3 up = vec3(launch.up[0], launch.up[1], launch.up[2]);
     vec3 forward = vec3(launch.forward[0], launch.forward[1], launch.forward[2]);
-    vec3 direction = normalize(forward + at.x * right - at.y * up);
+    return startPath(vec3(launch.eye[0], launch.eye[1], launch.eye[2]),
+                     normalize(forward + at.x * right - at.y * up), launch.spread, random);
+}
 
-    bool complete = true;
-    vec3 light = tracePath(vec3(launch.eye[0], launch.eye[1], launch.eye[2]), direction,
-                           Cone(0.0, launch.spread), launch.bounces, random, complete);
-    latest[pixel] = vec4(light, complete ? 0.0 : 1.0);
-    if (complete) {
-        film[pixel] += vec4(light, 1.0);
+/** Keeps what is complete; what is not is traced again in the next launch. */
+void endPixel(uint pixel, Path path)
+{
+    latest[pixel] = vec4(path.light, path.complete ? 0.0 : 1.0);
+    if (path.complete) {
+        film[pixel] += vec4(path.light, 1.0);
     } else {
         uint other = 1u - launch.listIndex;
-        lists[other * pixelCount + atomicAdd(counters[other], 1u)] = pixel;
+        lists[other * launch.width * launch.height + atomicAdd(counters[other], 1u)] = pixel;
     }
 }
 

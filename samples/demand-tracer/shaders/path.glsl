@@ -1,7 +1,11 @@
 /*
- * Paths of light. Who includes this has defined
- *     Surface traceNearest(vec3 origin, vec3 direction, Cone cone)
- *     bool traceSun(vec3 origin, vec3 direction, Cone cone, inout bool complete)
+ * Paths of light, one ray at a time, whoever finds out what the rays hit:
+ *
+ *     for (Path path = startPath(...); !path.done;)
+ *         if (path.toSun)
+ *             endSunRay(path, whether nothing is in its way);
+ *         else
+ *             meetSurface(path, what it met first, bounces);
  */
 #ifndef TRACER_PATH_GLSL
 #define TRACER_PATH_GLSL
@@ -65,50 +69,113 @@ float highlight(Surface s, vec3 direction)
     return 14.0 * pow(along, 320.0);
 }
 
-vec3 sunOn(Surface s, vec3 at, vec3 direction, float fresnel, inout bool complete)
+struct Path {
+    vec3 origin, direction; /* of the ray that is to be traced */
+    Cone cone;
+    bool toSun; /* anything in its way ends it */
+    bool done;
+    bool complete; /* all textures on the way were resident */
+    vec3 light;    /* so far */
+    vec3 share;    /* of what is yet to come */
+    vec3 sunLight; /* to be added if the ray to the sun is free */
+    vec3 nextOrigin, nextDirection; /* after that */
+    Cone nextCone;
+    uint depth;
+    Random random;
+};
+
+Path startPath(vec3 origin, vec3 direction, float spread, Random random)
 {
-    float facing = dot(s.normal, SUN_DIRECTION);
-    bool thin = (s.flags & TRACER_CUT_OUT) != 0u;
-    float share = thin ? (facing > 0.0 ? 0.75 * facing : -0.55 * facing) : max(facing, 0.0);
-    vec3 origin = at + s.face * (dot(s.face, SUN_DIRECTION) < 0.0 ? -1.0 : 1.0) * (2e-4 + 1e-4 * s.distance);
-    if (share <= 0.0 || !traceSun(origin, SUN_DIRECTION, Cone(s.coneWidth, SUN_SPREAD), complete))
-        return vec3(0.0);
-    vec3 tint = thin && facing < 0.0 ? s.albedo * vec3(1.15, 1.1, 0.55) : s.albedo;
-    return SUN_LIGHT * (tint * share + fresnel * highlight(s, direction));
+    Path path;
+    path.origin = origin;
+    path.direction = direction;
+    path.cone = Cone(0.0, spread);
+    path.toSun = false;
+    path.done = false;
+    path.complete = true;
+    path.light = vec3(0.0);
+    path.share = vec3(1.0);
+    path.depth = 0u;
+    path.random = random;
+    return path;
 }
 
-/** `complete` becomes false where any of its textures was not resident. */
-vec3 tracePath(vec3 origin, vec3 direction, Cone cone, uint bounces, inout Random random,
-               inout bool complete)
+void continuePath(inout Path path, uint bounces)
 {
-    vec3 light = vec3(0.0), share = vec3(1.0);
-    for (uint depth = 0u;; depth++) {
-        Surface s = traceNearest(origin, direction, cone);
-        complete = complete && s.complete;
-        if (s.distance < 0.0)
-            return light + share * skyLight(direction);
-        vec3 at = origin + direction * s.distance;
-        float haze = depth == 0u ? 1.0 - exp(-s.distance / HAZE_DISTANCE) : 0.0;
-        light += share * haze * skyLight(normalize(vec3(direction.x, 0.03, direction.z)));
-        share *= 1.0 - haze;
+    path.toSun = false;
+    path.done = path.depth++ == bounces;
+    path.origin = path.nextOrigin;
+    path.direction = path.nextDirection;
+    path.cone = path.nextCone;
+}
 
-        bool glossy = (s.flags & TRACER_GLOSSY) != 0u;
-        float facing = clamp(-dot(direction, s.normal), 0.0, 1.0);
-        float fresnel = glossy ? 0.04 + 0.96 * pow(1.0 - facing, 5.0) : 0.0;
-        vec2 u = random2(random), lobe = random2(random);
-        light += share * sunOn(s, at, direction, fresnel, complete);
-        bool mirrored = lobe.x < fresnel;
-        vec3 next = mirrored ? reflect(direction, s.normal) : cosineDirection(s.normal, u);
-        if (dot(next, s.face) < 0.0)
-            next -= 2.0 * dot(next, s.face) * s.face;
-        if (!mirrored)
-            share *= s.albedo;
-        if (depth == bounces)
-            return light + share * (mirrored ? skyLight(next) : ambientLight(s.normal));
-        origin = at + s.face * (2e-4 + 1e-4 * s.distance);
-        direction = next;
-        cone = Cone(s.coneWidth, mirrored ? cone.spread : DIFFUSE_SPREAD);
+void endSunRay(inout Path path, bool isFree, uint bounces)
+{
+    if (isFree)
+        path.light += path.sunLight;
+    continuePath(path, bounces);
+}
+
+/** Through thin things it shines, in another colour. */
+vec3 sunOn(Surface s, vec3 direction, float fresnel)
+{
+    float facing = dot(s.normal, SUN_DIRECTION);
+    if ((s.flags & TRACER_CUT_OUT) == 0u)
+        return SUN_LIGHT * step(0.0, facing) *
+               (s.albedo * facing + fresnel * highlight(s, direction));
+    return SUN_LIGHT * s.albedo *
+           (facing > 0.0 ? vec3(0.75 * facing) : -0.55 * facing * vec3(1.15, 1.1, 0.55));
+}
+
+/** On the side of the face to which a ray leaves it. */
+vec3 leave(Surface s, vec3 at, vec3 direction)
+{
+    return at + sign(dot(s.face, direction)) * (2e-4 + 1e-4 * s.distance) * s.face;
+}
+
+/** To where the path goes on: mirrored with a probability of `fresnel`, else anywhere. */
+void scatter(inout Path path, Surface s, vec3 at, float fresnel, uint bounces)
+{
+    vec2 u = random2(path.random), lobe = random2(path.random);
+    bool mirrored = lobe.x < fresnel;
+    vec3 next = mirrored ? reflect(path.direction, s.normal) : cosineDirection(s.normal, u);
+    next -= 2.0 * min(dot(next, s.face), 0.0) * s.face;
+    if (!mirrored)
+        path.share *= s.albedo;
+    if (path.depth == bounces)
+        path.light += path.share * (mirrored ? skyLight(next) : ambientLight(s.normal));
+    path.nextDirection = next;
+    path.nextOrigin = leave(s, at, next);
+    path.nextCone = Cone(s.coneWidth, mirrored ? path.cone.spread : DIFFUSE_SPREAD);
+}
+
+void meetSurface(inout Path path, Surface s, uint bounces)
+{
+    if (s.distance < 0.0) {
+        path.light += path.share * skyLight(path.direction);
+        path.done = true;
+        return;
     }
+    if (path.depth == 0u) {
+        float clear = exp(-s.distance / HAZE_DISTANCE);
+        vec3 haze = skyLight(normalize(vec3(path.direction.x, 0.03, path.direction.z)));
+        path.light += (1.0 - clear) * haze;
+        path.share *= clear;
+    }
+    vec3 at = path.origin + path.direction * s.distance;
+    float facing = clamp(-dot(path.direction, s.normal), 0.0, 1.0);
+    bool glossy = (s.flags & TRACER_GLOSSY) != 0u;
+    float fresnel = glossy ? 0.04 + 0.96 * pow(1.0 - facing, 5.0) : 0.0;
+    path.sunLight = path.share * sunOn(s, path.direction, fresnel);
+    scatter(path, s, at, fresnel, bounces);
+    if (path.sunLight == vec3(0.0) && s.complete) {
+        continuePath(path, bounces);
+        return;
+    }
+    path.toSun = true;
+    path.origin = leave(s, at, SUN_DIRECTION);
+    path.direction = SUN_DIRECTION;
+    path.cone = Cone(s.coneWidth, SUN_SPREAD);
 }
 
 #endif

@@ -30,6 +30,7 @@ struct Surface {
     uint flags;     /* of the instance */
     bool complete;  /* the texture was resident */
     vec3 albedo;
+    float alpha;
     vec3 normal; /* both on the ray's side, of length 1 */
     vec3 face;   /* of the triangle */
 };
@@ -158,7 +159,9 @@ Surface surfaceAt(uint instanceIndex, uint triangle, vec2 weights, vec3 directio
     s.coneWidth = cone.width + cone.spread * distance;
     s.flags = instance.flags;
     s.complete = true;
-    s.albedo = patchColor(instance, p, direction, s.coneWidth, s.complete).rgb;
+    vec4 color = patchColor(instance, p, direction, s.coneWidth, s.complete);
+    s.albedo = color.rgb;
+    s.alpha = color.a;
     s.face = dot(p.face, direction) > 0.0 ? -p.face : p.face;
     s.normal = dot(p.normal, s.face) < 0.0 ? -p.normal : p.normal;
     return s;
