@@ -47,6 +47,17 @@ typedef struct SluiceTileReadFailureCallback {
     void (*pfnFailed)(void *pUserData, const SluiceTileReadFailure *pFailure);
 } SluiceTileReadFailureCallback;
 
+/**
+ * Told of every read that has ended, with whatever result, and can be collected: for those who wait
+ * instead of asking. Off when `pfnEnded` is NULL. Called on the thread that ended it, also in
+ * sluiceCancelTileRead and sluiceDestroyTileLoader, with the loader locked: functions of the loader
+ * may not be used, and other reads wait until it returns.
+ */
+typedef struct SluiceTileReadEndCallback {
+    void *pUserData;
+    void (*pfnEnded)(void *pUserData, uint64_t userValue, SluiceResult result);
+} SluiceTileReadEndCallback;
+
 /** Zero in any field asks for the default written beside it. */
 typedef struct SluiceTileLoaderCreateInfo {
     uint32_t threadCount;     ///< 0: one less than there are processors, at least 2
@@ -63,6 +74,7 @@ typedef struct SluiceTileLoaderCreateInfo {
     /** Sources whose statistics are kept, about 700 bytes each; beyond it those longest without
      *  reads are forgotten. At most 2^29; at least requestCapacity; 0: that. */
     uint32_t maxSourceCount;
+    SluiceTileReadEndCallback end;
 } SluiceTileLoaderCreateInfo;
 
 /** One or more regions that are read as one: the packed levels of a texture, or one tile. */

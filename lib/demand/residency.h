@@ -3,9 +3,9 @@
  * files and no threads; the same calls give the same answers.
  *
  * A page is absent (nothing is kept of it), loading, resident or refused. Pages belong to classes:
- * those of a class compete for the same memory (tiles: one class for all formats, because each is 64
- * KiB; each resource with a limit of its own has its class). Each resident page has a place that the
- * owner of the memory gave: an opaque word.
+ * those of a class compete for the same memory (tiles: one class for all formats, because each is
+ * 64 KiB; each resource with a limit of its own has its class). Each resident page has a place that
+ * the owner of the memory gave: an opaque word.
  *
  * The protocol of a launch:
  *
@@ -24,17 +24,19 @@
 struct slc_demand_residency;
 
 #define SLC_NO_PLACE UINT32_MAX
+#define SLC_NO_PAGE UINT32_MAX
 
 /** The memory of a class. All functions are called from within the calls below. */
 struct slc_page_memory {
     void *user;
-    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind` is
-     *  the page's (its format): pages that differ in it may not get each other's places. */
+    /** A place for a page; SLC_NO_PLACE if there is none, even though the budget has room. `kind`
+     * is the page's (its format): pages that differ in it may not get each other's places. */
     uint32_t (*take)(void *user, uint32_t kind);
-    /** The place is free; `page` may ask for it again until it is taken by another. */
+    /** The place is free; `page` may ask for it again until it is taken by another. SLC_NO_PAGE:
+     *  nobody will. */
     void (*give)(void *user, uint32_t place, uint32_t page);
-    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all that
-     *  was in it. */
+    /** True: nobody has taken the place since `page` gave it, and now it has it again, with all
+     * that was in it. */
     bool (*retake)(void *user, uint32_t place, uint32_t page);
 };
 
@@ -68,9 +70,9 @@ void slc_residency_use(struct slc_demand_residency *residency, uint32_t page);
 struct slc_page_request {
     uint32_t page;
     uint8_t class_index;
-    uint8_t rank;    ///< coarse ones are low
-    uint8_t pinned;  ///< once resident it is never evicted: tails, opened textures
-    uint32_t kind;   ///< see slc_page_memory.take
+    uint8_t rank;   ///< coarse ones are low
+    uint8_t pinned; ///< once resident it is never evicted: tails, opened textures
+    uint32_t kind;  ///< see slc_page_memory.take
 };
 /**
  * Evicts, if it must, pages that the launch did not use and that were used longest ago. Errors, in
@@ -84,6 +86,10 @@ uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint3
 
 /** `missing`: pages that the launch asked for, listed or not. Decides about the LOD bias. */
 void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing);
+/** The launch that is recorded now sees what take_changes gives from here on, and has the LOD bias
+ *  that is returned: which launch knows what, where several are in flight. Left out: the launch
+ * after the last one begun does. */
+float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t launch);
 float slc_residency_lod_bias(const struct slc_demand_residency *residency);
 
 /** `value`: what the page table shows, for pages without a place (resources); else the place. */
@@ -94,21 +100,29 @@ void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page,
  *  is dropped then. Its place is given back, not to be retaken. */
 void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count);
 
-enum slc_page_shown {
-    SLC_SHOW_ABSENT,
-    SLC_SHOW_RESIDENT,
-    SLC_SHOW_REFUSED
-};
+enum slc_page_shown { SLC_SHOW_ABSENT, SLC_SHOW_RESIDENT, SLC_SHOW_REFUSED };
 struct slc_page_change {
     uint32_t page;
     enum slc_page_shown shown;
-    uint64_t value;
+    uint64_t value; ///< SLC_SHOW_RESIDENT
     uint8_t class_index;
-    bool evicted; ///< it was resident: `value` is what it was
 };
-/** Each page once, with what it is now, ascending; in pieces of `capacity`. Returns how many. */
+/** What the page table does not show yet: each page once, with what it is now, ascending within a
+ *  call; in pieces of `capacity`. Returns how many. A page that is what it was is left out. */
 uint32_t slc_residency_take_changes(struct slc_demand_residency *residency,
                                     struct slc_page_change *changes, uint32_t capacity);
+
+struct slc_page_evicted {
+    uint32_t page;
+    uint8_t class_index;
+    uint64_t value;
+};
+/** Values of pages without a place that went, be it by eviction or because they were forgotten:
+ * each value that was loaded is told once, oldest first; in pieces of `capacity`. Returns how many.
+ * What takes the changes first, and then these, knows that launches prepared later see none of
+ * them. */
+uint32_t slc_residency_take_evicted(struct slc_demand_residency *residency,
+                                    struct slc_page_evicted *evicted, uint32_t capacity);
 
 struct slc_residency_counts {
     uint64_t resident, loading, refused, evicted, restored;

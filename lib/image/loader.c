@@ -17,6 +17,7 @@ struct SluiceTileLoader {
     SluiceAllocationCallbacks allocator;
     SluiceTileRetryPolicy retry;
     SluiceTileReadFailureCallback failure;
+    SluiceTileReadEndCallback end;
     pthread_mutex_t mutex; ///< around everything below
     pthread_cond_t work;   ///< a read may have become startable or delayed, or the loader stops
     pthread_cond_t idle;   ///< nothing is queued, delayed or running
@@ -107,6 +108,13 @@ static void signal_if_idle(struct SluiceTileLoader *loader)
         pthread_cond_broadcast(&loader->idle);
 }
 
+static void end_read(struct SluiceTileLoader *loader, struct slc_read *read, SluiceResult result)
+{
+    slc_read_queue_end(&loader->queue, read, result);
+    if (loader->end.pfnEnded)
+        loader->end.pfnEnded(loader->end.pUserData, read->result.userValue, result);
+}
+
 /* With the mutex held, which is given up meanwhile. */
 static void run(struct SluiceTileLoader *loader, struct slc_read *read)
 {
@@ -120,9 +128,9 @@ static void run(struct SluiceTileLoader *loader, struct slc_read *read)
         read->source->format = attempt.info.format;
     slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.latency);
     if (!will_retry) {
-        slc_read_queue_end(&loader->queue, read, attempt.result);
+        end_read(loader, read, attempt.result);
     } else if (is_dropped(read)) {
-        slc_read_queue_end(&loader->queue, read, SLUICE_ERROR_CANCELLED);
+        end_read(loader, read, SLUICE_ERROR_CANCELLED);
     } else {
         uint64_t now = nanoseconds();
         slc_read_queue_delay(&loader->queue, read,
@@ -216,6 +224,7 @@ static struct SluiceTileLoader *allocate(const SluiceTileLoaderCreateInfo *info,
     loader->allocator = cb;
     loader->retry = slc_retry_policy(&info->retry);
     loader->failure = info->failure;
+    loader->end = info->end;
     struct slc_read_queue_limits limits = read_limits(info, thread_count);
     if (slc_read_queue_init(&loader->queue, &cb, &limits) != SLUICE_SUCCESS) {
         slc_free(&cb, loader, 1, sizeof *loader);
@@ -291,7 +300,7 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 static void drop_read(struct SluiceTileLoader *loader, struct slc_read *read)
 {
     if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED)
-        slc_read_queue_end(&loader->queue, read, SLUICE_ERROR_CANCELLED);
+        end_read(loader, read, SLUICE_ERROR_CANCELLED);
     else if (read->state == SLC_READ_RUNNING)
         atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
 }

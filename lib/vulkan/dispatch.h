@@ -14,7 +14,8 @@
 #define SLC_VK_DEVICE_FUNCTIONS(X)                                                                 \
     X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
     X(CmdBindDescriptorSets)                                                                       \
-    X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch) X(CmdFillBuffer)    \
+    X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch)                     \
+    X(CmdDispatchIndirect) X(CmdFillBuffer)                                                        \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
     X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
     X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \

@@ -63,7 +63,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     for (uint32_t i = 0; i < count; i++)
         slc_unit_list_append(s, &s->free_units, i);
     s->free_unit_count = count;
-    SluiceResult result = slc_tile_map_init(&s->tile_units, &s->cb, count);
+    SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_buffer_init(&s->staging, &s->vk, &s->caps, (uint64_t)count * SLC_TILE_SIZE,
@@ -83,7 +83,7 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
 {
     sluiceDestroyTileLoader(s->loader); /* first: its threads write into the staging slots */
     slc_buffer_finish(&s->staging, &s->vk);
-    slc_tile_map_finish(&s->tile_units, &s->cb);
+    slc_map_finish(&s->tile_units, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);
 }
 
@@ -198,7 +198,7 @@ static SluiceResult packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, Sl
 
 static void forget_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit)
 {
-    slc_tile_map_remove(&s->tile_units, slc_tile_key(unit->texture, unit->tile.tileIndex));
+    slc_map_remove(&s->tile_units, slc_pair_key(unit->texture, unit->tile.tileIndex));
 }
 
 static SluiceResult tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
@@ -278,10 +278,9 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
             return slc_streamer_check(s, result, "sluiceGetTilesToCancel");
         for (uint32_t i = 0; i < count; i++) {
             uint32_t texture = s->by_manager_index[(uint32_t)tiles[i].textureId];
-            uint32_t unit =
-                slc_tile_map_get(&s->tile_units, slc_tile_key(texture, tiles[i].tileIndex));
+            uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tiles[i].tileIndex));
             /* What has arrived goes on to standby: its read is paid for already. */
-            if (unit == SLC_TILE_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
+            if (unit == SLC_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
                 continue;
             s->units[unit].cancelled = true;
             sluiceCancelTileRead(s->loader, s->units[unit].ticket);
@@ -315,7 +314,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
         return refuse_tile(s, texture, tile);
     uint32_t unit = unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
-    slc_tile_map_add(&s->tile_units, slc_tile_key(texture, tile->tileIndex), unit);
+    slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     SluiceResult result = submit_unit(s, unit);
     return result == SLUICE_SUCCESS ? result : tile_back(s, unit, result);
 }

@@ -4,6 +4,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
+#include "vulkan/sparse_layout.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -73,23 +74,64 @@ bool slc_page_cache_is_refused(const struct slc_page_cache *cache)
     return cache->refused_frame && cache->frame < cache->refused_frame + REFUSED_FRAMES;
 }
 
-/* As many pages again as the format has; fewer where the device has no memory for them. */
-static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
+uint32_t slc_page_cache_layer_count(const struct slc_page_cache *cache)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < SLC_PAGE_FORMATS; i++)
+        count += cache->page_count[i];
+    return count;
+}
+
+static uint32_t find_free_chunk(const struct slc_page_cache *cache)
 {
     uint32_t at = 0;
     while (at < cache->views->count && cache->chunks[at].state != SLC_CHUNK_FREE)
         at++;
-    if (slc_page_cache_is_refused(cache))
+    return at;
+}
+
+/* By the cap alone; small chunks share blocks of memory that are larger than they are. */
+static uint32_t layers_left(const struct slc_page_cache *cache)
+{
+    if (!cache->max_size)
+        return UINT32_MAX;
+    uint64_t used = cache->memory.total_size;
+    uint64_t left = cache->max_size > used ? (cache->max_size - used) / SLC_TILE_SIZE : 0;
+    return left < MIN_LAYERS ? 0 : (uint32_t)(left < UINT32_MAX ? left : UINT32_MAX);
+}
+
+uint32_t slc_page_cache_room(const struct slc_page_cache *cache)
+{
+    bool none = slc_page_cache_is_refused(cache) || find_free_chunk(cache) == cache->views->count;
+    return none ? 0 : layers_left(cache);
+}
+
+/* Drivers may ask for more than the texels need. */
+static bool is_beyond_cap(const struct slc_page_cache *cache)
+{
+    return cache->max_size && cache->memory.total_size > cache->max_size;
+}
+
+/* As many pages again as the format has; fewer where the device has no memory for them. */
+static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
+{
+    uint32_t at = find_free_chunk(cache), left = layers_left(cache);
+    if (slc_page_cache_is_refused(cache) || left == 0)
         return false;
     if (at == cache->views->count)
         slc_log(&cache->vk->log, SLUICE_LOG_WARNING,
                 "no tiles of %s beyond %u: there are maxPageChunkCount %u images of pages",
                 sluiceFormatString(format), cache->page_count[format], cache->views->count);
     uint32_t layers = slc_max_u32(MIN_LAYERS, cache->page_count[format]);
-    layers = at == cache->views->count ? 0 : slc_min_u32(layers, cache->max_layer_count);
-    for (; layers > 0; layers /= 2) {
+    layers = slc_min_u32(layers, slc_min_u32(left, cache->max_layer_count));
+    if (at == cache->views->count)
+        layers = 0;
+    bool capped = false;
+    for (; layers > 0; layers -= capped ? 1 + layers / MIN_LAYERS : (layers + 1) / 2) {
         struct slc_page_chunk *chunk = &cache->chunks[at];
-        if (create_chunk(cache, chunk, format, layers) == SLUICE_SUCCESS) {
+        bool created = create_chunk(cache, chunk, format, layers) == SLUICE_SUCCESS;
+        capped = created && is_beyond_cap(cache);
+        if (created && !capped) {
             chunk->state = SLC_CHUNK_LIVE;
             cache->page_count[format] += layers;
             cache->last_chunk[format] = at;
@@ -97,6 +139,8 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
             return true;
         }
         destroy_chunk(cache, chunk);
+        if (capped && layers <= MIN_LAYERS / 2)
+            break;
     }
     cache->refused_frame = cache->frame + 1;
     return false;
@@ -172,7 +216,7 @@ static void retire(struct slc_page_cache *cache, uint32_t index)
         chunk->frame = cache->frame;
     if (chunk->frame == 0)
         chunk->frame = cache->frame; /* new, and empty after all */
-    if (cache->frame - chunk->frame < IDLE_FRAMES)
+    if (cache->frame - chunk->frame < (cache->hurry ? 1 : IDLE_FRAMES))
         return;
     chunk->state = SLC_CHUNK_RETIRING;
     chunk->frame = cache->frame;
@@ -194,4 +238,5 @@ void slc_page_cache_record(struct slc_page_cache *cache, uint64_t frame, uint64_
             slc_record_general_layout(cache->vk, commands, chunk->image.image);
         chunk->fresh = false;
     }
+    cache->hurry = false;
 }

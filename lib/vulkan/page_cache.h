@@ -47,6 +47,8 @@ struct slc_page_cache {
     uint64_t frame;                        ///< the last one recorded
     uint64_t refused_frame;                ///< the last in which the device had no memory
     uint32_t max_layer_count;
+    uint64_t max_size; ///< bytes of device memory, a hard cap; 0: none
+    bool hurry;        ///< chunks that are empty go with the next record
 };
 
 SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_vk *vk,
@@ -54,6 +56,11 @@ SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_
                                  struct slc_page_views *views);
 /** Nothing of it is in use on the GPU. */
 void slc_page_cache_finish(struct slc_page_cache *cache);
+
+/** Pages of all chunks that are in use, free ones included. */
+uint32_t slc_page_cache_layer_count(const struct slc_page_cache *cache);
+/** Pages that chunks could still be made for, by max_size and the number of views. */
+uint32_t slc_page_cache_room(const struct slc_page_cache *cache);
 
 /** The device had no memory for a chunk a short while ago. */
 bool slc_page_cache_is_refused(const struct slc_page_cache *cache);

@@ -28,18 +28,18 @@ void slc_page_table_finish(struct slc_page_table *table, const SluiceAllocationC
 {
     slc_free(cb, table->pages, table->page_count, sizeof *table->pages);
     slc_free(cb, table->first_pages, table->image_count, sizeof *table->first_pages);
-    slc_tile_map_finish(&table->places, cb);
+    slc_map_finish(&table->places, cb);
     *table = (struct slc_page_table){0};
 }
 
 static SluiceResult grow(struct slc_page_table *table, const SluiceAllocationCallbacks *cb,
                          uint32_t page_count)
 {
-    struct slc_tile_map places = {0};
+    struct slc_map places = {0};
     struct slc_page *pages = slc_alloc(cb, page_count, sizeof *pages);
     SluiceResult result = pages ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS)
-        result = slc_tile_map_init(&places, cb, page_count);
+        result = slc_map_init(&places, cb, page_count);
     if (result != SLUICE_SUCCESS) {
         slc_free(cb, pages, page_count, sizeof *pages);
         return result;
@@ -48,11 +48,11 @@ static SluiceResult grow(struct slc_page_table *table, const SluiceAllocationCal
         memcpy(pages, table->pages, table->page_count * sizeof *pages);
     for (uint32_t i = 0; i < table->page_count; i++)
         if (pages[i].image != SLC_NO_IMAGE)
-            slc_tile_map_add(&places, slc_place_key(pages[i].image, pages[i].place), i);
+            slc_map_add(&places, slc_place_key(pages[i].image, pages[i].place), i);
     for (uint32_t i = table->page_count; i < page_count; i++)
         pages[i] = (struct slc_page){.image = SLC_NO_IMAGE, .slot = i, .page_of_slot = i};
     slc_free(cb, table->pages, table->page_count, sizeof *pages);
-    slc_tile_map_finish(&table->places, cb);
+    slc_map_finish(&table->places, cb);
     table->pages = pages;
     table->places = places;
     table->page_count = page_count;
@@ -86,7 +86,7 @@ static void forget(struct slc_page_table *table, struct slc_page *page)
     *from = page->next;
     if (page->next != SLC_NO_PAGE)
         table->pages[page->next].previous = page->previous;
-    slc_tile_map_remove(&table->places, slc_place_key(page->image, page->place));
+    slc_map_remove(&table->places, slc_place_key(page->image, page->place));
     page->image = SLC_NO_IMAGE;
 }
 
@@ -102,7 +102,7 @@ static void remember(struct slc_page_table *table, struct slc_page *page, uint32
     if (first != SLC_NO_PAGE)
         table->pages[first].previous = index;
     table->first_pages[image] = index;
-    slc_tile_map_add(&table->places, slc_place_key(image, place), index);
+    slc_map_add(&table->places, slc_place_key(image, place), index);
 }
 
 static void put_unbind(struct slc_page_table *table, struct slc_bind_list *list,
@@ -122,8 +122,8 @@ static void put_unbinds_beside(struct slc_page_table *table, struct slc_bind_lis
 {
     while (list->count < list->capacity / 2 && !(step < 0 && place.x == 0)) {
         place.x += (uint32_t)step;
-        uint32_t page = slc_tile_map_get(&table->places, slc_place_key(image, place));
-        if (page == SLC_TILE_MAP_NONE || table->pages[page].live)
+        uint32_t page = slc_map_get(&table->places, slc_place_key(image, place));
+        if (page == SLC_MAP_NONE || table->pages[page].live)
             return;
         put_unbind(table, list, &table->pages[page]);
     }
@@ -145,8 +145,8 @@ bool slc_page_table_revive(struct slc_page_table *table, uint32_t image,
                            struct slc_tile_place place, uint32_t heap_id, uint32_t slot)
 {
     struct slc_page *pages = table->pages;
-    uint32_t old = slc_tile_map_get(&table->places, slc_place_key(image, place));
-    if (old == SLC_TILE_MAP_NONE || pages[old].live || old / table->heap_page_count != heap_id)
+    uint32_t old = slc_map_get(&table->places, slc_place_key(image, place));
+    if (old == SLC_MAP_NONE || pages[old].live || old / table->heap_page_count != heap_id)
         return false;
     uint32_t page = (uint32_t)(page_of(table, heap_id, slot) - pages);
     assert(pages[page].image == SLC_NO_IMAGE || !pages[page].live);
@@ -170,8 +170,8 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
     if (slc_page_table_revive(table, image, place, heap_id, slot))
         return true;
     struct slc_page *page = page_of(table, heap_id, slot);
-    uint32_t there = slc_tile_map_get(&table->places, slc_place_key(image, place));
-    if (there != SLC_TILE_MAP_NONE) { /* in another heap; its unbind merges with the bind */
+    uint32_t there = slc_map_get(&table->places, slc_place_key(image, place));
+    if (there != SLC_MAP_NONE) { /* in another heap; its unbind merges with the bind */
         assert(!table->pages[there].live);
         table->unbinds_saved++;
         forget(table, &table->pages[there]);
@@ -189,8 +189,8 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
 void slc_page_table_give_up(struct slc_page_table *table, uint32_t image,
                             struct slc_tile_place place)
 {
-    uint32_t page = slc_tile_map_get(&table->places, slc_place_key(image, place));
-    assert(page != SLC_TILE_MAP_NONE && table->pages[page].live);
+    uint32_t page = slc_map_get(&table->places, slc_place_key(image, place));
+    assert(page != SLC_MAP_NONE && table->pages[page].live);
     table->pages[page].live = false;
 }
 

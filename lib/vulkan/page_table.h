@@ -13,8 +13,8 @@
 #ifndef SLC_VULKAN_PAGE_TABLE_H
 #define SLC_VULKAN_PAGE_TABLE_H
 
+#include "base/map.h"
 #include "vulkan/bind_list.h"
-#include "vulkan/tile_map.h"
 
 #define SLC_NO_PAGE UINT32_MAX
 #define SLC_NO_IMAGE UINT32_MAX
@@ -39,9 +39,9 @@ struct slc_page {
 struct slc_page_table {
     struct slc_page *pages; ///< owned; heap id * heap_page_count + slot
     uint32_t page_count;
-    uint32_t heap_page_count;   ///< of every heap; 0 until there is one
-    struct slc_tile_map places; ///< (image, place) -> page
-    uint32_t *first_pages;      ///< owned; by image
+    uint32_t heap_page_count; ///< of every heap; 0 until there is one
+    struct slc_map places;    ///< (image, place) -> page
+    uint32_t *first_pages;    ///< owned; by image
     uint32_t image_count;
     uint64_t unbind_count;  ///< put into lists
     uint64_t unbinds_saved; ///< of tiles that were given up: none was needed

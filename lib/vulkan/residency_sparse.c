@@ -8,11 +8,11 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/map.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
 #include "vulkan/page_table.h"
 #include "vulkan/sparse_image.h"
-#include "vulkan/tile_map.h"
 
 #include <assert.h>
 
@@ -51,7 +51,7 @@ struct sparse_residency {
 
     struct pending_unmap *pending; ///< owned ring, oldest first, frames never decrease
     uint32_t pending_first, pending_count, pending_capacity;
-    struct slc_tile_map pending_tiles;
+    struct slc_map pending_tiles;
 
     struct slc_page_table pages;
     struct dying_heap *dying; ///< owned
@@ -246,7 +246,7 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     uint32_t at = (s->pending_first + s->pending_count++) % s->pending_capacity;
     s->pending[at] = (struct pending_unmap){frame, slc_place_key(index, place), index, place};
-    slc_tile_map_add(&s->pending_tiles, s->pending[at].key, at);
+    slc_map_add(&s->pending_tiles, s->pending[at].key, at);
     s->images[index].unmap_count++;
 }
 
@@ -255,7 +255,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     /* Frames under way may still read the old page through their MinMip maps. */
-    if (slc_tile_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_TILE_MAP_NONE)
+    if (slc_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_MAP_NONE)
         return SLUICE_NOT_READY;
     uint32_t displaced, count = s->list.count;
     /* While no batch can be submitted the list only grows, so it may be full. */
@@ -286,7 +286,7 @@ static void release_pending(struct sparse_residency *s, uint64_t completed_frame
         if (unmap->frame > completed_frame + 1)
             return;
         slc_page_table_give_up(&s->pages, unmap->index, unmap->place);
-        slc_tile_map_remove(&s->pending_tiles, unmap->key);
+        slc_map_remove(&s->pending_tiles, unmap->key);
         s->images[unmap->index].unmap_count--;
         s->pending_first = (s->pending_first + 1) % s->pending_capacity;
         s->pending_count--;
@@ -473,7 +473,7 @@ static void destroy(struct slc_residency *residency)
     slc_bind_list_finish(&s->list, cb);
     slc_page_table_finish(&s->pages, cb);
     slc_free(cb, s->dying, s->dying_capacity, sizeof *s->dying);
-    slc_tile_map_finish(&s->pending_tiles, cb);
+    slc_map_finish(&s->pending_tiles, cb);
     slc_free(cb, s->pending, s->pending_capacity, sizeof *s->pending);
     slc_free(cb, s->images, s->max_image_count, sizeof *s->images);
     slc_free(cb, s, 1, sizeof *s);
@@ -509,7 +509,7 @@ static SluiceResult create_arrays(struct sparse_residency *s)
     if (result != SLUICE_SUCCESS)
         return result;
     s->pending_capacity = 4 * s->max_changes;
-    result = slc_tile_map_init(&s->pending_tiles, s->cb, s->pending_capacity);
+    result = slc_map_init(&s->pending_tiles, s->cb, s->pending_capacity);
     if (result != SLUICE_SUCCESS)
         return result;
     s->images = slc_calloc(s->cb, s->max_image_count, sizeof *s->images);

@@ -7,6 +7,7 @@
 #define SLC_VULKAN_RESOLVE_H
 
 #include "vulkan/buffer.h"
+#include "vulkan/compute.h"
 
 #include <sluice/shared/resolve.h>
 
@@ -21,12 +22,8 @@ struct slc_resolve_create_info {
 struct slc_resolve {
     struct slc_buffer last;  ///< a byte per region: the level that was resolved last
     struct slc_buffer table; ///< a slot per frame in flight: max_segments segments, then the items
-    struct slc_buffer scratch; ///< of one frame: sums of the segments, then places of the items
-    VkDescriptorSetLayout set_layout;
-    VkPipelineLayout layout;
-    VkPipeline pipelines[3];
-    VkDescriptorPool pool;
-    VkDescriptorSet set;
+    struct slc_buffer scratch;  ///< of one frame: sums of the segments, then places of the items
+    struct slc_compute compute; ///< count, scan, write
     uint32_t max_segments, max_items;
     uint32_t slot; ///< that is being filled
     uint32_t segment_count, item_count;

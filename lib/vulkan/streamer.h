@@ -4,6 +4,7 @@
 
 #include <sluice/loader.h>
 
+#include "base/map.h"
 #include "vulkan/buffer.h"
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
@@ -14,7 +15,6 @@
 #include "vulkan/residency.h"
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
-#include "vulkan/tile_map.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -129,7 +129,7 @@ struct SluiceVulkanStreamer {
     struct slc_unit *units; ///< owned; maxLoadsInFlight
     struct slc_unit_list free_units, arrived, binding, uploaded;
     uint32_t free_unit_count;
-    struct slc_tile_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
+    struct slc_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
     struct slc_buffer staging;
     uint32_t *frame_units;     ///< owned; tilesPerFrame
     VkBufferImageCopy *copies; ///< owned

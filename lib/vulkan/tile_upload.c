@@ -82,7 +82,7 @@ static SluiceResult upload_texture(SluiceVulkanStreamer *s, VkCommandBuffer comm
         assert(copy_count <= s->copy_capacity);
         if (unit->packed_unit == SLC_NONE) {
             s->tile_indices[tile_count++] = unit->tile.tileIndex;
-            slc_tile_map_remove(&s->tile_units, slc_tile_key(texture, unit->tile.tileIndex));
+            slc_map_remove(&s->tile_units, slc_pair_key(texture, unit->tile.tileIndex));
         }
         unit->state = SLC_UNIT_UPLOADED;
         unit->value = s->frame;

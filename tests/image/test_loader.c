@@ -165,6 +165,56 @@ static void a_running_read_that_is_cancelled_stops_between_regions(void **state)
     teardown(&f);
 }
 
+struct ends {
+    uint32_t count;
+    uint64_t values[4];
+    SluiceResult results[4];
+};
+
+static void note_end(void *user, uint64_t value, SluiceResult result)
+{
+    struct ends *ends = user; /* the loader's lock is around it */
+    if (ends->count < 4) {
+        ends->values[ends->count] = value;
+        ends->results[ends->count] = result;
+    }
+    ends->count++;
+}
+
+static void every_end_of_a_read_is_told_once_with_its_result(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, 1, 0);
+    sluiceDestroyTileLoader(f.loader);
+    struct ends ends = {0};
+    SluiceTileLoaderCreateInfo create = {1, 0, NULL, .retry = {2, 1, 1}, .end = {&ends, note_end}};
+    CHECK_OK(sluiceCreateTileLoader(&create, &f.loader));
+    f.source.fail_at = 2; /* after which the same read is tried again */
+    f.source.failure = SLUICE_ERROR_IO;
+    f.source.holds = true;
+    float texels[3] = {0};
+    submit_texel(&f, 7, &texels[0], 0);
+    fault_source_await(&f.source, 1);
+    uint64_t dropped = submit_texel(&f, 8, &texels[1], 0);
+    submit_texel(&f, 9, &texels[2], 0);
+    assert_int_equal(ends.count, 0);
+    sluiceCancelTileRead(f.loader, dropped);
+    sluiceCancelTileRead(f.loader, dropped);
+    fault_source_release(&f.source);
+    sluiceWaitTileLoaderIdle(f.loader);
+    assert_int_equal(ends.count, 3);
+    for (uint32_t i = 0; i < 3; i++) {
+        SluiceTileReadResult result = collect_one(&f);
+        assert_int_equal(ends.values[i], result.userValue);
+        CHECK_RESULT(ends.results[i], result.result);
+    }
+    assert_int_equal(ends.values[0], 8);
+    CHECK_RESULT(ends.results[0], SLUICE_ERROR_CANCELLED);
+    CHECK_OK(ends.results[2]);
+    teardown(&f);
+}
+
 static void a_read_in_its_last_region_ends_as_if_nothing_had_been_said(void **state)
 {
     (void)state;
@@ -383,6 +433,7 @@ int main(void)
         cmocka_unit_test(urgent_reads_go_first_and_equal_ones_in_order),
         cmocka_unit_test(a_queued_read_that_is_cancelled_is_never_begun),
         cmocka_unit_test(a_running_read_that_is_cancelled_stops_between_regions),
+        cmocka_unit_test(every_end_of_a_read_is_told_once_with_its_result),
         cmocka_unit_test(a_read_in_its_last_region_ends_as_if_nothing_had_been_said),
         cmocka_unit_test(capacity_counts_what_is_not_collected),
         cmocka_unit_test(failures_of_the_source_reach_the_result),

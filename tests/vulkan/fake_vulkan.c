@@ -521,6 +521,14 @@ static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x,
         resolve_item(fake, i, &at);
 }
 
+/* The resolve passes have none. */
+static VKAPI_ATTR void VKAPI_CALL dispatch_indirect(VkCommandBuffer commands, VkBuffer buffer,
+                                                    VkDeviceSize offset)
+{
+    (void)commands, (void)buffer, (void)offset;
+    fail_msg("an indirect dispatch");
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
     (void)device;
@@ -625,6 +633,7 @@ static const struct {
     ENTRY(CmdUpdateBuffer, update_buffer),
     ENTRY(CmdCopyBufferToImage, copy_to_image),
     ENTRY(CmdDispatch, dispatch),
+    ENTRY(CmdDispatchIndirect, dispatch_indirect),
     ENTRY(CmdPushConstants, push_constants),
     ENTRY(CreateBuffer, create_buffer),
     ENTRY(CreateComputePipelines, create_pipelines),

@@ -14,55 +14,12 @@
 
 #include "buffers.glsl"
 #include "lod.glsl"
+#include "page_filter.glsl"
 
 /* As the sampler has it. Define it before to change it. */
 #ifndef SLUICE_BORDER_COLOR
 #define SLUICE_BORDER_COLOR vec4(0.0)
 #endif
-
-/* Of filter weights: what devices have at least by custom, and what the sums of weights stay 1 with. */
-#define SLUICE_FILTER_STEPS 256.0
-
-/** One axis of a bilinear sample, in texels of a level. */
-struct SluicePageAxis {
-    int low, high; /* -1: beyond the border */
-    float weight;  /* of `high` */
-};
-
-SluicePageAxis sluicePageAxis(float coordinate, uint addressMode, int size)
-{
-    float n = float(size);
-    if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
-        coordinate -= floor(coordinate);
-    } else if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
-        coordinate -= 2.0 * floor(coordinate * 0.5);
-        coordinate = coordinate > 1.0 ? 2.0 - coordinate : coordinate;
-    } else if (addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
-        coordinate = clamp(coordinate, -1.0 - 1.0 / n, 2.0 + 1.0 / n);
-    } else {
-        if (addressMode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
-            coordinate = abs(coordinate);
-        coordinate = clamp(coordinate, 0.0, 1.0);
-    }
-    float at = floor(coordinate * n * SLUICE_FILTER_STEPS - (0.5 * SLUICE_FILTER_STEPS - 0.5)) /
-               SLUICE_FILTER_STEPS;
-    SluicePageAxis axis;
-    axis.low = int(floor(at));
-    axis.high = axis.low + 1;
-    axis.weight = at - floor(at);
-    if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
-        axis.low += axis.low < 0 ? size : 0;
-        axis.high -= axis.high >= size ? size : 0;
-    } else if (addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
-        axis.low = axis.low >= 0 && axis.low < size ? axis.low : -1;
-        axis.high = axis.high >= 0 && axis.high < size ? axis.high : -1;
-    } else {
-        /* mirrored, the texel beyond an edge is that before it */
-        axis.low = clamp(axis.low, 0, size - 1);
-        axis.high = clamp(axis.high, 0, size - 1);
-    }
-    return axis;
-}
 
 ivec2 sluiceLevelSize(SluiceTextureEntry entry, uint level)
 {
@@ -82,21 +39,6 @@ uint sluiceReadPage(SluiceTextureEntry entry, uint level, ivec2 tile)
     uint first = SLUICE_PAGE_TABLE_WORD(entry.pageTableOffset + level);
     return SLUICE_PAGE_TABLE_WORD(first + uint(tile.y * columns + tile.x));
 }
-
-/* Without non-uniform indexing of arrays every place is visited, and one of them sampled. */
-#ifdef SLUICE_PAGE_LOOP
-#define SLUICE_WITH_PAGE(page, statement)                                                          \
-    for (uint chunk = 0u; chunk < SLUICE_PAGE_LOOP; chunk++)                                        \
-        if (chunk == (page) >> 16u) {                                                              \
-            statement;                                                                             \
-        }
-#else
-#define SLUICE_WITH_PAGE(page, statement)                                                          \
-    {                                                                                              \
-        uint chunk = (page) >> 16u;                                                                \
-        statement;                                                                                 \
-    }
-#endif
 
 /** One texel of a regular level; 0 where it is not resident. */
 vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
@@ -181,47 +123,16 @@ vec4 sluiceSampleTail(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx
     return textureGrad(tail, uv, dx * scale, dy * scale);
 }
 
-/** What a trilinear or anisotropic sample is made of: bilinear ones in a row, each of two levels. */
-struct SluicePagedTaps {
-    uint fine, coarse; /* levels */
-    float fraction;    /* of `coarse`: 0 to 1 */
-    uint count;
-    vec2 axis; /* of the row, in uv */
-};
-
 float sluiceClampPagedLod(SluiceTextureEntry entry, float lod)
 {
     return clamp(lod, 0.0, float(entry.mipLevelCount - 1u));
 }
 
-/**
- * At `lod`, clamped, with derivatives that hold all bias. Of the anisotropic ones as many samples
- * along the longer derivative as that is longer than a pixel of the level: the customary way, which
- * every device refines in its own.
- */
 SluicePagedTaps sluicePlacePagedTaps(SluiceTextureEntry entry, vec2 dx, vec2 dy, float lod,
                                      float maxAnisotropy)
 {
-    SluicePagedTaps taps;
-    taps.fine = uint(lod);
-    taps.coarse = min(taps.fine + 1u, entry.mipLevelCount - 1u);
-    taps.fraction =
-        floor((lod - float(taps.fine)) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
-    taps.count = 1u;
-    taps.axis = vec2(0.0);
-    if (maxAnisotropy > 1.0) {
-        vec2 size = vec2(entry.width, entry.height);
-        float x = length(dx * size), y = length(dy * size);
-        taps.axis = x >= y ? dx : dy;
-        float ratio = max(x, y) / exp2(lod);
-        taps.count = uint(clamp(ceil(ratio - 0.01), 1.0, sluiceClampAnisotropy(maxAnisotropy)));
-    }
-    return taps;
-}
-
-vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
-{
-    return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
+    return sluicePlaceTaps(vec2(entry.width, entry.height), entry.mipLevelCount, dx, dy, lod,
+                           sluiceClampAnisotropy(maxAnisotropy));
 }
 
 /** A level of no weight is not looked at: it may be infinite. */

@@ -1,0 +1,43 @@
+/**
+ * How much blurrier all textures are sampled so that what a launch needs fits into memory: a LOD
+ * bias in quarters of a level. Rises at once when a launch needs more than there are places; falls
+ * when two launches in a row show that a finer bias fits, which it estimates from what it saw of
+ * that bias before. So a view that does not change comes to rest.
+ */
+#ifndef SLC_DEMAND_BIAS_H
+#define SLC_DEMAND_BIAS_H
+
+#include <sluice/base.h>
+
+#define SLC_MAX_BIAS_QUARTERS 96u /* 24 levels: nothing but tails */
+
+struct slc_demand_bias {
+    uint32_t quarters;
+    uint32_t raises; ///< one after the other
+    uint32_t calm;   ///< launches in a row that miss little
+    bool settled;    ///< a launch with this bias missed little
+    uint64_t loads;  ///< since then
+    struct {
+        bool known;
+        float need, total; ///< scaled to launches like the last one; `total` with pinned pages
+        float scale;       ///< how far
+        bool old;          ///< it was so far that it is a guess
+    } seen[SLC_MAX_BIAS_QUARTERS + 1];
+};
+
+/** What a launch did, in pages that compete for places. */
+struct slc_demand_need {
+    uint64_t room;        ///< places for pages that are not pinned
+    uint64_t used;        ///< not pinned, resident
+    uint64_t missing;     ///< not pinned, not resident
+    uint64_t used_pinned; ///< of them it is only known that they tell of the view
+    uint64_t loads;       ///< reads that it caused
+};
+
+/** A launch that was sampled with the present bias is over. */
+void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_demand_need *need);
+
+/** What was seen tells nothing any more: other places, other pages. */
+void slc_demand_bias_forget(struct slc_demand_bias *bias);
+
+#endif /* SLC_DEMAND_BIAS_H */

@@ -1,0 +1,112 @@
+/** What the files of the residency share. */
+#ifndef SLC_DEMAND_RESIDENCY_INTERNAL_H
+#define SLC_DEMAND_RESIDENCY_INTERNAL_H
+
+#include "demand/bias.h"
+#include "demand/page_nodes.h"
+
+#define SLC_TILES 0u /* the class that the bias is about */
+#define SLC_NO_POOL UINT32_MAX
+
+/** Resident pages of one class and kind that may be evicted, the one used longest ago first. */
+struct slc_page_pool {
+    uint32_t class_index, kind;
+    uint32_t next; ///< of the class
+    struct slc_page_list pages;
+    uint64_t sorted; ///< the launch whose pages, at the head, are in order of rank and page
+};
+
+struct slc_page_class {
+    uint64_t limit;
+    struct slc_page_memory memory;
+    bool has_memory;
+    uint32_t first_pool;
+    uint64_t held;   ///< loading or resident: they count against the limit
+    uint64_t pinned; ///< of these
+    struct slc_page_list ghosts;
+    struct slc_residency_counts counts;
+};
+
+/** What the present launch did with tiles. */
+struct slc_launch_use {
+    uint64_t used, used_pinned; ///< seen by it
+    uint64_t touched;           ///< not pinned, resident, used or requested
+    uint64_t asked;             ///< not pinned, missing
+    uint64_t pinned_waiting;    ///< pinned, without a place
+    uint64_t requests;          ///< of all classes
+    uint64_t loads;
+};
+
+struct slc_demand_residency {
+    SluiceAllocationCallbacks cb;
+    bool no_eviction, no_lod_bias;
+    struct slc_page_nodes nodes;
+    struct slc_page_class *classes; ///< owned
+    uint32_t class_count;
+    struct slc_page_pool *pools; ///< owned
+    uint32_t pool_count, pool_capacity;
+    uint64_t launch, prepared; ///< whose requests come; the last that was told of
+    struct slc_page_list unseen, overflow;
+    uint32_t changed_head, changed_tail;
+    bool changes_sorted, over_limit;  ///< over_limit: some class, perhaps
+    struct slc_page_evicted *evicted; ///< owned ring, with room for `valued` more
+    uint32_t evicted_capacity, evicted_begin, evicted_count;
+    uint32_t valued; ///< pages without a place that are loading or resident
+    struct slc_launch_use use;
+    struct slc_demand_bias bias;
+    uint64_t bias_from;  ///< the first launch with this bias, once it is known
+    bool bias_shown;     ///< it is
+    uint64_t soft_limit; ///< tiles for which there was memory, when there was no more
+};
+
+static inline struct slc_page_node *slc_node(struct slc_demand_residency *r, uint32_t index)
+{
+    return &r->nodes.at[index];
+}
+
+static inline struct slc_page_class *slc_class_of(struct slc_demand_residency *r, uint32_t index)
+{
+    return &r->classes[r->nodes.at[index].class_index];
+}
+
+/* residency_age.c */
+
+/** The pool of that class and kind; SLC_NO_POOL without memory. */
+uint32_t slc_residency_pool(struct slc_demand_residency *r, uint32_t class_index, uint32_t kind);
+/** A resident page that is not pinned, and in no list, was used by launch `last_use`. */
+void slc_residency_enter_pool(struct slc_demand_residency *r, uint32_t index, uint64_t last_use);
+/** Takes a node out of whatever list is its home. */
+void slc_residency_leave_home(struct slc_demand_residency *r, uint32_t index);
+/** The page that goes next, of one pool or all of the class; false if all are in use. */
+bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, uint32_t pool);
+/** Evicts until the class is within its limit, or nothing is left that may go. */
+void slc_residency_trim(struct slc_demand_residency *r, uint32_t class_index);
+
+/* residency_changes.c */
+
+/** After every change of a node: lists what the page table does not show yet, and drops a node that
+ *  is of no use any more. */
+void slc_residency_note(struct slc_demand_residency *r, uint32_t index);
+/** Room for the values of all pages that hold one, and of one more. False without memory. */
+bool slc_residency_reserve_evicted(struct slc_demand_residency *r);
+
+/* residency_release.c */
+
+/** From loading or resident, and in no list, to absent, which is still to be noted. Evicted: it may
+ *  be retaken. */
+void slc_residency_release(struct slc_demand_residency *r, uint32_t index, bool evicted);
+
+/** An absent page in no list may be retaken. */
+void slc_residency_become_ghost(struct slc_demand_residency *r, uint32_t index, uint32_t place);
+
+/* residency_request.c */
+
+/** The launch needs a resident page: it is not evicted before the next one. */
+void slc_residency_touch(struct slc_demand_residency *r, uint32_t index);
+
+/* residency_settle.c */
+
+/** A page of the class that has no place now will not get one while nothing changes. */
+bool slc_residency_is_hopeless(const struct slc_demand_residency *r, uint32_t class_index);
+
+#endif /* SLC_DEMAND_RESIDENCY_INTERNAL_H */

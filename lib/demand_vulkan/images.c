@@ -1,0 +1,411 @@
+/* Images from the request that opens one to the launch after which nothing names its pages. */
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "demand/tail_place.h"
+#include "demand_vulkan/opening.h"
+#include "demand_vulkan/pages.h"
+
+#include <sluice/shared/demand.h>
+
+#include <assert.h>
+#include <string.h>
+
+#define OPENING_PRIORITY 16u /* above all ranks */
+
+/* The slot's page for all coarse levels, which it keeps for good. */
+static SluiceResult find_tail_page(SluiceDemandLoader *loader, uint32_t slot, uint32_t *page)
+{
+    uint32_t block = slot / SLUICE_DEMAND_BLOCK_PAGES;
+    if (block == loader->tail_block_capacity) {
+        uint32_t capacity = block ? 2 * block : 16;
+        uint32_t *blocks = slc_regrow(&loader->cb, loader->tail_blocks, block, capacity,
+                                      sizeof *loader->tail_blocks);
+        if (!blocks)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        loader->tail_blocks = blocks;
+        loader->tail_block_capacity = capacity;
+    }
+    if (block == loader->tail_block_count) {
+        SluiceResult result = slc_pages_take(loader, 0, SLUICE_DEMAND_BLOCK_PAGES, SLC_OWNER_TAIL,
+                                             block, &loader->tail_blocks[block]);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        loader->tail_block_count++;
+    }
+    *page = loader->tail_blocks[block] + slot % SLUICE_DEMAND_BLOCK_PAGES;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult grow(SluiceDemandLoader *loader)
+{
+    uint32_t old = loader->image_capacity, capacity = old ? 2 * old : 64;
+    struct slc_demand_image **images =
+        slc_regrow(&loader->cb, loader->images, old, capacity, sizeof(struct slc_demand_image *));
+    if (!images)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    loader->images = images;
+    loader->image_capacity = capacity;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult add_slot(SluiceDemandLoader *loader, struct slc_demand_image **image)
+{
+    uint32_t slot = loader->image_high;
+    if (slot == loader->max_image_count)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    SluiceResult result = slot == loader->image_capacity ? grow(loader) : SLUICE_SUCCESS;
+    uint32_t tail_page;
+    if (result == SLUICE_SUCCESS)
+        result = slc_table_mirror_reserve(&loader->levels, slot + 2);
+    if (result == SLUICE_SUCCESS)
+        result = find_tail_page(loader, slot, &tail_page);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *image = slc_calloc(&loader->cb, 1, sizeof **image);
+    if (!*image)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    **image = (struct slc_demand_image){.slot = slot, .tail_page = tail_page};
+    loader->images[slot] = *image;
+    loader->image_high++;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult take_slot(SluiceDemandLoader *loader, uint32_t texture,
+                              struct slc_demand_image **image)
+{
+    if (loader->free_image != SLC_NONE) {
+        *image = loader->images[loader->free_image];
+        loader->free_image = (*image)->next;
+    } else {
+        SluiceResult result = add_slot(loader, image);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    struct slc_demand_image *taken = *image;
+    *taken = (struct slc_demand_image){.state = SLC_IMAGE_OPENING,
+                                       .slot = taken->slot,
+                                       .texture = texture,
+                                       .next = SLC_NONE,
+                                       .origin = loader->textures[texture].source,
+                                       .loader = loader,
+                                       .source = loader->textures[texture].source.source,
+                                       .tail_page = taken->tail_page};
+    loader->textures[texture].image = taken->slot;
+    return SLUICE_SUCCESS;
+}
+
+static void free_slot(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    image->state = SLC_IMAGE_FREE;
+    image->next = loader->free_image;
+    loader->free_image = image->slot;
+}
+
+/* Reads the base colour, and before that opens the image if it is not open. */
+static SluiceResult submit_opening(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                                   SluiceDemandTicket ticket)
+{
+    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_OPEN);
+    if (!job)
+        return SLUICE_NOT_READY;
+    const struct slc_demand_texture *texture = &loader->textures[image->texture];
+    const SluiceImageRegion region = {.width = 1, .height = 1};
+    void *texels = image->read_color;
+    job->page = image->texture;
+    job->owner = image->slot;
+    job->image = image;
+    job->id = (uint64_t)texture->generation << 32 | image->texture;
+    SluiceTileRead read = {.source = &loader->opener,
+                           .regionCount = 1,
+                           .pRegions = &region,
+                           .ppTexels = &texels,
+                           .priority = OPENING_PRIORITY};
+    SluiceResult result = slc_job_submit(loader, job, &read, ticket);
+    if (result == SLUICE_SUCCESS)
+        image->job_count++;
+    else
+        slc_job_free(loader, job);
+    return result;
+}
+
+enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
+                                          SluiceDemandTicket ticket, SluiceResult *result)
+{
+    *result = SLUICE_SUCCESS;
+    if (texture >= loader->texture_high)
+        return SLC_REQUEST_RESIDENT;
+    if (loader->textures[texture].kind == SLC_TEXTURE_VARIANT)
+        texture = loader->textures[texture].base;
+    struct slc_demand_texture *t = &loader->textures[texture];
+    if (t->kind != SLC_TEXTURE_IMAGE || t->failed)
+        return SLC_REQUEST_RESIDENT;
+    if (t->image != SLC_NONE)
+        return loader->images[t->image]->state == SLC_IMAGE_OPENING ? SLC_REQUEST_PENDING
+                                                                    : SLC_REQUEST_RESIDENT;
+    struct slc_demand_image *image;
+    if (loader->free_other_count == 0)
+        return SLC_REQUEST_POSTPONED;
+    *result = take_slot(loader, texture, &image);
+    if (*result == SLUICE_SUCCESS)
+        *result = submit_opening(loader, image, ticket);
+    if (*result == SLUICE_SUCCESS)
+        return SLC_REQUEST_LOAD;
+    if (loader->textures[texture].image != SLC_NONE) {
+        loader->textures[texture].image = SLC_NONE;
+        free_slot(loader, image);
+    }
+    if (*result == SLUICE_NOT_READY || *result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        *result = SLUICE_SUCCESS;
+    return SLC_REQUEST_POSTPONED;
+}
+
+static uint64_t level_tile_count(const struct slc_demand_image *image, uint32_t level)
+{
+    return (uint64_t)slc_image_level_width(image, level) * slc_image_level_height(image, level);
+}
+
+uint32_t slc_image_level_rank(const struct slc_demand_image *image, uint32_t level)
+{
+    uint32_t rank = 1;
+    uint64_t tiles = level_tile_count(image, level);
+    for (uint64_t n = 1; n < tiles && rank < SLUICE_DEMAND_RANKS - 1; n *= 4)
+        rank++;
+    return rank;
+}
+
+static void give_level_pages(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    for (uint32_t l = 0; l < image->regular_count; l++)
+        slc_pages_give(loader, image->first_pages[l], level_tile_count(image, l));
+    image->regular_count = 0;
+}
+
+static SluiceResult take_level_pages(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    uint32_t count = slc_demand_regular_count(image->info.width, image->info.height,
+                                              image->tile_width, image->tile_height);
+    assert(count <= SLC_MAX_REGULAR_LEVELS);
+    for (uint32_t l = 0; l < count; l++) {
+        uint64_t tiles = level_tile_count(image, l);
+        SluiceResult result = slc_pages_take(loader, slc_image_level_rank(image, l), tiles,
+                                             SLC_OWNER_LEVEL, image->slot, &image->first_pages[l]);
+        if (result != SLUICE_SUCCESS) {
+            give_level_pages(loader, image);
+            return result;
+        }
+        image->regular_count = l + 1;
+    }
+    return SLUICE_SUCCESS;
+}
+
+/* Pages and what shaders see. */
+static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    SluiceFormatInfo format;
+    SluiceResult result = sluiceGetFormatInfo(image->info.format, &format);
+    if (result == SLUICE_SUCCESS)
+        result =
+            sluiceGetStandardTileShape(image->info.format, &image->tile_width, &image->tile_height);
+    image->blocks = format.blockWidth > 1;
+    if (result == SLUICE_SUCCESS)
+        result = take_level_pages(loader, image);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t *words =
+        ((struct slc_mirror_element *)slc_table_mirror_change(&loader->levels, 1 + image->slot))
+            ->words;
+    memcpy(words, image->first_pages, sizeof image->first_pages);
+    memcpy(image->base_color, image->read_color, sizeof image->base_color);
+    image->state = SLC_IMAGE_OPEN;
+    slc_texture_show_image(loader, image);
+    loader->counts.texturesOpened++;
+    return SLUICE_SUCCESS;
+}
+
+/* No read of it is under way. */
+static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    if (!image->source)
+        return;
+    sluiceForgetTileLoaderSource(loader->reader, image->source);
+    if (image->origin.source)
+        image->source = NULL; /* the application's own */
+    else if (image->origin.pfnClose)
+        image->origin.pfnClose(image->origin.pUserData, image->source);
+    else
+        sluiceDestroyImageSource(image->source);
+    image->source = NULL;
+}
+
+static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
+{
+    const char *name = image->source && image->info.pName ? image->info.pName : "image";
+    slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s cannot be used as a texture: %s%s%s", name,
+            sluiceResultString(result), image->trouble ? ": " : "",
+            image->trouble ? image->trouble : "");
+    loader->textures[image->texture].failed = true;
+    loader->counts.texturesFailed++;
+    slc_texture_show_failed(loader, image->texture);
+}
+
+/* It was not opened, or cannot be used: as if nobody had asked, but for the failure. */
+static void give_up(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
+{
+    if (!slc_result_may_pass(result))
+        fail(loader, image, result);
+    loader->textures[image->texture].image = SLC_NONE;
+    close_source(loader, image);
+    free_slot(loader, image);
+}
+
+void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                        const struct slc_demand_job *job, SluiceResult result)
+{
+    bool opening = image->state == SLC_IMAGE_OPENING;
+    if (image->state == SLC_IMAGE_OPEN && result == SLUICE_SUCCESS && !job->stale) {
+        memcpy(image->base_color, image->read_color, sizeof image->base_color);
+        slc_texture_show_image(loader, image);
+    }
+    if (opening && result == SLUICE_SUCCESS)
+        result = lay_out(loader, image);
+    if (opening && result != SLUICE_SUCCESS) {
+        if (result == SLUICE_ERROR_LIMIT_EXCEEDED && !image->trouble)
+            image->trouble = "pageCapacity is too small for its tiles";
+        image->job_count--;
+        give_up(loader, image, result);
+        return;
+    }
+    slc_image_release(loader, image);
+}
+
+static void bury(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    close_source(loader, image);
+    give_level_pages(loader, image);
+    image->state = SLC_IMAGE_BURIED;
+    image->launch = loader->launch;
+    image->next = SLC_NONE;
+    if (loader->first_buried_image == SLC_NONE)
+        loader->first_buried_image = image->slot;
+    else
+        loader->images[loader->last_buried_image]->next = image->slot;
+    loader->last_buried_image = image->slot;
+}
+
+void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    assert(image->job_count > 0);
+    if (--image->job_count == 0 && image->state == SLC_IMAGE_DETACHED)
+        bury(loader, image);
+}
+
+static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    if (image->job_count == 0)
+        return;
+    slc_jobs_drop(loader, SLC_JOB_TILE, image->slot, 0, UINT64_MAX);
+    slc_jobs_drop(loader, SLC_JOB_OPEN, image->slot, 0, UINT64_MAX);
+}
+
+static void forget_tiles(SluiceDemandLoader *loader, const struct slc_demand_image *image)
+{
+    for (uint32_t l = 0; l < image->regular_count; l++)
+        slc_residency_forget(loader->residency, image->first_pages[l], level_tile_count(image, l));
+    slc_residency_forget(loader->residency, image->tail_page, 1);
+}
+
+static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    if (!image->refresh)
+        return;
+    image->refresh = false;
+    if (loader->first_refresh == image->slot) {
+        loader->first_refresh = image->next;
+        return;
+    }
+    uint32_t at = loader->first_refresh;
+    while (loader->images[at]->next != image->slot)
+        at = loader->images[at]->next;
+    loader->images[at]->next = image->next;
+}
+
+void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    leave_refresh_list(loader, image);
+    drop_jobs(loader, image);
+    if (image->origin.source && image->job_count) { /* which the application may destroy next */
+        slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);
+        slc_jobs_wait(loader, SLC_JOB_OPEN, image->slot);
+    }
+    forget_tiles(loader, image);
+    for (uint32_t l = 0; l < image->regular_count; l++)
+        slc_pages_forget_requests(loader, image->first_pages[l], level_tile_count(image, l));
+    slc_pages_forget_requests(loader, image->tail_page, 1);
+    loader->textures[image->texture].image = SLC_NONE;
+    image->state = SLC_IMAGE_DETACHED;
+    if (image->job_count == 0)
+        bury(loader, image);
+}
+
+void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    uint32_t texture = image->texture;
+    loader->textures[texture].failed = true;
+    loader->counts.texturesFailed++;
+    slc_image_detach(loader, image);
+    slc_texture_show_failed(loader, texture);
+}
+
+void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image)
+{
+    if (image->state != SLC_IMAGE_OPEN)
+        return; /* what is read now is as good as what is read next */
+    drop_jobs(loader, image);
+    forget_tiles(loader, image);
+    if (image->refresh)
+        return;
+    image->refresh = true;
+    image->next = loader->first_refresh;
+    loader->first_refresh = image->slot;
+}
+
+void slc_images_refresh(SluiceDemandLoader *loader)
+{
+    uint32_t next, waiting = SLC_NONE;
+    for (uint32_t slot = loader->first_refresh; slot != SLC_NONE; slot = next) {
+        struct slc_demand_image *image = loader->images[slot];
+        next = image->next;
+        /* One at a time writes the colour. */
+        image->refresh = image->job_count || submit_opening(loader, image, 0) != SLUICE_SUCCESS;
+        if (!image->refresh)
+            continue;
+        image->next = waiting;
+        waiting = slot;
+    }
+    loader->first_refresh = waiting;
+}
+
+void slc_images_exhume(SluiceDemandLoader *loader)
+{
+    while (loader->first_buried_image != SLC_NONE) {
+        struct slc_demand_image *image = loader->images[loader->first_buried_image];
+        if (image->launch > loader->processed)
+            return;
+        loader->first_buried_image = image->next;
+        free_slot(loader, image);
+    }
+}
+
+void slc_images_finish(SluiceDemandLoader *loader)
+{
+    for (uint32_t i = 0; i < loader->image_high; i++) {
+        close_source(loader, loader->images[i]);
+        slc_free(&loader->cb, loader->images[i], 1, sizeof *loader->images[i]);
+    }
+    slc_free(&loader->cb, loader->images, loader->image_capacity,
+             sizeof(struct slc_demand_image *));
+    slc_free(&loader->cb, loader->tail_blocks, loader->tail_block_capacity,
+             sizeof *loader->tail_blocks);
+    loader->images = NULL;
+}

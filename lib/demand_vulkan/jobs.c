@@ -1,0 +1,280 @@
+/*
+ * Everything that is done on other threads is a read of the tile loader: of a tile, of the texel
+ * that opens an image, of the value of a page. Here begins and ends each of them.
+ */
+#include "demand_vulkan/loader.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "vulkan/sparse_layout.h"
+
+#include <assert.h>
+
+#define BATCH 64u
+
+void slc_job_list_append(SluiceDemandLoader *loader, struct slc_job_list *list,
+                         struct slc_demand_job *job)
+{
+    uint32_t index = slc_job_index(loader, job);
+    job->next = SLC_NONE;
+    if (list->first == SLC_NONE)
+        list->first = index;
+    else
+        loader->jobs[list->last].next = index;
+    list->last = index;
+}
+
+struct slc_demand_job *slc_job_list_pop(SluiceDemandLoader *loader, struct slc_job_list *list)
+{
+    if (list->first == SLC_NONE)
+        return NULL;
+    struct slc_demand_job *job = &loader->jobs[list->first];
+    list->first = job->next;
+    return job;
+}
+
+/* Called with the tile loader's lock held: so nothing here may be done with ours and then its. */
+static void on_end(void *user, uint64_t index, SluiceResult result)
+{
+    SluiceDemandLoader *loader = user;
+    struct slc_tickets *tickets = &loader->tickets;
+    struct slc_demand_job *job = &loader->jobs[index];
+    uint64_t us = (slc_monotonic_time() - job->start) / 1000;
+    uint32_t bucket = us >> 31 ? 31 : us ? slc_log2_u32((uint32_t)us) + 1 : 0;
+    pthread_mutex_lock(&tickets->mutex);
+    if (result != SLUICE_ERROR_CANCELLED)
+        tickets->latency[slc_min_u32(bucket, 23)]++;
+    job->running = false;
+    slc_ticket_task_ends(tickets, job->ticket, result != SLUICE_SUCCESS);
+    if (tickets->job_waiters)
+        pthread_cond_broadcast(&tickets->changed);
+    pthread_mutex_unlock(&tickets->mutex);
+}
+
+/* What the reader calls source and value are things of ours; the application knows its own. */
+static void on_failure(void *user, const SluiceTileReadFailure *failure)
+{
+    const SluiceDemandLoader *loader = user;
+    const struct slc_demand_job *job = &loader->jobs[failure->userValue];
+    SluiceTileReadFailure told = *failure;
+    told.userValue = job->id;
+    if (job->kind == SLC_JOB_OPEN)
+        told.source = job->image->source;
+    else if (job->kind == SLC_JOB_RESOURCE)
+        told.source = NULL;
+    loader->info.failure.pfnFailed(loader->info.failure.pUserData, &told);
+}
+
+static SluiceResult create_reader(SluiceDemandLoader *loader)
+{
+    const SluiceDemandLoaderCreateInfo *info = &loader->info;
+    SluiceTileLoaderCreateInfo create = {.threadCount = info->loaderThreadCount,
+                                         .requestCapacity = loader->job_count,
+                                         .pAllocator = info->pAllocator,
+                                         .retry = info->readRetry,
+                                         .maxReadsPerSource = info->maxReadsPerSource,
+                                         .end = {loader, on_end}};
+    if (info->failure.pfnFailed)
+        create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
+    return sluiceCreateTileLoader(&create, &loader->reader);
+}
+
+SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
+{
+    uint32_t tiles = loader->info.maxTilesInFlight;
+    const struct slc_job_list empty = {SLC_NONE, SLC_NONE};
+    loader->free_tiles = loader->free_others = empty;
+    loader->arrived = loader->admitted = loader->copied = empty;
+    loader->job_count = 2 * tiles; /* the second half opens images and fills pages */
+    loader->jobs = slc_calloc(&loader->cb, loader->job_count, sizeof *loader->jobs);
+    if (!loader->jobs)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint32_t i = 0; i < loader->job_count; i++)
+        slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
+                            &loader->jobs[i]);
+    loader->free_tile_count = loader->free_other_count = tiles;
+    SluiceResult result = slc_buffer_init(&loader->staging, &loader->vk, &loader->caps,
+                                          (uint64_t)tiles * SLC_TILE_SIZE,
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    return result == SLUICE_SUCCESS ? create_reader(loader) : result;
+}
+
+void slc_jobs_finish(SluiceDemandLoader *loader)
+{
+    slc_buffer_finish(&loader->staging, &loader->vk);
+    slc_free(&loader->cb, loader->jobs, loader->job_count, sizeof *loader->jobs);
+    loader->jobs = NULL;
+}
+
+struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind)
+{
+    bool tile = kind == SLC_JOB_TILE;
+    struct slc_demand_job *job =
+        slc_job_list_pop(loader, tile ? &loader->free_tiles : &loader->free_others);
+    if (!job)
+        return NULL;
+    assert(job->kind == SLC_JOB_FREE);
+    job->kind = kind; /* what the lock guards stays as it is: nothing is running */
+    job->stale = false;
+    job->image = NULL;
+    *(tile ? &loader->free_tile_count : &loader->free_other_count) -= 1;
+    return job;
+}
+
+void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job)
+{
+    bool tile = job->kind == SLC_JOB_TILE;
+    job->kind = SLC_JOB_FREE;
+    slc_job_list_append(loader, tile ? &loader->free_tiles : &loader->free_others, job);
+    *(tile ? &loader->free_tile_count : &loader->free_other_count) += 1;
+}
+
+uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
+{
+    return (uint8_t *)loader->staging.mapped + (size_t)slc_job_index(loader, job) * SLC_TILE_SIZE;
+}
+
+/* With the lock held. */
+static void begin_task(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                       SluiceDemandTicket ticket)
+{
+    job->running = true;
+    job->ticket = ticket;
+    job->read = 0;
+    slc_ticket_task_begins(&loader->tickets, ticket);
+}
+
+SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                            SluiceTileRead *read, SluiceDemandTicket ticket)
+{
+    struct slc_tickets *tickets = &loader->tickets;
+    uint64_t number = 0;
+    job->start = slc_monotonic_time();
+    pthread_mutex_lock(&tickets->mutex);
+    begin_task(loader, job, ticket);
+    pthread_mutex_unlock(&tickets->mutex);
+    read->userValue = slc_job_index(loader, job);
+    SluiceResult result = sluiceSubmitTileRead(loader->reader, read, &number);
+    pthread_mutex_lock(&tickets->mutex);
+    bool known, cancelled = false;
+    if (result == SLUICE_SUCCESS) {
+        const struct slc_ticket *found = slc_ticket_find(tickets, ticket, &known);
+        job->read = number;
+        cancelled = tickets->aborted || (found && found->cancelled);
+    } else {
+        job->running = false;
+        slc_ticket_task_withdraw(tickets, ticket);
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+    if (cancelled)
+        sluiceCancelTileRead(loader->reader, number);
+    return result;
+}
+
+static void job_back(SluiceDemandLoader *loader, const SluiceTileReadResult *read)
+{
+    struct slc_demand_job *job = &loader->jobs[read->userValue];
+    if (read->result == SLUICE_ERROR_CANCELLED)
+        loader->counts.cancelledCount++;
+    else if (read->result != SLUICE_SUCCESS)
+        loader->counts.failedCount++;
+    if (job->kind == SLC_JOB_TILE) {
+        slc_tile_job_back(loader, job, read->result, read->size);
+    } else if (job->kind == SLC_JOB_RESOURCE) {
+        slc_resource_job_back(loader, job, read->result);
+        slc_job_free(loader, job);
+    } else {
+        slc_image_job_back(loader, job->image, job, read->result);
+        slc_job_free(loader, job);
+    }
+}
+
+void slc_jobs_collect(SluiceDemandLoader *loader)
+{
+    SluiceTileReadResult reads[BATCH];
+    SluiceResult result = SLUICE_INCOMPLETE;
+    while (result == SLUICE_INCOMPLETE) {
+        uint32_t count = BATCH;
+        result = sluiceCollectTileReads(loader->reader, &count, reads);
+        for (uint32_t i = 0; i < count; i++)
+            job_back(loader, &reads[i]);
+    }
+}
+
+void slc_jobs_drop(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner,
+                   uint32_t first, uint64_t count)
+{
+    for (uint32_t i = 0; i < loader->job_count; i++) {
+        struct slc_demand_job *job = &loader->jobs[i];
+        if (job->kind != kind || job->owner != owner || job->page < first ||
+            job->page - first >= count)
+            continue;
+        job->stale = true;
+        sluiceCancelTileRead(loader->reader, job->read); /* of one that is over: ignored */
+    }
+}
+
+static bool is_running(const SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner)
+{
+    for (uint32_t i = 0; i < loader->job_count; i++)
+        if (loader->jobs[i].kind == kind && loader->jobs[i].owner == owner &&
+            loader->jobs[i].running)
+            return true;
+    return false;
+}
+
+void slc_jobs_wait(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner)
+{
+    struct slc_tickets *tickets = &loader->tickets;
+    pthread_mutex_lock(&tickets->mutex);
+    tickets->job_waiters++;
+    while (is_running(loader, kind, owner))
+        pthread_cond_wait(&tickets->changed, &tickets->mutex);
+    tickets->job_waiters--;
+    pthread_mutex_unlock(&tickets->mutex);
+}
+
+/* Those of a ticket, or of all for 0. */
+static void cancel_jobs(SluiceDemandLoader *loader, SluiceDemandTicket ticket)
+{
+    for (uint32_t next = 0; next < loader->job_count;) {
+        uint64_t reads[BATCH];
+        uint32_t count = 0;
+        pthread_mutex_lock(&loader->tickets.mutex);
+        for (; next < loader->job_count && count < BATCH; next++) {
+            const struct slc_demand_job *job = &loader->jobs[next];
+            if (job->running && job->read && (ticket == 0 || job->ticket == ticket))
+                reads[count++] = job->read;
+        }
+        pthread_mutex_unlock(&loader->tickets.mutex);
+        for (uint32_t i = 0; i < count; i++)
+            sluiceCancelTileRead(loader->reader, reads[i]);
+    }
+}
+
+SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader, SluiceDemandTicket ticket)
+{
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    bool known;
+    pthread_mutex_lock(&loader->tickets.mutex);
+    struct slc_ticket *found = slc_ticket_find(&loader->tickets, ticket, &known);
+    if (found)
+        found->cancelled = true;
+    pthread_mutex_unlock(&loader->tickets.mutex);
+    if (found)
+        cancel_jobs(loader, ticket);
+    return known ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
+SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader)
+{
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    pthread_mutex_lock(&loader->tickets.mutex);
+    loader->tickets.aborted = true;
+    pthread_cond_broadcast(&loader->tickets.changed);
+    pthread_mutex_unlock(&loader->tickets.mutex);
+    cancel_jobs(loader, 0);
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,250 @@
+/*
+ * Before a launch: what arrived is copied and shown. After it: its requests are scanned. When it is
+ * over: they become reads.
+ */
+#include "base/checked.h"
+#include "demand_vulkan/loader.h"
+#include "demand_vulkan/pages.h"
+#include "vulkan/compute.h"
+
+#include <sluice/shared/demand.h>
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SHADER_ACCESS (VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT)
+
+static uint32_t slot_of(const SluiceDemandLoader *loader, uint64_t launch)
+{
+    return (uint32_t)(launch % loader->info.launchesInFlight);
+}
+
+static bool is_aborted(SluiceDemandLoader *loader)
+{
+    return slc_ticket_is_cancelled(&loader->tickets, 0);
+}
+
+/* What launches up to `processed` named is free. */
+static void exhume(SluiceDemandLoader *loader)
+{
+    slc_page_space_complete(loader->space, loader->processed);
+    slc_uploads_exhume(loader);
+    slc_images_exhume(loader);
+    slc_textures_exhume(loader);
+    slc_resources_exhume(loader);
+}
+
+/*
+ * Whether shaders are to say what they use: as soon as the tiles that may be loaded until a launch
+ * that says so is over could fill the memory.
+ */
+static bool wants_used(const SluiceDemandLoader *loader)
+{
+    struct slc_residency_counts counts;
+    uint64_t limit = slc_tile_memory_limit(&loader->tiles);
+    uint64_t soon = (uint64_t)loader->info.maxTilesInFlight * (loader->info.launchesInFlight + 1);
+    if (loader->info.noEviction)
+        return false;
+    slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &counts);
+    uint64_t held = counts.resident + counts.loading;
+    return loader->limited_count || held + soon > limit || held > limit / 4 * 3;
+}
+
+static uint32_t bits_of(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t value)
+{
+    const struct slc_mirror_element *now = slc_table_mirror_get(&loader->levels, 0);
+    if (now->words[index] == value)
+        return;
+    ((struct slc_mirror_element *)slc_table_mirror_change(&loader->levels, 0))->words[index] =
+        value;
+}
+
+/* What workers have finished, and what that makes of pages and textures. */
+static void gather(SluiceDemandLoader *loader, uint64_t launch, bool tracking)
+{
+    slc_jobs_collect(loader);
+    slc_images_refresh(loader);
+    slc_preloads_continue(loader);
+    slc_uploads_admit(loader);
+    float bias = slc_residency_prepare(loader->residency, launch);
+    slc_changes_apply(loader);
+    slc_evicted_take(loader);
+    set_parameter(loader, SLUICE_DEMAND_PARAMETER_LOD_BIAS, bits_of(bias));
+    set_parameter(loader, SLUICE_DEMAND_PARAMETER_TRACKING, tracking);
+}
+
+static int compare_runs(const void *a, const void *b)
+{
+    const struct slc_page_run *x = a, *y = b;
+    return (x->first > y->first) - (x->first < y->first);
+}
+
+/* Whole words of requests, each once. */
+static void record_forgotten(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    const uint64_t unit = SLUICE_DEMAND_BLOCK_PAGES;
+    struct slc_page_run *runs = loader->forgotten;
+    if (loader->forgotten_count > 1)
+        qsort(runs, loader->forgotten_count, sizeof *runs, compare_runs);
+    for (uint32_t i = 0; i < loader->forgotten_count;) {
+        uint64_t first = runs[i].first / unit * unit, end = first;
+        for (; i < loader->forgotten_count && runs[i].first / unit * unit <= end; i++) {
+            uint64_t stop = (runs[i].first + runs[i].count + unit - 1) / unit * unit;
+            end = stop > end ? stop : end;
+        }
+        slc_demand_scan_record_forget(&loader->scan, &loader->vk, commands, (uint32_t)first,
+                                      end - first);
+    }
+    loader->forgotten_count = 0;
+}
+
+static void transfers_to_shaders(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                        VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                        SHADER_ACCESS | VK_ACCESS_TRANSFER_WRITE_BIT);
+}
+
+static void record_first(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    slc_page_views_record(&loader->views, &loader->vk, commands);
+    slc_demand_scan_record_clear(&loader->scan, &loader->vk, commands);
+    slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                        VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                        VK_ACCESS_TRANSFER_WRITE_BIT);
+    loader->cleared = true;
+}
+
+/* Everything but the page table; how many tiles. */
+static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    uint32_t first, count;
+    slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                        SHADER_ACCESS | VK_ACCESS_TRANSFER_WRITE_BIT,
+                        VK_PIPELINE_STAGE_TRANSFER_BIT,
+                        VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
+    if (!loader->cleared)
+        record_first(loader, commands);
+    slc_page_cache_record(&loader->tiles.cache, loader->launch, loader->processed, commands);
+    if (slc_page_space_take_changes(loader->space, &first, &count))
+        slc_demand_scan_record_ranks(&loader->scan, &loader->vk, commands,
+                                     slc_page_space_ranks(loader->space), first, count);
+    record_forgotten(loader, commands);
+    uint32_t tiles = slc_uploads_record(loader, commands);
+    slc_table_mirror_record(&loader->table, &loader->vk, commands);
+    slc_table_mirror_record(&loader->levels, &loader->vk, commands);
+    slc_table_mirror_record(&loader->grids, &loader->vk, commands);
+    transfers_to_shaders(loader, commands);
+    return tiles;
+}
+
+SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer,
+                                       SluiceDemandLaunch *pLaunch)
+{
+    if (!loader || !commandBuffer || !pLaunch)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (loader->launch > loader->ended)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (is_aborted(loader))
+        return SLUICE_ERROR_CANCELLED;
+    if (loader->launch - loader->processed >= loader->info.launchesInFlight)
+        return SLUICE_NOT_READY;
+    uint64_t launch = loader->launch + 1;
+    bool tracking = wants_used(loader);
+    exhume(loader);
+    gather(loader, launch, tracking);
+    SluiceResult result =
+        slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
+    if (result != SLUICE_SUCCESS)
+        return result; /* what was gathered is shown by the next */
+    loader->launch = launch;
+    loader->tracked[slot_of(loader, launch)] = tracking;
+    *pLaunch = (SluiceDemandLaunch){.launchIndex = launch,
+                                    .semaphore = loader->semaphore,
+                                    .signalValue = launch,
+                                    .tileCount = record_transfers(loader, commandBuffer)};
+    loader->counts.launchCount++;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer)
+{
+    if (!loader || !commandBuffer)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (loader->launch == loader->ended)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    uint32_t slot = slot_of(loader, loader->launch);
+    if (loader->tracked[slot])
+        slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
+    slc_demand_scan_record(&loader->scan, &loader->vk, commandBuffer, slot,
+                           slc_page_space_end(loader->space), loader->info.maxRequestsPerLaunch);
+    loader->ended = loader->launch;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult wait_for(SluiceDemandLoader *loader, uint64_t launch, uint64_t timeout)
+{
+    const VkSemaphoreWaitInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                      .semaphoreCount = 1,
+                                      .pSemaphores = &loader->semaphore,
+                                      .pValues = &launch};
+    VkResult result = loader->vk.WaitSemaphores(loader->vk.device, &info, timeout);
+    if (result == VK_TIMEOUT)
+        return SLUICE_NOT_READY;
+    return slc_vk_result(&loader->vk, result, "vkWaitSemaphores");
+}
+
+SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
+                                         const SluiceDemandLaunch *pLaunch, uint64_t timeout,
+                                         SluiceDemandRequests *pRequests,
+                                         SluiceDemandTicket *pTicket)
+{
+    SluiceDemandTicket ticket;
+    if (!loader || !pLaunch || !pRequests)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pLaunch->launchIndex <= loader->processed || pLaunch->launchIndex > loader->ended)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (is_aborted(loader))
+        return SLUICE_ERROR_CANCELLED;
+    SluiceResult result = wait_for(loader, pLaunch->launchIndex, timeout);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_ticket_open(&loader->tickets, &ticket);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *pRequests = (SluiceDemandRequests){0};
+    while (loader->processed < pLaunch->launchIndex) {
+        loader->processed++;
+        exhume(loader);
+        slc_requests_process(loader, loader->processed, ticket, pRequests);
+    }
+    pRequests->lodBias = slc_residency_lod_bias(loader->residency);
+    ticket = slc_ticket_close(&loader->tickets, ticket);
+    if (pTicket)
+        *pTicket = ticket;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader, SluiceDemandTicket ticket,
+                                         SluiceDemandTicketStatus *pStatus)
+{
+    if (!loader || !pStatus)
+        return SLUICE_ERROR_NULL_POINTER;
+    return slc_ticket_get_status(&loader->tickets, ticket, pStatus);
+}
+
+SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTicket ticket,
+                                    uint64_t timeout, SluiceDemandTicketStatus *pStatus)
+{
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    return slc_ticket_wait(&loader->tickets, ticket, timeout, pStatus);
+}

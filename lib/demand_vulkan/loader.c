@@ -1,0 +1,347 @@
+/* The loader as a whole: made, taken apart, and looked at. */
+#include "demand_vulkan/loader.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "vulkan/format_caps.h"
+#include "vulkan/region_arena.h"
+
+#include <sluice/shared/demand.h>
+
+#include <string.h>
+
+#define MAX_TEXTURES (1u << 24)
+#define MAX_PAGES (UINT64_C(1) << 31)
+#define MAX_REQUESTS (1u << 20)
+#define MAX_TILES_IN_FLIGHT (1u << 16)
+#define MIN_BUDGET (UINT64_C(4) << 20)
+#define MAX_GRIDS (1u << 16) /* ranges of cells apart from each other */
+
+static uint32_t or_default(uint32_t value, uint32_t otherwise)
+{
+    return value ? value : otherwise;
+}
+
+static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
+{
+    const uint64_t section = SLUICE_DEMAND_SECTION_PAGES;
+    info->launchesInFlight = or_default(info->launchesInFlight, 2);
+    info->maxTextureCount = or_default(info->maxTextureCount, 1u << 17);
+    info->maxRequestsPerLaunch = or_default(info->maxRequestsPerLaunch, 8192);
+    info->maxTilesInFlight = or_default(info->maxTilesInFlight, 1024);
+    info->maxPageChunkCount = or_default(info->maxPageChunkCount, 64);
+    if (info->pageCapacity == 0)
+        info->pageCapacity = UINT64_C(1) << 26;
+    if (info->launchesInFlight > SLC_MAX_LAUNCHES || info->maxTextureCount > MAX_TEXTURES ||
+        info->pageCapacity > MAX_PAGES || info->maxRequestsPerLaunch > MAX_REQUESTS ||
+        info->maxTilesInFlight > MAX_TILES_IN_FLIGHT || info->maxPageChunkCount > UINT16_MAX ||
+        (info->memoryBudget && info->memoryBudget < MIN_BUDGET))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    info->pageCapacity = (info->pageCapacity + section - 1) / section * section;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_device(SluiceDemandLoader *loader)
+{
+    const char *missing = slc_missing_for_mode(&loader->caps, SLUICE_RESIDENCY_MODE_PAGED);
+    if (missing) {
+        slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s has no %s", loader->caps.public.deviceName,
+                missing);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    for (uint32_t i = 1; i < SLUICE_FORMAT_COUNT; i++) {
+        SluiceVulkanFormatCapabilities format;
+        slc_format_caps_init(&format, &loader->vk, (SluiceFormat)i);
+        loader->usable[i] = format.sampled && format.linearFilter;
+    }
+    if (loader->info.memoryBudget == 0)
+        loader->info.memoryBudget = slc_device_memory_size(&loader->caps) / 2;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_semaphore(SluiceDemandLoader *loader)
+{
+    const VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                        .pNext = &type};
+    return slc_vk_result(
+        &loader->vk, loader->vk.CreateSemaphore(loader->vk.device, &info, NULL, &loader->semaphore),
+        "vkCreateSemaphore");
+}
+
+static SluiceResult create_buffer(SluiceDemandLoader *loader, struct slc_buffer *buffer,
+                                  uint64_t elements)
+{
+    uint64_t size = elements * SLC_MIRROR_ELEMENT;
+    if (size > loader->caps.max_storage_buffer_range)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    return slc_buffer_init(buffer, &loader->vk, &loader->caps, size,
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                           SLC_BUFFER_DEVICE);
+}
+
+/* Shaders read what no texture has written yet only through ids that are none. */
+static SluiceResult create_tables(SluiceDemandLoader *loader)
+{
+    uint32_t textures = loader->info.maxTextureCount;
+    loader->max_image_count = textures + textures / 8 + 64; /* some are on their way out */
+    uint32_t grids = textures / 4 + 1024, images = 1 + loader->max_image_count;
+    SluiceResult result = create_buffer(loader, &loader->table_buffer, (uint64_t)textures + 1);
+    if (result == SLUICE_SUCCESS)
+        result = create_buffer(loader, &loader->levels_buffer, (uint64_t)images + grids);
+    if (result == SLUICE_SUCCESS)
+        result = slc_region_arena_init(&loader->grid_arena, &loader->cb, grids,
+                                       slc_min_u32(grids, MAX_GRIDS));
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_table_mirror_init(&loader->table, &loader->cb, loader->table_buffer.buffer, 0,
+                          textures + 1);
+    slc_table_mirror_init(&loader->levels, &loader->cb, loader->levels_buffer.buffer, 0, images);
+    slc_table_mirror_init(&loader->grids, &loader->cb, loader->levels_buffer.buffer,
+                          (uint64_t)images * SLC_MIRROR_ELEMENT, grids);
+    result = slc_table_mirror_reserve(&loader->table, 1);
+    if (result == SLUICE_SUCCESS)
+        result = slc_table_mirror_reserve(&loader->levels, 1);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct SluiceDemandTexture *none = slc_table_mirror_change(&loader->table, 0);
+    none->state = SLUICE_DEMAND_TEXTURE_FAILED; /* what a shader gets that names no texture */
+    slc_table_mirror_change(&loader->levels, 0);
+    return SLUICE_SUCCESS;
+}
+
+/* At worst every tile that is resident or refused has a block of the page table to itself. */
+static uint32_t block_capacity(const SluiceDemandLoader *loader)
+{
+    uint64_t blocks = loader->info.pageCapacity / SLUICE_DEMAND_BLOCK_PAGES;
+    uint64_t wanted = loader->tiles.limit + 16384;
+    wanted = wanted < blocks ? wanted : blocks;
+    return (uint32_t)(wanted < SLC_PAGE_BLOCKS_MAX ? wanted : SLC_PAGE_BLOCKS_MAX);
+}
+
+static SluiceResult create_page_table(SluiceDemandLoader *loader)
+{
+    const SluiceDemandLoaderCreateInfo *info = &loader->info;
+    const struct slc_demand_scan_create_info scan = {.page_capacity = info->pageCapacity,
+                                                     .slot_count = info->launchesInFlight,
+                                                     .list_capacity = info->maxRequestsPerLaunch};
+    const struct slc_page_directory_create_info directory = {.page_capacity = info->pageCapacity,
+                                                             .block_capacity =
+                                                                 block_capacity(loader),
+                                                             .slot_count = info->launchesInFlight};
+    SluiceResult result = slc_demand_scan_init(&loader->scan, &loader->vk, &loader->caps, &scan);
+    if (result == SLUICE_SUCCESS)
+        result = slc_page_directory_init(&loader->directory, &loader->vk, &loader->caps,
+                                         &loader->cb, &directory);
+    return result;
+}
+
+/* The first ids open textures: page i the one at index i. */
+static SluiceResult create_pages(SluiceDemandLoader *loader)
+{
+    uint32_t first, count = loader->info.maxTextureCount + 1;
+    SluiceResult result =
+        slc_page_space_create(&loader->cb, loader->info.pageCapacity, &loader->space);
+    if (result == SLUICE_SUCCESS)
+        result = slc_page_space_allocate(loader->space, 0, count, &first);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    loader->texture_page_count =
+        slc_div_up_u32(count, SLUICE_DEMAND_BLOCK_PAGES) * SLUICE_DEMAND_BLOCK_PAGES;
+    const struct slc_residency_create_info info = {.cb = &loader->cb,
+                                                   .class_count = SLC_DEMAND_CLASSES,
+                                                   .no_eviction = loader->info.noEviction,
+                                                   .no_lod_bias = loader->info.noLodBias};
+    result = slc_residency_create(&info, &loader->residency);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    loader->tile_interface = slc_tile_memory_interface(&loader->tiles);
+    result =
+        slc_residency_set_class(loader->residency, SLC_CLASS_TILES,
+                                slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);
+    if (result == SLUICE_SUCCESS)
+        result = slc_residency_set_class(loader->residency, SLC_CLASS_UNBOUND, UINT64_MAX, NULL);
+    return result;
+}
+
+static SluiceResult create_memory(SluiceDemandLoader *loader)
+{
+    SluiceResult result = slc_page_views_init(&loader->views, &loader->vk, &loader->caps,
+                                              &loader->cb, loader->info.maxPageChunkCount);
+    if (result == SLUICE_SUCCESS)
+        result = slc_tile_memory_init(&loader->tiles, &loader->vk, &loader->caps, &loader->cb,
+                                      &loader->views, loader->info.memoryBudget);
+    return result;
+}
+
+static SluiceResult create_parts(SluiceDemandLoader *loader)
+{
+    const SluiceDemandLoaderCreateInfo *info = &loader->info;
+    SluiceResult result = slc_vk_init_instance(&loader->vk, info->instance, info->physicalDevice,
+                                               info->pfnGetInstanceProcAddr, &info->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_vk_init_device(&loader->vk, info->device);
+    if (result != SLUICE_SUCCESS) {
+        loader->vk.device = VK_NULL_HANDLE; /* nothing can be called */
+        return result;
+    }
+    slc_caps_init(&loader->caps, &loader->vk);
+    static SluiceResult (*const steps[])(SluiceDemandLoader *) = {
+        check_device,      create_semaphore, create_memory, create_tables,
+        create_page_table, create_pages,     slc_jobs_init};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0] && result == SLUICE_SUCCESS; i++)
+        result = steps[i](loader);
+    return result;
+}
+
+static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
+{
+    SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
+    SluiceDemandLoader *loader = slc_calloc(&cb, 1, sizeof *loader);
+    if (!loader)
+        return NULL;
+    loader->cb = cb;
+    loader->info = *info;
+    if (info->pAllocator)
+        loader->info.pAllocator = &loader->cb;
+    loader->texture_high = 1; /* 0 is no texture's */
+    loader->free_texture = loader->first_buried_texture = SLC_NONE;
+    loader->free_image = loader->first_buried_image = loader->first_refresh = SLC_NONE;
+    loader->free_resource = SLC_NONE;
+    slc_image_opener_init(&loader->opener);
+    if (slc_tickets_init(&loader->tickets, &loader->cb) == SLUICE_SUCCESS)
+        return loader;
+    slc_free(&cb, loader, 1, sizeof *loader);
+    return NULL;
+}
+
+SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
+                                      SluiceDemandLoader **pLoader)
+{
+    if (!pLoader)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pLoader = NULL;
+    if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
+        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr ||
+        !slc_allocator_is_valid(pCreateInfo->pAllocator))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceDemandLoaderCreateInfo info = *pCreateInfo;
+    SluiceResult result = fill_in(&info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceDemandLoader *loader = allocate(&info);
+    if (!loader)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = create_parts(loader);
+    if (result != SLUICE_SUCCESS) {
+        sluiceDestroyDemandLoader(loader);
+        return result;
+    }
+    *pLoader = loader;
+    return SLUICE_SUCCESS;
+}
+
+/* Workers first: they write into staging memory, and what they bring is still to be given back. */
+static void stop_workers(SluiceDemandLoader *loader)
+{
+    if (!loader->reader)
+        return;
+    sluiceAbortDemandLoader(loader);
+    sluiceWaitTileLoaderIdle(loader->reader);
+    slc_jobs_collect(loader);
+}
+
+static void destroy_device_parts(SluiceDemandLoader *loader)
+{
+    loader->vk.DeviceWaitIdle(loader->vk.device);
+    slc_page_directory_finish(&loader->directory);
+    slc_demand_scan_finish(&loader->scan, &loader->vk);
+    slc_tile_memory_finish(&loader->tiles);
+    slc_page_views_finish(&loader->views, &loader->vk, &loader->cb);
+    slc_buffer_finish(&loader->table_buffer, &loader->vk);
+    slc_buffer_finish(&loader->levels_buffer, &loader->vk);
+    loader->vk.DestroySemaphore(loader->vk.device, loader->semaphore, NULL);
+}
+
+void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
+{
+    if (!loader)
+        return;
+    stop_workers(loader);
+    if (loader->vk.device)
+        loader->vk.DeviceWaitIdle(loader->vk.device);
+    slc_resources_finish(loader);
+    slc_images_finish(loader);
+    slc_textures_finish(loader);
+    slc_preloads_finish(loader);
+    sluiceDestroyTileLoader(loader->reader);
+    slc_jobs_finish(loader);
+    slc_residency_destroy(loader->residency); /* gives its places back */
+    slc_page_space_destroy(loader->space);
+    if (loader->vk.device)
+        destroy_device_parts(loader);
+    slc_table_mirror_finish(&loader->table);
+    slc_table_mirror_finish(&loader->levels);
+    slc_table_mirror_finish(&loader->grids);
+    slc_region_arena_finish(&loader->grid_arena, &loader->cb);
+    slc_tickets_finish(&loader->tickets);
+    slc_free(&loader->cb, loader->owners, loader->owner_capacity, sizeof *loader->owners);
+    slc_free(&loader->cb, loader->forgotten, loader->forgotten_capacity, sizeof *loader->forgotten);
+    SluiceAllocationCallbacks cb = loader->cb;
+    slc_free(&cb, loader, 1, sizeof *loader);
+}
+
+void sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *pBuffers)
+{
+    *pBuffers = (SluiceDemandBuffers){.textures = loader->table_buffer.buffer,
+                                      .levels = loader->levels_buffer.buffer,
+                                      .directory = loader->directory.directory.buffer,
+                                      .blocks = loader->directory.blocks.buffer,
+                                      .masks = loader->directory.masks.buffer,
+                                      .requests = loader->scan.requests.buffer,
+                                      .sections = loader->scan.sections.buffer};
+}
+
+void sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages)
+{
+    const struct slc_page_views *views = &loader->views;
+    *pPages = (SluiceVulkanPages){.sampler = views->sampler,
+                                  .viewCount = views->count,
+                                  .pViews = views->views,
+                                  .generation = views->generation};
+}
+
+static uint64_t device_size(const SluiceDemandLoader *loader)
+{
+    const struct slc_demand_scan *scan = &loader->scan;
+    const struct slc_page_directory *directory = &loader->directory;
+    return loader->tiles.cache.memory.total_size + loader->views.memory.total_size +
+           loader->table_buffer.size + loader->levels_buffer.size + loader->staging.size +
+           scan->requests.size + scan->sections.size + scan->postponed.size + scan->ranks.size +
+           scan->scratch.size + scan->readback.size + directory->directory.size +
+           directory->blocks.size + directory->masks.size + directory->readback.size;
+}
+
+SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
+                                       SluiceDemandStatistics *pStatistics)
+{
+    if (!loader || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    struct slc_residency_counts tiles;
+    slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &tiles);
+    *pStatistics = loader->counts;
+    pStatistics->evictedCount = tiles.evicted + loader->counts.evictedCount;
+    pStatistics->virtualPageCount = slc_page_space_used(loader->space);
+    pStatistics->residentTileCount = tiles.resident;
+    pStatistics->residentResourcePageCount = loader->held_count;
+    pStatistics->tileMemorySize = loader->tiles.cache.memory.total_size;
+    pStatistics->deviceMemorySize = device_size(loader);
+    pStatistics->lodBias = slc_residency_lod_bias(loader->residency);
+    pthread_mutex_lock(&loader->tickets.mutex);
+    memcpy(pStatistics->latencyHistogram, loader->tickets.latency,
+           sizeof pStatistics->latencyHistogram);
+    pthread_mutex_unlock(&loader->tickets.mutex);
+    return SLUICE_SUCCESS;
+}

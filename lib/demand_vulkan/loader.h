@@ -1,0 +1,324 @@
+/**
+ * Everything that the files of this folder share: the loader and its parts. Each part has a file of
+ * its own with the name that its functions begin with; all run on the thread that uses the loader,
+ * unless they say otherwise.
+ */
+#ifndef SLC_DEMAND_VULKAN_LOADER_H
+#define SLC_DEMAND_VULKAN_LOADER_H
+
+#include <sluice/demand.h>
+
+#include "demand/page_space.h"
+#include "demand/residency.h"
+#include "demand_vulkan/page_directory.h"
+#include "demand_vulkan/scan.h"
+#include "demand_vulkan/table_mirror.h"
+#include "demand_vulkan/tickets.h"
+#include "demand_vulkan/tile_memory.h"
+
+#define SLC_NONE UINT32_MAX
+#define SLC_MAX_LAUNCHES 16u
+#define SLC_MAX_REGULAR_LEVELS 16u /* words of an element of the buffer of levels */
+#define SLC_DEMAND_CLASSES 256u    /* tiles, resources without a limit, each resource with one */
+#define SLC_CLASS_TILES 0u
+#define SLC_CLASS_UNBOUND 1u
+
+enum slc_texture_kind {
+    SLC_TEXTURE_FREE = 0,
+    SLC_TEXTURE_IMAGE,
+    SLC_TEXTURE_VARIANT,
+    SLC_TEXTURE_GRID,
+    SLC_TEXTURE_BURIED ///< destroyed; launches may still name the index
+};
+
+/* By index; 0 is not used. What shaders see of it is the element of the same index of `table`. */
+struct slc_demand_texture {
+    enum slc_texture_kind kind;
+    uint32_t generation; ///< of the index, from 1 on
+    uint32_t image;      ///< IMAGE: slot of the image while it is opened or open; else SLC_NONE
+    bool failed;         ///< IMAGE: it cannot be opened
+    uint32_t grid_uses;  ///< cells of grids that name it
+    uint32_t first_element, cell_count; ///< GRID: where its cells are, 16 in an element of `grids`
+    uint32_t base;                      ///< VARIANT
+    uint32_t next;                      ///< IMAGE, VARIANT: next variant; FREE, BURIED: in the list
+    uint64_t launch;                    ///< BURIED: the last that may name it
+    SluiceDemandImage source;           ///< IMAGE
+    float failure_color[4];
+};
+
+enum slc_image_state {
+    SLC_IMAGE_FREE = 0,
+    SLC_IMAGE_OPENING,
+    SLC_IMAGE_OPEN,
+    SLC_IMAGE_DETACHED, ///< no texture's any more; reads are under way
+    SLC_IMAGE_BURIED    ///< closed; launches may still name its pages
+};
+
+/* An image that is open. Workers see it through the job that opens it; it is never moved. */
+struct slc_demand_image {
+    enum slc_image_state state;
+    uint32_t slot, texture;
+    uint32_t next; ///< FREE, BURIED, or waiting for a job that reads the base colour again
+    bool refresh;  ///< it is in that list
+    uint32_t job_count;
+    uint64_t launch;          ///< BURIED: the last that may name its pages
+    SluiceDemandImage origin; ///< as the texture had it when it was opened
+    SluiceDemandTicket ticket;
+
+    /* Of the worker that opens it, until that job is collected. */
+    const struct SluiceDemandLoader *loader;
+    SluiceImageSource *source;
+    SluiceImageInfo info;
+    const char *trouble; ///< why it cannot be used; NULL: it can, or result says why
+    float read_color[4];
+
+    uint32_t tile_width, tile_height; ///< texels
+    bool blocks;                      ///< compressed
+    uint32_t regular_count, tail_page;
+    uint32_t first_pages[SLC_MAX_REGULAR_LEVELS];
+    float base_color[4];
+};
+
+enum slc_resource_state { SLC_RESOURCE_FREE = 0, SLC_RESOURCE_LIVE, SLC_RESOURCE_DESTROYED };
+
+/* An image of one row, whose texels are the values of the pages: so the tile loader reads it. */
+struct slc_demand_resource {
+    SluiceImageSource base; ///< must be first
+    enum slc_resource_state state;
+    uint32_t index, generation, next_free;
+    SluiceDemandResourceCreateInfo info;
+    uint32_t first_page, job_count;
+    uint32_t
+        eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
+    uint8_t class_index;
+};
+
+/* A value that no new launch sees. */
+struct slc_eviction {
+    uint32_t resource, page; ///< page of the resource
+    uint64_t value, launch;
+};
+
+enum slc_job_kind { SLC_JOB_FREE = 0, SLC_JOB_OPEN, SLC_JOB_TILE, SLC_JOB_RESOURCE };
+
+/* A read. Jobs below maxTilesInFlight have a tile of staging memory at their index. */
+struct slc_demand_job {
+    enum slc_job_kind kind;
+    uint32_t page, owner;           ///< image slot, or index of the resource
+    uint32_t place;                 ///< of a tile: chunk << 16 | layer
+    uint32_t next;                  ///< free, arrived or copied: in the list
+    bool stale;                     ///< what is read is not wanted any more
+    uint64_t launch;                ///< copied: the one that does
+    uint64_t start;                 ///< ns
+    uint64_t value;                 ///< of a resource
+    uint64_t id;                    ///< of the texture or resource
+    struct slc_demand_image *image; ///< NULL: of a resource
+
+    /* With the lock of the tickets. */
+    bool running;
+    SluiceDemandTicket ticket;
+    uint64_t read; ///< the tile loader's ticket; 0: not yet known
+};
+
+struct slc_job_list {
+    uint32_t first, last;
+};
+
+/* Levels of a texture that are still to be loaded without a shader asking. */
+struct slc_preload {
+    SluiceDemandTextureId texture;
+    SluiceDemandTicket ticket;
+    uint32_t finest_level, level, next_page; ///< pages of the level, from 0
+    bool opening, planned;
+    uint32_t planned_count; ///< tasks of the ticket that have not begun
+};
+
+struct slc_page_run {
+    uint32_t first;
+    uint64_t count;
+};
+
+struct SluiceDemandLoader {
+    SluiceAllocationCallbacks cb;
+    SluiceDemandLoaderCreateInfo info; ///< with the defaults filled in
+    struct slc_vk vk;
+    struct slc_caps caps;
+    bool usable[SLUICE_FORMAT_COUNT]; ///< formats that the device samples and filters
+    VkSemaphore semaphore;
+
+    struct slc_page_views views;
+    struct slc_tile_memory tiles;
+    struct slc_buffer table_buffer, levels_buffer, staging;
+    struct slc_table_mirror table;  ///< struct SluiceDemandTexture by index
+    struct slc_table_mirror levels; ///< parameters; then 16 words for each image slot
+    struct slc_table_mirror grids;  ///< the words of grids, behind them
+    struct slc_region_arena grid_arena;
+    uint32_t max_image_count;
+    struct slc_demand_scan scan;
+    struct slc_page_directory directory;
+    struct slc_page_space *space;
+    struct slc_demand_residency *residency;
+    struct slc_page_memory tile_interface;
+    uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
+    uint32_t owner_capacity;
+    struct slc_page_run *forgotten; ///< owned; pages whose requests the next launch clears
+    uint32_t forgotten_count, forgotten_capacity;
+
+    struct slc_demand_texture *textures; ///< owned
+    uint32_t texture_high, texture_capacity, texture_count, texture_page_count;
+    uint32_t free_texture, first_buried_texture, last_buried_texture;
+
+    struct slc_demand_image **images; ///< owned, by slot
+    uint32_t image_high, image_capacity, free_image, first_buried_image, last_buried_image;
+    uint32_t first_refresh;
+    uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
+    uint32_t tail_block_count, tail_block_capacity;
+    SluiceImageSource opener; ///< an image whose texels are base colours
+
+    struct slc_demand_resource **resources; ///< owned, by index
+    uint32_t resource_high, resource_capacity, free_resource;
+    bool classes[SLC_DEMAND_CLASSES]; ///< in use
+    struct slc_eviction *evictions;   ///< owned; a ring in the order of their launches
+    uint32_t eviction_first, eviction_count, eviction_capacity;
+    uint32_t held_count; ///< values of resources that are resident: each will need a place there
+
+    SluiceTileLoader *reader;
+    struct slc_demand_job *jobs; ///< owned
+    uint32_t job_count;
+    struct slc_job_list free_tiles, free_others;
+    struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
+    uint32_t free_tile_count, free_other_count;
+    struct slc_tickets tickets;
+
+    struct slc_preload *preloads; ///< owned, in the order in which they were asked for
+    uint32_t preload_count, preload_capacity;
+
+    uint64_t launch, ended, processed; ///< the last of each
+    bool cleared;                      ///< the device's buffers
+    bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
+    uint32_t limited_count;            ///< resources with a limit
+    SluiceDemandStatistics counts;
+};
+
+/** A read that ended so may well succeed when shaders ask again. */
+static inline bool slc_result_may_pass(SluiceResult result)
+{
+    return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELLED ||
+           result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+/* textures.c */
+SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id,
+                              uint32_t *index);
+SluiceDemandTextureId slc_texture_id(const SluiceDemandLoader *loader, uint32_t index);
+/** An index of its own generation, with an entry in the table. Errors: LIMIT_EXCEEDED,
+ *  OUT_OF_HOST_MEMORY. */
+SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index);
+/** The texture of an image and all its variants look like this from the next launch on. */
+void slc_texture_show_unknown(SluiceDemandLoader *loader, uint32_t index);
+void slc_texture_show_failed(SluiceDemandLoader *loader, uint32_t index);
+void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_image *image);
+/** Indices of textures that no launch after `processed` names. */
+void slc_textures_exhume(SluiceDemandLoader *loader);
+void slc_textures_finish(SluiceDemandLoader *loader);
+
+/* grids.c */
+/** Cells that name the texture show their grid's own colour. */
+void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index);
+/** The grid names nothing any more; its cells stay what they are for launches under way. */
+void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture *grid);
+
+/* images.c */
+/** Begins to open the image of a texture, unless that is done. */
+enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
+                                          SluiceDemandTicket ticket, SluiceResult *result);
+/** The job that opens it, or reads its base colour again, is over. */
+void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                        const struct slc_demand_job *job, SluiceResult result);
+/** A job of it is over, of whatever kind. */
+void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** It cannot be sampled after all: the texture shows its failureColor from now on. */
+void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** No texture's any more: its pages are forgotten, it is closed when its reads are over. */
+void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** Its texels have changed. */
+void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image);
+void slc_images_refresh(SluiceDemandLoader *loader);
+void slc_images_exhume(SluiceDemandLoader *loader);
+void slc_images_finish(SluiceDemandLoader *loader);
+/** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
+void slc_image_opener_init(SluiceImageSource *opener);
+
+/* resources.c */
+enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
+                                             uint32_t page, SluiceDemandTicket ticket,
+                                             SluiceResult *result);
+void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                           SluiceResult result);
+/** The value of a page is not resident any more. */
+void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page,
+                          uint64_t value);
+/** pfnEvict for what no launch after `processed` reads. */
+void slc_resources_exhume(SluiceDemandLoader *loader);
+void slc_resources_finish(SluiceDemandLoader *loader);
+
+/* jobs.c */
+SluiceResult slc_jobs_init(SluiceDemandLoader *loader);
+void slc_jobs_finish(SluiceDemandLoader *loader);
+/** NULL: too much is under way. TILE jobs have staging memory. */
+struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind);
+void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job);
+uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job);
+/** A task of the ticket begins: `read` without its userValue. Errors, with no task begun: what the
+ *  tile loader says. */
+SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                            SluiceTileRead *read, SluiceDemandTicket ticket);
+/** Reads that are over: images are open, values are there, tiles are in `arrived`. */
+void slc_jobs_collect(SluiceDemandLoader *loader);
+/** What jobs of this kind and owner read of pages from `first` on is not wanted. */
+void slc_jobs_drop(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner,
+                   uint32_t first, uint64_t count);
+/** Until no job of this kind and owner is running. */
+void slc_jobs_wait(SluiceDemandLoader *loader, enum slc_job_kind kind, uint32_t owner);
+void slc_job_list_append(SluiceDemandLoader *loader, struct slc_job_list *list,
+                         struct slc_demand_job *job);
+struct slc_demand_job *slc_job_list_pop(SluiceDemandLoader *loader, struct slc_job_list *list);
+static inline uint32_t slc_job_index(const SluiceDemandLoader *loader,
+                                     const struct slc_demand_job *job)
+{
+    return (uint32_t)(job - loader->jobs);
+}
+
+/* tiles.c */
+/** `page` is one of the image's. */
+enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                                         uint32_t page, SluiceDemandTicket ticket,
+                                         SluiceResult *result);
+void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
+                       uint64_t size);
+
+/* uploads.c */
+/** Tiles that arrived are resident; before the page table is recorded. */
+void slc_uploads_admit(SluiceDemandLoader *loader);
+/** Copies what was admitted; how many tiles. */
+uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands);
+/** Staging memory that launches up to `processed` have read. */
+void slc_uploads_exhume(SluiceDemandLoader *loader);
+
+/* requests.c */
+/** What the launch asked for, counted into `requests`. */
+void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDemandTicket ticket,
+                          SluiceDemandRequests *requests);
+/** One page, whatever it is of. */
+enum slc_request_answer slc_page_request_any(SluiceDemandLoader *loader, uint32_t page,
+                                             SluiceDemandTicket ticket, SluiceResult *result);
+/** The page table shows what the residency says from the next record on. */
+void slc_changes_apply(SluiceDemandLoader *loader);
+/** Resources hear of the values that went. */
+void slc_evicted_take(SluiceDemandLoader *loader);
+
+/* preload.c */
+void slc_preloads_continue(SluiceDemandLoader *loader);
+void slc_preloads_finish(SluiceDemandLoader *loader);
+
+#endif /* SLC_DEMAND_VULKAN_LOADER_H */

@@ -1,0 +1,30 @@
+/** What workers do to open an image, and where its tiles lie. */
+#ifndef SLC_DEMAND_VULKAN_OPENING_H
+#define SLC_DEMAND_VULKAN_OPENING_H
+
+#include "base/checked.h"
+#include "demand_vulkan/loader.h"
+
+/** Largest width and height of images. */
+#define SLC_DEMAND_MAX_EXTENT (1u << 20)
+
+/**
+ * The colour of the last level of a texture: its first texel, in linear light. Of BC6H and BC7,
+ * which take a decoder, a mid grey: such a texture has to be less than a pixel to show it. `texel`:
+ * a block of compressed formats.
+ */
+void slc_base_color(SluiceFormat format, const void *texel, float rgba[4]);
+
+/** Tiles of a regular level. */
+static inline uint32_t slc_image_level_width(const struct slc_demand_image *image, uint32_t level)
+{
+    return slc_div_up_u32(slc_mip_size(image->info.width, level), image->tile_width);
+}
+static inline uint32_t slc_image_level_height(const struct slc_demand_image *image, uint32_t level)
+{
+    return slc_div_up_u32(slc_mip_size(image->info.height, level), image->tile_height);
+}
+/** Coarse levels first: 1 + ceil(log4(tiles)), below SLUICE_DEMAND_RANKS. */
+uint32_t slc_image_level_rank(const struct slc_demand_image *image, uint32_t level);
+
+#endif /* SLC_DEMAND_VULKAN_OPENING_H */

@@ -1,0 +1,129 @@
+/* What a launch asked for becomes reads; what the residency decided becomes the page table. */
+#include "base/log.h"
+#include "demand_vulkan/loader.h"
+#include "demand_vulkan/pages.h"
+
+#include <sluice/shared/demand.h>
+
+#define BATCH 256u
+
+enum slc_request_answer slc_page_request_any(SluiceDemandLoader *loader, uint32_t page,
+                                             SluiceDemandTicket ticket, SluiceResult *result)
+{
+    uint32_t index;
+    switch (slc_pages_find(loader, page, &index)) {
+    case SLC_OWNER_OPENING: return slc_image_request(loader, index, ticket, result);
+    case SLC_OWNER_TAIL: index = SLUICE_DEMAND_BLOCK_PAGES * index + page % 32u; break;
+    case SLC_OWNER_LEVEL: break;
+    case SLC_OWNER_RESOURCE: return slc_resource_request(loader, index, page, ticket, result);
+    case SLC_OWNER_NOBODY: *result = SLUICE_SUCCESS; return SLC_REQUEST_RESIDENT;
+    }
+    *result = SLUICE_SUCCESS;
+    if (index >= loader->image_high)
+        return SLC_REQUEST_RESIDENT;
+    return slc_tile_request(loader, loader->images[index], page, ticket, result);
+}
+
+static void count(SluiceDemandRequests *requests, enum slc_request_answer answer)
+{
+    switch (answer) {
+    case SLC_REQUEST_LOAD: requests->servedCount++; break;
+    case SLC_REQUEST_PENDING:
+    case SLC_REQUEST_RESIDENT: requests->pendingCount++; break;
+    case SLC_REQUEST_RESTORED: requests->restoredCount++; break;
+    case SLC_REQUEST_REFUSED: requests->refusedCount++; break;
+    case SLC_REQUEST_POSTPONED: requests->postponedCount++; break;
+    }
+}
+
+static void feed_used(SluiceDemandLoader *loader, uint32_t slot)
+{
+    struct slc_page_used_iterator iterator = {0};
+    uint32_t page;
+    while (slc_page_directory_next_used(&loader->directory, slot, &iterator, &page))
+        slc_residency_use(loader->residency, page);
+}
+
+static void add_counts(SluiceDemandStatistics *counts, const SluiceDemandRequests *requests)
+{
+    counts->requestCount += requests->missingCount;
+    counts->servedCount += requests->servedCount;
+    counts->pendingCount += requests->pendingCount;
+    counts->restoredCount += requests->restoredCount;
+    counts->refusedCount += requests->refusedCount;
+    counts->postponedCount += requests->postponedCount;
+}
+
+void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDemandTicket ticket,
+                          SluiceDemandRequests *requests)
+{
+    uint32_t slot = (uint32_t)(launch % loader->info.launchesInFlight);
+    const uint32_t *pages;
+    struct SluiceDemandScanResult scan = slc_demand_scan_result(&loader->scan, slot, &pages);
+    SluiceDemandRequests now = {.missingCount = scan.requestCount,
+                                .postponedCount = scan.postponedCount};
+    slc_residency_set_class(loader->residency, SLC_CLASS_TILES,
+                            slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);
+    slc_residency_begin(loader->residency, launch);
+    if (loader->tracked[slot])
+        feed_used(loader, slot);
+    for (uint32_t i = 0; i < scan.listedCount; i++) {
+        SluiceResult result; /* without host memory it is one of those that are postponed */
+        count(&now, slc_page_request_any(loader, pages[i], ticket, &result));
+    }
+    slc_residency_settle(loader->residency, scan.requestCount);
+    slc_evicted_take(loader);
+    add_counts(&loader->counts, &now);
+    requests->missingCount += now.missingCount;
+    requests->servedCount += now.servedCount;
+    requests->pendingCount += now.pendingCount;
+    requests->restoredCount += now.restoredCount;
+    requests->refusedCount += now.refusedCount;
+    requests->postponedCount += now.postponedCount;
+}
+
+/* A block may be lacking: the page is as if it had never been loaded. */
+static void apply(SluiceDemandLoader *loader, const struct slc_page_change *change)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    bool tile = change->class_index == SLC_CLASS_TILES;
+    if (change->shown == SLC_SHOW_RESIDENT)
+        result = slc_page_directory_show(&loader->directory, change->page, change->value, !tile);
+    else if (change->shown == SLC_SHOW_REFUSED && tile)
+        result = slc_page_directory_refuse(&loader->directory, change->page);
+    else
+        slc_page_directory_hide(&loader->directory, change->page);
+    if (result == SLUICE_SUCCESS)
+        return;
+    slc_log(&loader->info.log, SLUICE_LOG_WARNING, "no room in the page table for page %u: %s",
+            change->page, sluiceResultString(result));
+    slc_residency_forget(loader->residency, change->page, 1);
+}
+
+void slc_changes_apply(SluiceDemandLoader *loader)
+{
+    struct slc_page_change changes[BATCH];
+    uint32_t taken = BATCH;
+    while (taken == BATCH) {
+        taken = slc_residency_take_changes(loader->residency, changes, BATCH);
+        /* first those that go: their blocks may be free then */
+        for (uint32_t i = 0; i < taken; i++)
+            if (changes[i].shown == SLC_SHOW_ABSENT)
+                apply(loader, &changes[i]);
+        for (uint32_t i = 0; i < taken; i++)
+            if (changes[i].shown != SLC_SHOW_ABSENT)
+                apply(loader, &changes[i]);
+    }
+}
+
+void slc_evicted_take(SluiceDemandLoader *loader)
+{
+    struct slc_page_evicted evicted[BATCH];
+    uint32_t taken = BATCH, index;
+    while (taken == BATCH) {
+        taken = slc_residency_take_evicted(loader->residency, evicted, BATCH);
+        for (uint32_t i = 0; i < taken; i++)
+            if (slc_pages_find(loader, evicted[i].page, &index) == SLC_OWNER_RESOURCE)
+                slc_resource_evicted(loader, index, evicted[i].page, evicted[i].value);
+    }
+}

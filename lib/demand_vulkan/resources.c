@@ -1,0 +1,337 @@
+/* Pages of the application: a callback says what shaders get for each. */
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "base/log.h"
+#include "demand_vulkan/loader.h"
+#include "demand_vulkan/pages.h"
+
+#include <sluice/shared/demand.h>
+
+#include <string.h>
+
+static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    const struct slc_demand_resource *resource = (const struct slc_demand_resource *)source;
+    *info = (SluiceImageInfo){.width = resource->info.pageCount,
+                              .height = 1,
+                              .mipLevelCount = 1,
+                              .format = SLUICE_FORMAT_R32G32_SFLOAT, /* 64 bits */
+                              .pName = "resource"};
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_region(SluiceImageSource *source, const SluiceImageRegion *region,
+                                void *texels, size_t row_pitch)
+{
+    const struct slc_demand_resource *resource = (const struct slc_demand_resource *)source;
+    (void)row_pitch;
+    return resource->info.pfnFill(resource->info.pUserData, region->x, texels);
+}
+
+static void destroy_source(SluiceImageSource *source)
+{
+    (void)source;
+}
+
+static const SluiceImageSourceInterface interface = {get_info, read_region, destroy_source};
+
+static SluiceDemandResourceId resource_id(const struct slc_demand_resource *resource)
+{
+    return (uint64_t)resource->generation << 32 | (resource->index + 1);
+}
+
+static SluiceResult find(SluiceDemandLoader *loader, SluiceDemandResourceId id,
+                         struct slc_demand_resource **resource)
+{
+    uint32_t index = (uint32_t)id - 1, generation = (uint32_t)(id >> 32);
+    if (index >= loader->resource_high || generation == 0 ||
+        generation > loader->resources[index]->generation)
+        return SLUICE_ERROR_UNKNOWN_TEXTURE;
+    *resource = loader->resources[index];
+    bool live = (*resource)->state == SLC_RESOURCE_LIVE && (*resource)->generation == generation;
+    return live ? SLUICE_SUCCESS : SLUICE_ERROR_STALE_TEXTURE;
+}
+
+static SluiceResult add_slot(SluiceDemandLoader *loader, struct slc_demand_resource **resource)
+{
+    if (loader->resource_high == loader->resource_capacity) {
+        uint32_t old = loader->resource_capacity, capacity = old ? 2 * old : 16;
+        struct slc_demand_resource **resources = slc_regrow(
+            &loader->cb, loader->resources, old, capacity, sizeof(struct slc_demand_resource *));
+        if (!resources)
+            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+        loader->resources = resources;
+        loader->resource_capacity = capacity;
+    }
+    *resource = slc_calloc(&loader->cb, 1, sizeof **resource);
+    if (!*resource)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    (*resource)->index = loader->resource_high;
+    (*resource)->next_free = loader->free_resource;
+    loader->free_resource = loader->resource_high;
+    loader->resources[loader->resource_high++] = *resource;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult take_class(SluiceDemandLoader *loader,
+                               const SluiceDemandResourceCreateInfo *info, uint8_t *class_index)
+{
+    uint32_t limit = info->maxResidentPageCount, at = SLC_CLASS_UNBOUND;
+    if (limit && limit < info->pageCount) {
+        for (at = SLC_CLASS_UNBOUND + 1; at < SLC_DEMAND_CLASSES && loader->classes[at];)
+            at++;
+        if (at == SLC_DEMAND_CLASSES)
+            return SLUICE_ERROR_LIMIT_EXCEEDED;
+        SluiceResult result = slc_residency_set_class(loader->residency, at, limit, NULL);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        loader->classes[at] = true;
+        loader->limited_count++;
+    }
+    *class_index = (uint8_t)at;
+    return SLUICE_SUCCESS;
+}
+
+static void give_class(SluiceDemandLoader *loader, uint8_t class_index)
+{
+    if (class_index == SLC_CLASS_UNBOUND)
+        return;
+    loader->classes[class_index] = false;
+    loader->limited_count--;
+}
+
+static SluiceResult create(SluiceDemandLoader *loader, const SluiceDemandResourceCreateInfo *info,
+                           struct slc_demand_resource **resource)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    if (loader->free_resource == SLC_NONE)
+        result = add_slot(loader, resource);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_demand_resource *new = *resource = loader->resources[loader->free_resource];
+    result = take_class(loader, info, &new->class_index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_pages_take(loader, info->rank, info->pageCount, SLC_OWNER_RESOURCE, new->index,
+                            &new->first_page);
+    if (result != SLUICE_SUCCESS) {
+        give_class(loader, new->class_index);
+        return result;
+    }
+    loader->free_resource = new->next_free;
+    new->base.pInterface = &interface;
+    new->state = SLC_RESOURCE_LIVE;
+    new->generation++;
+    new->info = *info;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCreateDemandResource(SluiceDemandLoader *loader,
+                                        const SluiceDemandResourceCreateInfo *pCreateInfo,
+                                        SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage)
+{
+    struct slc_demand_resource *resource;
+    if (!loader || !pCreateInfo || !pCreateInfo->pfnFill || !pResourceId || !pFirstPage)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pCreateInfo->pageCount == 0 || pCreateInfo->rank >= SLUICE_DEMAND_RANKS)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (pCreateInfo->pageCount > loader->info.pageCapacity)
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    SluiceResult result = create(loader, pCreateInfo, &resource);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *pResourceId = resource_id(resource);
+    *pFirstPage = resource->first_page;
+    return SLUICE_SUCCESS;
+}
+
+enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
+                                             uint32_t page, SluiceDemandTicket ticket,
+                                             SluiceResult *result)
+{
+    struct slc_demand_resource *resource = loader->resources[index];
+    const SluiceImageRegion region = {.x = page - resource->first_page, .width = 1, .height = 1};
+    *result = SLUICE_SUCCESS;
+    if (resource->state != SLC_RESOURCE_LIVE || region.x >= resource->info.pageCount)
+        return SLC_REQUEST_RESIDENT;
+    if (loader->free_other_count == 0)
+        return SLC_REQUEST_POSTPONED;
+    const struct slc_page_request request = {
+        .page = page, .class_index = resource->class_index, .rank = (uint8_t)resource->info.rank};
+    enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
+    if (answer != SLC_REQUEST_LOAD)
+        return answer;
+    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_RESOURCE);
+    void *texels = &job->value;
+    job->page = page;
+    job->owner = index;
+    job->id = resource_id(resource);
+    SluiceTileRead read = {.source = &resource->base,
+                           .regionCount = 1,
+                           .pRegions = &region,
+                           .ppTexels = &texels,
+                           .priority = SLUICE_DEMAND_RANKS - resource->info.rank};
+    *result = slc_job_submit(loader, job, &read, ticket);
+    if (*result == SLUICE_SUCCESS) {
+        resource->job_count++;
+        return SLC_REQUEST_LOAD;
+    }
+    slc_residency_failed(loader->residency, page, false);
+    slc_job_free(loader, job);
+    return SLC_REQUEST_POSTPONED;
+}
+
+static void tell_evicted(const struct slc_demand_resource *resource, uint32_t page, uint64_t value)
+{
+    if (resource->info.pfnEvict)
+        resource->info.pfnEvict(resource->info.pUserData, page, value);
+}
+
+/* A destroyed one goes in pieces: its pages when no fill is under way, its slot when all values
+ * are gone, too. */
+static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *resource)
+{
+    if (resource->state != SLC_RESOURCE_DESTROYED || resource->job_count ||
+        resource->eviction_count)
+        return;
+    sluiceForgetTileLoaderSource(loader->reader, &resource->base);
+    slc_pages_give(loader, resource->first_page, resource->info.pageCount);
+    give_class(loader, resource->class_index);
+    resource->state = SLC_RESOURCE_FREE;
+    if (resource->generation == UINT32_MAX)
+        return; /* its ids are used up */
+    resource->next_free = loader->free_resource;
+    loader->free_resource = resource->index;
+}
+
+/* Room to remember that every value that is resident went. */
+static bool reserve_eviction(SluiceDemandLoader *loader)
+{
+    uint32_t old = loader->eviction_capacity;
+    if (loader->eviction_count + loader->held_count < old)
+        return true;
+    uint32_t capacity = old ? 2 * old : 64;
+    struct slc_eviction *evictions = slc_alloc(&loader->cb, capacity, sizeof *evictions);
+    if (!evictions)
+        return false;
+    for (uint32_t i = 0; i < loader->eviction_count; i++)
+        evictions[i] = loader->evictions[(loader->eviction_first + i) % old];
+    slc_free(&loader->cb, loader->evictions, old, sizeof *evictions);
+    loader->evictions = evictions;
+    loader->eviction_capacity = capacity;
+    loader->eviction_first = 0;
+    return true;
+}
+
+void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                           SluiceResult result)
+{
+    struct slc_demand_resource *resource = loader->resources[job->owner];
+    uint32_t page = job->page - resource->first_page;
+    bool filled = result == SLUICE_SUCCESS;
+    if (filled && !job->stale && reserve_eviction(loader)) {
+        loader->held_count++;
+        slc_residency_loaded(loader->residency, job->page, job->value);
+    } else {
+        bool refuse = !filled && !job->stale && !slc_result_may_pass(result);
+        if (filled) /* which no launch has seen */
+            tell_evicted(resource, page, job->value);
+        if (refuse)
+            slc_log(&loader->info.log, SLUICE_LOG_WARNING, "page %u of a resource has no value: %s",
+                    page, sluiceResultString(result));
+        slc_residency_failed(loader->residency, job->page, refuse);
+    }
+    resource->job_count--;
+    check_gone(loader, resource);
+}
+
+void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page, uint64_t value)
+{
+    struct slc_demand_resource *resource = loader->resources[index];
+    uint32_t at = (loader->eviction_first + loader->eviction_count++) % loader->eviction_capacity;
+    loader->held_count--;
+    loader->counts.evictedCount++;
+    resource->eviction_count++;
+    loader->evictions[at] =
+        (struct slc_eviction){index, page - resource->first_page, value, loader->launch};
+}
+
+static void tell_next(SluiceDemandLoader *loader)
+{
+    const struct slc_eviction *next = &loader->evictions[loader->eviction_first];
+    struct slc_demand_resource *resource = loader->resources[next->resource];
+    tell_evicted(resource, next->page, next->value);
+    resource->eviction_count--;
+    loader->eviction_first = (loader->eviction_first + 1) % loader->eviction_capacity;
+    loader->eviction_count--;
+    check_gone(loader, resource);
+}
+
+void slc_resources_exhume(SluiceDemandLoader *loader)
+{
+    while (loader->eviction_count &&
+           loader->evictions[loader->eviction_first].launch <= loader->processed)
+        tell_next(loader);
+}
+
+/* What they are, and what is being found out about them. */
+static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource, uint32_t first,
+                   uint32_t count)
+{
+    if (resource->job_count)
+        slc_jobs_drop(loader, SLC_JOB_RESOURCE, resource->index, first, count);
+    slc_residency_forget(loader->residency, first, count);
+    slc_evicted_take(loader);
+}
+
+SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
+                                         SluiceDemandResourceId resourceId, uint32_t firstPage,
+                                         uint32_t count)
+{
+    struct slc_demand_resource *resource;
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = find(loader, resourceId, &resource);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t page_count = resource->info.pageCount;
+    if (firstPage > page_count || count > page_count - firstPage)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (count)
+        forget(loader, resource, resource->first_page + firstPage, count);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceDestroyDemandResource(SluiceDemandLoader *loader,
+                                         SluiceDemandResourceId resourceId)
+{
+    struct slc_demand_resource *resource;
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = find(loader, resourceId, &resource);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    forget(loader, resource, resource->first_page, resource->info.pageCount);
+    if (resource->job_count)
+        slc_jobs_wait(loader, SLC_JOB_RESOURCE, resource->index);
+    slc_pages_forget_requests(loader, resource->first_page, resource->info.pageCount);
+    resource->state = SLC_RESOURCE_DESTROYED;
+    check_gone(loader, resource);
+    return SLUICE_SUCCESS;
+}
+
+void slc_resources_finish(SluiceDemandLoader *loader)
+{
+    for (uint32_t i = 0; i < loader->resource_high && loader->residency; i++)
+        if (loader->resources[i]->state == SLC_RESOURCE_LIVE)
+            forget(loader, loader->resources[i], loader->resources[i]->first_page,
+                   loader->resources[i]->info.pageCount);
+    while (loader->eviction_count)
+        tell_next(loader);
+    for (uint32_t i = 0; i < loader->resource_high; i++)
+        slc_free(&loader->cb, loader->resources[i], 1, sizeof *loader->resources[i]);
+    slc_free(&loader->cb, loader->resources, loader->resource_capacity,
+             sizeof(struct slc_demand_resource *));
+    slc_free(&loader->cb, loader->evictions, loader->eviction_capacity, sizeof *loader->evictions);
+    loader->resources = NULL;
+}

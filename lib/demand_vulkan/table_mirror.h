@@ -1,0 +1,47 @@
+/**
+ * A part of a device buffer that the host writes element by element: a copy that grows with use,
+ * and a bit per element that changed. What changed goes into the command buffer itself.
+ */
+#ifndef SLC_DEMAND_VULKAN_TABLE_MIRROR_H
+#define SLC_DEMAND_VULKAN_TABLE_MIRROR_H
+
+#include "vulkan/buffer.h"
+
+#define SLC_MIRROR_ELEMENT 64u /* bytes */
+
+struct slc_mirror_element {
+    uint32_t words[SLC_MIRROR_ELEMENT / 4];
+};
+
+struct slc_table_mirror {
+    const SluiceAllocationCallbacks *cb;
+    VkBuffer buffer;                     ///< borrowed
+    uint64_t offset;                     ///< bytes, of element 0
+    uint32_t max_count;                  ///< elements
+    struct slc_mirror_element *elements; ///< owned; zero until written
+    uint64_t *changed;                   ///< owned; a bit per element
+    uint32_t capacity;                   ///< a multiple of 64
+    uint32_t first_word, end_word;       ///< of `changed`: nothing is set outside
+};
+
+void slc_table_mirror_init(struct slc_table_mirror *mirror, const SluiceAllocationCallbacks *cb,
+                           VkBuffer buffer, uint64_t offset, uint32_t max_count);
+/** Of a zeroed one: nothing to do. */
+void slc_table_mirror_finish(struct slc_table_mirror *mirror);
+
+/** Room for elements below `count`. Errors: LIMIT_EXCEEDED, OUT_OF_HOST_MEMORY; nothing changed. */
+SluiceResult slc_table_mirror_reserve(struct slc_table_mirror *mirror, uint32_t count);
+
+/** For writing: the element goes to the device with the next record. It has room. */
+void *slc_table_mirror_change(struct slc_table_mirror *mirror, uint32_t index);
+static inline const void *slc_table_mirror_get(const struct slc_table_mirror *mirror,
+                                               uint32_t index)
+{
+    return &mirror->elements[index];
+}
+
+/** Transfers; the caller puts barriers around. True if there were any. */
+bool slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
+                             VkCommandBuffer commands);
+
+#endif /* SLC_DEMAND_VULKAN_TABLE_MIRROR_H */

@@ -1,0 +1,334 @@
+/* Textures by id: what the application creates, and what shaders see of it in the table. */
+#include "base/alloc.h"
+#include "base/checked.h"
+#include "demand_vulkan/loader.h"
+#include "demand_vulkan/pages.h"
+
+#include <sluice/shared/demand.h>
+
+#include <math.h>
+#include <string.h>
+
+/* Of the shape: what the sampler says, not the image. */
+#define SAMPLER_BITS                                                                               \
+    (7u << SLUICE_DEMAND_MODE_U_SHIFT | 7u << SLUICE_DEMAND_MODE_V_SHIFT | SLUICE_DEMAND_NEAREST | \
+     SLUICE_DEMAND_NEAREST_LEVEL)
+
+static_assert(sizeof(struct SluiceDemandTexture) == SLC_MIRROR_ELEMENT, "elements of the table");
+
+SluiceDemandTextureId slc_texture_id(const SluiceDemandLoader *loader, uint32_t index)
+{
+    return (uint64_t)loader->textures[index].generation << 32 | index;
+}
+
+SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id, uint32_t *index)
+{
+    *index = (uint32_t)id;
+    uint32_t generation = (uint32_t)(id >> 32);
+    if (*index == 0 || *index >= loader->texture_high || generation == 0 ||
+        generation > loader->textures[*index].generation)
+        return SLUICE_ERROR_UNKNOWN_TEXTURE;
+    const struct slc_demand_texture *texture = &loader->textures[*index];
+    bool live = texture->kind != SLC_TEXTURE_FREE && texture->kind != SLC_TEXTURE_BURIED;
+    return live && generation == texture->generation ? SLUICE_SUCCESS : SLUICE_ERROR_STALE_TEXTURE;
+}
+
+static bool sampler_is_valid(const SluiceDemandSampler *s)
+{
+    bool modes = (uint32_t)s->addressModeU <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE &&
+                 (uint32_t)s->addressModeV <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE;
+    bool filters = (uint32_t)s->filter <= SLUICE_DEMAND_FILTER_NEAREST &&
+                   (uint32_t)s->mipmapFilter <= SLUICE_DEMAND_FILTER_NEAREST;
+    return modes && filters && s->maxAnisotropy >= 0 && s->maxAnisotropy <= 64 &&
+           s->lodBias >= -16 && s->lodBias <= 16;
+}
+
+static struct SluiceDemandTexture *change_entry(SluiceDemandLoader *loader, uint32_t index)
+{
+    return slc_table_mirror_change(&loader->table, index);
+}
+
+static void write_sampler(struct SluiceDemandTexture *entry, const SluiceDemandSampler *s)
+{
+    *entry = (struct SluiceDemandTexture){
+        .state = SLUICE_DEMAND_TEXTURE_UNKNOWN,
+        .shape =
+            (uint32_t)s->addressModeU << SLUICE_DEMAND_MODE_U_SHIFT |
+            (uint32_t)s->addressModeV << SLUICE_DEMAND_MODE_V_SHIFT |
+            (s->filter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST : 0) |
+            (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL : 0),
+        .maxAnisotropy = fmaxf(1, s->maxAnisotropy),
+        .lodBias = s->lodBias};
+    memcpy(entry->borderColor, s->borderColor, sizeof entry->borderColor);
+}
+
+static SluiceResult grow(SluiceDemandLoader *loader)
+{
+    uint32_t old = loader->texture_capacity;
+    uint32_t capacity = slc_min_u32(old ? 2 * old : 256, loader->info.maxTextureCount + 1);
+    struct slc_demand_texture *textures =
+        slc_regrow(&loader->cb, loader->textures, old, capacity, sizeof *textures);
+    if (!textures)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    memset(textures + old, 0, (capacity - old) * sizeof *textures);
+    loader->textures = textures;
+    loader->texture_capacity = capacity;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
+{
+    slc_textures_exhume(loader);
+    *index = loader->free_texture;
+    if (*index != SLC_NONE) {
+        loader->free_texture = loader->textures[*index].next;
+    } else {
+        if (loader->texture_high > loader->info.maxTextureCount)
+            return SLUICE_ERROR_LIMIT_EXCEEDED;
+        SluiceResult result = slc_table_mirror_reserve(&loader->table, loader->texture_high + 1);
+        if (result == SLUICE_SUCCESS && loader->texture_high >= loader->texture_capacity)
+            result = grow(loader);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        *index = loader->texture_high++;
+    }
+    struct slc_demand_texture *texture = &loader->textures[*index];
+    *texture = (struct slc_demand_texture){.generation = texture->generation + 1,
+                                           .image = SLC_NONE,
+                                           .base = SLC_NONE,
+                                           .next = SLC_NONE};
+    loader->texture_count++;
+    loader->counts.texturesCreated++;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
+                                       const SluiceDemandTextureCreateInfo *pCreateInfo,
+                                       SluiceDemandTextureId *pTextureId)
+{
+    if (!loader || !pCreateInfo || !pTextureId ||
+        (!pCreateInfo->image.source && !pCreateInfo->image.pfnOpen))
+        return SLUICE_ERROR_NULL_POINTER;
+    if (!sampler_is_valid(&pCreateInfo->sampler))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    uint32_t index;
+    SluiceResult result = slc_texture_take(loader, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_demand_texture *texture = &loader->textures[index];
+    texture->kind = SLC_TEXTURE_IMAGE;
+    texture->source = pCreateInfo->image;
+    memcpy(texture->failure_color, pCreateInfo->failureColor, sizeof texture->failure_color);
+    write_sampler(change_entry(loader, index), &pCreateInfo->sampler);
+    *pTextureId = slc_texture_id(loader, index);
+    return SLUICE_SUCCESS;
+}
+
+static void show_unknown(SluiceDemandLoader *loader, uint32_t index)
+{
+    struct SluiceDemandTexture *entry = change_entry(loader, index);
+    entry->state = SLUICE_DEMAND_TEXTURE_UNKNOWN;
+    entry->shape &= SAMPLER_BITS;
+    entry->width = entry->height = entry->levels = entry->tailPage = 0;
+}
+
+static void show_failed(SluiceDemandLoader *loader, uint32_t index, const float color[4])
+{
+    show_unknown(loader, index);
+    struct SluiceDemandTexture *entry = change_entry(loader, index);
+    entry->state = SLUICE_DEMAND_TEXTURE_FAILED;
+    memcpy(entry->baseColor, color, sizeof entry->baseColor);
+}
+
+static void show_image(SluiceDemandLoader *loader, uint32_t index,
+                       const struct slc_demand_image *image)
+{
+    struct SluiceDemandTexture *entry = change_entry(loader, index);
+    SluiceFormatInfo format = {0};
+    sluiceGetFormatInfo(image->info.format, &format);
+    entry->state = SLUICE_DEMAND_TEXTURE_OPEN;
+    entry->width = image->info.width;
+    entry->height = image->info.height;
+    entry->shape = (entry->shape & SAMPLER_BITS) | slc_log2_u32(image->tile_width) |
+                   slc_log2_u32(image->tile_height) << SLUICE_DEMAND_TILE_HEIGHT_SHIFT |
+                   image->info.mipLevelCount << SLUICE_DEMAND_LEVEL_COUNT_SHIFT |
+                   image->regular_count << SLUICE_DEMAND_REGULAR_SHIFT |
+                   format.channelCount << SLUICE_DEMAND_COMPONENTS_SHIFT |
+                   (image->blocks ? SLUICE_DEMAND_BLOCKS : 0);
+    entry->levels = SLC_MAX_REGULAR_LEVELS * (1 + image->slot);
+    entry->tailPage = image->tail_page;
+    memcpy(entry->baseColor, image->base_color, sizeof entry->baseColor);
+}
+
+void slc_texture_show_unknown(SluiceDemandLoader *loader, uint32_t index)
+{
+    for (uint32_t i = index; i != SLC_NONE; i = loader->textures[i].next)
+        show_unknown(loader, i);
+}
+
+void slc_texture_show_failed(SluiceDemandLoader *loader, uint32_t index)
+{
+    for (uint32_t i = index; i != SLC_NONE; i = loader->textures[i].next)
+        show_failed(loader, i, loader->textures[index].failure_color);
+}
+
+void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_image *image)
+{
+    for (uint32_t i = image->texture; i != SLC_NONE; i = loader->textures[i].next)
+        show_image(loader, i, image);
+}
+
+SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
+                                              SluiceDemandTextureId baseId,
+                                              const SluiceDemandSampler *pSampler,
+                                              SluiceDemandTextureId *pTextureId)
+{
+    uint32_t base, index;
+    if (!loader || !pSampler || !pTextureId)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_texture_find(loader, baseId, &base);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (loader->textures[base].kind == SLC_TEXTURE_GRID || !sampler_is_valid(pSampler))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (loader->textures[base].kind == SLC_TEXTURE_VARIANT)
+        base = loader->textures[base].base;
+    result = slc_texture_take(loader, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_demand_texture *texture = &loader->textures[index], *of = &loader->textures[base];
+    texture->kind = SLC_TEXTURE_VARIANT;
+    texture->base = base;
+    texture->next = of->next;
+    of->next = index;
+    write_sampler(change_entry(loader, index), pSampler);
+    if (of->failed)
+        show_failed(loader, index, of->failure_color);
+    else if (of->image != SLC_NONE && loader->images[of->image]->state == SLC_IMAGE_OPEN)
+        show_image(loader, index, loader->images[of->image]);
+    *pTextureId = slc_texture_id(loader, index);
+    return SLUICE_SUCCESS;
+}
+
+static void bury(SluiceDemandLoader *loader, uint32_t index, const float color[4])
+{
+    struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->grid_uses)
+        slc_grids_leave(loader, index);
+    if (texture->kind == SLC_TEXTURE_GRID)
+        slc_grid_empty(loader, texture);
+    show_failed(loader, index, color);
+    slc_pages_forget_requests(loader, index, 1);
+    texture->kind = SLC_TEXTURE_BURIED;
+    texture->launch = loader->launch;
+    texture->next = SLC_NONE;
+    if (loader->first_buried_texture == SLC_NONE)
+        loader->first_buried_texture = index;
+    else
+        loader->textures[loader->last_buried_texture].next = index;
+    loader->last_buried_texture = index;
+    loader->texture_count--;
+}
+
+void slc_textures_exhume(SluiceDemandLoader *loader)
+{
+    while (loader->first_buried_texture != SLC_NONE) {
+        uint32_t index = loader->first_buried_texture;
+        struct slc_demand_texture *texture = &loader->textures[index];
+        if (texture->launch > loader->processed)
+            return;
+        loader->first_buried_texture = texture->next;
+        if (texture->cell_count)
+            slc_region_arena_give(&loader->grid_arena, texture->first_element,
+                                  slc_div_up_u32(texture->cell_count, 16));
+        texture->cell_count = 0;
+        texture->kind = SLC_TEXTURE_FREE;
+        if (texture->generation == UINT32_MAX)
+            continue; /* its ids are used up */
+        texture->next = loader->free_texture;
+        loader->free_texture = index;
+    }
+}
+
+static void unlink_variant(SluiceDemandLoader *loader, uint32_t index)
+{
+    uint32_t at = loader->textures[index].base;
+    while (loader->textures[at].next != index)
+        at = loader->textures[at].next;
+    loader->textures[at].next = loader->textures[index].next;
+}
+
+SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId)
+{
+    uint32_t index;
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_texture_find(loader, textureId, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_demand_texture *texture = &loader->textures[index];
+    float color[4] = {0};
+    if (texture->kind == SLC_TEXTURE_IMAGE) {
+        memcpy(color, texture->failure_color, sizeof color);
+        if (texture->image != SLC_NONE)
+            slc_image_detach(loader, loader->images[texture->image]);
+        for (uint32_t next; texture->next != SLC_NONE; texture->next = next) {
+            next = loader->textures[texture->next].next;
+            bury(loader, texture->next, color);
+        }
+    } else if (texture->kind == SLC_TEXTURE_VARIANT) {
+        memcpy(color, loader->textures[texture->base].failure_color, sizeof color);
+        unlink_variant(loader, index);
+    }
+    bury(loader, index, color);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader, SluiceDemandTextureId textureId,
+                                      const SluiceDemandImage *pImage)
+{
+    uint32_t index;
+    if (!loader || !pImage || (!pImage->source && !pImage->pfnOpen))
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_texture_find(loader, textureId, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->kind != SLC_TEXTURE_IMAGE)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (texture->image != SLC_NONE)
+        slc_image_detach(loader, loader->images[texture->image]);
+    texture->source = *pImage;
+    texture->failed = false;
+    slc_texture_show_unknown(loader, index);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
+                                           SluiceDemandTextureId textureId)
+{
+    uint32_t index;
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_texture_find(loader, textureId, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (loader->textures[index].kind == SLC_TEXTURE_VARIANT)
+        index = loader->textures[index].base;
+    struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->kind == SLC_TEXTURE_GRID)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (texture->failed) { /* perhaps it is better now */
+        texture->failed = false;
+        slc_texture_show_unknown(loader, index);
+    } else if (texture->image != SLC_NONE) {
+        slc_image_invalidate(loader, loader->images[texture->image]);
+    }
+    return SLUICE_SUCCESS;
+}
+
+void slc_textures_finish(SluiceDemandLoader *loader)
+{
+    slc_free(&loader->cb, loader->textures, loader->texture_capacity, sizeof *loader->textures);
+    loader->textures = NULL;
+}

@@ -1,0 +1,256 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "demand_vulkan/tickets.h"
+
+#include "base/alloc.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <time.h>
+
+#define NONE UINT32_MAX
+#define KEPT 1024u /* tickets that are over and can still be asked how it went */
+
+uint64_t slc_monotonic_time(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+bool slc_deadline(uint64_t timeout, struct timespec *until)
+{
+    uint64_t now = slc_monotonic_time();
+    if (timeout > (UINT64_MAX >> 1) - now)
+        return false;
+    *until = (struct timespec){(time_t)((now + timeout) / 1000000000u),
+                               (long)((now + timeout) % 1000000000u)};
+    return true;
+}
+
+SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocationCallbacks *cb)
+{
+    *tickets = (struct slc_tickets){.cb = *cb, .first_done = NONE, .last_done = NONE};
+    pthread_condattr_t attributes;
+    if (pthread_condattr_init(&attributes) != 0)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_mutex_init(&tickets->mutex, NULL);
+    pthread_cond_init(&tickets->changed, &attributes);
+    pthread_condattr_destroy(&attributes);
+    tickets->ready = true;
+    return SLUICE_SUCCESS;
+}
+
+void slc_tickets_finish(struct slc_tickets *tickets)
+{
+    if (!tickets->ready)
+        return;
+    pthread_cond_destroy(&tickets->changed);
+    pthread_mutex_destroy(&tickets->mutex);
+    slc_free(&tickets->cb, tickets->slots, tickets->capacity, sizeof *tickets->slots);
+    *tickets = (struct slc_tickets){0};
+}
+
+static uint32_t take_slot(struct slc_tickets *tickets)
+{
+    if (tickets->done_count > KEPT) {
+        uint32_t slot = tickets->first_done;
+        tickets->first_done = tickets->slots[slot].next;
+        tickets->done_count--;
+        return slot;
+    }
+    if (tickets->used == tickets->capacity) {
+        uint32_t capacity = tickets->capacity ? 2 * tickets->capacity : 64;
+        struct slc_ticket *slots =
+            slc_regrow(&tickets->cb, tickets->slots, tickets->capacity, capacity, sizeof *slots);
+        if (!slots)
+            return NONE;
+        tickets->slots = slots;
+        tickets->capacity = capacity;
+    }
+    tickets->slots[tickets->used] = (struct slc_ticket){0};
+    return tickets->used++;
+}
+
+SluiceResult slc_ticket_open(struct slc_tickets *tickets, SluiceDemandTicket *ticket)
+{
+    pthread_mutex_lock(&tickets->mutex);
+    uint32_t slot = take_slot(tickets);
+    if (slot != NONE) {
+        struct slc_ticket *new = &tickets->slots[slot];
+        *new = (struct slc_ticket){.generation = new->generation + 1, .owners = 1};
+        *ticket = (uint64_t) new->generation << 32 | (slot + 1);
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+    return slot == NONE ? SLUICE_ERROR_OUT_OF_HOST_MEMORY : SLUICE_SUCCESS;
+}
+
+struct slc_ticket *slc_ticket_find(struct slc_tickets *tickets, SluiceDemandTicket ticket,
+                                   bool *known)
+{
+    uint32_t slot = (uint32_t)ticket - 1, generation = (uint32_t)(ticket >> 32);
+    *known = ticket == 0;
+    if (ticket == 0 || slot >= tickets->used || generation == 0 ||
+        generation > tickets->slots[slot].generation)
+        return NULL;
+    *known = true;
+    return generation == tickets->slots[slot].generation ? &tickets->slots[slot] : NULL;
+}
+
+static struct slc_ticket *find(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+{
+    bool known;
+    return slc_ticket_find(tickets, ticket, &known);
+}
+
+/* Its slot may be used again once that of others, which were done before, have been. */
+static void check_done(struct slc_tickets *tickets, struct slc_ticket *ticket)
+{
+    uint32_t slot = (uint32_t)(ticket - tickets->slots);
+    if (ticket->remaining || ticket->owners)
+        return;
+    ticket->next = NONE;
+    if (tickets->done_count == 0)
+        tickets->first_done = slot;
+    else
+        tickets->slots[tickets->last_done].next = slot;
+    tickets->last_done = slot;
+    tickets->done_count++;
+}
+
+SluiceDemandTicket slc_ticket_close(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+{
+    pthread_mutex_lock(&tickets->mutex);
+    struct slc_ticket *found = find(tickets, ticket);
+    bool empty = !found || found->task_count == 0;
+    if (found) {
+        assert(found->owners > 0);
+        found->owners--;
+        check_done(tickets, found);
+        pthread_cond_broadcast(&tickets->changed);
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+    return empty ? 0 : ticket;
+}
+
+void slc_ticket_add(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count)
+{
+    pthread_mutex_lock(&tickets->mutex);
+    struct slc_ticket *found = find(tickets, ticket);
+    if (found) {
+        assert(found->owners > 0);
+        found->task_count += count;
+        found->remaining += count;
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+}
+
+void slc_ticket_drop(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count)
+{
+    pthread_mutex_lock(&tickets->mutex);
+    struct slc_ticket *found = find(tickets, ticket);
+    if (found) {
+        assert(found->remaining >= count && found->owners > 0);
+        found->remaining -= count;
+        found->task_count -= count;
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+}
+
+bool slc_ticket_is_cancelled(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+{
+    pthread_mutex_lock(&tickets->mutex);
+    struct slc_ticket *found = find(tickets, ticket);
+    bool cancelled = tickets->aborted || (found && found->cancelled);
+    pthread_mutex_unlock(&tickets->mutex);
+    return cancelled;
+}
+
+void slc_ticket_task_begins(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+{
+    struct slc_ticket *found = find(tickets, ticket);
+    if (!found)
+        return;
+    assert(found->owners > 0);
+    found->task_count++;
+    found->remaining++;
+    found->running++;
+}
+
+void slc_ticket_task_withdraw(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+{
+    struct slc_ticket *found = find(tickets, ticket);
+    if (!found)
+        return;
+    found->task_count--;
+    found->remaining--;
+    found->running--;
+}
+
+void slc_ticket_task_ends(struct slc_tickets *tickets, SluiceDemandTicket ticket, bool failed)
+{
+    struct slc_ticket *found = find(tickets, ticket);
+    if (!found)
+        return;
+    assert(found->running > 0 && found->remaining > 0);
+    found->running--;
+    found->remaining--;
+    found->failed += failed;
+    check_done(tickets, found);
+    if (found->running == 0)
+        pthread_cond_broadcast(&tickets->changed);
+}
+
+static void write_status(const struct slc_ticket *ticket, SluiceDemandTicketStatus *status)
+{
+    if (!status)
+        return;
+    *status = (SluiceDemandTicketStatus){0};
+    if (ticket)
+        *status = (SluiceDemandTicketStatus){ticket->task_count, ticket->remaining, ticket->failed};
+}
+
+SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTicket ticket,
+                                   SluiceDemandTicketStatus *status)
+{
+    bool known;
+    pthread_mutex_lock(&tickets->mutex);
+    const struct slc_ticket *found = slc_ticket_find(tickets, ticket, &known);
+    if (known)
+        write_status(found, status);
+    pthread_mutex_unlock(&tickets->mutex);
+    return known ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
+/* With the lock held. NOT_READY: not yet. */
+static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
+                         SluiceDemandTicketStatus *status)
+{
+    bool known;
+    const struct slc_ticket *found = slc_ticket_find(tickets, ticket, &known);
+    if (!known)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    write_status(found, status);
+    if (tickets->aborted)
+        return SLUICE_ERROR_CANCELLED;
+    return found && found->running ? SLUICE_NOT_READY : SLUICE_SUCCESS;
+}
+
+SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket ticket,
+                             uint64_t timeout, SluiceDemandTicketStatus *status)
+{
+    struct timespec until;
+    bool ends = slc_deadline(timeout, &until), over = timeout == 0;
+    pthread_mutex_lock(&tickets->mutex);
+    SluiceResult result = look(tickets, ticket, status);
+    while (result == SLUICE_NOT_READY && !over) {
+        if (ends)
+            over = pthread_cond_timedwait(&tickets->changed, &tickets->mutex, &until) == ETIMEDOUT;
+        else
+            pthread_cond_wait(&tickets->changed, &tickets->mutex);
+        result = look(tickets, ticket, status);
+    }
+    pthread_mutex_unlock(&tickets->mutex);
+    return result;
+}

@@ -1,0 +1,30 @@
+/**
+ * Layers of array images as places of pages, within a budget of device memory.
+ */
+#ifndef SLC_DEMAND_VULKAN_TILE_MEMORY_H
+#define SLC_DEMAND_VULKAN_TILE_MEMORY_H
+
+#include "demand/residency.h"
+#include "vulkan/page_cache.h"
+
+struct slc_tile_memory {
+    struct slc_page_cache cache;
+    uint64_t limit;  ///< tiles that the budget holds
+    bool short_of;   ///< a place was asked for and not there since the last look
+    uint32_t wanted; ///< the format it was asked for
+};
+
+/** `budget`: bytes. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_tile_memory_init(struct slc_tile_memory *memory, const struct slc_vk *vk,
+                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                  struct slc_page_views *views, uint64_t budget);
+void slc_tile_memory_finish(struct slc_tile_memory *memory);
+
+/** For slc_residency_set_class: the kind of a page is its format. */
+struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory);
+
+/** Tiles that may be resident at once: fewer than the budget holds where images are larger than
+ *  their tiles, or the device has no memory. */
+uint64_t slc_tile_memory_limit(const struct slc_tile_memory *memory);
+
+#endif /* SLC_DEMAND_VULKAN_TILE_MEMORY_H */

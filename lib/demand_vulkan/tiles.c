@@ -1,0 +1,151 @@
+/* Tiles and tails: which texels a page is, and their reads. */
+#include "demand_vulkan/tiles.h"
+
+#include "base/log.h"
+#include "demand/tail_place.h"
+#include "demand_vulkan/opening.h"
+
+#include <assert.h>
+
+#define STAGING_ALIGNMENT 16u /* texels of any format and blocks begin at multiples of this */
+
+uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
+{
+    for (uint32_t l = 0; l < image->regular_count; l++) {
+        uint32_t count = slc_image_level_width(image, l) * slc_image_level_height(image, l);
+        *index = page - image->first_pages[l];
+        if (page >= image->first_pages[l] && *index < count)
+            return l;
+    }
+    *index = 0;
+    return image->regular_count; /* the tail */
+}
+
+static uint32_t write_tail(const struct slc_demand_image *image,
+                           struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
+{
+    uint32_t count = image->info.mipLevelCount - image->regular_count, offset = 0;
+    assert(count <= SLC_TILE_MAX_PARTS);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t level = image->regular_count + k;
+        uint32_t width = slc_mip_size(image->info.width, level);
+        uint32_t height = slc_mip_size(image->info.height, level);
+        struct slc_demand_place place =
+            slc_demand_tail_place(image->tile_width, image->tile_height, image->blocks, k);
+        parts[k] = (struct slc_tile_part){{level, 0, 0, width, height}, offset, place.x, place.y};
+        uint32_t size = (uint32_t)sluiceFormatRegionSize(image->info.format, width, height);
+        offset += (size + STAGING_ALIGNMENT - 1) / STAGING_ALIGNMENT * STAGING_ALIGNMENT;
+    }
+    return count;
+}
+
+uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
+                        struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
+{
+    uint32_t index, level = slc_tile_level(image, page, &index);
+    if (level == image->regular_count)
+        return write_tail(image, parts);
+    uint32_t x = index % slc_image_level_width(image, level) * image->tile_width;
+    uint32_t y = index / slc_image_level_width(image, level) * image->tile_height;
+    parts[0] = (struct slc_tile_part){
+        {level, x, y, slc_min_u32(image->tile_width, slc_mip_size(image->info.width, level) - x),
+         slc_min_u32(image->tile_height, slc_mip_size(image->info.height, level) - y)},
+        0,
+        0,
+        0};
+    return 1;
+}
+
+static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                           struct slc_demand_job *job, uint32_t priority, SluiceDemandTicket ticket)
+{
+    struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
+    SluiceImageRegion regions[SLC_TILE_MAX_PARTS];
+    void *texels[SLC_TILE_MAX_PARTS];
+    uint32_t count = slc_tile_parts(image, job->page, parts);
+    for (uint32_t i = 0; i < count; i++) {
+        regions[i] = parts[i].region;
+        texels[i] = slc_job_memory(loader, job) + parts[i].offset;
+    }
+    SluiceTileRead read = {.source = image->source,
+                           .regionCount = count,
+                           .pRegions = regions,
+                           .ppTexels = texels,
+                           .priority = priority};
+    return slc_job_submit(loader, job, &read, ticket);
+}
+
+enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                                         uint32_t page, SluiceDemandTicket ticket,
+                                         SluiceResult *result)
+{
+    *result = SLUICE_SUCCESS;
+    if (image->state != SLC_IMAGE_OPEN)
+        return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
+    if (loader->free_tile_count == 0)
+        return SLC_REQUEST_POSTPONED;
+    bool tail = page == image->tail_page;
+    uint32_t index, level = slc_tile_level(image, page, &index);
+    if (level == image->regular_count && !tail)
+        return SLC_REQUEST_RESIDENT; /* rounded up to whole blocks of ids */
+    uint32_t rank = tail ? 0 : slc_image_level_rank(image, level);
+    const struct slc_page_request request = {.page = page,
+                                             .class_index = SLC_CLASS_TILES,
+                                             .rank = (uint8_t)rank,
+                                             .pinned = tail,
+                                             .kind = image->info.format};
+    enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
+    if (answer != SLC_REQUEST_LOAD)
+        return answer;
+    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_TILE);
+    const struct slc_demand_texture *texture = &loader->textures[image->texture];
+    job->page = page;
+    job->owner = image->slot;
+    job->image = image;
+    job->id = (uint64_t)texture->generation << 32 | image->texture;
+    job->place = slc_residency_place(loader->residency, page);
+    *result = submit(loader, image, job, SLUICE_DEMAND_RANKS - rank, ticket);
+    if (*result == SLUICE_SUCCESS) {
+        image->job_count++;
+        return SLC_REQUEST_LOAD;
+    }
+    slc_residency_failed(loader->residency, page, false);
+    slc_job_free(loader, job);
+    return SLC_REQUEST_POSTPONED;
+}
+
+static void log_failure(const SluiceDemandLoader *loader, const struct slc_demand_image *image,
+                        uint32_t page, SluiceResult result)
+{
+    const char *name = image->info.pName ? image->info.pName : "image";
+    uint32_t index, level = slc_tile_level(image, page, &index);
+    if (level == image->regular_count)
+        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+                "%s: levels from %u on cannot be read, and so it cannot be sampled: %s", name,
+                level, sluiceResultString(result));
+    else
+        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+                "%s: level %u, tile (%u, %u) cannot be read: %s", name, level,
+                index % slc_image_level_width(image, level),
+                index / slc_image_level_width(image, level), sluiceResultString(result));
+}
+
+void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
+                       uint64_t size)
+{
+    struct slc_demand_image *image = job->image;
+    loader->counts.bytesRead += size;
+    if (result == SLUICE_SUCCESS && !job->stale) {
+        slc_job_list_append(loader, &loader->arrived, job);
+        return;
+    }
+    uint32_t page = job->page;
+    bool refuse = !job->stale && !slc_result_may_pass(result);
+    slc_residency_failed(loader->residency, page, refuse);
+    if (refuse)
+        log_failure(loader, image, page, result);
+    slc_job_free(loader, job);
+    slc_image_release(loader, image);
+    if (refuse && page == image->tail_page && image->state == SLC_IMAGE_OPEN)
+        slc_image_fail(loader, image);
+}

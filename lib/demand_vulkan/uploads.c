@@ -1,0 +1,93 @@
+/* From staging memory to the layers that are the tiles' places. */
+#include "base/checked.h"
+#include "demand_vulkan/tiles.h"
+#include "vulkan/sparse_layout.h"
+
+#define COPY_BATCH 128u
+
+struct copies {
+    SluiceDemandLoader *loader;
+    VkCommandBuffer commands;
+    VkImage target;
+    uint32_t count;
+    VkBufferImageCopy list[COPY_BATCH];
+};
+
+void slc_uploads_admit(SluiceDemandLoader *loader)
+{
+    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->arrived));) {
+        if (job->stale) {
+            slc_residency_failed(loader->residency, job->page, false);
+            slc_image_release(loader, job->image);
+            slc_job_free(loader, job);
+            continue;
+        }
+        slc_residency_loaded(loader->residency, job->page, job->place);
+        slc_job_list_append(loader, &loader->admitted, job);
+    }
+}
+
+static void flush(struct copies *c)
+{
+    if (c->count)
+        c->loader->vk.CmdCopyBufferToImage(c->commands, c->loader->staging.buffer, c->target,
+                                           VK_IMAGE_LAYOUT_GENERAL, c->count, c->list);
+    c->count = 0;
+}
+
+static uint32_t round_up(uint32_t size, uint32_t to)
+{
+    return slc_div_up_u32(size, to) * to;
+}
+
+static void add(struct copies *c, const struct slc_demand_job *job,
+                const struct slc_tile_part *part)
+{
+    VkImage target = slc_page_image(&c->loader->tiles.cache, job->place);
+    uint32_t block = job->image->blocks ? 4 : 1;
+    if (c->count == COPY_BATCH || target != c->target)
+        flush(c);
+    c->target = target;
+    /* A level may end inside the page, where only whole blocks may end. */
+    c->list[c->count++] = (VkBufferImageCopy){
+        .bufferOffset = (uint64_t)slc_job_index(c->loader, job) * SLC_TILE_SIZE + part->offset,
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, job->place & 0xFFFFu, 1},
+        .imageOffset = {(int32_t)part->x, (int32_t)part->y, 0},
+        .imageExtent = {round_up(part->region.width, block), round_up(part->region.height, block),
+                        1}};
+    c->loader->counts.bytesUploaded +=
+        sluiceFormatRegionSize(job->image->info.format, part->region.width, part->region.height);
+}
+
+/* Forgotten since it was admitted: the place may be another's. */
+static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
+{
+    return !job->stale && slc_page_directory_has(&loader->directory, job->page);
+}
+
+uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    struct copies copies = {.loader = loader, .commands = commands};
+    uint32_t count = 0;
+    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
+        if (is_wanted(loader, job)) {
+            struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
+            uint32_t part_count = slc_tile_parts(job->image, job->page, parts);
+            for (uint32_t i = 0; i < part_count; i++)
+                add(&copies, job, &parts[i]);
+            count++;
+        }
+        job->launch = loader->launch;
+        slc_image_release(loader, job->image);
+        slc_job_list_append(loader, &loader->copied, job);
+    }
+    flush(&copies);
+    return count;
+}
+
+void slc_uploads_exhume(SluiceDemandLoader *loader)
+{
+    while (loader->copied.first != SLC_NONE &&
+           loader->jobs[loader->copied.first].launch <= loader->processed)
+        slc_job_free(loader, slc_job_list_pop(loader, &loader->copied));
+}

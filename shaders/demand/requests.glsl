@@ -1,0 +1,57 @@
+/*
+ * The requests of a group of sections, for the passes that look at them: four invocations have 256
+ * pages of each section.
+ */
+#include "scan.glsl"
+
+layout(local_size_x = SLUICE_SCAN_GROUP_SIZE) in;
+layout(std430, binding = 0) buffer Requests { uvec4 quads[]; } requests;
+
+#define SLUICE_SCAN_PARTS 4u /* of a section */
+#define SLUICE_SCAN_PART_QUADS 2u
+
+shared uint entries[SLUICE_SCAN_GROUP_SECTIONS]; /* as listed */
+shared uint counts[SLUICE_SCAN_GROUP_SIZE];      /* of parts */
+shared uint totals[SLUICE_SCAN_GROUP_SECTIONS];  /* of sections; 0 beyond the last */
+
+uint sluiceScanGroup()
+{
+    return gl_WorkGroupID.y * SLUICE_SCAN_ROW + gl_WorkGroupID.x;
+}
+
+uint sluiceCountBits(uvec4 words)
+{
+    ivec4 counts = bitCount(words);
+    return uint(counts.x + counts.y + counts.z + counts.w);
+}
+
+/** The first quad of this invocation's part of its section. */
+uint sluicePartQuad(uint entry)
+{
+    uint part = gl_LocalInvocationIndex % SLUICE_SCAN_PARTS;
+    return (sluiceScanSection(entry) * SLUICE_SCAN_PARTS + part) * SLUICE_SCAN_PART_QUADS;
+}
+
+/** Fills counts, totals and entries from what each invocation has. */
+void sluiceShareCounts(uint entry, uvec4 low, uvec4 high)
+{
+    uint at = gl_LocalInvocationIndex, section = at / SLUICE_SCAN_PARTS;
+    counts[at] = sluiceCountBits(low) + sluiceCountBits(high);
+    if (at % SLUICE_SCAN_PARTS == 0u)
+        entries[section] = entry;
+    barrier();
+    if (at < SLUICE_SCAN_GROUP_SECTIONS) {
+        uint first = at * SLUICE_SCAN_PARTS;
+        totals[at] = counts[first] + counts[first + 1u] + counts[first + 2u] + counts[first + 3u];
+    }
+    barrier();
+}
+
+/** Requests with this key in the first `end` sections of the group. */
+uint sluiceCountKey(uint key, uint end)
+{
+    uint sum = 0u;
+    for (uint i = 0u; i < end; i++)
+        sum += entries[i] >> SLUICE_SCAN_KEY_SHIFT == key ? totals[i] : 0u;
+    return sum;
+}

@@ -1,0 +1,128 @@
+/*
+ * How textures are filtered whose texels lie in pages: which texels a bilinear sample is made of, which
+ * bilinear samples a trilinear or anisotropic one. Where the texels are is the includer's business:
+ * paged.glsl's, and demand.glsl's.
+ */
+#ifndef SLUICE_PAGE_FILTER_GLSL
+#define SLUICE_PAGE_FILTER_GLSL
+
+#include "shared/texture_table.h"
+
+/* Of filter weights: what devices have at least by custom, and what the sums of weights stay 1 with. */
+#define SLUICE_FILTER_STEPS 256.0
+
+/** One axis of a bilinear sample, in texels of a level. */
+struct SluicePageAxis {
+    int low, high; /* -1: beyond the border */
+    float weight;  /* of `high` */
+};
+
+/** The place inside the texture that shows the same; of a border, at most a texel beyond the nearest
+ *  repetitions. `n` is the size. */
+float sluiceFoldOntoPages(float coordinate, uint addressMode, float n)
+{
+    if (addressMode == SLUICE_ADDRESS_MODE_REPEAT)
+        return coordinate - floor(coordinate);
+    if (addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT) {
+        coordinate -= 2.0 * floor(coordinate * 0.5);
+        return coordinate > 1.0 ? 2.0 - coordinate : coordinate;
+    }
+    if (addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER)
+        return clamp(coordinate, -1.0 - 1.0 / n, 2.0 + 1.0 / n);
+    if (addressMode == SLUICE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+        coordinate = abs(coordinate);
+    return clamp(coordinate, 0.0, 1.0);
+}
+
+/** At a coordinate that has been folded. */
+SluicePageAxis sluiceFoldedPageAxis(float coordinate, uint addressMode, int size)
+{
+    float n = float(size);
+    float at = floor(coordinate * n * SLUICE_FILTER_STEPS - (0.5 * SLUICE_FILTER_STEPS - 0.5)) /
+               SLUICE_FILTER_STEPS;
+    SluicePageAxis axis;
+    axis.low = int(floor(at));
+    axis.high = axis.low + 1;
+    axis.weight = at - floor(at);
+    if (addressMode == SLUICE_ADDRESS_MODE_REPEAT) {
+        axis.low += axis.low < 0 ? size : 0;
+        axis.high -= axis.high >= size ? size : 0;
+    } else if (addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER) {
+        axis.low = axis.low >= 0 && axis.low < size ? axis.low : -1;
+        axis.high = axis.high >= 0 && axis.high < size ? axis.high : -1;
+    } else {
+        /* mirrored, the texel beyond an edge is that before it */
+        axis.low = clamp(axis.low, 0, size - 1);
+        axis.high = clamp(axis.high, 0, size - 1);
+    }
+    return axis;
+}
+
+SluicePageAxis sluicePageAxis(float coordinate, uint addressMode, int size)
+{
+    return sluiceFoldedPageAxis(sluiceFoldOntoPages(coordinate, addressMode, float(size)), addressMode,
+                                size);
+}
+
+/** The nearest texel alone, at a coordinate that has been folded. */
+SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int size)
+{
+    int at = int(floor(coordinate * float(size)));
+    int inside = clamp(at, 0, size - 1);
+    at = addressMode == SLUICE_ADDRESS_MODE_CLAMP_TO_BORDER && at != inside ? -1 : inside;
+    return SluicePageAxis(at, at, 0.0);
+}
+
+/* Without non-uniform indexing of arrays every place is visited, and one of them sampled. */
+#ifdef SLUICE_PAGE_LOOP
+#define SLUICE_WITH_PAGE(page, statement)                                                          \
+    for (uint chunk = 0u; chunk < SLUICE_PAGE_LOOP; chunk++)                                        \
+        if (chunk == (page) >> 16u) {                                                              \
+            statement;                                                                             \
+        }
+#else
+#define SLUICE_WITH_PAGE(page, statement)                                                          \
+    {                                                                                              \
+        uint chunk = (page) >> 16u;                                                                \
+        statement;                                                                                 \
+    }
+#endif
+
+/** What a trilinear or anisotropic sample is made of: bilinear ones in a row, each of two levels. */
+struct SluicePagedTaps {
+    uint fine, coarse; /* levels */
+    float fraction;    /* of `coarse`: 0 to 1 */
+    uint count;
+    vec2 axis; /* of the row, in uv */
+};
+
+/**
+ * At `lod`, 0 to the last of `levelCount` levels, with derivatives that hold all bias; `size` is that
+ * of level 0. Of the anisotropic ones, up to `maxTaps` above 1, as many samples along the longer
+ * derivative as that is longer than a pixel of the level: the customary way, which every device
+ * refines in its own.
+ */
+SluicePagedTaps sluicePlaceTaps(vec2 size, uint levelCount, vec2 dx, vec2 dy, float lod, float maxTaps)
+{
+    SluicePagedTaps taps;
+    taps.fine = uint(lod);
+    taps.coarse = min(taps.fine + 1u, levelCount - 1u);
+    taps.fraction =
+        floor((lod - float(taps.fine)) * SLUICE_FILTER_STEPS + 0.5) / SLUICE_FILTER_STEPS;
+    taps.count = 1u;
+    taps.axis = vec2(0.0);
+    if (maxTaps > 1.0) {
+        float x = length(dx * size), y = length(dy * size);
+        taps.axis = x >= y ? dx : dy;
+        float ratio = max(x, y) / exp2(lod);
+        taps.count = uint(clamp(ceil(ratio - 0.01), 1.0, maxTaps));
+    }
+    return taps;
+}
+
+vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
+{
+    return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
+}
+
+#endif

@@ -1,0 +1,70 @@
+/* Buffers of the demand loading probe, and what it does at one input. */
+#include "sluice/shared/demand.h"
+#include "demand_probe_shared.h"
+
+layout(std430, binding = 0) readonly buffer Textures { SluiceDemandTexture entries[]; } textures;
+layout(std430, binding = 1) readonly buffer Levels { uint words[]; } levels;
+layout(std430, binding = 2) readonly buffer Directory { uint words[]; } directory;
+layout(std430, binding = 3) readonly buffer Blocks { uint words[]; } blocks;
+layout(std430, binding = 4) buffer Masks { SluiceDemandBlockMasks entries[]; } masks;
+layout(std430, binding = 5) buffer Requests { uint words[]; } requests;
+layout(std430, binding = 6) buffer Sections { uint words[]; } sections;
+layout(std430, binding = 7) readonly buffer Inputs { DemandInput inputs[]; };
+layout(std430, binding = 8) buffer Outputs { DemandOutput outputs[]; };
+layout(binding = 9) uniform sampler2DArray pages[DEMAND_CHUNKS];
+layout(binding = 10) uniform sampler2D plain;
+layout(constant_id = 0) const bool preview = false;
+layout(push_constant) uniform Push { uint count; };
+
+#define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]
+#define SLUICE_DEMAND_LEVEL_WORD(i) levels.words[i]
+#define SLUICE_DEMAND_DIRECTORY_WORD(i) directory.words[i]
+#define SLUICE_DEMAND_BLOCK_WORD(i) blocks.words[i]
+#define SLUICE_DEMAND_MASKS(i) masks.entries[i]
+#define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]
+#define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
+#define SLUICE_DEMAND_PREVIEW preview
+#ifdef DEMAND_PAGE_LOOP
+#define SLUICE_PAGE_TEXTURE(i) pages[i]
+#define SLUICE_PAGE_LOOP DEMAND_CHUNKS
+#else
+#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#endif
+#include "sluice/demand.glsl"
+
+vec4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
+{
+    uint index = inputs[at].index;
+    if (inputs[at].kind == DEMAND_LOD)
+        return sluiceDemandLod(index, uv, inputs[at].lod, resident);
+    if (inputs[at].kind == DEMAND_CUBIC)
+        return sluiceDemandCubic(index, uv, dx, dy, resident);
+    return sluiceDemandGrad(index, uv, dx, dy, resident);
+}
+
+void probeDemand(uint at)
+{
+    vec2 uv = vec2(inputs[at].uv[0], inputs[at].uv[1]);
+    vec2 dx = vec2(inputs[at].dx[0], inputs[at].dx[1]);
+    vec2 dy = vec2(inputs[at].dy[0], inputs[at].dy[1]);
+    uint kind = inputs[at].kind;
+    uvec2 value = uvec2(0u);
+    vec4 color = vec4(0.0);
+    bool resident = true;
+    if (kind == DEMAND_MAP)
+        resident = sluiceMapOrRequest(inputs[at].index, value);
+    else if (kind == DEMAND_FORMULA)
+        outputs[at].lod = sluiceDemandComputeLod(dx, dy, inputs[at].lod);
+    else if (kind == DEMAND_HARDWARE)
+        color = textureGrad(plain, uv, dx, dy);
+    else if (kind == DEMAND_PLACE)
+        value = uvec2(sluiceDemandTailPlace(textures.entries[inputs[at].index].shape,
+                                            uint(inputs[at].lod)));
+    else
+        color = sampleDemand(at, uv, dx, dy, resident);
+    for (uint i = 0u; i < 4u; i++)
+        outputs[at].color[i] = color[i];
+    outputs[at].resident = resident ? 1u : 0u;
+    outputs[at].value[0] = value.x;
+    outputs[at].value[1] = value.y;
+}

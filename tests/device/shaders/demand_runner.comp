@@ -1,0 +1,53 @@
+/* Samples what a test asks for, through the loader's own buffers. */
+#version 450
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "sluice/shared/demand.h"
+#include "demand_runner_shared.h"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Textures { SluiceDemandTexture entries[]; } textures;
+layout(std430, binding = 1) readonly buffer Levels { uint words[]; } levels;
+layout(std430, binding = 2) readonly buffer Directory { uint words[]; } directory;
+layout(std430, binding = 3) readonly buffer Blocks { uint words[]; } blocks;
+layout(std430, binding = 4) buffer Masks { SluiceDemandBlockMasks entries[]; } masks;
+layout(std430, binding = 5) buffer Requests { uint words[]; } requests;
+layout(std430, binding = 6) buffer Sections { uint words[]; } sections;
+layout(std430, binding = 7) readonly buffer Inputs { RunnerInput inputs[]; };
+layout(std430, binding = 8) writeonly buffer Outputs { RunnerOutput outputs[]; };
+layout(binding = 9) uniform sampler2DArray pages[RUNNER_CHUNKS];
+layout(push_constant) uniform Push { uint count; };
+
+#define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]
+#define SLUICE_DEMAND_LEVEL_WORD(i) levels.words[i]
+#define SLUICE_DEMAND_DIRECTORY_WORD(i) directory.words[i]
+#define SLUICE_DEMAND_BLOCK_WORD(i) blocks.words[i]
+#define SLUICE_DEMAND_MASKS(i) masks.entries[i]
+#define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]
+#define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]
+#define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
+#include "sluice/demand.glsl"
+
+void main()
+{
+    uint at = gl_GlobalInvocationID.x;
+    if (at >= count)
+        return;
+    RunnerInput i = inputs[at];
+    vec2 uv = vec2(i.uv[0], i.uv[1]), dx = vec2(i.dx[0], i.dx[1]), dy = vec2(i.dy[0], i.dy[1]);
+    vec4 color = vec4(0.0);
+    uvec2 value = uvec2(0u);
+    bool resident;
+    if (i.kind == RUNNER_MAP)
+        resident = sluiceMapOrRequest(i.index, value);
+    else if (i.kind == RUNNER_LOD)
+        color = sluiceDemandLod(i.index, uv, dx.x, resident);
+    else
+        color = sluiceDemandGrad(i.index, uv, dx, dy, resident);
+    for (uint c = 0u; c < 4u; c++)
+        outputs[at].color[c] = color[c];
+    outputs[at].value[0] = value.x;
+    outputs[at].value[1] = value.y;
+    outputs[at].resident = uint(resident);
+}

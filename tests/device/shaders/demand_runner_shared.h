@@ -1,0 +1,29 @@
+/* What one invocation of demand_runner.comp is told and tells. */
+#ifndef TESTS_DEVICE_DEMAND_RUNNER_SHARED_H
+#define TESTS_DEVICE_DEMAND_RUNNER_SHARED_H
+
+#include "sluice/shared/types.h"
+
+#define RUNNER_CHUNKS 64
+
+#define RUNNER_GRAD 0 /* sluiceDemandGrad */
+#define RUNNER_LOD 1  /* sluiceDemandLod with a[0] */
+#define RUNNER_MAP 2  /* sluiceMapOrRequest of the page `index` */
+
+struct RunnerInput {
+    uint kind, index;
+    float uv[2];
+    float dx[2];
+    float dy[2];
+};
+SLUICE_SHARED_SIZE(struct RunnerInput, 32)
+
+struct RunnerOutput {
+    float color[4];
+    uint value[2]; /* of a page */
+    uint resident;
+    uint reserved;
+};
+SLUICE_SHARED_SIZE(struct RunnerOutput, 32)
+
+#endif

@@ -1,0 +1,424 @@
+/* Textures: what a launch shows of them, what is opened and read for it, and what becomes of ids. */
+#include "device/demand_runner.h"
+
+#include "support/test.h"
+
+#include <sched.h>
+#include <string.h>
+
+static struct harness h;
+
+struct size {
+    uint32_t width, height;
+};
+
+static uint32_t level_size(uint32_t size, uint32_t level)
+{
+    return size >> level ? size >> level : 1;
+}
+
+/* Texels of a level, at its corners and in between; how many. */
+static uint32_t texels_of(uint32_t width, uint32_t height, uint32_t level, uint32_t (*at)[2])
+{
+    uint32_t count = 0, w = level_size(width, level), x_of[3] = {0, w / 3, w - 1};
+    uint32_t t = level_size(height, level), y_of[3] = {0, 2 * t / 3, t - 1};
+    for (uint32_t i = 0; i < 9; i++, count++) {
+        at[count][0] = x_of[i % 3];
+        at[count][1] = y_of[i / 3];
+    }
+    return count;
+}
+
+static void add_all_levels(struct runner *r, SluiceDemandTextureId id, const SluiceImageInfo *info)
+{
+    uint32_t at[9][2];
+    for (uint32_t l = 0; l < info->mipLevelCount; l++)
+        for (uint32_t i = 0, n = texels_of(info->width, info->height, l, at); i < n; i++)
+            runner_add_texel(r, id, info->width, info->height, l, at[i][0], at[i][1]);
+}
+
+static uint32_t check_all_levels(struct runner *r, struct runner_image *image, uint32_t sample)
+{
+    uint32_t at[9][2];
+    for (uint32_t l = 0; l < image->info.mipLevelCount; l++)
+        for (uint32_t i = 0, n = texels_of(image->info.width, image->info.height, l, at); i < n;
+             i++)
+            runner_check_texel(r, sample++, image, l, at[i][0], at[i][1]);
+    return sample;
+}
+
+static void colours_are_the_images_own_when_nothing_is_missing(void **state)
+{
+    (void)state;
+    static const struct size sizes[] = {{1, 1},     {64, 64},    {65, 64},   {1000, 700},
+                                        {513, 129}, {16384, 1},  {1, 3000},  {2048, 2048},
+                                        {255, 257}, {128, 4097}, {4095, 255}};
+    enum { COUNT = sizeof sizes / sizeof sizes[0] };
+    static struct runner_image images[2 * COUNT];
+    SluiceDemandTextureId ids[2 * COUNT];
+    struct runner r;
+    runner_init(&r, &h, NULL);
+    for (uint32_t i = 0; i < 2 * COUNT; i++) {
+        runner_image_init(&images[i],
+                          i % 2 ? SLUICE_FORMAT_R32G32B32A32_SFLOAT : SLUICE_FORMAT_R8G8B8A8_UNORM,
+                          sizes[i / 2].width, sizes[i / 2].height, i);
+        ids[i] = runner_add_texture(&r, &images[i]);
+        add_all_levels(&r, ids[i], &images[i].info);
+    }
+    assert_in_range(runner_load(&r, 20), 3, 19);
+    for (uint32_t i = 0, sample = 0; i < 2 * COUNT; i++)
+        sample = check_all_levels(&r, &images[i], sample);
+    assert_true(runner_all_resident(&r));
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2 * COUNT; i++) {
+        assert_int_equal(images[i].opened, 1);
+        assert_int_equal(images[i].closed, 1);
+        runner_image_finish(&images[i]);
+    }
+}
+
+static void only_what_is_sampled_is_opened_and_only_its_tiles_are_read(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[3];
+    SluiceDemandTextureId ids[3];
+    runner_init(&r, &h, NULL);
+    for (uint32_t i = 0; i < 3; i++) {
+        runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, i);
+        ids[i] = runner_add_texture(&r, &images[i]);
+    }
+    /* Three tiles of level 0, one of level 2: 128 x 128 texels each. */
+    runner_add_texel(&r, ids[1], 1024, 1024, 0, 5, 5);
+    runner_add_texel(&r, ids[1], 1024, 1024, 0, 100, 120);
+    runner_add_texel(&r, ids[1], 1024, 1024, 0, 130, 5);
+    runner_add_texel(&r, ids[1], 1024, 1024, 0, 1000, 1000);
+    runner_add_texel(&r, ids[1], 1024, 1024, 2, 200, 3);
+    runner_load(&r, 20);
+    assert_true(runner_all_resident(&r));
+    assert_int_equal(images[0].opened + images[2].opened, 0);
+    assert_int_equal(images[0].source.info_count + images[2].source.info_count, 0);
+    assert_int_equal(images[1].source.read_count, 1 + 4); /* the colour of the last level first */
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_int_equal(statistics.residentTileCount, 4);
+    assert_int_equal(statistics.texturesCreated, 3);
+    assert_int_equal(statistics.texturesOpened, 1);
+    assert_int_equal(statistics.bytesRead, 4 * 65536);
+    assert_int_equal(statistics.bytesUploaded, 4 * 65536);
+    /* The same launch again costs nothing. */
+    runner_launch(&r);
+    assert_int_equal(r.requests.missingCount, 0);
+    assert_int_equal(r.launch.tileCount, 0);
+    assert_int_equal(r.ticket, 0);
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 3; i++)
+        runner_image_finish(&images[i]);
+}
+
+static void a_texture_smaller_than_a_pixel_needs_no_tile(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 4096, 4096, 7);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    runner_add_texel(&r, id, 4096, 4096, 12, 0, 0);
+    runner_add_texel(&r, id, 4096, 4096, 30, 0, 0);
+    assert_int_equal(runner_load(&r, 9), 2);
+    runner_check_texel(&r, 0, &image, 12, 0, 0);
+    runner_check_texel(&r, 1, &image, 12, 0, 0);
+    assert_int_equal(runner_statistics(&r).residentTileCount, 0);
+    assert_int_equal(runner_statistics(&r).bytesUploaded, 0);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void a_variant_shares_tiles_and_not_the_sampler(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandTextureId variant, late;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 3);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    SluiceDemandSampler clamp = runner_nearest;
+    clamp.addressModeU = clamp.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    CHECK_OK(sluiceCreateDemandTextureVariant(r.loader, id, &clamp, &variant));
+    runner_add(&r, (struct RunnerInput){.kind = RUNNER_LOD,
+                                        .index = (uint32_t)variant,
+                                        .uv = {1.001f, 0.001f}});
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &image, 0, 511, 0);
+    uint64_t reads = image.source.read_count;
+    CHECK_OK(sluiceCreateDemandTextureVariant(r.loader, variant, &clamp, &late));
+    runner_clear(&r);
+    runner_add_texel(&r, id, 512, 512, 0, 511, 0);
+    runner_add_texel(&r, late, 512, 512, 0, 511, 0);
+    assert_int_equal(runner_load(&r, 9), 1);
+    runner_check_texel(&r, 0, &image, 0, 511, 0);
+    runner_check_texel(&r, 1, &image, 0, 511, 0);
+    assert_int_equal(image.source.read_count, reads);
+    assert_int_equal(image.opened, 1);
+    /* With their base they go. */
+    CHECK_OK(sluiceDestroyDemandTexture(r.loader, late));
+    CHECK_OK(sluiceDestroyDemandTexture(r.loader, id));
+    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, variant), SLUICE_ERROR_STALE_TEXTURE);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void a_grid_shows_the_texture_of_each_cell(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[2];
+    SluiceDemandTextureId cells[6] = {0}, grid;
+    const float missing[4] = {0.25f, 0.5f, 0.75f, 1};
+    runner_init(&r, &h, NULL);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 256 << i, 256, i);
+    cells[1] = runner_add_texture(&r, &images[0]); /* column 1, row 0 */
+    cells[5] = runner_add_texture(&r, &images[1]); /* column 2, row 1 */
+    CHECK_OK(sluiceCreateDemandUdim(r.loader, cells, 3, 2, missing, &grid));
+    const float at[5][2] = {{1 + 10.5f / 256, 20.5f / 256},
+                            {2 + 300.5f / 512, 1 + 20.5f / 256},
+                            {0.5f, 0.5f},
+                            {-0.5f, 0.5f},
+                            {1.5f, 2.5f}};
+    for (uint32_t i = 0; i < 5; i++)
+        runner_add(&r, (struct RunnerInput){.kind = RUNNER_LOD,
+                                            .index = (uint32_t)grid,
+                                            .uv = {at[i][0], at[i][1]}});
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &images[0], 0, 10, 20);
+    runner_check_texel(&r, 1, &images[1], 0, 300, 20);
+    for (uint32_t i = 2; i < 5; i++) {
+        struct RunnerOutput out = runner_output(&r, i);
+        assert_true(out.resident);
+        assert_memory_equal(out.color, missing, sizeof missing);
+    }
+    CHECK_RESULT(sluiceCreateDemandUdim(r.loader, &grid, 1, 1, missing, &cells[0]),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    /* A texture that goes leaves a hole. */
+    CHECK_OK(sluiceDestroyDemandTexture(r.loader, cells[1]));
+    runner_launch(&r);
+    struct RunnerOutput out = runner_output(&r, 0);
+    assert_memory_equal(out.color, missing, sizeof missing);
+    runner_check_texel(&r, 1, &images[1], 0, 300, 20);
+    CHECK_OK(sluiceDestroyDemandTexture(r.loader, grid));
+    CHECK_OK(sluiceDestroyDemandTexture(r.loader, cells[5]));
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_image_finish(&images[i]);
+}
+
+static void another_image_takes_a_textures_place_while_it_is_sampled(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[2];
+    runner_init(&r, &h, NULL);
+    runner_image_init(&images[0], SLUICE_FORMAT_R8G8B8A8_UNORM, 600, 300, 1);
+    runner_image_init(&images[1], SLUICE_FORMAT_R32G32B32A32_SFLOAT, 300, 300, 2);
+    SluiceDemandTextureId id = runner_add_texture(&r, &images[0]);
+    runner_add_texel(&r, id, 300, 300, 0, 299, 0);
+    for (uint32_t i = 0; i < 6; i++) {
+        struct runner_image *image = &images[i % 2], *other = &images[1 - i % 2];
+        if (i > 0) {
+            SluiceDemandImage desc = runner_image_desc(image);
+            uint32_t opened = image->opened;
+            CHECK_OK(runner_submit(&r)); /* a launch with the old one is under way */
+            CHECK_OK(sluiceReplaceDemandImage(r.loader, id, &desc));
+            assert_int_equal(image->opened, opened);
+            CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests,
+                                                 NULL));
+            assert_int_equal(other->closed, other->opened);
+        }
+        assert_in_range(runner_load(&r, 20), 2, 9);
+        runner_check_texel(&r, 0, image, 0, i % 2 ? 299 : 599, 0);
+    }
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_int_equal(images[i].opened, 3);
+        assert_int_equal(images[i].closed, 3);
+        runner_image_finish(&images[i]);
+    }
+}
+
+static void texels_that_changed_are_read_again(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 500, 500, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    runner_add_texel(&r, id, 500, 500, 0, 400, 400);
+    runner_add_texel(&r, id, 500, 500, 5, 3, 3);
+    runner_add_texel(&r, id, 500, 500, 8, 0, 0);
+    runner_load(&r, 9);
+    runner_check_texel(&r, 2, &image, 8, 0, 0);
+    image.seed ^= 0x55555;
+    CHECK_OK(sluiceInvalidateDemandTexture(r.loader, id));
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &image, 0, 400, 400);
+    runner_check_texel(&r, 1, &image, 5, 3, 3);
+    /* The colour of the last level comes on its own. */
+    float rgba[4];
+    runner_image_texel(&image, 8, 0, 0, rgba);
+    for (uint32_t i = 0; i < 10000 && runner_output(&r, 2).color[0] != rgba[0]; i++) {
+        runner_launch(&r);
+        sched_yield();
+    }
+    runner_check_texel(&r, 2, &image, 8, 0, 0);
+    assert_int_equal(image.opened, 1);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void ids_of_destroyed_textures_are_refused_and_their_places_used_again(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[2];
+    SluiceDemandTextureId ids[2], last;
+    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = 2};
+    runner_init(&r, &h, &info);
+    for (uint32_t i = 0; i < 2; i++) {
+        runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, i);
+        ids[i] = runner_add_texture(&r, &images[i]);
+        runner_add_texel(&r, ids[i], 300, 300, 0, 9, 9);
+    }
+    const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&images[0])};
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &last), SLUICE_ERROR_LIMIT_EXCEEDED);
+    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, ids[1] + 1), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, 0), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    for (uint32_t i = 0; i < 5; i++) {
+        runner_load(&r, 9);
+        runner_check_texel(&r, 0, &images[0], 0, 9, 9);
+        CHECK_OK(runner_submit(&r)); /* which names the index */
+        CHECK_OK(sluiceDestroyDemandTexture(r.loader, ids[0]));
+        CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
+        CHECK_RESULT(sluiceInvalidateDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
+        CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &last),
+                     SLUICE_ERROR_LIMIT_EXCEEDED);
+        CHECK_OK(
+            sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
+        last = ids[0];
+        ids[0] = runner_add_texture(&r, &images[0]);
+        assert_true(ids[0] != last && (uint32_t)ids[0] == (uint32_t)last);
+        CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, last), SLUICE_ERROR_STALE_TEXTURE);
+        assert_int_equal(images[0].closed, i + 1);
+    }
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_image_finish(&images[i]);
+}
+
+static void textures_by_the_hundred_thousand_cost_nothing_before_they_are_sampled(void **state)
+{
+    (void)state;
+    enum { COUNT = 100000, LAST = 99999 };
+    struct runner r;
+    struct runner_image image;
+    static SluiceDemandTextureId ids[COUNT];
+    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = COUNT};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    uint64_t memory = runner_statistics(&r).deviceMemorySize;
+    for (uint32_t i = 0; i < COUNT; i++)
+        ids[i] = runner_add_texture(&r, &image);
+    assert_int_equal(runner_statistics(&r).deviceMemorySize, memory);
+    const uint32_t some[3] = {0, 77777, LAST};
+    for (uint32_t i = 0; i < 3; i++)
+        runner_add_texel(&r, ids[some[i]], 300, 300, 0, i, 299);
+    runner_load(&r, 9);
+    for (uint32_t i = 0; i < 3; i++)
+        runner_check_texel(&r, i, &image, 0, i, 299);
+    assert_int_equal(image.opened, 3);
+    for (uint32_t i = 0; i < COUNT; i++)
+        CHECK_OK(sluiceDestroyDemandTexture(r.loader, ids[i]));
+    assert_int_equal(image.closed, 3);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void wrong_arguments_are_refused(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandTextureId id;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 64, 64, 1);
+    SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, NULL), SLUICE_ERROR_NULL_POINTER);
+    create.sampler.maxAnisotropy = 65;
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.sampler = (SluiceDemandSampler){.lodBias = -17};
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.sampler = (SluiceDemandSampler){.filter = (SluiceDemandFilter)2};
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    create.image = (SluiceDemandImage){0};
+    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_NULL_POINTER);
+    SluiceDemandLaunch none = {.launchIndex = 1};
+    CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &none, 0, &r.requests, NULL),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceEndDemandLaunch(r.loader, h.commands[0]), SLUICE_ERROR_INVALID_ARGUMENT);
+    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 1000};
+    SluiceDemandLoader *loader;
+    runner_fill(&h, &info);
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.memoryBudget = 0;
+    info.launchesInFlight = 17;
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void launches_are_processed_once_and_in_order(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    runner_init(&r, &h, NULL);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    runner_add_texel(&r, runner_add_texture(&r, &image), 300, 300, 0, 2, 2);
+    CHECK_OK(runner_submit(&r));
+    SluiceDemandLaunch first = r.launch;
+    CHECK_OK(runner_submit(&r));
+    CHECK_RESULT(runner_submit(&r), SLUICE_NOT_READY); /* two in flight */
+    CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
+    assert_int_equal(r.requests.missingCount, 2); /* of both */
+    assert_int_equal(r.requests.servedCount, 1);
+    assert_int_equal(r.requests.pendingCount, 1);
+    CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &first, 0, &r.requests, NULL),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &image, 0, 2, 2);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(colours_are_the_images_own_when_nothing_is_missing),
+        cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
+        cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
+        cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),
+        cmocka_unit_test(a_grid_shows_the_texture_of_each_cell),
+        cmocka_unit_test(another_image_takes_a_textures_place_while_it_is_sampled),
+        cmocka_unit_test(texels_that_changed_are_read_again),
+        cmocka_unit_test(ids_of_destroyed_textures_are_refused_and_their_places_used_again),
+        cmocka_unit_test(textures_by_the_hundred_thousand_cost_nothing_before_they_are_sampled),
+        cmocka_unit_test(launches_are_processed_once_and_in_order),
+        cmocka_unit_test(wrong_arguments_are_refused),
+    };
+    return harness_finish(&h, RUN_TESTS(tests));
+}
