@@ -65,9 +65,9 @@ static void write_buffers(struct runner *r, VkDescriptorSet set)
 {
     SluiceDemandBuffers b;
     sluiceGetDemandBuffers(r->loader, &b);
-    const VkBuffer buffers[BUFFERS] = {b.textures,      b.levels,         b.directory,
-                                       b.blocks,        b.masks,          b.requests,
-                                       b.sections,      r->inputs.buffer, r->outputs.buffer};
+    const VkBuffer buffers[BUFFERS] = {b.textures, b.levels,         b.directory,
+                                       b.blocks,   b.masks,          b.requests,
+                                       b.sections, r->inputs.buffer, r->outputs.buffer};
     VkDescriptorBufferInfo infos[BUFFERS];
     for (uint32_t i = 0; i < BUFFERS; i++)
         infos[i] = (VkDescriptorBufferInfo){buffers[i], 0, VK_WHOLE_SIZE};
@@ -182,12 +182,11 @@ static uint32_t level_size(uint32_t size, uint32_t level)
 void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width, uint32_t height,
                       uint32_t level, uint32_t x, uint32_t y)
 {
-    runner_add(r, (struct RunnerInput){
-                      .kind = RUNNER_LOD,
-                      .index = (uint32_t)id,
-                      .uv = {((float)x + 0.5f) / (float)level_size(width, level),
-                             ((float)y + 0.5f) / (float)level_size(height, level)},
-                      .dx = {(float)level}});
+    runner_add(r, (struct RunnerInput){.kind = RUNNER_LOD,
+                                       .index = (uint32_t)id,
+                                       .uv = {((float)x + 0.5f) / (float)level_size(width, level),
+                                              ((float)y + 0.5f) / (float)level_size(height, level)},
+                                       .dx = {(float)level}});
 }
 
 void runner_add_page(struct runner *r, uint32_t page)
@@ -354,16 +353,14 @@ void runner_image_finish(struct runner_image *image)
 
 SluiceDemandImage runner_image_desc(struct runner_image *image)
 {
-    return (SluiceDemandImage){
-        .pUserData = image, .pfnOpen = open_image, .pfnClose = close_image};
+    return (SluiceDemandImage){.pUserData = image, .pfnOpen = open_image, .pfnClose = close_image};
 }
 
 SluiceDemandTextureId runner_add_texture(struct runner *r, struct runner_image *image)
 {
     SluiceDemandTextureId id;
-    const SluiceDemandTextureCreateInfo info = {.image = runner_image_desc(image),
-                                                .sampler = runner_nearest,
-                                                .failureColor = {1, 0, 1, 1}};
+    const SluiceDemandTextureCreateInfo info = {
+        .image = runner_image_desc(image), .sampler = runner_nearest, .failureColor = {1, 0, 1, 1}};
     CHECK_OK(sluiceCreateDemandTexture(r->loader, &info, &id));
     return id;
 }

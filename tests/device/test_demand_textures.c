@@ -1,4 +1,5 @@
-/* Textures: what a launch shows of them, what is opened and read for it, and what becomes of ids. */
+/* Textures: what a launch shows of them, what is opened and read for it, and what becomes of ids.
+ */
 #include "device/demand_runner.h"
 
 #include "support/test.h"
@@ -146,9 +147,8 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     SluiceDemandSampler clamp = runner_nearest;
     clamp.addressModeU = clamp.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     CHECK_OK(sluiceCreateDemandTextureVariant(r.loader, id, &clamp, &variant));
-    runner_add(&r, (struct RunnerInput){.kind = RUNNER_LOD,
-                                        .index = (uint32_t)variant,
-                                        .uv = {1.001f, 0.001f}});
+    runner_add(&r, (struct RunnerInput){
+                       .kind = RUNNER_LOD, .index = (uint32_t)variant, .uv = {1.001f, 0.001f}});
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 511, 0);
     uint64_t reads = image.source.read_count;
@@ -232,8 +232,8 @@ static void another_image_takes_a_textures_place_while_it_is_sampled(void **stat
             CHECK_OK(runner_submit(&r)); /* a launch with the old one is under way */
             CHECK_OK(sluiceReplaceDemandImage(r.loader, id, &desc));
             assert_int_equal(image->opened, opened);
-            CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests,
-                                                 NULL));
+            CHECK_OK(
+                sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, NULL));
             assert_int_equal(other->closed, other->opened);
         }
         assert_in_range(runner_load(&r, 20), 2, 9);

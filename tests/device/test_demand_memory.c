@@ -1,0 +1,352 @@
+/* Memory: budgets that hold, pictures that come to rest, and tiles that come back unread. */
+#include "device/demand_runner.h"
+
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <math.h>
+
+static struct harness h;
+
+enum { SIZE = 4096, TILE = 128, TILES = SIZE / TILE };
+
+/* A texel of each tile of level 0, in rows from `first` on. */
+static void add_tiles(struct runner *r, SluiceDemandTextureId id, uint32_t first, uint32_t rows)
+{
+    for (uint32_t y = first; y < first + rows; y++)
+        for (uint32_t x = 0; x < TILES; x++)
+            runner_add_texel(r, id, SIZE, SIZE, 0, x * TILE + 7, y * TILE + 9);
+}
+
+/* Of the finest level that is at least `bias` coarse: nearest level, and texel of it. */
+static void check_blurred(struct runner *r, struct runner_image *image, uint32_t sample,
+                          uint32_t level, uint32_t x, uint32_t y)
+{
+    runner_check_texel(r, sample, image, level, x >> level, y >> level);
+}
+
+static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **state)
+{
+    (void)state;
+    enum { COUNT = 2 };
+    struct runner r;
+    struct runner_image images[COUNT];
+    SluiceDemandTextureId ids[COUNT];
+    /* 2048 tiles of level 0 in memory for 640: those of level 1 fit. */
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 40u << 20, .maxTilesInFlight = 256};
+    runner_init(&r, &h, &info);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, i);
+        ids[i] = runner_add_texture(&r, &images[i]);
+        add_tiles(&r, ids[i], 0, TILES);
+    }
+    uint32_t launches = runner_load(&r, 60);
+    print_message("# launches.blurrier %u launches\n", launches);
+    assert_in_range(launches, 4, 30);
+    assert_true(runner_all_resident(&r));
+    SluiceDemandStatistics before = runner_statistics(&r);
+    assert_true(before.lodBias > 0 && before.lodBias <= 2);
+    assert_true(before.tileMemorySize <= info.memoryBudget);
+    uint32_t level = (uint32_t)(before.lodBias + 0.499f);
+    for (uint32_t i = 0; i < r.count; i++) {
+        uint32_t tile = i % (TILES * TILES);
+        check_blurred(&r, &images[i / (TILES * TILES)], i, level, tile % TILES * TILE + 7,
+                      tile / TILES * TILE + 9);
+    }
+    for (uint32_t i = 0; i < 10; i++) {
+        runner_launch(&r);
+        assert_int_equal(r.requests.missingCount, 0);
+        assert_int_equal(r.launch.tileCount, 0);
+    }
+    assert_int_equal(runner_statistics(&r).bytesUploaded, before.bytesUploaded);
+    runner_finish(&r);
+    for (uint32_t i = 0; i < COUNT; i++)
+        runner_image_finish(&images[i]);
+}
+
+static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {
+        .memoryBudget = 8u << 20, .maxTilesInFlight = 64, .noLodBias = true};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    runner_load(&r, 60);
+    assert_true(runner_all_resident(&r));
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_true(statistics.lodBias == 0);
+    assert_true(statistics.tileMemorySize <= info.memoryBudget);
+    assert_in_range(statistics.residentTileCount, 100, info.memoryBudget / 65536);
+    uint32_t sharp = 0;
+    for (uint32_t i = 0; i < r.count; i++) {
+        float rgba[4];
+        struct RunnerOutput out = runner_output(&r, i);
+        runner_image_texel(&image, 0, i % TILES * TILE + 7, i / TILES * TILE + 9, rgba);
+        sharp += fabsf(out.color[0] - rgba[0]) < 1e-6f && fabsf(out.color[1] - rgba[1]) < 1e-6f;
+    }
+    assert_in_range(sharp, 32, info.memoryBudget / 65536 + 4); /* few colours are twice there */
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    runner_init(&r, &h, &info); /* 256 tiles: 8 rows */
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    /* Six rows, then two others and the sixth: all that fits. */
+    add_tiles(&r, id, 0, 6);
+    runner_load(&r, 30);
+    assert_true(runner_all_resident(&r));
+    runner_clear(&r);
+    add_tiles(&r, id, 6, 4); /* of the first six rows two and more have to go */
+    assert_in_range(runner_load(&r, 30), 2, 29);
+    assert_true(runner_all_resident(&r));
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_true(statistics.lodBias == 0);
+    assert_in_range(statistics.evictedCount, 2 * TILES - 8, 3 * TILES);
+    assert_true(statistics.tileMemorySize <= info.memoryBudget);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void views_that_walk_to_and_fro_never_show_other_texels(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    for (uint32_t i = 0; i < 12; i++) {
+        runner_clear(&r);
+        add_tiles(&r, id, i % 3 * 3, 5);
+        runner_load(&r, 30);
+        assert_true(runner_all_resident(&r));
+        for (uint32_t s = 0; s < r.count; s++)
+            runner_check_texel(&r, s, &image, 0, s % TILES * TILE + 7,
+                               (i % 3 * 3 + s / TILES) * TILE + 9);
+    }
+    assert_true(runner_statistics(&r).evictedCount > 0);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image, other;
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    runner_image_init(&other, SLUICE_FORMAT_R32G32B32A32_SFLOAT, SIZE, SIZE, 2);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    SluiceDemandTextureId other_id = runner_add_texture(&r, &other);
+    add_tiles(&r, id, 0, 7);
+    runner_load(&r, 30);
+    uint64_t reads = image.source.read_count;
+    /* Tiles of another format make them go, and cannot have their places: not yet. */
+    runner_clear(&r);
+    add_tiles(&r, other_id, 0, 1);
+    runner_load(&r, 2); /* the first one opens it */
+    assert_true(runner_statistics(&r).evictedCount > 0);
+    runner_clear(&r);
+    add_tiles(&r, id, 0, 7);
+    runner_load(&r, 30);
+    for (uint32_t s = 0; s < r.count; s++)
+        runner_check_texel(&r, s, &image, 0, s % TILES * TILE + 7, s / TILES * TILE + 9);
+    assert_true(runner_statistics(&r).restoredCount > 0);
+    assert_int_equal(image.source.read_count, reads);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    runner_image_finish(&other);
+}
+
+static void formats_share_a_budget(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[2];
+    SluiceDemandTextureId ids[2];
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    runner_init(&r, &h, &info);
+    for (uint32_t i = 0; i < 2; i++) {
+        runner_image_init(&images[i],
+                          i ? SLUICE_FORMAT_R32G32B32A32_SFLOAT : SLUICE_FORMAT_R8G8B8A8_UNORM,
+                          SIZE, SIZE, i);
+        ids[i] = runner_add_texture(&r, &images[i]);
+    }
+    for (uint32_t round = 0; round < 4; round++) {
+        runner_clear(&r);
+        add_tiles(&r, ids[round % 2], 0, 6);
+        /* Chunks of the other format have to run empty and go. */
+        assert_in_range(runner_load(&r, 100), 1, 99);
+        SluiceDemandStatistics statistics = runner_statistics(&r);
+        assert_true(runner_all_resident(&r));
+        assert_true(statistics.tileMemorySize <= info.memoryBudget);
+    }
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_image_finish(&images[i]);
+}
+
+static void preloaded_levels_are_there_before_they_are_sampled(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandTicket ticket;
+    SluiceDemandTicketStatus status;
+    const SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = 32};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 1, &ticket));
+    uint32_t launches = 0;
+    do { /* more tiles than may be in flight: launches copy those that came */
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, UINT64_MAX, &status));
+        runner_launch(&r);
+        assert_true(++launches < 50);
+    } while (status.remainingCount);
+    runner_launch(&r);
+    /* The opening; levels 1 to 4 of 64, 16, 4 and 1 tiles; and the tail, where 64 is half a tile.
+     */
+    assert_int_equal(status.taskCount, 1 + 64 + 16 + 4 + 1 + 1);
+    assert_int_equal(status.failedCount, 0);
+    assert_int_equal(runner_statistics(&r).residentTileCount, status.taskCount - 1);
+    for (uint32_t i = 0; i < 64; i++)
+        runner_add_texel(&r, id, 2048, 2048, 1, i % 8 * TILE, i / 8 * TILE);
+    for (uint32_t l = 2; l < 12; l++)
+        runner_add_texel(&r, id, 2048, 2048, l, 0, 0);
+    runner_launch(&r);
+    assert_int_equal(r.requests.missingCount, 0);
+    runner_check_texel(&r, 63, &image, 1, 7 * TILE, 7 * TILE);
+    /* Once more there is nothing to do. */
+    CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 1, &ticket));
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, 0, &status));
+    assert_int_equal(status.taskCount, 0);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void what_finds_no_memory_is_left_out_of_a_preload(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandTicket ticket;
+    SluiceDemandTicketStatus status = {0};
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 4u << 20, .maxTilesInFlight = 32};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    CHECK_OK(sluicePreloadDemandTexture(r.loader, runner_add_texture(&r, &image), 0, &ticket));
+    uint32_t launches = 0;
+    do {
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, ticket, UINT64_MAX, &status));
+        runner_launch(&r);
+        assert_true(++launches < 50);
+    } while (status.remainingCount);
+    runner_launch(&r);
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_in_range(statistics.residentTileCount, 32, 64);
+    assert_int_equal(statistics.evictedCount, 0);
+    assert_true(statistics.tileMemorySize <= info.memoryBudget);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+/* A loader's life, on one thread but for the workers: OUT_OF_HOST_MEMORY, or how it should be. */
+static bool live(struct failing_allocator *allocator, struct runner_image *image)
+{
+    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
+                                         .maxTextureCount = 64,
+                                         .pageCapacity = 1u << 16,
+                                         .maxTilesInFlight = 16,
+                                         .loaderThreadCount = 2,
+                                         .pAllocator = &allocator->callbacks};
+    SluiceDemandLoader *loader;
+    SluiceDemandTextureId id;
+    struct runner r;
+    runner_fill(&h, &info);
+    SluiceResult result = sluiceCreateDemandLoader(&info, &loader);
+    if (result != SLUICE_SUCCESS) {
+        CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        assert_null(loader);
+        return false;
+    }
+    const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(image),
+                                                  .sampler = runner_nearest};
+    result = sluiceCreateDemandTexture(loader, &create, &id);
+    if (result != SLUICE_SUCCESS) {
+        CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        sluiceDestroyDemandLoader(loader);
+        return false;
+    }
+    runner_init_with(&r, &h, loader);
+    runner_add_texel(&r, id, 300, 300, 0, 299, 299);
+    bool complete = false;
+    for (uint32_t i = 0; i < 5 && !complete; i++) {
+        result = runner_submit(&r);
+        if (result == SLUICE_SUCCESS)
+            result =
+                sluiceProcessDemandRequests(loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket);
+        if (result != SLUICE_SUCCESS) {
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+            break;
+        }
+        complete = r.requests.missingCount == 0;
+        CHECK_OK(sluiceWaitDemandTicket(loader, r.ticket, UINT64_MAX, NULL));
+    }
+    if (complete)
+        runner_check_texel(&r, 0, image, 0, 299, 299);
+    runner_finish(&r);
+    return complete;
+}
+
+static void a_loader_survives_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct failing_allocator allocator;
+    struct runner_image image;
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    h.quiet = true;
+    bool complete = false;
+    for (uint64_t n = 0; !complete; n++) {
+        assert_true(n < 500);
+        failing_allocator_init(&allocator, n);
+        complete = live(&allocator, &image);
+        assert_int_equal(allocator.live_count, 0);
+        assert_int_equal(allocator.live_bytes, 0);
+    }
+    h.quiet = false;
+    assert_int_equal(image.opened, image.closed);
+    runner_image_finish(&image);
+}
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_working_set_beyond_the_budget_ends_complete_and_blurrier),
+        cmocka_unit_test(without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there),
+        cmocka_unit_test(tiles_that_nobody_uses_make_room_and_come_back_unread),
+        cmocka_unit_test(views_that_walk_to_and_fro_never_show_other_texels),
+        cmocka_unit_test(tiles_that_were_evicted_and_not_overwritten_need_no_read),
+        cmocka_unit_test(formats_share_a_budget),
+        cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
+        cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
+        cmocka_unit_test(a_loader_survives_every_refused_allocation),
+    };
+    return harness_finish(&h, RUN_TESTS(tests));
+}
