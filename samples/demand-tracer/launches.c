@@ -4,9 +4,8 @@
 
 #include "../common/progress.h"
 
-/* Nanoseconds. How long a preview waits for tiles before it shows what is there. */
-#define PREVIEW_PATIENCE 20000000u
-#define PRELOAD_PATIENCE 2000000u
+/* Nanoseconds: how long a preview waits for tiles before it shows what is there. */
+#define PATIENCE 20000000u
 
 static bool check(SluiceResult result, const char *what)
 {
@@ -59,7 +58,7 @@ static bool wait_for_tiles(struct launches *l, SluiceDemandTicket ticket, uint64
 
 static bool trace_sample(struct launches *l, uint32_t sample)
 {
-    const uint64_t patience = l->options->preview ? PREVIEW_PATIENCE : UINT64_MAX;
+    const uint64_t patience = l->options->preview ? PATIENCE : UINT64_MAX;
     film_begin_sample(l->film);
     while (l->film->missing_count > 0 && l->count < l->options->max_launches) {
         struct launch_record record = {
@@ -103,18 +102,20 @@ bool launches_run(struct launches *l)
     return true;
 }
 
-/* Texels are copied by launches, so launches go on, although they trace nothing. */
+/* Opened textures are gone on with, and texels copied, by launches: they go on, tracing nothing. */
 static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
 {
     SluiceDemandRequests requests;
-    for (;;) {
-        SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, PRELOAD_PATIENCE, NULL);
-        if (result != SLUICE_NOT_READY)
-            return check(result, "a texture cannot be loaded");
+    SluiceDemandTicketStatus status;
+    do {
+        SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, PATIENCE, &status);
+        if (result != SLUICE_NOT_READY && !check(result, "a texture cannot be loaded"))
+            return false;
         if (!launch_once(l, 0, &requests, NULL))
             return false;
         l->preload_count++;
-    }
+    } while (status.remainingCount > 0);
+    return true;
 }
 
 bool launches_preload(struct launches *l)

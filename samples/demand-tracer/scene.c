@@ -114,7 +114,7 @@ static void add_plants(struct scene *scene, uint32_t seed, uint32_t first, uint3
     for (uint32_t i = 0, added = 0; added < count; i++) {
         uint32_t hash = noise_hash((int32_t)i, 9, seed);
         struct vec3 at = site(i, 0.95f, seed + 1);
-        if (is_near_camera(at, 2.0f))
+        if (is_near_camera(at, 2.7f))
             continue;
         float size = 0.35f + 0.4f * noise_unit(hash);
         struct placement place = {at, {size, size, size}, NOISE_TAU * noise_unit(hash * 7u)};

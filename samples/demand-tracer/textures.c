@@ -14,7 +14,11 @@ static SluiceResult open_file(const char *path, SluiceImageSource **source)
     SluiceImageInfo info;
     struct picture_opening opening = {.pixels = PIXEL_FORMAT_AUTO};
     if (!picture_file_kind(path, &kind))
+        return SLUICE_ERROR_IO;
+    if (kind == PICTURE_OTHER) {
+        fprintf(stderr, "%s: is no OpenEXR, DDS or KTX2 file, nor a tile store\n", path);
         return SLUICE_ERROR_UNSUPPORTED;
+    }
     return picture_file_open(path, kind, &opening, source, &info);
 }
 

@@ -41,7 +41,7 @@ vec2 random2(inout Random r)
 vec3 skyLight(vec3 direction)
 {
     float up = max(direction.y, 0.0);
-    vec3 sky = mix(vec3(0.68, 0.80, 0.95), vec3(0.07, 0.21, 0.60), pow(up, 0.45));
+    vec3 sky = mix(vec3(0.60, 0.76, 0.98), vec3(0.05, 0.19, 0.62), pow(up, 0.45));
     float toSun = max(dot(direction, SUN_DIRECTION), 0.0);
     sky += vec3(1.0, 0.72, 0.42) * (0.35 * pow(toSun, 8.0) + 0.6 * pow(toSun, 64.0));
     return direction.y < 0.0 ? mix(sky, vec3(0.22, 0.20, 0.15), min(-direction.y * 6.0, 1.0)) : sky;
