@@ -66,7 +66,8 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint32_t maxPageChunkCount;      ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
     /** Nothing is ever evicted, and shaders do not say what they use: a little faster. */
     bool noEviction;
-    /** A working set larger than the budget stays incomplete, instead of becoming blurrier. */
+    /** With a working set larger than the budget some tiles stay away, and samples there take
+     *  coarser ones, instead of all of them becoming a little blurrier. */
     bool noLodBias;
     SluiceTileReadFailureCallback failure; ///< told of every read that fails, see loader.h
 } SluiceDemandLoaderCreateInfo;
@@ -100,13 +101,14 @@ typedef struct SluiceDemandSampler {
 
 /** Where the texels come from: an image that is there, or one that is opened when it is needed. */
 typedef struct SluiceDemandImage {
-    /** Not NULL: asked for its info when first sampled; must outlive the texture. */
+    /** Not NULL: asked for its info when first sampled; must outlive the texture. It is never
+     *  closed. Calls that take it away wait for its reads that are under way. */
     SluiceImageSource *source;
     void *pUserData;
     /** Where `source` is NULL. On a worker thread, at most once at a time; again after NOT_READY,
      *  IO and OUT_OF_HOST_MEMORY, see readRetry. `*pSource` has one array layer. */
     SluiceResult (*pfnOpen)(void *pUserData, SluiceImageSource **pSource);
-    /** Never for an image that was not opened; no read of it is under way. NULL:
+    /** Once for each image that pfnOpen opened; no read of it is under way. NULL:
      *  sluiceDestroyImageSource. On any thread that uses the loader. */
     void (*pfnClose)(void *pUserData, SluiceImageSource *source);
 } SluiceDemandImage;
@@ -148,8 +150,9 @@ SLUICE_API SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
                                                const float missingColor[4],
                                                SluiceDemandTextureId *pTextureId);
 
-/** Its pages and index are used again when the launches prepared so far are over. Variants go with
- *  their base. Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE. */
+/** Shaders that still name it get its failureColor, grids their missingColor. Its pages and index
+ *  are used again when the launches prepared so far are processed. Variants go with their base.
+ *  Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE. */
 SLUICE_API SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader,
                                                    SluiceDemandTextureId textureId);
 
@@ -161,12 +164,17 @@ SLUICE_API SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader,
                                                  const SluiceDemandImage *pImage);
 
 /** The texels of the image have changed, not its size or format: its tiles are forgotten, and read
- *  anew when they are next sampled. Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE. */
+ *  anew when they are next sampled. One that could not be opened is tried again. Errors:
+ *  NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE; INVALID_ARGUMENT for grids. */
 SLUICE_API SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
                                                       SluiceDemandTextureId textureId);
 
-/** Loads the levels from `finestLevel` on as if shaders had asked for them; opens the image first.
- *  What finds no room in memory is left out. Errors: as above; OUT_OF_HOST_MEMORY. */
+/**
+ * Loads the levels from `finestLevel` on, coarse ones first; opens the image before. What finds no
+ * room in memory is left out: nothing is evicted for it. Launches copy what came and begin what did
+ * not fit into maxTilesInFlight, so until remainingCount is 0: wait for the ticket, launch.
+ * `pTicket` may be NULL. Errors: as above; OUT_OF_HOST_MEMORY.
+ */
 SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
                                                    SluiceDemandTextureId textureId,
                                                    uint32_t finestLevel,
@@ -191,6 +199,8 @@ typedef struct SluiceDemandResourceCreateInfo {
 SLUICE_API SluiceResult sluiceCreateDemandResource(
     SluiceDemandLoader *loader, const SluiceDemandResourceCreateInfo *pCreateInfo,
     SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage);
+/** Waits for fills that are under way. Its values are evicted when the launches prepared so far are
+ *  processed, at the latest when the loader is destroyed; until then pUserData must stay. */
 SLUICE_API SluiceResult sluiceDestroyDemandResource(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId);
 /** Forgets what `count` pages from `firstPage` (of the resource) are; they are filled anew when
@@ -226,9 +236,11 @@ typedef struct SluiceDemandLaunch {
 /**
  * Records, outside a render pass, copies of what was loaded and the page table that shows it.
  * Everything between this call and sluiceEndDemandLaunch sees that; barriers are recorded here for
- * all stages. NOT_READY, with nothing recorded, while launchesInFlight are not over.
- * Errors: NULL_POINTER; INVALID_ARGUMENT if the last launch was not ended; OUT_OF_HOST_MEMORY,
- * OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST; CANCELLED after sluiceAbortDemandLoader.
+ * all stages. NOT_READY, with nothing recorded, while launchesInFlight are not processed. It must
+ * be submitted, and in the order of the calls, but after an error, when nothing was recorded that
+ * counts. Errors: NULL_POINTER; INVALID_ARGUMENT if the last launch was not ended;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST; CANCELLED after
+ * sluiceAbortDemandLoader.
  */
 SLUICE_API SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader,
                                                   VkCommandBuffer commandBuffer,
@@ -269,12 +281,14 @@ typedef struct SluiceDemandTicketStatus {
     uint32_t taskCount, remainingCount, failedCount;
 } SluiceDemandTicketStatus;
 
-/** Errors: NULL_POINTER; INVALID_ARGUMENT for tickets that were never given. Any thread. */
+/** Zeros for tickets that were over before the last thousand. Errors: NULL_POINTER;
+ *  INVALID_ARGUMENT for tickets that were never given. Any thread. */
 SLUICE_API SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader,
                                                     SluiceDemandTicket ticket,
                                                     SluiceDemandTicketStatus *pStatus);
-/** Until all its tasks are over, successfully or not; NOT_READY after `timeout` ns. `pStatus` may
- *  be NULL. CANCELLED once the loader is aborted. Any thread. */
+/** Until all its tasks that have begun are over, successfully or not: all that there are, but for
+ *  preloads. NOT_READY after `timeout` ns. `pStatus` may be NULL. CANCELLED once the loader is
+ *  aborted. Any thread. */
 SLUICE_API SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader,
                                                SluiceDemandTicket ticket, uint64_t timeout,
                                                SluiceDemandTicketStatus *pStatus);
@@ -295,7 +309,7 @@ typedef struct SluiceDemandStatistics {
     uint64_t residentTileCount; ///< tails are tiles, too
     uint64_t residentResourcePageCount;
     uint64_t tileMemorySize;   ///< bytes of device memory that hold tiles: within the budget
-    uint64_t deviceMemorySize; ///< all of it, with buffers
+    uint64_t deviceMemorySize; ///< all of it, with buffers, but those in the host's memory
     float lodBias;
     /** Reads and fills by the time from request to end: bucket i counts those of less than 2^i us,
      *  the last one all others. */

@@ -34,7 +34,7 @@ static void learn(struct slc_demand_bias *bias, float need, float total)
     }
     bias->seen[now].known = true;
     bias->seen[now].scale = 1;
-    bias->seen[now].old = false;
+    bias->seen[now].old = bias->seen[now].fails = false;
     bias->seen[now].need = need;
     bias->seen[now].total = total;
 }
@@ -51,25 +51,30 @@ static void change(struct slc_demand_bias *bias, uint32_t quarters)
 static void raise(struct slc_demand_bias *bias, float need, float room)
 {
     uint32_t to = bias->quarters, least = to + ++bias->raises;
-    while (to < SLC_MAX_BIAS_QUARTERS && need > room && need >= 1) {
-        to++;
+    do {
+        to = slc_min_u32(to + 1, SLC_MAX_BIAS_QUARTERS);
         need = bias->seen[to].known ? bias->seen[to].need : need / QUARTER;
-    }
+    } while (to < SLC_MAX_BIAS_QUARTERS && (need > room || bias->seen[to].fails) && need >= 1);
     if (!bias->seen[to].known)
         to = slc_min_u32(slc_max_u32(to, least), SLC_MAX_BIAS_QUARTERS);
     if (to > bias->quarters)
         change(bias, to);
 }
 
-/* What the next finer bias needs, if this one needs `need`. What was seen of a view that needed far
- * more is no reason not to try. */
-static float finer_need(const struct slc_demand_bias *bias, uint32_t quarters, float need)
+/* Whether the next finer bias may fit, if this one needs *need; that of the finer one then. What
+ * was seen of a view that needed far more is no reason not to try. */
+static bool may_fit(const struct slc_demand_bias *bias, uint32_t finer, float room, float *need)
 {
-    uint32_t finer = quarters - 1;
-    float guess = need * QUARTER, seen = bias->seen[finer].need;
-    if (!bias->seen[finer].known || (bias->seen[finer].old && seen > guess))
-        return guess;
-    return seen;
+    float guess = *need * QUARTER;
+    const bool known = bias->seen[finer].known, old = bias->seen[finer].old;
+    if (known && !old && bias->seen[finer].fails)
+        return false;
+    if (known && (!old || bias->seen[finer].need < guess))
+        guess = bias->seen[finer].need;
+    if (guess > room)
+        return false;
+    *need = guess > *need ? guess : *need;
+    return true;
 }
 
 /* Half of the way to the finest bias that should fit, because estimates are rough. */
@@ -78,13 +83,8 @@ static void lower(struct slc_demand_bias *bias, float need, float room)
     uint32_t to = bias->quarters;
     need = need < 1 ? 1 : need;
     room -= room / 16;
-    while (to > 0) {
-        float finer = finer_need(bias, to, need);
-        if (finer > room)
-            break;
-        need = finer > need ? finer : need;
+    while (to > 0 && may_fit(bias, to - 1, room, &need))
         to--;
-    }
     if (to < bias->quarters)
         change(bias, bias->quarters - (bias->quarters - to + 1) / 2);
 }
@@ -97,8 +97,9 @@ void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_deman
         bias->loads += need->loads;
     if ((float)bias->loads > 2 * pages + 16)
         slc_demand_bias_forget(bias); /* another view */
-    if (pages > room) {
+    if (pages > room || need->fails) {
         learn(bias, pages, total);
+        bias->seen[bias->quarters].fails = true;
         raise(bias, pages, room);
         return;
     }

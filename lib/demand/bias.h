@@ -19,6 +19,7 @@ struct slc_demand_bias {
     uint64_t loads;  ///< since then
     struct {
         bool known;
+        bool fails;        ///< it did not fit
         float need, total; ///< scaled to launches like the last one; `total` with pinned pages
         float scale;       ///< how far
         bool old;          ///< it was so far that it is a guess
@@ -32,6 +33,7 @@ struct slc_demand_need {
     uint64_t missing;     ///< not pinned, not resident
     uint64_t used_pinned; ///< of them it is only known that they tell of the view
     uint64_t loads;       ///< reads that it caused
+    bool fails;           ///< there are fewer places than `room` after all
 };
 
 /** A launch that was sampled with the present bias is over. */

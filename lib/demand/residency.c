@@ -18,7 +18,7 @@ SluiceResult slc_residency_create(const struct slc_residency_create_info *info,
     r->no_lod_bias = info->no_lod_bias;
     r->unseen = r->overflow = slc_empty_page_list();
     r->changed_head = r->changed_tail = SLC_NO_NODE;
-    r->soft_limit = UINT64_MAX;
+    r->use.full_at = UINT64_MAX;
     r->bias_shown = true;
     r->classes = slc_calloc(&cb, info->class_count, sizeof *r->classes);
     r->class_count = r->classes ? info->class_count : 0;
@@ -55,8 +55,6 @@ SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uin
     c->has_memory = memory != NULL;
     if (memory)
         c->memory = *memory;
-    if (class_index == SLC_TILES)
-        residency->soft_limit = UINT64_MAX;
     slc_residency_trim(residency, class_index);
     residency->over_limit |= c->held > c->limit;
     return SLUICE_SUCCESS;

@@ -118,9 +118,9 @@ struct slc_page_evicted {
     uint64_t value;
 };
 /** Values of pages without a place that went, be it by eviction or because they were forgotten:
- * each value that was loaded is told once, oldest first; in pieces of `capacity`. Returns how many.
- * What takes the changes first, and then these, knows that launches prepared later see none of
- * them. */
+ * each value that was loaded is told once, in the order in which they went; in pieces of
+ * `capacity`. Returns how many. What takes the changes first, and then these, knows that launches
+ * prepared later see none of them. */
 uint32_t slc_residency_take_evicted(struct slc_demand_residency *residency,
                                     struct slc_page_evicted *evicted, uint32_t capacity);
 

@@ -35,6 +35,8 @@ struct slc_launch_use {
     uint64_t pinned_waiting;    ///< pinned, without a place
     uint64_t requests;          ///< of all classes
     uint64_t loads;
+    bool refused;
+    uint64_t full_at; ///< held tiles when there was no place left for one, and none to evict
 };
 
 struct slc_demand_residency {
@@ -54,9 +56,9 @@ struct slc_demand_residency {
     uint32_t valued; ///< pages without a place that are loading or resident
     struct slc_launch_use use;
     struct slc_demand_bias bias;
-    uint64_t bias_from;  ///< the first launch with this bias, once it is known
-    bool bias_shown;     ///< it is
-    uint64_t soft_limit; ///< tiles for which there was memory, when there was no more
+    uint64_t refused_idle; ///< places without use when tiles were last refused
+    uint64_t bias_from;    ///< the first launch with this bias, once it is known
+    bool bias_shown;       ///< it is
 };
 
 static inline struct slc_page_node *slc_node(struct slc_demand_residency *r, uint32_t index)

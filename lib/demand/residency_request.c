@@ -77,11 +77,13 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
     if (!c->has_memory)
         return true;
     *place = memory->take(memory->user, r->pools[pool].kind);
-    if (*place == SLC_NO_PLACE && (slc_residency_evict(r, class_index, pool) ||
-                                   slc_residency_evict(r, class_index, SLC_NO_POOL)))
+    if (*place != SLC_NO_PLACE)
+        return true;
+    if (slc_residency_evict(r, class_index, pool) ||
+        slc_residency_evict(r, class_index, SLC_NO_POOL))
         *place = memory->take(memory->user, r->pools[pool].kind);
-    if (class_index == SLC_TILES && (*place == SLC_NO_PLACE || c->held >= r->soft_limit))
-        r->soft_limit = *place == SLC_NO_PLACE ? c->held : UINT64_MAX;
+    else if (class_index == SLC_TILES && c->held < r->use.full_at)
+        r->use.full_at = c->held;
     return *place != SLC_NO_PLACE;
 }
 
@@ -138,6 +140,7 @@ static enum slc_request_answer turn_away(struct slc_demand_residency *r, uint32_
 {
     bool refuse = slc_residency_is_hopeless(r, request->class_index);
     if (refuse) {
+        r->use.refused = true;
         if (index == SLC_NO_NODE)
             index = slc_page_nodes_add(&r->nodes, request->page);
         slc_residency_leave_home(r, index);

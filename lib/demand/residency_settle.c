@@ -9,7 +9,7 @@ void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch
     struct slc_demand_residency *r = residency;
     assert(launch > r->launch);
     r->launch = launch;
-    r->use = (struct slc_launch_use){0};
+    r->use = (struct slc_launch_use){.full_at = UINT64_MAX};
     if (!r->bias_shown && r->prepared < launch) {
         r->bias_shown = true;
         r->bias_from = launch;
@@ -56,10 +56,10 @@ static uint64_t less(uint64_t a, uint64_t b)
 static void decide_bias(struct slc_demand_residency *r, uint64_t missing)
 {
     const struct slc_page_class *tiles = &r->classes[SLC_TILES];
-    uint64_t limit = tiles->limit < r->soft_limit ? tiles->limit : r->soft_limit;
+    uint64_t fixed = tiles->pinned + r->use.pinned_waiting;
     uint32_t before = r->bias.quarters;
     struct slc_demand_need need = {
-        .room = less(limit, tiles->pinned + r->use.pinned_waiting),
+        .room = less(tiles->limit, fixed),
         .used = r->use.used,
         .missing = r->use.asked + less(missing, r->use.requests), /* what was not listed: tiles */
         .used_pinned = r->use.used_pinned,
@@ -67,20 +67,24 @@ static void decide_bias(struct slc_demand_residency *r, uint64_t missing)
     };
     if (r->no_eviction || r->no_lod_bias || !r->bias_shown || r->launch < r->bias_from)
         return;
-    if (tiles->pinned >= limit)
+    need.fails = need.used + need.missing + fixed > r->use.full_at;
+    if (tiles->pinned >= tiles->limit)
         return; /* pinned pages alone fill memory: sharpness is not what is wrong */
     slc_demand_bias_update(&r->bias, &need);
     r->bias_shown = r->bias.quarters == before;
 }
 
 /* Pages that were refused for want of memory may be asked for again, those of the earliest launches
- * first, half as many as there are places that the launch had no use for. */
+ * first, half as many as there are places that the launch had no use for, if these are more than
+ * when pages were refused. */
 static void lift_refusals(struct slc_demand_residency *r)
 {
     struct slc_page_class *tiles = &r->classes[SLC_TILES];
     uint64_t needed = tiles->pinned + r->use.touched + tiles->counts.loading;
     uint64_t idle = less(tiles->limit, r->no_eviction ? tiles->held : needed);
-    if (idle * LIFT_SHARE < tiles->limit)
+    if (r->use.refused)
+        r->refused_idle = idle; /* these are of no use */
+    if (idle <= r->refused_idle || idle * LIFT_SHARE < tiles->limit)
         return;
     for (idle = (idle + 1) / 2; idle > 0 && r->overflow.head != SLC_NO_NODE; idle--) {
         uint32_t index = r->overflow.head;

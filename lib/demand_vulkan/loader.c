@@ -112,11 +112,12 @@ static SluiceResult create_tables(SluiceDemandLoader *loader)
     return SLUICE_SUCCESS;
 }
 
-/* At worst every tile that is resident or refused has a block of the page table to itself. */
+/* At worst every tile that is resident has a block of the page table to itself. Pages of resources
+ * and those that are refused lie together. */
 static uint32_t block_capacity(const SluiceDemandLoader *loader)
 {
     uint64_t blocks = loader->info.pageCapacity / SLUICE_DEMAND_BLOCK_PAGES;
-    uint64_t wanted = loader->tiles.limit + 16384;
+    uint64_t wanted = loader->tiles.limit + 65536;
     wanted = wanted < blocks ? wanted : blocks;
     return (uint32_t)(wanted < SLC_PAGE_BLOCKS_MAX ? wanted : SLC_PAGE_BLOCKS_MAX);
 }
@@ -318,10 +319,9 @@ static uint64_t device_size(const SluiceDemandLoader *loader)
     const struct slc_demand_scan *scan = &loader->scan;
     const struct slc_page_directory *directory = &loader->directory;
     return loader->tiles.cache.memory.total_size + loader->views.memory.total_size +
-           loader->table_buffer.size + loader->levels_buffer.size + loader->staging.size +
-           scan->requests.size + scan->sections.size + scan->postponed.size + scan->ranks.size +
-           scan->scratch.size + scan->readback.size + directory->directory.size +
-           directory->blocks.size + directory->masks.size + directory->readback.size;
+           loader->table_buffer.size + loader->levels_buffer.size + scan->requests.size +
+           scan->sections.size + scan->postponed.size + scan->ranks.size + scan->scratch.size +
+           directory->directory.size + directory->blocks.size + directory->masks.size;
 }
 
 SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,

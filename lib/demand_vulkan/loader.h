@@ -195,6 +195,7 @@ struct SluiceDemandLoader {
 
     uint64_t launch, ended, processed; ///< the last of each
     bool cleared;                      ///< the device's buffers
+    bool page_table_was_full;          ///< it was told
     bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
     uint32_t limited_count;            ///< resources with a limit
     SluiceDemandStatistics counts;

@@ -95,8 +95,11 @@ static void apply(SluiceDemandLoader *loader, const struct slc_page_change *chan
         slc_page_directory_hide(&loader->directory, change->page);
     if (result == SLUICE_SUCCESS)
         return;
-    slc_log(&loader->info.log, SLUICE_LOG_WARNING, "no room in the page table for page %u: %s",
-            change->page, sluiceResultString(result));
+    if (!loader->page_table_was_full)
+        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+                "no room in the page table for page %u and perhaps others: %s", change->page,
+                sluiceResultString(result));
+    loader->page_table_was_full = true;
     slc_residency_forget(loader->residency, change->page, 1);
 }
 

@@ -16,14 +16,16 @@ static const uint8_t magenta[3] = {255, 0, 200};
 static const uint8_t paper[3] = {24, 24, 26};
 
 /** The mean of the pixels under one of the small picture. */
-static void shrink_pixel(const struct picture *picture, const uint8_t *developed, uint32_t factor,
-                         uint32_t x, uint32_t y, uint8_t *pixel)
+static void shrink_pixel(const struct contact_sheet *sheet, const struct picture *picture,
+                         const uint8_t *developed, uint32_t x, uint32_t y, uint8_t *pixel)
 {
+    const uint32_t factor = picture->width / sheet->cell_width;
     uint32_t sums[3] = {0, 0, 0};
     for (uint32_t row = y * factor; row < (y + 1) * factor; row++)
         for (uint32_t column = x * factor; column < (x + 1) * factor; column++) {
             size_t at = (size_t)row * picture->width + column;
-            const uint8_t *color = picture->missing[at] ? magenta : developed + 4 * at;
+            const uint8_t *color =
+                picture->missing[at] && sheet->marks_missing ? magenta : developed + 4 * at;
             for (int c = 0; c < 3; c++)
                 sums[c] += color[c];
         }
@@ -43,7 +45,7 @@ static void fill_paper(uint8_t *rgba, size_t pixel_count)
 static uint8_t *make_cell(const struct contact_sheet *sheet, const struct picture *picture,
                           double exposure, const char *caption)
 {
-    const uint32_t factor = picture->width / sheet->cell_width, height = sheet->cell_height;
+    const uint32_t height = sheet->cell_height;
     const size_t cell_pixels = (size_t)sheet->cell_width * (height + CAPTION_BAR);
     uint8_t *developed = malloc((size_t)picture->width * picture->height * 4);
     uint8_t *cell = malloc(cell_pixels * 4);
@@ -52,7 +54,7 @@ static uint8_t *make_cell(const struct contact_sheet *sheet, const struct pictur
         fill_paper(cell, cell_pixels);
         for (uint32_t y = 0; y < height; y++)
             for (uint32_t x = 0; x < sheet->cell_width; x++)
-                shrink_pixel(picture, developed, factor, x, y,
+                shrink_pixel(sheet, picture, developed, x, y,
                              cell + 4 * ((size_t)y * sheet->cell_width + x));
         struct canvas canvas = {cell, sheet->cell_width, height + CAPTION_BAR};
         caption_draw(&canvas, 4, height + 4, CAPTION_SCALE, caption);

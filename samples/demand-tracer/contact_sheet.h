@@ -10,6 +10,7 @@
 
 /** Zeroed is empty. */
 struct contact_sheet {
+    bool marks_missing;                  ///< pixels that are not complete are magenta
     uint32_t cell_width, cell_height;    ///< pixels of a small picture
     uint32_t count;                      ///< small pictures so far
     uint8_t *cells[CONTACT_SHEET_CELLS]; ///< owned; RGBA, with the caption below
@@ -18,7 +19,7 @@ struct contact_sheet {
 /** Whether there is room for one more besides the last picture. */
 bool contact_sheet_has_room(const struct contact_sheet *sheet);
 /**
- * Adds a small picture; missing pixels are magenta. Where there is no room it takes the place of
+ * Adds a small picture. Where there is no room it takes the place of
  * the last one. Says on stderr if memory is short.
  */
 bool contact_sheet_add(struct contact_sheet *sheet, const struct picture *picture, double exposure,

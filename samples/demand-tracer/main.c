@@ -193,6 +193,7 @@ int main(int argc, char **argv)
     }
     if (tracer.options.list_devices)
         return gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE;
+    tracer.sheet.marks_missing = !tracer.options.preview;
     bool opened = open_all(&tracer);
     bool done = opened && trace(&tracer);
     close_all(&tracer);

@@ -107,8 +107,8 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
         {OPTION_TEXT, "frames", "DIR", &o->frames,
          "also write the picture after each launch here, as PNG and EXR"},
         {OPTION_TEXT, "contact-sheet", "FILE", &o->contact_sheet,
-         "PNG of small pictures, one for each of the first launches, in\n"
-         "which missing pixels are magenta"},
+         "PNG of small pictures, one for each of the first launches;\n"
+         "without --preview missing pixels are magenta"},
         {OPTION_TEXT, "compare", "FILE", &o->compare,
          "print the PSNR against a PNG picture of another run"},
         {OPTION_FLAG, "json", NULL, &o->json, "a line of JSON for each figure"},

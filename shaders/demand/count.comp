@@ -6,12 +6,15 @@
 
 layout(std430, binding = 4) buffer Scratch { uint words[]; } scratch;
 
-uint countSections()
+/* In whatever order they are added up: it is a sum. The last one is of sections. */
+shared uint keySums[SLUICE_SCAN_SUMS];
+
+void sumKeys(uint section)
 {
-    uint count = 0u;
-    for (uint i = 0u; i < SLUICE_SCAN_GROUP_SECTIONS; i++)
-        count += totals[i] > 0u ? 1u : 0u;
-    return count;
+    if (totals[section] == 0u)
+        return;
+    atomicAdd(keySums[entries[section] >> SLUICE_SCAN_KEY_SHIFT], totals[section]);
+    atomicAdd(keySums[SLUICE_SCAN_KEYS], 1u);
 }
 
 void main()
@@ -21,6 +24,8 @@ void main()
     uint groups = sluiceScanGroups(sectionCount);
     if (scanGroup >= groups)
         return;
+    if (at < SLUICE_SCAN_SUMS)
+        keySums[at] = 0u;
     uint index = scanGroup * SLUICE_SCAN_GROUP_SECTIONS + at / SLUICE_SCAN_PARTS;
     bool listed = index < sectionCount;
     uint entry = listed ? scratch.words[SLUICE_SCAN_LIST + index] : 0u;
@@ -28,9 +33,9 @@ void main()
     uvec4 low = listed ? requests.quads[quad] : uvec4(0u);
     uvec4 high = listed ? requests.quads[quad + 1u] : uvec4(0u);
     sluiceShareCounts(entry, low, high);
-    if (at < SLUICE_SCAN_KEYS)
-        scratch.words[params.firstSum + at * groups + scanGroup] =
-            sluiceCountKey(at, SLUICE_SCAN_GROUP_SECTIONS);
-    else if (at == SLUICE_SCAN_KEYS)
-        scratch.words[params.firstSum + at * groups + scanGroup] = countSections();
+    if (at < SLUICE_SCAN_GROUP_SECTIONS)
+        sumKeys(at);
+    barrier();
+    if (at < SLUICE_SCAN_SUMS)
+        scratch.words[params.firstSum + at * groups + scanGroup] = keySums[at];
 }

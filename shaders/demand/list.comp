@@ -3,6 +3,7 @@
  * stay, and flag their section for the next scan.
  */
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 
 #include "requests.glsl"
@@ -23,17 +24,25 @@ shared uint staged[WINDOW];                          /* section of the group << 
 /* Bits of one part that are still to be listed, lowest first. */
 struct Cursor {
     uint words[8];
-    uint word;
     uint left;
     uint at; /* where the next one goes, among those of the group */
 };
+
+/** Requests with this key in the first `end` sections of the group. */
+uint countKey(uint key, uint end)
+{
+    uint sum = 0u;
+    for (uint i = 0u; i < end; i++)
+        sum += entries[i] >> SLUICE_SCAN_KEY_SHIFT == key ? totals[i] : 0u;
+    return sum;
+}
 
 void placeSections(uint groups, uint scanGroup)
 {
     uint at = gl_LocalInvocationIndex;
     if (at < SLUICE_SCAN_GROUP_SECTIONS) {
         uint key = entries[at] >> SLUICE_SCAN_KEY_SHIFT;
-        places[at] = scratch.words[params.firstSum + key * groups + scanGroup] + sluiceCountKey(key, at);
+        places[at] = scratch.words[params.firstSum + key * groups + scanGroup] + countKey(key, at);
         listedCounts[at] = min(totals[at], params.capacity - min(places[at], params.capacity));
     }
     barrier();
@@ -52,25 +61,24 @@ Cursor beginPart(uvec4 low, uvec4 high)
     for (uint i = section * SLUICE_SCAN_PARTS; i < at; i++)
         before += counts[i];
     uint room = listedCounts[section] - min(before, listedCounts[section]);
-    return Cursor(uint[8](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w), 0u,
+    return Cursor(uint[8](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w),
                   min(counts[at], room), starts[section] + before);
 }
 
-/** Takes bits out of the cursor until the window ends. */
+/** Takes bits out of the cursor until the window ends. Unrolled, so that words stay in registers. */
 void stage(inout Cursor cursor, uint windowFirst)
 {
     uint at = gl_LocalInvocationIndex, section = at / SLUICE_SCAN_PARTS;
     uint first = section * SLUICE_DEMAND_SECTION_PAGES + at % SLUICE_SCAN_PARTS * PART_PAGES;
-    while (cursor.left > 0u && cursor.at - windowFirst < WINDOW) {
-        uint bits = cursor.words[cursor.word];
-        if (bits == 0u) {
-            cursor.word++;
-            continue;
+    [[unroll]] for (uint word = 0u; word < 8u; word++) {
+        uint bits = cursor.words[word];
+        while (bits != 0u && cursor.left > 0u && cursor.at - windowFirst < WINDOW) {
+            staged[cursor.at - windowFirst] = first + word * 32u + uint(findLSB(bits));
+            bits &= bits - 1u;
+            cursor.left--;
+            cursor.at++;
         }
-        staged[cursor.at - windowFirst] = first + cursor.word * 32u + uint(findLSB(bits));
-        cursor.words[cursor.word] = bits & bits - 1u;
-        cursor.left--;
-        cursor.at++;
+        cursor.words[word] = bits;
     }
 }
 

@@ -46,12 +46,3 @@ void sluiceShareCounts(uint entry, uvec4 low, uvec4 high)
     }
     barrier();
 }
-
-/** Requests with this key in the first `end` sections of the group. */
-uint sluiceCountKey(uint key, uint end)
-{
-    uint sum = 0u;
-    for (uint i = 0u; i < end; i++)
-        sum += entries[i] >> SLUICE_SCAN_KEY_SHIFT == key ? totals[i] : 0u;
-    return sum;
-}

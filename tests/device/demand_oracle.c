@@ -126,11 +126,12 @@ bool demand_oracle_taps(const struct SluiceDemandTexture *t, const struct Demand
     long double lod = in->kind == DEMAND_LOD ? isnan(in->lod) ? INFINITY : in->lod
                                              : demand_oracle_lod(d[0], d[1], t->maxAnisotropy);
     double clamped = (double)fminl(fmaxl(lod + bias, 0), last);
-    if (in->kind == DEMAND_LOD || t->maxAnisotropy <= 1 || clamped >= last)
-        visit_levels(&s, clamped, last, 1);
-    else
+    bool row = in->kind != DEMAND_LOD && t->maxAnisotropy > 1;
+    if (row && lod + bias < last)
         visit_rows(&s, clamped, last, bias, d);
-    return s.sure;
+    else
+        visit_levels(&s, clamped, last, 1);
+    return s.sure && !(row && fabsl(lod + bias - last) < 1e-4L);
 }
 
 /* Vulkan's: from any number to a texel, -1 for the border. */
@@ -178,6 +179,8 @@ static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int a
         mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
     double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
     double blur = (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
+    /* beyond, all is edge or border; and neighbours must differ */
+    coordinate = fminl(fmaxl(coordinate, -1e9L), 1e9L);
     long double place = coordinate * size - 0.5L, low = floorl(place);
     struct axis_texels a;
     for (int k = 0; k < 8; k++) {

@@ -160,6 +160,18 @@ void demand_scene_finish(struct demand_scene *s)
         harness_buffer_finish(h, buffers[i]);
 }
 
+void demand_scene_reshape(struct demand_scene *s, VkFormat format, uint32_t tile_width_log2,
+                          uint32_t tile_height_log2)
+{
+    demand_images_finish(s);
+    s->format = format;
+    s->tile_shift[0] = tile_width_log2;
+    s->tile_shift[1] = tile_height_log2;
+    demand_images_init(s);
+    demand_scene_clear(s);
+    demand_images_upload(s);
+}
+
 static void zero(struct harness_buffer *buffer)
 {
     memset(buffer->mapped, 0, buffer->size);

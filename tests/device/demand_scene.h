@@ -29,6 +29,7 @@ struct demand_texture {
     float base_color[4], border_color[4];
 };
 
+/** Each of the functions that sample is called in one of them. */
 enum demand_shader {
     DEMAND_SHADER_COMPUTE,
     DEMAND_SHADER_PREVIEW,
@@ -61,6 +62,9 @@ struct demand_scene {
 /** `tile_width_log2` and `tile_height_log2` up to 7. */
 void demand_scene_init(struct demand_scene *s, struct harness *h, VkFormat format,
                        uint32_t tile_width_log2, uint32_t tile_height_log2);
+/** As new, with other tiles. */
+void demand_scene_reshape(struct demand_scene *s, VkFormat format, uint32_t tile_width_log2,
+                          uint32_t tile_height_log2);
 void demand_scene_finish(struct demand_scene *s);
 /** No textures, nothing resident, nothing asked for; and used bits are wanted. */
 void demand_scene_clear(struct demand_scene *s);

@@ -90,13 +90,16 @@ static void check_requests(struct sets *s, const struct DemandInput *in, uint32_
     totals->nothing += !any;
 }
 
-static void fill(struct demand_scene *scene, uint32_t size, uint32_t first_page[])
+static void fill(struct demand_scene *scene, enum demand_shader shader, uint32_t size,
+                 uint32_t first_page[])
 {
     demand_scene_clear(scene);
     for (uint32_t i = 0; i < DEMAND_SAMPLES; i++) {
         first_page[i] = scene->page_end;
         struct demand_texture t = demand_random_texture(sizes[size][0], sizes[size][1]);
         demand_inputs(scene)[i] = demand_random_input(demand_scene_add(scene, &t), &t, true);
+        if (shader == DEMAND_SHADER_FRAGMENT)
+            demand_inputs(scene)[i].kind = DEMAND_CUBIC;
     }
     first_page[DEMAND_SAMPLES] = scene->page_end;
 }
@@ -109,9 +112,10 @@ static void samples_ask_for_all_that_they_touch_and_no_more(void **state)
     srand(1);
     struct totals totals = {0};
     for (uint32_t round = 0; round < ROUNDS; round++) {
-        fill(scene, round % SIZES, first_page);
-        demand_scene_run(scene, round < ROUNDS - 5 ? DEMAND_SHADER_COMPUTE : DEMAND_SHADER_FRAGMENT,
-                         DEMAND_SAMPLES);
+        enum demand_shader shader =
+            round < ROUNDS - 5 ? DEMAND_SHADER_COMPUTE : DEMAND_SHADER_FRAGMENT;
+        fill(scene, shader, round % SIZES, first_page);
+        demand_scene_run(scene, shader, DEMAND_SAMPLES);
         demand_check_sections(scene);
         for (uint32_t i = 0; i < DEMAND_SAMPLES; i++) {
             sets.scene = scene;

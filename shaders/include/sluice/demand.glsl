@@ -8,7 +8,8 @@
  *     if (!resident) // keep the ray, and trace it again in the next launch
  *
  * `index`, of a texture or a grid, are the low 32 bits of a SluiceDemandTextureId; it may differ from
- * invocation to invocation. All functions may be called in any stage and anywhere in it: they take no
+ * invocation to invocation. Everything is compiled where it is called, and is long: call one function,
+ * in one place. All functions may be called in any stage and anywhere in it: they take no
  * derivatives. Address modes, filters, anisotropy and LOD bias are the texture's; the bias of the
  * loader, while memory is short, is added. Without a reason to be resident or not:
  *
@@ -410,17 +411,20 @@ float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
     return 0.5 * log2(max(minor2, 1.0e-12)) + float(exponent);
 }
 
-/** With gradients; see sluiceDemandGrad and sluiceDemandCubic. */
-vec4 sluiceDemandGradients(uint index, vec2 uv, vec2 dx, vec2 dy, bool cubic, out bool resident)
+/** All ways to sample in one: at `lod`, or at that of the derivatives. */
+vec4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, float lod, bool cubic,
+                        out bool resident)
 {
     SluiceDemandState s;
     vec4 color;
     if (sluiceOpenDemand(index, uv, s, color)) {
         vec2 size = vec2(s.size);
-        float bias = sluiceDemandLodBias(s.index), scale = exp2(bias);
-        float n = clamp(SLUICE_DEMAND_TEXTURE(s.index).maxAnisotropy, 1.0, SLUICE_DEMAND_MAX_ANISOTROPY);
-        float lod = sluiceDemandComputeLod(dx * size, dy * size, n) + bias;
-        color = sluiceSampleDemand(s, uv, dx * scale, dy * scale, lod, n, cubic);
+        float bias = sluiceDemandLodBias(s.index), scale = exp2(bias), n = 1.0;
+        if (!atLod) {
+            n = clamp(SLUICE_DEMAND_TEXTURE(s.index).maxAnisotropy, 1.0, SLUICE_DEMAND_MAX_ANISOTROPY);
+            lod = sluiceDemandComputeLod(dx * size, dy * size, n);
+        }
+        color = sluiceSampleDemand(s, uv, dx * scale, dy * scale, lod + bias, n, cubic);
     }
     resident = s.resident;
     return color;
@@ -429,7 +433,7 @@ vec4 sluiceDemandGradients(uint index, vec2 uv, vec2 dx, vec2 dy, bool cubic, ou
 /** With derivatives of `uv` per pixel, as textureGrad: trilinear, or anisotropic. */
 vec4 sluiceDemandGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
-    return sluiceDemandGradients(index, uv, dx, dy, false, resident);
+    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, false, resident);
 }
 
 /**
@@ -439,19 +443,13 @@ vec4 sluiceDemandGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
  */
 vec4 sluiceDemandCubic(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
-    return sluiceDemandGradients(index, uv, dx, dy, true, resident);
+    return sluiceDemandSample(index, uv, dx, dy, false, 0.0, true, resident);
 }
 
 /** At a level of detail, to which both biases are added, as textureLod: without anisotropy. */
 vec4 sluiceDemandLod(uint index, vec2 uv, float lod, out bool resident)
 {
-    SluiceDemandState s;
-    vec4 color;
-    if (sluiceOpenDemand(index, uv, s, color))
-        color = sluiceSampleDemand(s, uv, vec2(0.0), vec2(0.0), lod + sluiceDemandLodBias(s.index), 1.0,
-                                   false);
-    resident = s.resident;
-    return color;
+    return sluiceDemandSample(index, uv, vec2(0.0), vec2(0.0), true, lod, false, resident);
 }
 
 #endif

@@ -32,14 +32,17 @@ layout(push_constant) uniform Push { uint count; };
 #endif
 #include "sluice/demand.glsl"
 
+/* One call for all: each is compiled anew, and drivers take seconds for each. */
 vec4 sampleDemand(uint at, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     uint index = inputs[at].index;
-    if (inputs[at].kind == DEMAND_LOD)
-        return sluiceDemandLod(index, uv, inputs[at].lod, resident);
-    if (inputs[at].kind == DEMAND_CUBIC)
-        return sluiceDemandCubic(index, uv, dx, dy, resident);
-    return sluiceDemandGrad(index, uv, dx, dy, resident);
+#ifdef DEMAND_FUNCTION
+    return DEMAND_FUNCTION;
+#else
+    uint kind = inputs[at].kind;
+    return sluiceDemandSample(index, uv, dx, dy, kind == DEMAND_LOD, inputs[at].lod,
+                              kind == DEMAND_CUBIC, resident);
+#endif
 }
 
 void probeDemand(uint at)

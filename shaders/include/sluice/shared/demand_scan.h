@@ -22,7 +22,8 @@
 #define SLUICE_SCAN_SUMS 33
 /* Workgroups in a row of a dispatch; what every device can do is just below the double. */
 #define SLUICE_SCAN_ROW 32768
-/* Workgroups of compact.comp and place.comp, at most: specialization constant 0, a power of two. */
+/* Sizes of the one workgroup of compact.comp and of place.comp, at most: specialization constant 0,
+ * a power of two. */
 #define SLUICE_SCAN_COMPACT_SIZE 256
 #define SLUICE_SCAN_PLACE_SIZE 1024
 

@@ -1,0 +1,36 @@
+/** What a sample of a demand scene must give, with the pages that are resident there. */
+#ifndef TESTS_DEVICE_DEMAND_EXPECT_H
+#define TESTS_DEVICE_DEMAND_EXPECT_H
+
+#include "device/demand_oracle.h"
+#include "device/demand_scene.h"
+
+#define DEMAND_EXPECT_PAGES 65536u
+#define DEMAND_ASKED 1u
+#define DEMAND_USED 2u
+
+struct demand_expectation {
+    struct demand_scene *scene;
+    const struct SluiceDemandTexture *entry; ///< of the texture, or one with other address modes
+    uint32_t index;                          ///< whose tiles and texels they are
+    double loader_bias;
+    bool preview;
+    double color[4];
+    bool resident;
+    bool sure; ///< float cannot come to anything else
+
+    struct demand_tap tap; ///< private, as the rest
+    double sum[4];
+    uint32_t worst; ///< 0: all are there, 1: one is refused, 2: one is missing
+    uint32_t here[4], here_count;
+    uint32_t unsure[4], unsure_count;
+    bool ask;
+    uint8_t notes[DEMAND_EXPECT_PAGES];
+    uint32_t noted[4096], noted_count;
+};
+
+/** Fills in the results; and adds to pages[], if sure, DEMAND_ASKED and _USED of those that are.
+ *  Cubic samples must have nothing refused, and no preview. */
+void demand_expect(struct demand_expectation *e, const struct DemandInput *in, uint8_t *pages);
+
+#endif /* TESTS_DEVICE_DEMAND_EXPECT_H */

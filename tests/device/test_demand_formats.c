@@ -1,0 +1,141 @@
+/* Every format: tiles, tails, cut blocks, and the colour of the last level. */
+#include "device/blocks.h"
+#include "device/demand_runner.h"
+
+#include "image/convert.h"
+#include "support/test.h"
+
+#include <math.h>
+
+static struct harness h;
+
+enum { WIDTH = 1337, HEIGHT = 611, LEVELS = 11 };
+
+static bool is_usable(SluiceFormat format)
+{
+    SluiceVulkanFormatCapabilities caps;
+    CHECK_OK(
+        sluiceGetVulkanFormatCapabilities(h.instance, h.physical_device, h.get, format, &caps));
+    return caps.sampled && caps.linearFilter;
+}
+
+static bool is_decoded(SluiceFormat format)
+{
+    return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK &&
+           format != SLUICE_FORMAT_BC7_UNORM_BLOCK && format != SLUICE_FORMAT_BC7_SRGB_BLOCK;
+}
+
+static bool is_srgb(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_R8G8B8A8_SRGB;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)width, (void)height;
+    for (uint32_t i = 0; i < 4; i++)
+        rgba[i] = (float)((x * (7 + i) + y * (13 - i) + level * 31) % 64) / 64;
+}
+
+static SluiceImageSource *create_source(SluiceFormat format)
+{
+    SluiceImageSource *source;
+    if (sluiceFormatTexelSize(format) == 0)
+        return block_source(WIDTH, HEIGHT, format);
+    const SluiceProceduralImage image = {NULL, texel};
+    const SluiceImageInfo info = {WIDTH, HEIGHT, 0, format, sluiceFormatString(format)};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
+    return source;
+}
+
+static struct block_range expected(SluiceImageSource *source, SluiceFormat format, uint32_t level,
+                                   uint32_t x, uint32_t y)
+{
+    struct block_range range;
+    if (sluiceFormatTexelSize(format) == 0)
+        return block_texel(format, level, x, y);
+    uint8_t bytes[16];
+    float rgba[4], slack = is_srgb(format) ? 0.005f : 1e-6f;
+    const SluiceImageRegion region = {level, x, y, 1, 1};
+    CHECK_OK(sluiceReadImageRegion(source, &region, bytes, sizeof bytes));
+    slc_texels_to_rgba(format, bytes, rgba, 1);
+    for (uint32_t i = 0; i < 4; i++) {
+        range.low[i] = rgba[i] - slack;
+        range.high[i] = rgba[i] + slack;
+    }
+    return range;
+}
+
+static void check(const struct runner *r, uint32_t sample, SluiceImageSource *source,
+                  SluiceFormat format, uint32_t level, uint32_t x, uint32_t y)
+{
+    struct RunnerOutput out = runner_output(r, sample);
+    struct block_range range = expected(source, format, level, x, y);
+    bool grey = level == LEVELS - 1 && !is_decoded(format);
+    for (uint32_t i = 0; i < 4; i++) {
+        if (grey) {
+            range.low[i] = range.high[i] = i < 3 ? 0.5f : 1;
+        }
+        if (!out.resident || !(out.color[i] >= range.low[i] - 1e-5f) ||
+            !(out.color[i] <= range.high[i] + 1e-5f))
+            fail_msg("%s, level %u (%u, %u), channel %u: %g is not within %g and %g",
+                     sluiceFormatString(format), level, x, y, i, (double)out.color[i],
+                     (double)range.low[i], (double)range.high[i]);
+    }
+}
+
+static void texel_at(uint32_t level, uint32_t i, uint32_t *x, uint32_t *y)
+{
+    uint32_t w = WIDTH >> level ? WIDTH >> level : 1, t = HEIGHT >> level ? HEIGHT >> level : 1;
+    *x = i % 3 * (w - 1) / 2;
+    *y = i / 3 * (t - 1) / 2;
+}
+
+static void check_format(SluiceFormat format)
+{
+    struct runner r;
+    SluiceDemandTextureId id;
+    SluiceImageSource *source = create_source(format);
+    runner_init(&r, &h, NULL);
+    const SluiceDemandTextureCreateInfo info = {.image.source = source, .sampler = runner_nearest};
+    CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+    for (uint32_t l = 0; l < LEVELS; l++)
+        for (uint32_t i = 0, x, y; i < 9; i++) {
+            texel_at(l, i, &x, &y);
+            runner_add_texel(&r, id, WIDTH, HEIGHT, l, x, y);
+        }
+    runner_load(&r, 20);
+    for (uint32_t l = 0; l < LEVELS; l++)
+        for (uint32_t i = 0, x, y; i < 9; i++) {
+            texel_at(l, i, &x, &y);
+            check(&r, l * 9 + i, source, format, l, x, y);
+        }
+    runner_finish(&r);
+    sluiceDestroyImageSource(source);
+}
+
+static void every_format_shows_what_is_in_the_image(void **state)
+{
+    (void)state;
+    uint32_t count = 0;
+    for (uint32_t f = 1; f < SLUICE_FORMAT_COUNT; f++) {
+        if (!is_usable((SluiceFormat)f))
+            continue;
+        check_format((SluiceFormat)f);
+        count++;
+    }
+    print_message("# formats %u\n", count);
+    assert_true(count >= 10);
+}
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_format_shows_what_is_in_the_image),
+    };
+    return harness_finish(&h, RUN_TESTS(tests));
+}

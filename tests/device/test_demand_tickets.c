@@ -1,0 +1,242 @@
+/* Tickets from any thread: they end, whatever the reads do. */
+#include "device/demand_runner.h"
+
+#include "support/test.h"
+
+#include <pthread.h>
+
+static struct harness h;
+
+/* A texture whose reads are held, opened, and eight of its tiles asked for. */
+struct held {
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandTextureId id;
+};
+
+static void setup(struct held *held)
+{
+    const SluiceDemandLoaderCreateInfo info = {.loaderThreadCount = 3};
+    runner_init(&held->r, &h, &info);
+    runner_image_init(&held->image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
+    held->id = runner_add_texture(&held->r, &held->image);
+    for (uint32_t i = 0; i < 8; i++)
+        runner_add_texel(&held->r, held->id, 1024, 1024, 0, i * 128, 9);
+    runner_launch(&held->r);
+    CHECK_OK(sluiceWaitDemandTicket(held->r.loader, held->r.ticket, UINT64_MAX, NULL));
+    held->image.source.holds = true;
+    runner_launch(&held->r);
+    assert_int_equal(held->r.requests.servedCount, 8);
+    fault_source_await(&held->image.source, 2);
+}
+
+static void teardown(struct held *held)
+{
+    fault_source_release(&held->image.source);
+    runner_finish(&held->r);
+    runner_image_finish(&held->image);
+}
+
+static void check_status(const struct held *held, SluiceDemandTicket ticket, uint32_t tasks,
+                         uint32_t remaining, uint32_t failed)
+{
+    SluiceDemandTicketStatus status;
+    CHECK_OK(sluiceGetDemandTicketStatus(held->r.loader, ticket, &status));
+    assert_int_equal(status.taskCount, tasks);
+    assert_int_equal(status.remainingCount, remaining);
+    assert_int_equal(status.failedCount, failed);
+}
+
+static void a_cancelled_ticket_ends_with_what_is_under_way(void **state)
+{
+    (void)state;
+    struct held held;
+    setup(&held);
+    SluiceDemandTicket ticket = held.r.ticket;
+    check_status(&held, ticket, 8, 8, 0);
+    CHECK_OK(sluiceCancelDemandTicket(held.r.loader, ticket));
+    check_status(&held, ticket, 8, 2, 6);
+    CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, ticket, 0, NULL), SLUICE_NOT_READY);
+    fault_source_release(&held.image.source);
+    CHECK_OK(sluiceWaitDemandTicket(held.r.loader, ticket, UINT64_MAX, NULL));
+    check_status(&held, ticket, 8, 0, 6);
+    /* Shaders ask again. */
+    assert_in_range(runner_load(&held.r, 9), 2, 3);
+    assert_true(runner_all_resident(&held.r));
+    assert_int_equal(held.image.source.read_count, 1 + 8);
+    assert_int_equal(runner_statistics(&held.r).cancelledCount, 6);
+    teardown(&held);
+}
+
+static void a_wait_ends_when_its_time_is_over(void **state)
+{
+    (void)state;
+    struct held held;
+    SluiceDemandTicketStatus status;
+    setup(&held);
+    CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, held.r.ticket, 1000000, &status),
+                 SLUICE_NOT_READY);
+    assert_int_equal(status.remainingCount, 8);
+    SluiceDemandLaunch launch = held.r.launch;
+    CHECK_OK(runner_submit(&held.r)); /* launches go on meanwhile */
+    CHECK_OK(sluiceProcessDemandRequests(held.r.loader, &held.r.launch, UINT64_MAX,
+                                         &held.r.requests, &held.r.ticket));
+    assert_int_equal(held.r.launch.launchIndex, launch.launchIndex + 1);
+    assert_int_equal(held.r.requests.pendingCount, 8);
+    assert_int_equal(held.r.ticket, 0);
+    CHECK_OK(sluiceWaitDemandTicket(held.r.loader, 0, UINT64_MAX, &status));
+    assert_int_equal(status.taskCount, 0);
+    teardown(&held);
+}
+
+static void tickets_that_were_never_given_are_refused(void **state)
+{
+    (void)state;
+    struct held held;
+    SluiceDemandTicketStatus status;
+    setup(&held);
+    const SluiceDemandTicket wrong[] = {1, held.r.ticket + 7, held.r.ticket + (1ull << 32),
+                                        UINT64_MAX};
+    for (uint32_t i = 0; i < 4; i++) {
+        CHECK_RESULT(sluiceGetDemandTicketStatus(held.r.loader, wrong[i], &status),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, wrong[i], 0, NULL),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(sluiceCancelDemandTicket(held.r.loader, wrong[i]),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+    }
+    teardown(&held);
+}
+
+struct waiter {
+    SluiceDemandLoader *loader;
+    SluiceDemandTicket ticket;
+    SluiceResult result;
+    pthread_t thread;
+};
+
+static void *wait_for_ever(void *user)
+{
+    struct waiter *waiter = user;
+    waiter->result = sluiceWaitDemandTicket(waiter->loader, waiter->ticket, UINT64_MAX, NULL);
+    return NULL;
+}
+
+static void *cancel(void *user)
+{
+    struct waiter *waiter = user;
+    waiter->result = sluiceCancelDemandTicket(waiter->loader, waiter->ticket);
+    return NULL;
+}
+
+static void *end_all(void *user)
+{
+    struct waiter *waiter = user;
+    waiter->result = sluiceAbortDemandLoader(waiter->loader);
+    return NULL;
+}
+
+static void begin(struct waiter *waiter, const struct held *held, void *(*what)(void *user))
+{
+    *waiter = (struct waiter){.loader = held->r.loader, .ticket = held->r.ticket};
+    assert_int_equal(pthread_create(&waiter->thread, NULL, what, waiter), 0);
+}
+
+static void another_thread_may_cancel_what_this_one_waits_for(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 20; i++) {
+        struct held held;
+        struct waiter waiters[3], canceller;
+        setup(&held);
+        for (uint32_t w = 0; w < 3; w++)
+            begin(&waiters[w], &held, wait_for_ever);
+        begin(&canceller, &held, cancel);
+        fault_source_release(&held.image.source);
+        CHECK_OK(sluiceWaitDemandTicket(held.r.loader, held.r.ticket, UINT64_MAX, NULL));
+        for (uint32_t w = 0; w < 3; w++) {
+            assert_int_equal(pthread_join(waiters[w].thread, NULL), 0);
+            CHECK_OK(waiters[w].result);
+        }
+        assert_int_equal(pthread_join(canceller.thread, NULL), 0);
+        CHECK_OK(canceller.result);
+        teardown(&held);
+    }
+}
+
+static void an_abort_wakes_all_though_reads_are_stuck(void **state)
+{
+    (void)state;
+    struct held held;
+    struct waiter waiters[3], end;
+    setup(&held);
+    for (uint32_t w = 0; w < 3; w++)
+        begin(&waiters[w], &held, wait_for_ever);
+    begin(&end, &held, end_all);
+    CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, held.r.ticket, UINT64_MAX, NULL),
+                 SLUICE_ERROR_CANCELLED);
+    for (uint32_t w = 0; w < 3; w++) {
+        assert_int_equal(pthread_join(waiters[w].thread, NULL), 0);
+        CHECK_RESULT(waiters[w].result, SLUICE_ERROR_CANCELLED);
+    }
+    assert_int_equal(pthread_join(end.thread, NULL), 0);
+    CHECK_OK(end.result);
+    CHECK_RESULT(runner_submit(&held.r), SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(
+        sluiceProcessDemandRequests(held.r.loader, &held.r.launch, 0, &held.r.requests, NULL),
+        SLUICE_ERROR_INVALID_ARGUMENT); /* this one was */
+    teardown(&held);
+    assert_int_equal(held.image.source.read_count, 1 + 2);
+    assert_int_equal(held.image.closed, 1);
+}
+
+static void many_tickets_end_and_the_last_ones_are_remembered(void **state)
+{
+    (void)state;
+    enum { COUNT = 3000, KEPT = 1000 };
+    struct runner r;
+    struct runner_image image;
+    static SluiceDemandTicket tickets[COUNT];
+    SluiceDemandTicketStatus status;
+    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = COUNT};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 4, 4, 1);
+    for (uint32_t i = 0; i < COUNT; i++)
+        CHECK_OK(
+            sluicePreloadDemandTexture(r.loader, runner_add_texture(&r, &image), 0, &tickets[i]));
+    for (bool over = false; !over;) {
+        runner_launch(&r);
+        over = true;
+        for (uint32_t i = 0; i < COUNT; i++) {
+            CHECK_OK(sluiceWaitDemandTicket(r.loader, tickets[i], UINT64_MAX, &status));
+            over = over && status.remainingCount == 0;
+        }
+    }
+    for (uint32_t i = 0; i < COUNT; i++) {
+        CHECK_OK(sluiceGetDemandTicketStatus(r.loader, tickets[i], &status));
+        assert_int_equal(status.remainingCount + status.failedCount, 0);
+        /* The opening, and a tile where there was memory left. */
+        assert_true(status.taskCount == 1 || status.taskCount == 2 ||
+                    (i < COUNT - KEPT && status.taskCount == 0));
+    }
+    assert_int_equal(image.opened, COUNT);
+    runner_finish(&r);
+    assert_int_equal(image.closed, COUNT);
+    runner_image_finish(&image);
+}
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cancelled_ticket_ends_with_what_is_under_way),
+        cmocka_unit_test(a_wait_ends_when_its_time_is_over),
+        cmocka_unit_test(tickets_that_were_never_given_are_refused),
+        cmocka_unit_test(another_thread_may_cancel_what_this_one_waits_for),
+        cmocka_unit_test(an_abort_wakes_all_though_reads_are_stuck),
+        cmocka_unit_test(many_tickets_end_and_the_last_ones_are_remembered),
+    };
+    return harness_finish(&h, RUN_TESTS(tests));
+}
