@@ -7,6 +7,8 @@
 #define QUARTER 1.41421356f /* a level is a factor of 4 in texels */
 #define ANOTHER_VIEW 0.75f
 #define CALM_LAUNCHES 2u
+#define MAX_FAILED_TRIALS 6u
+#define TRIAL_PERIODS 8u
 
 void slc_demand_bias_forget(struct slc_demand_bias *bias)
 {
@@ -57,6 +59,9 @@ static void raise(struct slc_demand_bias *bias, float need, float room)
     } while (to < SLC_MAX_BIAS_QUARTERS && (need > room || bias->seen[to].fails) && need >= 1);
     if (!bias->seen[to].known)
         to = slc_min_u32(slc_max_u32(to, least), SLC_MAX_BIAS_QUARTERS);
+    if (bias->on_trial && bias->failed_trials < MAX_FAILED_TRIALS)
+        bias->failed_trials++;
+    bias->on_trial = false;
     if (to > bias->quarters)
         change(bias, to);
 }
@@ -85,8 +90,10 @@ static void lower(struct slc_demand_bias *bias, float need, float room)
     room -= room / 16;
     while (to > 0 && may_fit(bias, to - 1, room, &need))
         to--;
-    if (to < bias->quarters)
-        change(bias, bias->quarters - (bias->quarters - to + 1) / 2);
+    if (to == bias->quarters)
+        return;
+    change(bias, bias->quarters - (bias->quarters - to + 1) / 2);
+    bias->on_trial = true;
 }
 
 void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_demand_need *need)
@@ -110,6 +117,11 @@ void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_deman
     }
     learn(bias, pages, total);
     bias->settled = true;
-    if (bias->quarters > 0 && ++bias->calm >= CALM_LAUNCHES)
-        lower(bias, pages, room);
+    if (++bias->calm < CALM_LAUNCHES << bias->failed_trials)
+        return;
+    if (bias->calm >= TRIAL_PERIODS * CALM_LAUNCHES << bias->failed_trials) {
+        bias->on_trial = false;
+        bias->failed_trials = 0;
+    }
+    lower(bias, pages, room);
 }

@@ -1,8 +1,8 @@
 /**
  * How much blurrier all textures are sampled so that what a launch needs fits into memory: a LOD
  * bias in quarters of a level. Rises at once when a launch needs more than there are places; falls
- * when two launches in a row show that a finer bias fits, which it estimates from what it saw of
- * that bias before. So a view that does not change comes to rest.
+ * when two launches in a row, more after failures, show that a finer bias fits, which it estimates
+ * from what it saw of that bias before. So a view that does not change comes to rest.
  */
 #ifndef SLC_DEMAND_BIAS_H
 #define SLC_DEMAND_BIAS_H
@@ -13,10 +13,12 @@
 
 struct slc_demand_bias {
     uint32_t quarters;
-    uint32_t raises; ///< one after the other
-    uint32_t calm;   ///< launches in a row that miss little
-    bool settled;    ///< a launch with this bias missed little
-    uint64_t loads;  ///< since then
+    uint32_t raises;        ///< one after the other
+    uint32_t calm;          ///< launches in a row that miss little
+    bool on_trial;          ///< it was lowered to this, not long ago
+    uint32_t failed_trials; ///< one after the other: each doubles the time to the next
+    bool settled;           ///< a launch with this bias missed little
+    uint64_t loads;         ///< since then
     struct {
         bool known;
         bool fails;        ///< it did not fit

@@ -100,12 +100,12 @@ static struct slc_page_node *hold(struct slc_demand_residency *r, uint32_t *inde
     node->rank = request->rank;
     node->pool = pool;
     node->place = place;
-    node->pinned = request->pinned;
+    node->pinned = request->pinned != 0;
     c->held++;
-    c->pinned += request->pinned;
+    c->pinned += node->pinned;
     r->valued += !c->has_memory;
     if (request->class_index == SLC_TILES)
-        r->use.pinned_waiting -= request->pinned;
+        r->use.pinned_waiting -= node->pinned;
     return node;
 }
 
@@ -162,7 +162,7 @@ static void count_missing(struct slc_demand_residency *r, const struct slc_page_
     if (request->class_index != SLC_TILES)
         return;
     r->use.asked += !request->pinned;
-    r->use.pinned_waiting += request->pinned;
+    r->use.pinned_waiting += request->pinned != 0;
 }
 
 static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uint32_t index,

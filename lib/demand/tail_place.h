@@ -12,7 +12,7 @@
  *     +-------+-------+
  *
  * All functions: for the shapes of sluiceGetStandardTileShape. GLSL twin: sluiceDemandTailPlace in
- * shaders/include/sluice/demand_pages.glsl.
+ * shaders/include/sluice/demand_texels.glsl.
  */
 #ifndef SLC_DEMAND_TAIL_PLACE_H
 #define SLC_DEMAND_TAIL_PLACE_H

@@ -156,6 +156,17 @@ static void look_up(void *user, struct renderer *r, const struct pyramid *t, uin
         flight->missed[flight->missed_count++] = page;
 }
 
+/* What was not listed is asked for still, unless the bias is another one now. */
+static void add_left_over(struct renderer *r, float bias, struct flight *flight)
+{
+    if (bias != r->bias)
+        memset(r->left_over, 0, sizeof r->left_over);
+    r->bias = bias;
+    for (uint32_t page = 0; page < r->page_end; page++)
+        if (r->left_over[page] && !r->marks[page])
+            flight->missed[flight->missed_count++] = page;
+}
+
 static void trace(struct renderer *r, float bias, struct flight *flight)
 {
     memset(r->marks, 0, sizeof r->marks);
@@ -169,6 +180,7 @@ static void trace(struct renderer *r, float bias, struct flight *flight)
             flight->missed[flight->missed_count++] = t;
         }
     }
+    add_left_over(r, bias, flight);
 }
 
 static void show(struct renderer *r)
@@ -219,6 +231,8 @@ static void serve(struct renderer *r, const struct flight *flight)
     for (uint32_t i = 0; i < flight->missed_count; i++)
         r->requests[i] = request_of(r, flight->missed[i]);
     qsort(r->requests, flight->missed_count, sizeof *r->requests, compare_requests);
+    for (uint32_t i = 0; i < flight->missed_count; i++)
+        r->left_over[r->requests[i].page] = i >= r->list_limit;
     for (uint32_t i = 0; i < flight->missed_count && i < r->list_limit; i++) {
         SluiceResult result;
         uint32_t page = r->requests[i].page;

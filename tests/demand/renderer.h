@@ -45,7 +45,9 @@ struct renderer {
     uint8_t shown[RENDERER_PAGES]; ///< the page table
     struct flight flights[RENDERER_IN_FLIGHT];
     uint8_t marks[RENDERER_PAGES];
-    uint64_t ready[RENDERER_PAGES]; ///< reads: the launch after which they end; 0: none
+    uint8_t left_over[RENDERER_PAGES]; ///< bits of requests that were not listed
+    float bias;                        ///< of the last launch that was recorded
+    uint64_t ready[RENDERER_PAGES];    ///< reads: the launch after which they end; 0: none
     struct slc_page_request requests[RENDERER_PAGES];
     /* of the last launch */
     uint32_t missing, loads, refused;

@@ -176,6 +176,44 @@ static void a_view_that_needs_less_becomes_sharp_again(void **state)
     free(r);
 }
 
+/* Each launch samples a little elsewhere, and a little finer or coarser. */
+static uint32_t tremble(struct renderer *r, uint32_t launches)
+{
+    struct view views[RENDERER_VIEWS];
+    uint32_t changes = 0;
+    for (uint32_t i = 0; i < r->view_count; i++) {
+        r->views[i].width *= 0.9f;
+        views[i] = r->views[i];
+    }
+    for (uint32_t launch = 0; launch < launches; launch++) {
+        float bias = slc_residency_lod_bias(r->residency);
+        for (uint32_t i = 0; i < r->view_count; i++) {
+            r->views[i].x = views[i].x + 0.05f * (float)random_below(&r->random, 100) / 100;
+            r->views[i].lod = views[i].lod + 0.1f * (float)random_below(&r->random, 100) / 100;
+        }
+        renderer_launch(r);
+        changes += slc_residency_lod_bias(r->residency) != bias;
+    }
+    return changes;
+}
+
+static void a_view_that_trembles_does_not_make_the_bias_swing(void **state)
+{
+    (void)state;
+    struct renderer *r = create_renderer();
+    uint32_t worst = 0;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        start(r, seed, &(struct setup){.kinds = 1, .in_flight = 1});
+        tremble(r, 100);
+        uint32_t changes = tremble(r, 300);
+        worst = changes > worst ? changes : worst;
+        renderer_finish(r);
+    }
+    print_message("# the bias changes %u times in 300 launches at most\n", worst);
+    assert_in_range(worst, 0, 20);
+    free(r);
+}
+
 static void what_fits_is_sharp_and_loaded_once(void **state)
 {
     (void)state;
@@ -235,6 +273,7 @@ int main(void)
         cmocka_unit_test(refusing_pages_comes_to_rest),
         cmocka_unit_test(the_picture_is_hardly_blurrier_than_it_must_be),
         cmocka_unit_test(a_view_that_needs_less_becomes_sharp_again),
+        cmocka_unit_test(a_view_that_trembles_does_not_make_the_bias_swing),
         cmocka_unit_test(what_fits_is_sharp_and_loaded_once),
         cmocka_unit_test(tails_beyond_the_budget_are_refused),
     };

@@ -15,7 +15,8 @@
  *
  *     a texture that nobody has opened      (0, 0, 0, 0), not resident; asks for it to be opened
  *     one that cannot be opened             its failureColor, resident
- *     LOD at or beyond the last level       the colour of the last level; no page is looked up
+ *     LOD at or beyond the last level       the colour of the last level, and of the border around it;
+ *                                           no page is looked up
  *     derivatives that are infinite or NaN  the same
  *     a LOD that is NaN                     the same
  *     uv not finite, or beyond 1e33         as at (0, 0)
@@ -34,220 +35,19 @@
  *     #define SLUICE_DEMAND_PREVIEW true                       // or a constant_id constant
  *
  * what is missing is replaced by the finest coarser level that is there, or by the colour of the
- * last level: samples still say that they are not resident, and ask for what they miss.
+ * last level: samples still say that they are not resident, and ask for what they miss. Needs
+ * GL_EXT_control_flow_attributes, a matter of the compiler alone.
  */
 #ifndef SLUICE_DEMAND_GLSL
 #define SLUICE_DEMAND_GLSL
 
-#include "demand_pages.glsl"
+#include "demand_texels.glsl"
 #include "lod.glsl"
-#include "page_filter.glsl"
-
-#ifndef SLUICE_DEMAND_PREVIEW
-#define SLUICE_DEMAND_PREVIEW false
-#endif
 
 #define SLUICE_DEMAND_MAX_ANISOTROPY 64.0
 
 /* Coarser than any level, but finite. */
 #define SLUICE_DEMAND_NO_LOD 256.0
-
-/** What a sample knows: a texture that is open, without colours, and what it has met. */
-struct SluiceDemandState {
-    uint index;
-    uvec2 size;
-    uint shape, levels, tailPage;
-    bool resident;
-    uint page, word; /* looked up last: its word, see SLUICE_PAGE_NONE and _REFUSED */
-};
-
-uint sluiceDemandLastLevel(uint shape)
-{
-    return bitfieldExtract(shape, SLUICE_DEMAND_LEVEL_COUNT_SHIFT, 5) - 1u;
-}
-
-uint sluiceDemandRegularCount(uint shape)
-{
-    return bitfieldExtract(shape, SLUICE_DEMAND_REGULAR_SHIFT, 5);
-}
-
-uvec2 sluiceDemandModes(uint shape)
-{
-    return uvec2(bitfieldExtract(shape, SLUICE_DEMAND_MODE_U_SHIFT, 3),
-                 bitfieldExtract(shape, SLUICE_DEMAND_MODE_V_SHIFT, 3));
-}
-
-/** log2 of a tile's width and height. */
-ivec2 sluiceDemandTileShift(uint shape)
-{
-    return ivec2(bitfieldExtract(shape, 0, 5),
-                 bitfieldExtract(shape, SLUICE_DEMAND_TILE_HEIGHT_SHIFT, 5));
-}
-
-/**
- * Where level `k` of a tail begins, in texels; 0 is the first level without tiles of its own. C twin:
- * slc_demand_tail_place.
- */
-ivec2 sluiceDemandTailPlace(uint shape, uint k)
-{
-    ivec2 shift = sluiceDemandTileShift(shape) - 1; /* of half a tile */
-    int middle = 1 << shift.y, level = int(k);
-    int y = middle - (middle >> max(level - 1, 0));
-    if ((shape & SLUICE_DEMAND_BLOCKS) != 0u && level > shift.y - 2)
-        y = middle + 4 * (level - (shift.y - 1));
-    return level == 0 ? ivec2(0) : ivec2(1 << shift.x, y);
-}
-
-vec4 sluiceDemandBaseColor(uint index)
-{
-    return vec4(SLUICE_DEMAND_TEXTURE(index).baseColor[0], SLUICE_DEMAND_TEXTURE(index).baseColor[1],
-                SLUICE_DEMAND_TEXTURE(index).baseColor[2], SLUICE_DEMAND_TEXTURE(index).baseColor[3]);
-}
-
-/** Of a border only the components count that the format has. */
-vec4 sluiceDemandBorder(SluiceDemandState s)
-{
-    uint count = bitfieldExtract(s.shape, SLUICE_DEMAND_COMPONENTS_SHIFT, 3);
-    return vec4(SLUICE_DEMAND_TEXTURE(s.index).borderColor[0],
-                count > 1u ? SLUICE_DEMAND_TEXTURE(s.index).borderColor[1] : 0.0,
-                count > 2u ? SLUICE_DEMAND_TEXTURE(s.index).borderColor[2] : 0.0,
-                count > 3u ? SLUICE_DEMAND_TEXTURE(s.index).borderColor[3] : 1.0);
-}
-
-/** The word of a tile's page; if that is SLUICE_PAGE_NONE and `ask`, it has been asked for. */
-uint sluiceFindDemandTile(inout SluiceDemandState s, uint page, bool ask)
-{
-    if (page == s.page)
-        return s.word;
-    uint at, word;
-    if (!sluiceFindDemandPage(page, at, word))
-        word = SLUICE_PAGE_NONE;
-    if (word == SLUICE_PAGE_NONE) {
-        if (!ask)
-            return word;
-        sluiceRequestDemandPage(page);
-    }
-    s.page = page;
-    s.word = word;
-    return word;
-}
-
-/** The tiles of a level. Those of the tail begin at `origin` of the one that they share. */
-struct SluiceDemandLevel {
-    ivec2 size, origin;
-    uint firstPage;
-    int columns;
-};
-
-SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
-{
-    int shift = sluiceDemandTileShift(s.shape).x;
-    uint regular = sluiceDemandRegularCount(s.shape);
-    SluiceDemandLevel l;
-    l.size = max(ivec2(s.size >> level), ivec2(1));
-    l.columns = (l.size.x + (1 << shift) - 1) >> shift;
-    if (level < regular) {
-        l.firstPage = SLUICE_DEMAND_LEVEL_WORD(s.levels + level);
-        l.origin = ivec2(0);
-    } else {
-        l.firstPage = s.tailPage;
-        l.origin = sluiceDemandTailPlace(s.shape, level - regular);
-    }
-    return l;
-}
-
-/**
- * The four texels of a bilinear sample one by one: across borders of tiles and of the texture. All are
- * looked up, whatever is missing; `worst` is the greatest of their words. A texel of no weight is not
- * looked at.
- */
-vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool last, SluicePageAxis x,
-                        SluicePageAxis y, bool ask, out uint worst)
-{
-    ivec2 shift = sluiceDemandTileShift(s.shape);
-    vec4 sum = vec4(0.0);
-    worst = 0u;
-    for (uint i = 0u; i < 4u; i++) {
-        bool right = (i & 1u) != 0u, below = (i & 2u) != 0u;
-        ivec2 texel = ivec2(right ? x.high : x.low, below ? y.high : y.low);
-        float weight = (right ? x.weight : 1.0 - x.weight) * (below ? y.weight : 1.0 - y.weight);
-        if (!(weight > 0.0))
-            continue;
-        vec4 color = vec4(0.0);
-        if (min(texel.x, texel.y) < 0) {
-            color = sluiceDemandBorder(s);
-        } else if (last) {
-            color = sluiceDemandBaseColor(s.index);
-        } else {
-            ivec2 tile = texel >> shift;
-            uint word = sluiceFindDemandTile(s, l.firstPage + uint(tile.y * l.columns + tile.x), ask);
-            worst = max(worst, word);
-            ivec3 at = ivec3(texel - (tile << shift) + l.origin, word & 0xFFFFu);
-            if (word < SLUICE_DEMAND_PAGE_REFUSED)
-                SLUICE_WITH_PAGE(word, color = texelFetch(SLUICE_PAGE_TEXTURE(chunk), at, 0))
-        }
-        sum += weight * color;
-    }
-    return sum;
-}
-
-/** Two texels that are one have no weight to share. */
-SluicePageAxis sluiceDemandAxis(float coordinate, uint addressMode, int size, bool nearest)
-{
-    coordinate = sluiceFoldOntoPages(coordinate, addressMode, float(size));
-    if (nearest)
-        return sluiceNearestPageAxis(coordinate, addressMode, size);
-    SluicePageAxis axis = sluiceFoldedPageAxis(coordinate, addressMode, size);
-    axis.weight = axis.high == axis.low ? 0.0 : axis.weight;
-    return axis;
-}
-
-/** A bilinear sample of one level; a colour only if `worst` is below SLUICE_DEMAND_PAGE_REFUSED. */
-vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool ask, out uint worst)
-{
-    SluiceDemandLevel l = sluiceReadDemandLevel(s, level);
-    uvec2 modes = sluiceDemandModes(s.shape);
-    bool nearest = (s.shape & SLUICE_DEMAND_NEAREST) != 0u;
-    SluicePageAxis x = sluiceDemandAxis(uv.x, modes.x, l.size.x, nearest);
-    SluicePageAxis y = sluiceDemandAxis(uv.y, modes.y, l.size.y, nearest);
-    ivec2 low = ivec2(x.low, y.low), high = ivec2(x.high, y.high);
-    ivec2 shift = sluiceDemandTileShift(s.shape);
-    ivec2 tile = low >> shift;
-    if (any(notEqual(high, low + 1)) || any(notEqual(high >> shift, tile)) ||
-        min(low.x, low.y) < 0)
-        return sluiceGatherDemand(s, l, level == sluiceDemandLastLevel(s.shape), x, y, ask, worst);
-    worst = sluiceFindDemandTile(s, l.firstPage + uint(tile.y * l.columns + tile.x), ask);
-    vec2 local = vec2(low - (tile << shift) + l.origin) + vec2(x.weight, y.weight) + 0.5;
-    vec3 at = vec3(local / vec2(ivec2(1) << shift), float(worst & 0xFFFFu));
-    vec4 color = vec4(0.0);
-    if (worst < SLUICE_DEMAND_PAGE_REFUSED)
-        SLUICE_WITH_PAGE(worst, color = textureLod(SLUICE_PAGE_TEXTURE(chunk), at, 0.0))
-    return color;
-}
-
-/**
- * The same, or of a coarser level: where tiles will never be there, and in a preview where they are
- * missing. Coarser levels that only stand in are not asked for, but for the tail, which serves all.
- */
-vec4 sluiceDemandTexels(inout SluiceDemandState s, uint level, vec2 uv)
-{
-    uint regular = sluiceDemandRegularCount(s.shape);
-    bool ask = true;
-    for (;;) {
-        uint worst;
-        vec4 color = sluiceDemandBilinear(s, level, uv, ask || level >= regular, worst);
-        if (worst < SLUICE_DEMAND_PAGE_REFUSED)
-            return color;
-        if (worst == SLUICE_PAGE_NONE) {
-            s.resident = false;
-            if (!SLUICE_DEMAND_PREVIEW)
-                return vec4(0.0);
-            ask = false;
-        }
-        /* the last level is always there: a colour of the texture */
-        level = level < regular ? level + 1u : sluiceDemandLastLevel(s.shape);
-    }
-}
 
 /** A coordinate near the texture that shows the same; only whole periods are taken away. */
 float sluiceNearCoordinate(float coordinate, uint addressMode)
@@ -289,21 +89,22 @@ vec2 sluiceCubicPart(SluiceDemandState s, vec2 uv, uint part, inout float weight
 vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, bool cubic)
 {
     vec4 sum = vec4(0.0);
-    for (uint pass = 0u; pass < 2u; pass++) {
+    float step = 1.0 / float(taps.count);
+    [[dont_unroll]] for (uint pass = 0u; pass < 2u; pass++) {
         float share = pass == 0u ? 1.0 - taps.fraction : taps.fraction;
         if (!(share > 0.0))
             continue;
         uint level = pass == 0u ? taps.fine : taps.coarse;
         uint parts = cubic && level == 0u ? 2u : 0u; /* log2 */
         for (uint i = 0u; i < taps.count << parts; i++) {
-            vec2 at = sluicePagedTap(taps, uv, i >> parts);
+            vec2 at = uv + taps.axis * ((float(i >> parts) + 0.5) * step - 0.5);
             float weight = share;
             if (parts != 0u)
                 at = sluiceCubicPart(s, at, i & 3u, weight);
             sum += weight * sluiceDemandTexels(s, level, at);
         }
     }
-    return sum / float(taps.count);
+    return sum * step;
 }
 
 /** Finds a texture in a grid; false: there is none at `uv`. */

@@ -120,9 +120,4 @@ SluicePagedTaps sluicePlaceTaps(vec2 size, uint levelCount, vec2 dx, vec2 dy, fl
     return taps;
 }
 
-vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
-{
-    return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
-}
-
 #endif

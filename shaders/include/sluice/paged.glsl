@@ -135,6 +135,11 @@ SluicePagedTaps sluicePlacePagedTaps(SluiceTextureEntry entry, vec2 dx, vec2 dy,
                            sluiceClampAnisotropy(maxAnisotropy));
 }
 
+vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
+{
+    return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
+}
+
 /** A level of no weight is not looked at: it may be infinite. */
 vec4 sluiceMixLevels(SluicePagedTaps taps, vec4 fine, vec4 coarse)
 {
