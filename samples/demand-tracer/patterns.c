@@ -19,6 +19,15 @@ static void scale(float rgb[3], float factor)
         rgb[i] = noise_clamp(rgb[i] * factor, 0.0f, 1.0f);
 }
 
+/** What a field of the three colours looks like from afar, where fields of it are chosen evenly. */
+static void mix_mean(const struct pattern *p, float rgb[3], float share)
+{
+    for (int i = 0; i < 3; i++) {
+        float mean = 0.5f * p->colors[0][i] + 0.25f * (p->colors[1][i] + p->colors[2][i]);
+        rgb[i] += (mean - rgb[i]) * share;
+    }
+}
+
 /* Digits of 3 x 5 dots, the top row in the highest bits. */
 static const uint16_t digit_dots[10] = {075557, 026227, 071747, 071717, 055711,
                                         074717, 074757, 071222, 075757, 075717};
@@ -59,6 +68,7 @@ static void tiles(const struct pattern *p, float u, float v, float footprint, fl
         if (tx >= 0.0f && tx < 1.0f && ty >= 0.0f && ty < 1.0f && is_ink(number % 10000u, tx, ty))
             mix_into(rgb, ink, 0.8f * visible * noise_visible(0.3f, size * 45.0f));
     }
+    mix_mean(p, rgb, 1.0f - noise_visible(1.2f, 8.0f * footprint));
     scale(rgb, 0.94f + 0.12f * periodic_octaves(u, v, 64, 64, 6, 0.7f, footprint, p->seed));
 }
 
@@ -72,8 +82,8 @@ static void stone(const struct pattern *p, float u, float v, float footprint, fl
     float fine = periodic_octaves(u, v, 256, 256, 5, 0.7f, footprint, p->seed + 9);
     memcpy(rgb, p->colors[0], 3 * sizeof *rgb);
     mix_into(rgb, p->colors[1], noise_clamp(0.5f + 0.5f * cloud, 0.0f, 1.0f));
-    mix_into(rgb, p->colors[2],
-             0.85f * (1.0f - noise_smoothstep(0.0f, 0.09f + 4.0f * footprint, vein)));
+    float veined = 1.0f - noise_smoothstep(0.0f, 0.09f + 4.0f * footprint, vein);
+    mix_into(rgb, p->colors[2], noise_mix(0.1f, 0.85f * veined, noise_visible(4.0f, footprint)));
     scale(rgb, 1.0f + 0.10f * fine);
 }
 
@@ -93,6 +103,7 @@ static void wood(const struct pattern *p, float u, float v, float footprint, flo
 /** How much of a stripe of a tartan covers x. */
 static float stripe(float x, float at, float half_width, float footprint)
 {
+    footprint = fminf(footprint, 1.0f); /* beyond, it is the same everywhere */
     float distance = fabsf(x - floorf(x) - at);
     return noise_line(fminf(distance, 1.0f - distance), half_width, footprint);
 }
@@ -124,8 +135,8 @@ static void world(const struct pattern *p, float u, float v, float footprint, fl
     float soft = 0.01f + 6.0f * footprint;
     memcpy(rgb, p->colors[0], 3 * sizeof *rgb);
     scale(rgb, 1.0f + 0.5f * noise_clamp(land, -1.0f, 0.0f));
-    mix_into(rgb, p->colors[1], noise_smoothstep(0.0f, soft, land));
-    mix_into(rgb, p->colors[2], noise_smoothstep(0.12f, 0.42f, land));
+    mix_into(rgb, p->colors[1], noise_smoothstep(-soft, soft, land));
+    mix_into(rgb, p->colors[2], noise_smoothstep(0.12f - soft, 0.42f + soft, land));
     mix_into(rgb, snow, noise_smoothstep(0.62f, 0.75f, land + 0.1f * bend));
     float shade = periodic_octaves(u, v, 64, 64, 7, 0.7f, footprint, p->seed + 4);
     scale(rgb, 1.0f + 0.14f * shade * noise_smoothstep(-0.1f, 0.1f, land));
@@ -141,6 +152,9 @@ static void mosaic(const struct pattern *p, float u, float v, float footprint, f
     float tone = noise_unit(cell.id * 0x9e3779b1u), pick = noise_unit(cell.id * 0x85ebca77u);
     memcpy(rgb, p->colors[0], 3 * sizeof *rgb);
     mix_into(rgb, p->colors[1 + (cell.id & 1)], pick);
+    float apart = noise_visible(0.7f, size); /* panes are smaller than texels otherwise */
+    mix_mean(p, rgb, 1.0f - apart);
+    tone = noise_mix(0.5f, tone, apart);
     float streaks = periodic_octaves(u, v, 64, 32, 8, 0.62f, footprint, p->seed + cell.id % 8);
     scale(rgb, (0.65f + 0.6f * tone) * (1.0f + 0.16f * streaks));
     mix_into(rgb, joint, noise_line(cell.second - cell.nearest, 0.075f, 2.0f * size));
