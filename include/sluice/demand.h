@@ -56,7 +56,8 @@ typedef struct SluiceDemandLoaderCreateInfo {
     /** Pages that a scan lists and one call serves; the others wait for the next. At most 2^20;
      *  0: 8192. */
     uint32_t maxRequestsPerLaunch;
-    /** Device memory for tiles, bytes; a hard cap. 0: half of the device's. */
+    /** Device memory for tiles, bytes; a hard cap. At most 128 MiB for each of maxPageChunkCount
+     * are used. 0: half of the device's. */
     uint64_t memoryBudget;
     /** Reads under way and texels not yet copied, in tiles of 64 KiB; at most 2^16; 0: 1024. */
     uint32_t maxTilesInFlight;
@@ -222,8 +223,8 @@ typedef struct SluiceDemandBuffers {
 
 SLUICE_API void sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
                                        SluiceDemandBuffers *pBuffers);
-/** The array of combined image samplers that tiles are layers of, as sluiceGetVulkanPages; it
- *  changes inside sluicePrepareDemandLaunch alone. */
+/** The array of combined image samplers that tiles are layers of, as sluiceGetVulkanPages. What a
+ *  launch samples is there after sluicePrepareDemandLaunch; other calls may add to it. */
 SLUICE_API void sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages);
 
 typedef struct SluiceDemandLaunch {
@@ -253,8 +254,8 @@ SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
 
 /** What a launch missed. Pages, each counted once, whatever how many samples missed it. */
 typedef struct SluiceDemandRequests {
-    /** All that shaders asked for, listed or not: 0 means that every sample was resident, or is as
-     *  sharp as memory allows. */
+    /** All that shaders asked for, listed or not, but for pages of resources that are refused: 0
+     *  means that every sample was resident, or is as sharp as memory allows. */
     uint32_t missingCount;
     uint32_t servedCount;    ///< reads and fills that begin now
     uint32_t pendingCount;   ///< under way already

@@ -2,7 +2,6 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "demand/tail_place.h"
 #include "demand_vulkan/opening.h"
 #include "demand_vulkan/pages.h"
 
@@ -12,30 +11,6 @@
 #include <string.h>
 
 #define OPENING_PRIORITY 16u /* above all ranks */
-
-/* The slot's page for all coarse levels, which it keeps for good. */
-static SluiceResult find_tail_page(SluiceDemandLoader *loader, uint32_t slot, uint32_t *page)
-{
-    uint32_t block = slot / SLUICE_DEMAND_BLOCK_PAGES;
-    if (block == loader->tail_block_capacity) {
-        uint32_t capacity = block ? 2 * block : 16;
-        uint32_t *blocks = slc_regrow(&loader->cb, loader->tail_blocks, block, capacity,
-                                      sizeof *loader->tail_blocks);
-        if (!blocks)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        loader->tail_blocks = blocks;
-        loader->tail_block_capacity = capacity;
-    }
-    if (block == loader->tail_block_count) {
-        SluiceResult result = slc_pages_take(loader, 0, SLUICE_DEMAND_BLOCK_PAGES, SLC_OWNER_TAIL,
-                                             block, &loader->tail_blocks[block]);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        loader->tail_block_count++;
-    }
-    *page = loader->tail_blocks[block] + slot % SLUICE_DEMAND_BLOCK_PAGES;
-    return SLUICE_SUCCESS;
-}
 
 static SluiceResult grow(SluiceDemandLoader *loader)
 {
@@ -59,7 +34,7 @@ static SluiceResult add_slot(SluiceDemandLoader *loader, struct slc_demand_image
     if (result == SLUICE_SUCCESS)
         result = slc_table_mirror_reserve(&loader->levels, slot + 2);
     if (result == SLUICE_SUCCESS)
-        result = find_tail_page(loader, slot, &tail_page);
+        result = slc_image_find_tail(loader, slot, &tail_page);
     if (result != SLUICE_SUCCESS)
         return result;
     *image = slc_calloc(&loader->cb, 1, sizeof **image);
@@ -160,45 +135,6 @@ enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t t
     return SLC_REQUEST_POSTPONED;
 }
 
-static uint64_t level_tile_count(const struct slc_demand_image *image, uint32_t level)
-{
-    return (uint64_t)slc_image_level_width(image, level) * slc_image_level_height(image, level);
-}
-
-uint32_t slc_image_level_rank(const struct slc_demand_image *image, uint32_t level)
-{
-    uint32_t rank = 1;
-    uint64_t tiles = level_tile_count(image, level);
-    for (uint64_t n = 1; n < tiles && rank < SLUICE_DEMAND_RANKS - 1; n *= 4)
-        rank++;
-    return rank;
-}
-
-static void give_level_pages(SluiceDemandLoader *loader, struct slc_demand_image *image)
-{
-    for (uint32_t l = 0; l < image->regular_count; l++)
-        slc_pages_give(loader, image->first_pages[l], level_tile_count(image, l));
-    image->regular_count = 0;
-}
-
-static SluiceResult take_level_pages(SluiceDemandLoader *loader, struct slc_demand_image *image)
-{
-    uint32_t count = slc_demand_regular_count(image->info.width, image->info.height,
-                                              image->tile_width, image->tile_height);
-    assert(count <= SLC_MAX_REGULAR_LEVELS);
-    for (uint32_t l = 0; l < count; l++) {
-        uint64_t tiles = level_tile_count(image, l);
-        SluiceResult result = slc_pages_take(loader, slc_image_level_rank(image, l), tiles,
-                                             SLC_OWNER_LEVEL, image->slot, &image->first_pages[l]);
-        if (result != SLUICE_SUCCESS) {
-            give_level_pages(loader, image);
-            return result;
-        }
-        image->regular_count = l + 1;
-    }
-    return SLUICE_SUCCESS;
-}
-
 /* Pages and what shaders see. */
 static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
@@ -209,7 +145,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
             sluiceGetStandardTileShape(image->info.format, &image->tile_width, &image->tile_height);
     image->blocks = format.blockWidth > 1;
     if (result == SLUICE_SUCCESS)
-        result = take_level_pages(loader, image);
+        result = slc_image_take_levels(loader, image);
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t *words =
@@ -282,7 +218,7 @@ void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *ima
 static void bury(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     close_source(loader, image);
-    give_level_pages(loader, image);
+    slc_image_give_levels(loader, image);
     image->state = SLC_IMAGE_BURIED;
     image->launch = loader->launch;
     image->next = SLC_NONE;
@@ -308,13 +244,6 @@ static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image
     slc_jobs_drop(loader, SLC_JOB_OPEN, image->slot, 0, UINT64_MAX);
 }
 
-static void forget_tiles(SluiceDemandLoader *loader, const struct slc_demand_image *image)
-{
-    for (uint32_t l = 0; l < image->regular_count; l++)
-        slc_residency_forget(loader->residency, image->first_pages[l], level_tile_count(image, l));
-    slc_residency_forget(loader->residency, image->tail_page, 1);
-}
-
 static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     if (!image->refresh)
@@ -338,10 +267,8 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
         slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);
         slc_jobs_wait(loader, SLC_JOB_OPEN, image->slot);
     }
-    forget_tiles(loader, image);
-    for (uint32_t l = 0; l < image->regular_count; l++)
-        slc_pages_forget_requests(loader, image->first_pages[l], level_tile_count(image, l));
-    slc_pages_forget_requests(loader, image->tail_page, 1);
+    slc_image_forget(loader, image);
+    slc_image_forget_requests(loader, image);
     loader->textures[image->texture].image = SLC_NONE;
     image->state = SLC_IMAGE_DETACHED;
     if (image->job_count == 0)
@@ -362,7 +289,7 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
     if (image->state != SLC_IMAGE_OPEN)
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
-    forget_tiles(loader, image);
+    slc_image_forget(loader, image);
     if (image->refresh)
         return;
     image->refresh = true;

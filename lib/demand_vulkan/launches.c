@@ -123,20 +123,37 @@ static void record_first(SluiceDemandLoader *loader, VkCommandBuffer commands)
     loader->cleared = true;
 }
 
-/* Everything but the page table; how many tiles. */
-static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
+static void record_ranks(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     uint32_t first, count;
+    if (slc_page_space_take_changes(loader->space, &first, &count))
+        slc_demand_scan_record_ranks(&loader->scan, &loader->vk, commands,
+                                     slc_page_space_ranks(loader->space), first, count);
+}
+
+static bool has_transfers(const SluiceDemandLoader *loader)
+{
+    return !loader->cleared || loader->space_changed || loader->forgotten_count ||
+           loader->admitted.first != SLC_NONE || slc_table_mirror_has_changes(&loader->table) ||
+           slc_table_mirror_has_changes(&loader->levels) ||
+           slc_table_mirror_has_changes(&loader->grids);
+}
+
+/* Everything but the page table; how many tiles. Where nothing has changed there is no barrier. */
+static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
+{
+    slc_page_cache_record(&loader->tiles.cache, loader->launch, loader->processed, commands);
+    if (!has_transfers(loader))
+        return 0;
     slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         SHADER_ACCESS | VK_ACCESS_TRANSFER_WRITE_BIT,
                         VK_PIPELINE_STAGE_TRANSFER_BIT,
                         VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
     if (!loader->cleared)
         record_first(loader, commands);
-    slc_page_cache_record(&loader->tiles.cache, loader->launch, loader->processed, commands);
-    if (slc_page_space_take_changes(loader->space, &first, &count))
-        slc_demand_scan_record_ranks(&loader->scan, &loader->vk, commands,
-                                     slc_page_space_ranks(loader->space), first, count);
+    if (loader->space_changed)
+        record_ranks(loader, commands);
+    loader->space_changed = false;
     record_forgotten(loader, commands);
     uint32_t tiles = slc_uploads_record(loader, commands);
     slc_table_mirror_record(&loader->table, &loader->vk, commands);

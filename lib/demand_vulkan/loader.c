@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/region_arena.h"
+#include "vulkan/sparse_layout.h"
 
 #include <sluice/shared/demand.h>
 
@@ -42,6 +43,23 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
     return SLUICE_SUCCESS;
 }
 
+/* More tiles than all images can have layers would never come. */
+static void choose_budget(SluiceDemandLoader *loader)
+{
+    SluiceDemandLoaderCreateInfo *info = &loader->info;
+    uint64_t most = (uint64_t)info->maxPageChunkCount *
+                    slc_min_u32(SLC_PAGE_CHUNK_LAYERS, loader->caps.max_image_array_layers) *
+                    SLC_TILE_SIZE;
+    if (info->memoryBudget > most)
+        slc_log(&info->log, SLUICE_LOG_WARNING,
+                "maxPageChunkCount %u images of tiles hold %llu MiB of the budget",
+                info->maxPageChunkCount, (unsigned long long)(most >> 20));
+    if (info->memoryBudget == 0)
+        info->memoryBudget = slc_device_memory_size(&loader->caps) / 2;
+    if (info->memoryBudget > most)
+        info->memoryBudget = most;
+}
+
 static SluiceResult check_device(SluiceDemandLoader *loader)
 {
     const char *missing = slc_missing_for_mode(&loader->caps, SLUICE_RESIDENCY_MODE_PAGED);
@@ -55,8 +73,7 @@ static SluiceResult check_device(SluiceDemandLoader *loader)
         slc_format_caps_init(&format, &loader->vk, (SluiceFormat)i);
         loader->usable[i] = format.sampled && format.linearFilter;
     }
-    if (loader->info.memoryBudget == 0)
-        loader->info.memoryBudget = slc_device_memory_size(&loader->caps) / 2;
+    choose_budget(loader);
     return SLUICE_SUCCESS;
 }
 
@@ -117,7 +134,7 @@ static SluiceResult create_tables(SluiceDemandLoader *loader)
 static uint32_t block_capacity(const SluiceDemandLoader *loader)
 {
     uint64_t blocks = loader->info.pageCapacity / SLUICE_DEMAND_BLOCK_PAGES;
-    uint64_t wanted = loader->tiles.limit + 65536;
+    uint64_t wanted = loader->tiles.limit + 32768;
     wanted = wanted < blocks ? wanted : blocks;
     return (uint32_t)(wanted < SLC_PAGE_BLOCKS_MAX ? wanted : SLC_PAGE_BLOCKS_MAX);
 }

@@ -161,6 +161,7 @@ struct SluiceDemandLoader {
     struct slc_page_memory tile_interface;
     uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
     uint32_t owner_capacity;
+    bool space_changed;             ///< ids were given since the last launch
     struct slc_page_run *forgotten; ///< owned; pages whose requests the next launch clears
     uint32_t forgotten_count, forgotten_capacity;
 

@@ -43,6 +43,7 @@ SluiceResult slc_pages_take(SluiceDemandLoader *loader, uint32_t rank, uint64_t 
         slc_page_space_free(loader->space, *first, count, loader->processed);
         return result;
     }
+    loader->space_changed = true; /* its sections may have another rank now */
     for (uint32_t i = 0; i < block_count(count); i++)
         loader->owners[block + i] = (uint32_t)owner << OWNER_SHIFT | index;
     return SLUICE_SUCCESS;

@@ -22,5 +22,14 @@ enum slc_page_owner slc_pages_find(const SluiceDemandLoader *loader, uint32_t pa
                                    uint32_t *index);
 /** Requests of them that launches so far left behind are cleared by the next one. */
 void slc_pages_forget_requests(SluiceDemandLoader *loader, uint32_t first, uint64_t count);
+/** The page for all coarse levels of whatever image has the slot, which it keeps for good. Errors:
+ *  as slc_pages_take. */
+SluiceResult slc_image_find_tail(SluiceDemandLoader *loader, uint32_t slot, uint32_t *page);
+/** Pages of all regular levels of an image whose info and tile size are known. Errors: the same. */
+SluiceResult slc_image_take_levels(SluiceDemandLoader *loader, struct slc_demand_image *image);
+void slc_image_give_levels(SluiceDemandLoader *loader, struct slc_demand_image *image);
+/** None of its tiles is resident any more; and what shaders asked of them. */
+void slc_image_forget(SluiceDemandLoader *loader, const struct slc_demand_image *image);
+void slc_image_forget_requests(SluiceDemandLoader *loader, const struct slc_demand_image *image);
 
 #endif /* SLC_DEMAND_VULKAN_PAGES_H */

@@ -36,6 +36,13 @@ static void count(SluiceDemandRequests *requests, enum slc_request_answer answer
     }
 }
 
+/* Shaders cannot be told that a value will not come: they ask for it whenever they miss it. */
+static bool is_resource(const SluiceDemandLoader *loader, uint32_t page)
+{
+    uint32_t index;
+    return slc_pages_find(loader, page, &index) == SLC_OWNER_RESOURCE;
+}
+
 static void feed_used(SluiceDemandLoader *loader, uint32_t slot)
 {
     struct slc_page_used_iterator iterator = {0};
@@ -69,7 +76,9 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         feed_used(loader, slot);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
         SluiceResult result; /* without host memory it is one of those that are postponed */
-        count(&now, slc_page_request_any(loader, pages[i], ticket, &result));
+        enum slc_request_answer answer = slc_page_request_any(loader, pages[i], ticket, &result);
+        count(&now, answer);
+        now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
     }
     slc_residency_settle(loader->residency, scan.requestCount);
     slc_evicted_take(loader);

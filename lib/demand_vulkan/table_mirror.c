@@ -89,7 +89,7 @@ static void extend(const struct slc_table_mirror *mirror, const struct slc_vk *v
     run->end = index + 1;
 }
 
-bool slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
+void slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
                              VkCommandBuffer commands)
 {
     struct run run = {0};
@@ -106,5 +106,4 @@ bool slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_v
     flush(mirror, vk, commands, &run);
     mirror->first_word = UINT32_MAX;
     mirror->end_word = 0;
-    return run.end > 0;
 }

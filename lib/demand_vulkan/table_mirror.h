@@ -40,8 +40,13 @@ static inline const void *slc_table_mirror_get(const struct slc_table_mirror *mi
     return &mirror->elements[index];
 }
 
-/** Transfers; the caller puts barriers around. True if there were any. */
-bool slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
+static inline bool slc_table_mirror_has_changes(const struct slc_table_mirror *mirror)
+{
+    return mirror->first_word < mirror->end_word;
+}
+
+/** Transfers; the caller puts barriers around. */
+void slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
                              VkCommandBuffer commands);
 
 #endif /* SLC_DEMAND_VULKAN_TABLE_MIRROR_H */

@@ -11,7 +11,6 @@
 #include <assert.h>
 
 #define MIN_LAYERS 64u     /* 4 MiB */
-#define MAX_LAYERS 2048u   /* 128 MiB */
 #define IDLE_FRAMES 60u    /* that an empty chunk is kept */
 #define REFUSED_FRAMES 60u /* until the device is asked for memory again */
 
@@ -20,7 +19,7 @@ SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_
                                  struct slc_page_views *views)
 {
     *cache = (struct slc_page_cache){.vk = vk, .caps = caps, .cb = cb, .views = views};
-    cache->max_layer_count = slc_min_u32(MAX_LAYERS, caps->max_image_array_layers);
+    cache->max_layer_count = slc_min_u32(SLC_PAGE_CHUNK_LAYERS, caps->max_image_array_layers);
     cache->chunks = slc_calloc(cb, views->count, sizeof *cache->chunks);
     return cache->chunks ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
@@ -102,8 +101,11 @@ static uint32_t layers_left(const struct slc_page_cache *cache)
 
 uint32_t slc_page_cache_room(const struct slc_page_cache *cache)
 {
-    bool none = slc_page_cache_is_refused(cache) || find_free_chunk(cache) == cache->views->count;
-    return none ? 0 : layers_left(cache);
+    uint64_t most = 0;
+    for (uint32_t i = 0; i < cache->views->count; i++)
+        most += cache->chunks[i].state == SLC_CHUNK_FREE ? cache->max_layer_count : 0;
+    uint32_t left = slc_page_cache_is_refused(cache) ? 0 : layers_left(cache);
+    return most < left ? (uint32_t)most : left;
 }
 
 /* Drivers may ask for more than the texels need. */

@@ -11,6 +11,7 @@
 #include "vulkan/page_views.h"
 
 #define SLC_PAGE_FORMATS 64u
+#define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
 #define SLC_NO_OWNER UINT32_MAX
 
 enum slc_page_chunk_state {

@@ -43,7 +43,8 @@ void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width
                       uint32_t level, uint32_t x, uint32_t y);
 void runner_add_page(struct runner *r, uint32_t page);
 
-/** Records and submits a launch; the answer of sluicePrepareDemandLaunch if that is not SUCCESS. */
+/** Records and submits a launch, of which at most two may be under way; the answer of
+ * sluicePrepareDemandLaunch if that is not SUCCESS. */
 SluiceResult runner_submit(struct runner *r);
 /** And processes it: `requests` and `ticket`. */
 void runner_launch(struct runner *r);

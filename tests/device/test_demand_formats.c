@@ -6,6 +6,7 @@
 #include "support/test.h"
 
 #include <math.h>
+#include <string.h>
 
 static struct harness h;
 
@@ -129,6 +130,74 @@ static void every_format_shows_what_is_in_the_image(void **state)
     assert_true(count >= 10);
 }
 
+/* 2 x 2 texels, whose two levels are the same block of random bits. */
+struct random_block {
+    SluiceImageSource base;
+    SluiceImageInfo info;
+    uint8_t block[16];
+};
+
+static SluiceResult get_block_info(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    *info = ((struct random_block *)source)->info;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_block(SluiceImageSource *source, const SluiceImageRegion *region,
+                               void *texels, size_t row_pitch)
+{
+    const struct random_block *random = (const struct random_block *)source;
+    SluiceFormatInfo format;
+    (void)region, (void)row_pitch;
+    CHECK_OK(sluiceGetFormatInfo(random->info.format, &format));
+    memcpy(texels, random->block, format.blockSize);
+    return SLUICE_SUCCESS;
+}
+
+static void destroy_block(SluiceImageSource *source)
+{
+    (void)source;
+}
+
+static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
+{
+    (void)state;
+    enum { COUNT = 64, FIRST = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK };
+    static const SluiceImageSourceInterface interface = {get_block_info, read_block, destroy_block};
+    static struct random_block blocks[COUNT];
+    uint32_t seed = 1;
+    for (uint32_t f = FIRST; f <= SLUICE_FORMAT_BC5_SNORM_BLOCK; f++) {
+        struct runner r;
+        if (!is_usable((SluiceFormat)f))
+            continue;
+        runner_init(&r, &h, NULL);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            SluiceDemandTextureId id;
+            blocks[i] = (struct random_block){{&interface}, {2, 2, 2, (SluiceFormat)f, "random"}};
+            for (uint32_t b = 0; b < 16; b++)
+                blocks[i].block[b] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
+            const SluiceDemandTextureCreateInfo info = {.image.source = &blocks[i].base,
+                                                        .sampler = runner_nearest};
+            CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+            runner_add_texel(&r, id, 2, 2, 0, 0, 0);
+            runner_add_texel(&r, id, 2, 2, 1, 0, 0);
+        }
+        runner_load(&r, 9);
+        assert_int_equal(runner_statistics(&r).residentTileCount, COUNT);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            struct RunnerOutput decoded = runner_output(&r, 2 * i);
+            struct RunnerOutput base = runner_output(&r, 2 * i + 1);
+            assert_true(decoded.resident && base.resident);
+            for (uint32_t c = 0; c < 4; c++)
+                if (!(fabsf(decoded.color[c] - base.color[c]) < 0.012f))
+                    fail_msg("%s, channel %u: %g, and the device decodes %g",
+                             sluiceFormatString((SluiceFormat)f), c, (double)base.color[c],
+                             (double)decoded.color[c]);
+        }
+        runner_finish(&r);
+    }
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -136,6 +205,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_shows_what_is_in_the_image),
+        cmocka_unit_test(the_colour_of_a_block_is_what_the_device_decodes),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

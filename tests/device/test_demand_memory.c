@@ -5,6 +5,7 @@
 #include "support/test.h"
 
 #include <math.h>
+#include <string.h>
 
 static struct harness h;
 
@@ -264,6 +265,90 @@ static void what_finds_no_memory_is_left_out_of_a_preload(void **state)
     runner_image_finish(&image);
 }
 
+/* A device with less memory than it says: what the functions below share, and no test changes while
+ * a loader uses them. */
+static struct {
+    PFN_vkGetDeviceProcAddr get;
+    PFN_vkAllocateMemory allocate;
+    uint64_t left; ///< bytes; only large allocations count
+} poor;
+
+static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
+                                                      const VkMemoryAllocateInfo *info,
+                                                      const VkAllocationCallbacks *callbacks,
+                                                      VkDeviceMemory *memory)
+{
+    bool large = info->allocationSize >= 2u << 20;
+    if (large && info->allocationSize > poor.left)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    poor.left -= large ? info->allocationSize : 0;
+    return poor.allocate(device, info, callbacks, memory);
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_device(VkDevice device, const char *name)
+{
+    PFN_vkVoidFunction function = poor.get(device, name);
+    if (strcmp(name, "vkAllocateMemory") != 0)
+        return function;
+    poor.allocate = (PFN_vkAllocateMemory)function;
+    return (PFN_vkVoidFunction)allocate_memory;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_instance(VkInstance instance,
+                                                                const char *name)
+{
+    PFN_vkVoidFunction function = h.get(instance, name);
+    if (strcmp(name, "vkGetDeviceProcAddr") != 0)
+        return function;
+    poor.get = (PFN_vkGetDeviceProcAddr)function;
+    return (PFN_vkVoidFunction)get_of_device;
+}
+
+static void a_device_without_memory_is_a_smaller_budget(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandLoader *loader;
+    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 128u << 20,
+                                         .maxTilesInFlight = 32,
+                                         .maxTextureCount = 64,
+                                         .pageCapacity = 1u << 16};
+    runner_fill(&h, &info);
+    info.pfnGetInstanceProcAddr = get_of_instance;
+    poor.left = 64u << 20;
+    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
+    poor.left = 20u << 20;
+    runner_init_with(&r, &h, loader);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    h.quiet = true;
+    uint32_t launches = runner_load(&r, 100);
+    h.quiet = false;
+    print_message("# launches.poor %u launches\n", launches);
+    assert_in_range(launches, 3, 60);
+    assert_true(runner_all_resident(&r));
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_true(statistics.lodBias > 0);
+    assert_true(statistics.tileMemorySize <= 20u << 20);
+    assert_true(statistics.residentTileCount >= 64);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void page_tables_of_64_mi_pages_cost_at_most_64_megabytes(void **state)
+{
+    (void)state;
+    struct runner r;
+    const SluiceDemandLoaderCreateInfo info = {
+        .pageCapacity = 1u << 26, .maxTextureCount = 1u << 17, .memoryBudget = 256u << 20};
+    runner_init(&r, &h, &info);
+    uint64_t size = runner_statistics(&r).deviceMemorySize;
+    print_message("# deviceMemory.pages %llu bytes\n", (unsigned long long)size);
+    assert_true(size <= 64000000);
+    runner_finish(&r);
+}
+
 /* A loader's life, on one thread but for the workers: OUT_OF_HOST_MEMORY, or how it should be. */
 static bool live(struct failing_allocator *allocator, struct runner_image *image)
 {
@@ -346,6 +431,8 @@ int main(void)
         cmocka_unit_test(formats_share_a_budget),
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
+        cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),
+        cmocka_unit_test(page_tables_of_64_mi_pages_cost_at_most_64_megabytes),
         cmocka_unit_test(a_loader_survives_every_refused_allocation),
     };
     return harness_finish(&h, RUN_TESTS(tests));

@@ -199,7 +199,7 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     runner_clear(&r);
     runner_add_page(&r, first + 11);
     h.quiet = true;
-    runner_load(&r, 5);
+    assert_in_range(runner_load(&r, 9), 2, 3); /* or applications would launch for ever */
     h.quiet = false;
     assert_false(runner_output(&r, 0).resident);
     assert_int_equal(r.requests.refusedCount, 1);
