@@ -76,7 +76,7 @@ succeeds
 is_complete first
 check first launches 'v + 0 > 3'
 check first paths_traced 'v + 0 > 96 * 54 * 2'
-check first tiles_loaded 'v + 0 > 10'
+check first pages_served 'v + 0 > 10'
 check first reads_failed 'v + 0 == 0'
 check first textures 'v + 0 == 30'
 check first textures_opened 'v + 0 > 5 && v + 0 <= 30'

@@ -134,7 +134,9 @@ vec4 patchColor(TracerInstance instance, Patch p, vec3 direction, float width,
     bool resident;
     vec4 color = sluiceDemandGrad(instance.texture, p.uv, dx, dy, resident);
     complete = complete && resident;
-    return color;
+    uint components = bitfieldExtract(SLUICE_DEMAND_TEXTURE(instance.texture).shape,
+                                      SLUICE_DEMAND_COMPONENTS_SHIFT, 3);
+    return components == 1u ? vec4(color.rrr, color.a) : color;
 }
 
 /** Whether a ray goes on through a hole of the texture. What is not resident has no holes yet. */
@@ -160,7 +162,8 @@ Surface surfaceAt(uint instanceIndex, uint triangle, vec2 weights, vec3 directio
     s.flags = instance.flags;
     s.complete = true;
     vec4 color = patchColor(instance, p, direction, s.coneWidth, s.complete);
-    s.albedo = color.rgb;
+    /* files may hold anything */
+    s.albedo = any(isnan(color.rgb)) ? vec3(0.0) : clamp(color.rgb, 0.0, 1.0);
     s.alpha = color.a;
     s.face = dot(p.face, direction) > 0.0 ? -p.face : p.face;
     s.normal = dot(p.normal, s.face) < 0.0 ? -p.normal : p.normal;
