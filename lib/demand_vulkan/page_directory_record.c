@@ -185,15 +185,16 @@ bool slc_page_directory_next_used(const struct slc_page_directory *dir, uint32_t
                                   struct slc_page_used_iterator *iterator, uint32_t *page)
 {
     const uint32_t *words = dir->readback.mapped;
-    const uint32_t *owners = dir->pool.used_owners + (size_t)slot * dir->pool.room;
+    const size_t first =
+        (size_t)slot * dir->pool.room; /* there is no table before the first page */
     while (!iterator->bits) {
         if (iterator->block + 1 >= dir->slots[slot].used_end)
             return false;
         uint32_t block = ++iterator->block;
-        if (owners[block] != SLC_NO_ENTRY)
+        if (dir->pool.used_owners[first + block] != SLC_NO_ENTRY)
             iterator->bits = words[(size_t)slot * dir->pool.capacity + block];
     }
-    *page = owners[iterator->block] * SLUICE_DEMAND_BLOCK_PAGES +
+    *page = dir->pool.used_owners[first + iterator->block] * SLUICE_DEMAND_BLOCK_PAGES +
             (uint32_t)__builtin_ctz(iterator->bits);
     iterator->bits &= iterator->bits - 1;
     return true;

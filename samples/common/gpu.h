@@ -7,12 +7,14 @@
 #include <sluice/vulkan.h>
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 struct gpu_request {
     const char *device; ///< an index of --list-devices, part of a name or type; NULL: the best
     bool validation;    ///< with synchronization validation
     /** That streamers will have. AUTO for the second: sparse if the first is, else dense. */
     SluiceResidencyMode modes[2];
+    bool ray_tracing; ///< the ray-tracing pipeline is enabled, where the device has it
 };
 
 struct gpu {
@@ -27,6 +29,7 @@ struct gpu {
     VkPhysicalDeviceMemoryProperties memory;
     SluiceVulkanDeviceCapabilities capabilities;
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
+    bool ray_tracing;             ///< asked for and there, with buffer addresses
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
 };
@@ -60,7 +63,8 @@ void gpu_destroy(struct gpu *gpu);
 /** Prints "what: VK_..." and returns false unless `result` is VK_SUCCESS. */
 bool gpu_check(VkResult result, const char *what);
 
-/** Host-visible buffers are coherent, and cached where `usage` is only a transfer destination. */
+/** Host-visible buffers are coherent, and cached where `usage` is only a transfer destination. With
+ *  SHADER_DEVICE_ADDRESS in `usage` they have an address. */
 bool gpu_create_buffer(const struct gpu *gpu, VkDeviceSize size, VkBufferUsageFlags usage,
                        struct gpu_buffer *buffer);
 /** In the device's own memory, not mapped. */

@@ -28,3 +28,21 @@ bool png_file_write(const char *path, const uint8_t *rgba, uint32_t width, uint3
     free(rgb);
     return done;
 }
+
+uint8_t *png_file_read(const char *path, uint32_t *width, uint32_t *height)
+{
+    png_image image = {.version = PNG_IMAGE_VERSION};
+    bool opened = png_image_begin_read_from_file(&image, path);
+    image.format = PNG_FORMAT_RGBA;
+    uint8_t *rgba = opened ? malloc(PNG_IMAGE_SIZE(image)) : NULL;
+    if (rgba && png_image_finish_read(&image, NULL, rgba, 0, NULL)) {
+        *width = image.width;
+        *height = image.height;
+        return rgba;
+    }
+    fprintf(stderr, "%s: cannot read: %s\n", path,
+            opened && !rgba ? "out of memory" : image.message);
+    png_image_free(&image);
+    free(rgba);
+    return NULL;
+}

@@ -11,4 +11,7 @@
  */
 bool png_file_write(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height);
 
+/** [height][width] RGBA bytes for the caller to free. NULL if it failed, and stderr says why. */
+uint8_t *png_file_read(const char *path, uint32_t *width, uint32_t *height);
+
 #endif /* SAMPLES_COMMON_PNG_FILE_H */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "noise.h"
+#include "../common/noise.h"
 
 static void mix_into(float rgb[3], const float other[3], float share)
 {

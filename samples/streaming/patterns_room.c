@@ -1,6 +1,6 @@
 #include "patterns.h"
 
-#include "noise.h"
+#include "../common/noise.h"
 
 /** Value noise whose lattice repeats after `period` cells. */
 static float repeating_noise(float x, float y, int32_t period, uint32_t seed)

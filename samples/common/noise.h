@@ -1,6 +1,6 @@
 /** Noise and small functions for pictures that are computed: pure, fast, the same everywhere. */
-#ifndef SAMPLES_STREAMING_NOISE_H
-#define SAMPLES_STREAMING_NOISE_H
+#ifndef SAMPLES_COMMON_NOISE_H
+#define SAMPLES_COMMON_NOISE_H
 
 #include <math.h>
 #include <stdint.h>
@@ -103,4 +103,4 @@ static inline void noise_palette(float t, const float phase[3], float rgb[3])
         rgb[i] = 0.5f + 0.5f * cosf(NOISE_TAU * (t + phase[i]));
 }
 
-#endif /* SAMPLES_STREAMING_NOISE_H */
+#endif /* SAMPLES_COMMON_NOISE_H */

@@ -1,0 +1,20 @@
+/** What the ray-tracing pipeline needs of a device. */
+#ifndef SAMPLES_COMMON_GPU_RAYS_H
+#define SAMPLES_COMMON_GPU_RAYS_H
+
+#include <vulkan/vulkan.h>
+
+#include <stdbool.h>
+
+struct gpu_ray_features {
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structures;
+    VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipelines;
+};
+
+/** Whether the device has the pipeline, acceleration structures and buffer addresses. */
+bool gpu_traces_rays(VkPhysicalDevice device);
+/** Adds extensions and features to what a device is created with; `rays` is part of the chain. */
+void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Features *vulkan12,
+                      VkDeviceCreateInfo *info);
+
+#endif /* SAMPLES_COMMON_GPU_RAYS_H */

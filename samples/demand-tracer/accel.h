@@ -1,0 +1,31 @@
+/** The scene for the device's own ray tracing: one structure per shape, one over all instances. */
+#ifndef TRACER_ACCEL_H
+#define TRACER_ACCEL_H
+
+#include "../common/gpu.h"
+#include "scene.h"
+
+struct accel_structure {
+    VkAccelerationStructureKHR handle;
+    struct gpu_buffer storage;
+};
+
+/** Zeroed is empty. */
+struct accel {
+    struct accel_structure shapes[SHAPE_COUNT], scene;
+    struct gpu_buffer instances;
+};
+
+/** What the builds read, see scene_buffers.h, needs these usages. */
+#define ACCEL_INPUT_USAGE                                                                          \
+    (VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |                        \
+     VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
+
+/** Builds on the device, which traces rays, and waits. Says on stderr why it failed. */
+bool accel_build(const struct gpu *gpu, const struct scene *scene, VkBuffer vertices,
+                 VkBuffer indices, struct accel *accel);
+void accel_finish(const struct gpu *gpu, struct accel *accel);
+
+VkDeviceAddress accel_buffer_address(const struct gpu *gpu, VkBuffer buffer);
+
+#endif /* TRACER_ACCEL_H */

@@ -1,0 +1,39 @@
+/** The two descriptor sets of all shaders: the demand loader's, and the scene with the film. */
+#ifndef TRACER_BINDINGS_H
+#define TRACER_BINDINGS_H
+
+#include <sluice/demand.h>
+
+#include "../common/gpu.h"
+#include "tracer_shared.h"
+
+/** Zeroed is empty. */
+struct bindings {
+    VkDescriptorSetLayout layouts[2];
+    VkPipelineLayout layout;
+    VkDescriptorPool pool;
+    VkDescriptorSet sets[2];
+    VkShaderStageFlags stages;
+    uint64_t page_generation; ///< of the tile arrays in set 0
+};
+
+struct bindings_request {
+    const SluiceDemandLoader *loader;
+    VkBuffer own_buffers[TRACER_OWN_BUFFERS]; ///< by TRACER_BINDING_...
+    VkAccelerationStructureKHR scene;         ///< VK_NULL_HANDLE: for compute shaders
+};
+
+/** Says on stderr why it failed. */
+bool bindings_create(const struct gpu *gpu, const struct bindings_request *request,
+                     struct bindings *bindings);
+void bindings_destroy(const struct gpu *gpu, struct bindings *bindings);
+
+/** After sluicePrepareDemandLaunch, when no launch is under way: the tile arrays may be others. */
+void bindings_follow_pages(const struct gpu *gpu, const SluiceDemandLoader *loader,
+                           struct bindings *bindings);
+
+/** Binds both sets and pushes the launch's constants. */
+void bindings_bind(const struct bindings *bindings, VkCommandBuffer commands,
+                   VkPipelineBindPoint point, const struct TracerLaunch *launch);
+
+#endif /* TRACER_BINDINGS_H */

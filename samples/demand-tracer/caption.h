@@ -1,0 +1,20 @@
+/** Words in pictures: capital letters, digits and a few signs, 3 x 5 dots each. */
+#ifndef TRACER_CAPTION_H
+#define TRACER_CAPTION_H
+
+#include <stdint.h>
+
+#define CAPTION_WIDTH 4u  ///< dots of a letter with the gap after it
+#define CAPTION_HEIGHT 5u ///< dots
+
+/** Where to draw: [height][width] RGBA bytes. */
+struct canvas {
+    uint8_t *rgba; ///< borrowed
+    uint32_t width, height;
+};
+
+/** White, `scale` pixels per dot, from (x, y) on, cut at the edges. Other characters are blanks. */
+void caption_draw(const struct canvas *canvas, uint32_t x, uint32_t y, uint32_t scale,
+                  const char *text);
+
+#endif /* TRACER_CAPTION_H */

@@ -1,0 +1,31 @@
+/** Small pictures of the first launches side by side: how the picture fills. */
+#ifndef TRACER_CONTACT_SHEET_H
+#define TRACER_CONTACT_SHEET_H
+
+#include "launches.h"
+
+#define CONTACT_SHEET_COLUMNS 4u
+#define CONTACT_SHEET_ROWS 3u
+#define CONTACT_SHEET_CELLS (CONTACT_SHEET_COLUMNS * CONTACT_SHEET_ROWS)
+
+/** Zeroed is empty. */
+struct contact_sheet {
+    bool marks_missing;                  ///< pixels that are not complete are magenta
+    uint32_t cell_width, cell_height;    ///< pixels of a small picture
+    uint32_t count;                      ///< small pictures so far
+    uint8_t *cells[CONTACT_SHEET_CELLS]; ///< owned; RGBA, with the caption below
+};
+
+/** Whether there is room for one more besides the last picture. */
+bool contact_sheet_has_room(const struct contact_sheet *sheet);
+/**
+ * Adds a small picture. Where there is no room it takes the place of
+ * the last one. Says on stderr if memory is short.
+ */
+bool contact_sheet_add(struct contact_sheet *sheet, const struct picture *picture, double exposure,
+                       const char *caption);
+/** Says on stderr why it failed. */
+bool contact_sheet_write(const struct contact_sheet *sheet, const char *path);
+void contact_sheet_finish(struct contact_sheet *sheet);
+
+#endif /* TRACER_CONTACT_SHEET_H */

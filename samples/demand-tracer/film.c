@@ -1,0 +1,107 @@
+#include "film.h"
+
+#include <string.h>
+
+#include "one_time.h"
+
+#define BLOCK 8u ///< pixels side by side in the list are near each other
+
+static VkDeviceSize pixel_count(const struct film *film)
+{
+    return (VkDeviceSize)film->width * film->height;
+}
+
+bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct film *film)
+{
+    const VkBufferUsageFlags usage =
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    *film = (struct film){.width = width, .height = height};
+    const VkDeviceSize count = pixel_count(film), size = count * 4 * sizeof(float);
+    if (!gpu_create_buffer(gpu, size, usage, &film->sums) ||
+        !gpu_create_buffer(gpu, size, usage, &film->latest) ||
+        !gpu_create_buffer(gpu, 2 * count * sizeof(uint32_t), usage, &film->lists) ||
+        !gpu_create_buffer(gpu, 2 * sizeof(uint32_t), usage, &film->counters) ||
+        !gpu_create_buffer(gpu, 2 * size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &film->readback))
+        return false;
+    memset(film->sums.mapped, 0, size);
+    memset(film->latest.mapped, 0, size);
+    return true;
+}
+
+void film_destroy(const struct gpu *gpu, struct film *film)
+{
+    gpu_destroy_buffer(gpu, &film->sums);
+    gpu_destroy_buffer(gpu, &film->latest);
+    gpu_destroy_buffer(gpu, &film->lists);
+    gpu_destroy_buffer(gpu, &film->counters);
+    gpu_destroy_buffer(gpu, &film->readback);
+}
+
+void film_begin_sample(struct film *film)
+{
+    uint32_t *list = film->lists.mapped, count = 0;
+    for (uint32_t top = 0; top < film->height; top += BLOCK)
+        for (uint32_t left = 0; left < film->width; left += BLOCK)
+            for (uint32_t y = top; y < top + BLOCK && y < film->height; y++)
+                for (uint32_t x = left; x < left + BLOCK && x < film->width; x++)
+                    list[count++] = y * film->width + x;
+    film->list_index = 0;
+    film->missing_count = count;
+}
+
+void film_begin_launch(struct film *film)
+{
+    uint32_t *counters = film->counters.mapped;
+    counters[1 - film->list_index] = 0;
+}
+
+void film_end_launch(struct film *film)
+{
+    const uint32_t *counters = film->counters.mapped;
+    film->list_index = 1 - film->list_index;
+    film->missing_count = counters[film->list_index];
+}
+
+void film_record_end(VkCommandBuffer commands)
+{
+    VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                               .dstAccessMask =
+                                   VK_ACCESS_HOST_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &barrier, 0, NULL, 0, NULL);
+}
+
+static void record_readback(void *user_data, VkCommandBuffer commands)
+{
+    const struct film *film = user_data;
+    const VkDeviceSize size = film->sums.size;
+    VkMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                               .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
+    vkCmdCopyBuffer(commands, film->sums.buffer, film->readback.buffer, 1,
+                    &(VkBufferCopy){0, 0, size});
+    vkCmdCopyBuffer(commands, film->latest.buffer, film->readback.buffer, 1,
+                    &(VkBufferCopy){0, size, size});
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &barrier, 0, NULL, 0, NULL);
+}
+
+bool film_read(const struct gpu *gpu, const struct film *film, struct picture *picture)
+{
+    if (!one_time_run(gpu, record_readback, (void *)film))
+        return false;
+    const VkDeviceSize count = pixel_count(film);
+    const float(*sums)[4] = film->readback.mapped;
+    const float(*latest)[4] = sums + count;
+    for (VkDeviceSize i = 0; i < count; i++) {
+        bool none = sums[i][3] == 0.0f; /* what the last sample could see is all there is */
+        for (int c = 0; c < 3; c++)
+            picture->rgba[i][c] = none ? latest[i][c] : sums[i][c] / sums[i][3];
+        picture->rgba[i][3] = 1.0f;
+        picture->missing[i] = latest[i][3] != 0.0f;
+    }
+    return true;
+}

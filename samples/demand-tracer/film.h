@@ -1,0 +1,34 @@
+/** The picture on the device: what was gathered for each pixel, and which are to be traced. */
+#ifndef TRACER_FILM_H
+#define TRACER_FILM_H
+
+#include "../common/gpu.h"
+#include "picture.h"
+#include "tracer_shared.h"
+
+/** Zeroed is empty. */
+struct film {
+    uint32_t width, height;
+    struct gpu_buffer sums, latest, lists, counters; ///< see shaders/film.glsl
+    struct gpu_buffer readback;                      ///< of sums and latest
+    uint32_t list_index;                             ///< the list that the next launch reads
+    uint32_t missing_count;                          ///< pixels in it
+};
+
+/** Says on stderr why it failed. */
+bool film_create(const struct gpu *gpu, uint32_t width, uint32_t height, struct film *film);
+void film_destroy(const struct gpu *gpu, struct film *film);
+
+/** All pixels are to be traced. No launch is under way. */
+void film_begin_sample(struct film *film);
+/** Before a launch: none of its pixels is missing yet. */
+void film_begin_launch(struct film *film);
+/** After it is over: the pixels that it missed are those of the next one. */
+void film_end_launch(struct film *film);
+/** Records what makes a launch's counters visible to the host. */
+void film_record_end(VkCommandBuffer commands);
+
+/** Reads the mean of all complete samples; `picture` has the film's size. */
+bool film_read(const struct gpu *gpu, const struct film *film, struct picture *picture);
+
+#endif /* TRACER_FILM_H */

@@ -1,0 +1,137 @@
+#include "launches.h"
+
+#include <stdio.h>
+
+#include "../common/progress.h"
+
+/* Nanoseconds: how long a preview waits for tiles before it shows what is there. */
+#define PATIENCE 20000000u
+
+static bool check(SluiceResult result, const char *what)
+{
+    if (result != SLUICE_SUCCESS)
+        fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    return result == SLUICE_SUCCESS;
+}
+
+static bool submit(struct launches *l, const SluiceDemandLaunch *launch)
+{
+    VkTimelineSemaphoreSubmitInfo timeline = {.sType =
+                                                  VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
+                                              .signalSemaphoreValueCount = 1,
+                                              .pSignalSemaphoreValues = &launch->signalValue};
+    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                         .pNext = &timeline,
+                         .commandBufferCount = 1,
+                         .pCommandBuffers = &l->commands,
+                         .signalSemaphoreCount = 1,
+                         .pSignalSemaphores = &launch->semaphore};
+    return gpu_check(vkEndCommandBuffer(l->commands), "vkEndCommandBuffer") &&
+           gpu_check(vkQueueSubmit(l->gpu->queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
+}
+
+/** One launch from preparation to requests; what is traced is up to the film. */
+static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequests *requests,
+                        SluiceDemandTicket *ticket)
+{
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                      .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    SluiceDemandLaunch launch;
+    if (!gpu_check(vkBeginCommandBuffer(l->commands, &begin), "vkBeginCommandBuffer") ||
+        !check(sluicePrepareDemandLaunch(l->loader, l->commands, &launch),
+               "a launch cannot be prepared"))
+        return false;
+    if (l->film->missing_count > 0)
+        renderer_record(l->gpu, l->renderer, l->loader, l->film, sample, l->commands);
+    return check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") &&
+           submit(l, &launch) &&
+           check(sluiceProcessDemandRequests(l->loader, &launch, UINT64_MAX, requests, ticket),
+                 "requests cannot be served");
+}
+
+/** Success and NOT_READY alike are fine. */
+static bool wait_for_tiles(struct launches *l, SluiceDemandTicket ticket, uint64_t patience)
+{
+    SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, patience, NULL);
+    return result == SLUICE_NOT_READY || check(result, "tiles cannot be waited for");
+}
+
+static bool trace_sample(struct launches *l, uint32_t sample)
+{
+    const uint64_t patience = l->options->preview ? PATIENCE : UINT64_MAX;
+    film_begin_sample(l->film);
+    while (l->film->missing_count > 0 && l->count < l->options->max_launches) {
+        struct launch_record record = {
+            .index = l->count + 1, .sample = sample, .traced_count = l->film->missing_count};
+        SluiceDemandTicket ticket;
+        film_begin_launch(l->film);
+        if (!launch_once(l, sample, &record.requests, &ticket))
+            return false;
+        film_end_launch(l->film);
+        l->count++;
+        l->ray_count += record.traced_count;
+        record.missing_count = l->film->missing_count;
+        if (!l->after_launch(l->user_data, &record) ||
+            (record.missing_count > 0 && !wait_for_tiles(l, ticket, patience)))
+            return false;
+    }
+    return true;
+}
+
+static bool allocate_commands(struct launches *l)
+{
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = l->gpu->command_pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = 1};
+    return l->commands || gpu_check(vkAllocateCommandBuffers(l->gpu->device, &info, &l->commands),
+                                    "vkAllocateCommandBuffers");
+}
+
+bool launches_run(struct launches *l)
+{
+    if (!allocate_commands(l))
+        return false;
+    for (uint32_t sample = 0; sample < l->options->samples; sample++) {
+        if (!trace_sample(l, sample))
+            return false;
+        if (l->film->missing_count > 0)
+            break;
+        l->complete_count++;
+    }
+    return true;
+}
+
+/* Opened textures are gone on with, and texels copied, by launches: they go on, tracing nothing. */
+static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
+{
+    SluiceDemandRequests requests;
+    SluiceDemandTicketStatus status;
+    do {
+        SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, PATIENCE, &status);
+        if (result != SLUICE_NOT_READY && !check(result, "a texture cannot be loaded"))
+            return false;
+        if (!launch_once(l, 0, &requests, NULL))
+            return false;
+        l->preload_count++;
+    } while (status.remainingCount > 0);
+    return true;
+}
+
+bool launches_preload(struct launches *l)
+{
+    struct progress progress;
+    if (!allocate_commands(l))
+        return false;
+    progress_begin(&progress, "loading everything", "textures", l->textures->count);
+    for (uint32_t i = 0; i < l->textures->count; i++) {
+        SluiceDemandTicket ticket;
+        SluiceResult result =
+            sluicePreloadDemandTexture(l->loader, l->textures->items[i].id, 0, &ticket);
+        if (!check(result, "a texture cannot be loaded") || !finish_ticket(l, ticket))
+            return false;
+        progress_update(&progress, i + 1);
+    }
+    progress_end(&progress);
+    return true;
+}

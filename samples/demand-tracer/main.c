@@ -1,0 +1,206 @@
+/**
+ * Traces paths through a garden whose textures are loaded when rays hit them; see --help.
+ *
+ * How an application launches, learns what is missing and launches again stands in launches.c, what
+ * a shader has to do in shaders/textures.glsl and shaders/scene.glsl.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../common/clock.h"
+#include "../common/files.h"
+#include "../common/progress.h"
+#include "contact_sheet.h"
+#include "summary.h"
+
+#define EXIT_USAGE 2
+#define EXIT_NO_DEVICE 77
+
+struct tracer {
+    struct tracer_options options;
+    struct gpu gpu;
+    bool unsupported;
+    struct scene scene;
+    SluiceDemandLoader *loader;
+    struct textures textures;
+    struct film film;
+    struct renderer renderer;
+    struct picture picture;
+    struct contact_sheet sheet;
+    struct progress progress;
+    char progress_text[96];
+};
+
+static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
+{
+    (void)user_data;
+    if (severity != SLUICE_LOG_INFO)
+        fprintf(stderr, "%s\n", message);
+}
+
+static bool create_loader(struct tracer *t)
+{
+    const struct tracer_options *o = &t->options;
+    SluiceDemandLoaderCreateInfo info = {
+        .instance = t->gpu.instance,
+        .physicalDevice = t->gpu.physical_device,
+        .device = t->gpu.device,
+        .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+        .queueFamilyIndex = t->gpu.family,
+        .log = {.pfnLog = print_log},
+        .maxRequestsPerLaunch = o->requests,
+        .memoryBudget = (uint64_t)o->budget << 20,
+        .loaderThreadCount = o->threads,
+        .maxPageChunkCount = TRACER_PAGE_CHUNKS,
+    };
+    SluiceResult result = sluiceCreateDemandLoader(&info, &t->loader);
+    if (result == SLUICE_SUCCESS)
+        return true;
+    fprintf(stderr, "textures cannot be loaded on demand: %s\n", sluiceResultString(result));
+    t->unsupported = result == SLUICE_ERROR_UNSUPPORTED;
+    return false;
+}
+
+static bool open_all(struct tracer *t)
+{
+    const struct tracer_options *o = &t->options;
+    const struct gpu_request request = {
+        .device = o->device,
+        .validation = o->validation,
+        .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
+        .ray_tracing = o->path != PATH_COMPUTE};
+    if (!files_make_folders(o->output) || (o->frames && !files_make_folders(o->frames)) ||
+        !scene_build(o->seed, o->texture_count, &t->scene) ||
+        !gpu_create(&request, &t->gpu, &t->unsupported))
+        return false;
+    if (o->path == PATH_PIPELINE && !t->gpu.ray_tracing)
+        t->unsupported = true;
+    return create_loader(t) && textures_create(o, t->loader, &t->textures) &&
+           film_create(&t->gpu, o->size[0], o->size[1], &t->film) &&
+           picture_create(o->size[0], o->size[1], &t->picture) &&
+           renderer_create(&t->gpu, o, &t->scene, &t->textures, t->loader, &t->film, &t->renderer);
+}
+
+static void close_all(struct tracer *t)
+{
+    if (t->gpu.device) {
+        vkDeviceWaitIdle(t->gpu.device);
+        renderer_destroy(&t->gpu, &t->renderer);
+        film_destroy(&t->gpu, &t->film);
+    }
+    sluiceDestroyDemandLoader(t->loader);
+    textures_finish(&t->textures);
+    gpu_destroy(&t->gpu);
+    picture_destroy(&t->picture);
+    contact_sheet_finish(&t->sheet);
+    scene_finish(&t->scene);
+}
+
+static void show_progress(struct tracer *t, const struct launch_record *record,
+                          const SluiceDemandStatistics *statistics)
+{
+    const uint64_t pixels = (uint64_t)t->film.width * t->film.height;
+    snprintf(t->progress_text, sizeof t->progress_text,
+             "launch %u, %u pages missing, %llu tiles, %llu MB", record->index,
+             record->requests.missingCount, (unsigned long long)statistics->residentTileCount,
+             (unsigned long long)(statistics->bytesRead >> 20));
+    progress_update(&t->progress, record->sample * pixels + pixels - record->missing_count);
+}
+
+static bool add_to_sheet(struct tracer *t, const struct launch_record *record, uint64_t tiles)
+{
+    char caption[96];
+    double share = 100.0 * record->missing_count / ((double)t->film.width * t->film.height);
+    bool some = record->missing_count > 0;
+    snprintf(caption, sizeof caption, "launch %u: %llu tiles, %.*f%% missing", record->index,
+             (unsigned long long)tiles, some && share < 10.0 ? 1 : 0, share);
+    return contact_sheet_add(&t->sheet, &t->picture, t->options.exposure, caption);
+}
+
+static bool after_launch(void *user_data, const struct launch_record *record)
+{
+    struct tracer *t = user_data;
+    SluiceDemandStatistics statistics;
+    if (sluiceGetDemandStatistics(t->loader, &statistics) != SLUICE_SUCCESS)
+        return false;
+    show_progress(t, record, &statistics);
+    bool sheet = t->options.contact_sheet &&
+                 (contact_sheet_has_room(&t->sheet) || record->missing_count == 0);
+    if (!sheet && !t->options.frames)
+        return true;
+    char name[32];
+    snprintf(name, sizeof name, "launch-%05u", record->index);
+    return film_read(&t->gpu, &t->film, &t->picture) &&
+           (!sheet || add_to_sheet(t, record, statistics.residentTileCount)) &&
+           (!t->options.frames ||
+            picture_write(&t->picture, t->options.exposure, t->options.frames, name));
+}
+
+static bool write_results(struct tracer *t, const struct launches *launches, double seconds)
+{
+    const struct tracer_options *o = &t->options;
+    struct summary summary = {.launches = launches, .seconds = seconds, .psnr = NAN};
+    if (!film_read(&t->gpu, &t->film, &t->picture) ||
+        !picture_write(&t->picture, o->exposure, o->output, "picture") ||
+        (o->contact_sheet && !contact_sheet_write(&t->sheet, o->contact_sheet)) ||
+        (o->compare && !picture_compare(&t->picture, o->exposure, o->compare, &summary.psnr)) ||
+        sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
+        return false;
+    summary_print(&summary, o->json);
+    if (!o->json)
+        printf("picture.png and picture.exr are in %s\n", o->output);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        perror("the figures could not be written");
+        return false;
+    }
+    return true;
+}
+
+static bool trace(struct tracer *t)
+{
+    const struct tracer_options *o = &t->options;
+    struct launches launches = {.gpu = &t->gpu,
+                                .options = o,
+                                .loader = t->loader,
+                                .renderer = &t->renderer,
+                                .film = &t->film,
+                                .textures = &t->textures,
+                                .user_data = t,
+                                .after_launch = after_launch};
+    if (o->preload && !launches_preload(&launches))
+        return false;
+    double start = clock_seconds();
+    progress_begin(&t->progress, t->progress_text, "paths",
+                   (uint64_t)o->samples * o->size[0] * o->size[1]);
+    if (!launches_run(&launches))
+        return false;
+    double seconds = clock_seconds() - start;
+    progress_end(&t->progress);
+    if (t->film.missing_count > 0)
+        fprintf(stderr, "%u pixels are still missing after %u launches\n", t->film.missing_count,
+                launches.count);
+    return write_results(t, &launches, seconds) && t->film.missing_count == 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct tracer tracer = {0};
+    switch (tracer_options_parse(argc, argv, &tracer.options)) {
+    case OPTIONS_HELP: return EXIT_SUCCESS;
+    case OPTIONS_ERROR: return EXIT_USAGE;
+    case OPTIONS_RUN: break;
+    }
+    if (tracer.options.list_devices)
+        return gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE;
+    tracer.sheet.marks_missing = !tracer.options.preview;
+    bool opened = open_all(&tracer);
+    bool done = opened && trace(&tracer);
+    close_all(&tracer);
+    uint32_t messages = atomic_load(&tracer.gpu.validation_messages);
+    if (messages > 0)
+        fprintf(stderr, "the validation layers had %u messages\n", messages);
+    if (!opened && tracer.unsupported)
+        return EXIT_NO_DEVICE;
+    return done && messages == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,31 @@
+/** What the tracer can be told; --help prints it. */
+#ifndef TRACER_OPTIONS_H
+#define TRACER_OPTIONS_H
+
+#include "../common/options.h"
+#include "scene.h"
+
+enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
+
+struct tracer_options {
+    struct option_list textures;
+    uint32_t texture_count, texture_size;
+    uint32_t size[2];
+    uint32_t samples, bounces, max_launches, seed;
+    const char *camera;
+    struct scene_camera view; ///< of `camera`
+    int path;                 ///< enum path_choice
+    bool preview, preload;
+    double exposure; ///< stops
+    uint32_t budget, threads, requests;
+    double anisotropy;
+    const char *output, *frames, *contact_sheet, *compare;
+    bool json, list_devices, validation;
+    const char *device;
+};
+
+/** Says on stderr what is wrong. */
+enum option_outcome tracer_options_parse(int argc, char *const *argv,
+                                         struct tracer_options *options);
+
+#endif /* TRACER_OPTIONS_H */

@@ -1,0 +1,109 @@
+#include "picture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sluice/exr.h>
+#include <sluice/metrics.h>
+
+#include "../common/png_file.h"
+
+bool picture_create(uint32_t width, uint32_t height, struct picture *picture)
+{
+    size_t count = (size_t)width * height;
+    *picture = (struct picture){.width = width, .height = height};
+    picture->rgba = calloc(count, sizeof *picture->rgba);
+    picture->missing = calloc(count, sizeof *picture->missing);
+    if (picture->rgba && picture->missing)
+        return true;
+    fprintf(stderr, "out of memory\n");
+    picture_destroy(picture);
+    return false;
+}
+
+void picture_destroy(struct picture *picture)
+{
+    free(picture->rgba);
+    free(picture->missing);
+    memset(picture, 0, sizeof *picture);
+}
+
+/** Narkowicz, "ACES Filmic Tone Mapping Curve", 2016. */
+static float film_curve(float x)
+{
+    x = fmaxf(x, 0.0f);
+    return fminf(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
+}
+
+static uint8_t encode_srgb(float x)
+{
+    float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
+    return (uint8_t)(255.0f * encoded + 0.5f);
+}
+
+void picture_develop(const struct picture *picture, double exposure, uint8_t *rgba)
+{
+    const float scale = 0.55f * (float)exp2(exposure);
+    const size_t count = (size_t)picture->width * picture->height;
+    for (size_t i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * i + c] = encode_srgb(film_curve(scale * picture->rgba[i][c]));
+        rgba[4 * i + 3] = 255;
+    }
+}
+
+static bool write_exr(const struct picture *picture, const char *path)
+{
+    SluiceImageInfo info = {picture->width, picture->height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                            "picture"};
+    SluiceExrWriteInfo write = {.pPath = path, .opaque = true};
+    SluiceImageSource *source = NULL;
+    SluiceResult result = sluiceCreateMemoryImageSource(picture->rgba, &info, NULL, &source);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceWriteExrFile(&write, source);
+    sluiceDestroyImageSource(source);
+    if (result != SLUICE_SUCCESS)
+        fprintf(stderr, "%s: cannot write: %s\n", path, sluiceResultString(result));
+    return result == SLUICE_SUCCESS;
+}
+
+static uint8_t *develop_new(const struct picture *picture, double exposure)
+{
+    uint8_t *rgba = malloc((size_t)picture->width * picture->height * 4);
+    if (rgba)
+        picture_develop(picture, exposure, rgba);
+    else
+        fprintf(stderr, "out of memory\n");
+    return rgba;
+}
+
+bool picture_write(const struct picture *picture, double exposure, const char *folder,
+                   const char *name)
+{
+    char path[4096];
+    uint8_t *rgba = develop_new(picture, exposure);
+    snprintf(path, sizeof path, "%s/%s.png", folder, name);
+    bool done = rgba && png_file_write(path, rgba, picture->width, picture->height);
+    free(rgba);
+    snprintf(path, sizeof path, "%s/%s.exr", folder, name);
+    return done && write_exr(picture, path);
+}
+
+bool picture_compare(const struct picture *picture, double exposure, const char *path, double *psnr)
+{
+    uint32_t width, height;
+    uint8_t *other = png_file_read(path, &width, &height);
+    if (!other)
+        return false;
+    bool fits = width == picture->width && height == picture->height;
+    if (!fits)
+        fprintf(stderr, "%s: is %ux%u, not %ux%u\n", path, width, height, picture->width,
+                picture->height);
+    uint8_t *rgba = fits ? develop_new(picture, exposure) : NULL;
+    bool done = rgba && sluiceComputePsnr8(rgba, other, width, height, 4, psnr) == SLUICE_SUCCESS;
+    free(rgba);
+    free(other);
+    return done;
+}

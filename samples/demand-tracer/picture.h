@@ -1,0 +1,32 @@
+/** A picture in memory: linear light, and which pixels are not complete. */
+#ifndef TRACER_PICTURE_H
+#define TRACER_PICTURE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Zeroed is empty. */
+struct picture {
+    uint32_t width, height;
+    float (*rgba)[4]; ///< owned; [height * width], row 0 on top, alpha 1
+    bool *missing;    ///< owned; the same
+};
+
+/** Says on stderr if memory is short. */
+bool picture_create(uint32_t width, uint32_t height, struct picture *picture);
+void picture_destroy(struct picture *picture);
+
+/** What a screen shows of linear light, times 2^exposure: a film's curve, then sRGB. `rgba` has
+ *  width * height * 4 bytes. */
+void picture_develop(const struct picture *picture, double exposure, uint8_t *rgba);
+
+/** FOLDER/NAME.png, developed, and FOLDER/NAME.exr, linear halves. Says on stderr why it failed. */
+bool picture_write(const struct picture *picture, double exposure, const char *folder,
+                   const char *name);
+
+/** PSNR in dB of the developed picture against a PNG file of the same size. Says on stderr why it
+ *  failed. */
+bool picture_compare(const struct picture *picture, double exposure, const char *path,
+                     double *psnr);
+
+#endif /* TRACER_PICTURE_H */

@@ -1,0 +1,34 @@
+#include "pipeline_compute.h"
+
+#include "trace_comp.h"
+
+bool compute_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
+                             uint32_t scene_root, VkPipeline *pipeline)
+{
+    const uint32_t values[2] = {preview, scene_root};
+    const VkSpecializationMapEntry entries[2] = {
+        {TRACER_CONSTANT_PREVIEW, 0, sizeof values[0]},
+        {TRACER_CONSTANT_SCENE_ROOT, sizeof values[0], sizeof values[1]}};
+    const VkSpecializationInfo constants = {2, entries, sizeof values, values};
+    VkComputePipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = gpu_create_shader(gpu, trace_comp, sizeof trace_comp),
+                  .pName = "main",
+                  .pSpecializationInfo = &constants},
+        .layout = layout};
+    bool done =
+        info.stage.module != VK_NULL_HANDLE &&
+        gpu_check(vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
+                  "vkCreateComputePipelines");
+    vkDestroyShaderModule(gpu->device, info.stage.module, NULL);
+    return done;
+}
+
+void compute_pipeline_record(VkPipeline pipeline, VkCommandBuffer commands, uint32_t pixel_count)
+{
+    const uint32_t row = TRACER_ROW_WIDTH / TRACER_GROUP_SIZE;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vkCmdDispatch(commands, row, (pixel_count + TRACER_ROW_WIDTH - 1) / TRACER_ROW_WIDTH, 1);
+}

@@ -1,0 +1,133 @@
+#include "renderer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool upload(const struct gpu *gpu, const void *data, size_t size, bool for_builds,
+                   struct gpu_buffer *buffer)
+{
+    VkBufferUsageFlags usage =
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | (for_builds ? ACCEL_INPUT_USAGE : 0);
+    if (!gpu_create_buffer(gpu, size, usage, buffer))
+        return false;
+    memcpy(buffer->mapped, data, size);
+    return true;
+}
+
+static bool upload_scene(const struct gpu *gpu, const struct scene *scene,
+                         const struct textures *textures, struct renderer *r)
+{
+    const struct mesh *mesh = &scene->mesh;
+    if (!upload(gpu, mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices, r->uses_pipeline,
+                &r->vertices) ||
+        !upload(gpu, mesh->indices, mesh->index_count * sizeof *mesh->indices, r->uses_pipeline,
+                &r->indices) ||
+        !upload(gpu, scene->instances, scene->instance_count * sizeof *scene->instances, false,
+                &r->instances) ||
+        !upload(gpu, scene->bvh.nodes, scene->bvh.count * sizeof *scene->bvh.nodes, false,
+                &r->nodes))
+        return false;
+    struct TracerInstance *instances = r->instances.mapped;
+    for (uint32_t i = 0; i < scene->instance_count; i++)
+        instances[i].texture = textures_index(textures, scene->instances[i].texture);
+    return true;
+}
+
+static void write_vector(struct vec3 v, float out[3])
+{
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+}
+
+static struct TracerLaunch camera_constants(const struct tracer_options *options)
+{
+    const struct scene_camera *camera = &options->view;
+    const float width = (float)options->size[0], height = (float)options->size[1];
+    const float half = tanf(0.5f * camera->field_of_view);
+    struct TracerLaunch constants = {.width = options->size[0],
+                                     .height = options->size[1],
+                                     .spread = atanf(2.0f * half / height),
+                                     .seed = options->seed,
+                                     .bounces = options->bounces};
+    struct vec3 forward = vec3_normalize(vec3_sub(camera->target, camera->eye));
+    struct vec3 right = vec3_normalize(vec3_cross(forward, (struct vec3){0, 1, 0}));
+    write_vector(camera->eye, constants.eye);
+    write_vector(forward, constants.forward);
+    write_vector(vec3_scale(right, half * width / height), constants.right);
+    write_vector(vec3_scale(vec3_cross(right, forward), half), constants.up);
+    return constants;
+}
+
+/** Which path it is; false if the device lacks the one that was asked for. */
+static bool choose_path(const struct gpu *gpu, int choice, struct renderer *r)
+{
+    r->uses_pipeline = gpu->ray_tracing && choice != PATH_COMPUTE;
+    if (gpu->ray_tracing || choice == PATH_COMPUTE)
+        return true;
+    fprintf(stderr, "%s has no ray-tracing pipeline%s\n", gpu->properties.deviceName,
+            choice == PATH_AUTO ? ": rays are traced in a compute shader, which is slower" : "");
+    return choice == PATH_AUTO;
+}
+
+static bool create_pipeline(const struct gpu *gpu, const struct tracer_options *options,
+                            const struct scene *scene, struct renderer *r)
+{
+    if (r->uses_pipeline)
+        return ray_pipeline_create(gpu, r->bindings.layout, options->preview, &r->rays);
+    return compute_pipeline_create(gpu, r->bindings.layout, options->preview, scene->bvh.scene_root,
+                                   &r->compute);
+}
+
+bool renderer_create(const struct gpu *gpu, const struct tracer_options *options,
+                     const struct scene *scene, const struct textures *textures,
+                     const SluiceDemandLoader *loader, const struct film *film, struct renderer *r)
+{
+    *r = (struct renderer){.constants = camera_constants(options)};
+    if (!choose_path(gpu, options->path, r) || !upload_scene(gpu, scene, textures, r) ||
+        (r->uses_pipeline &&
+         !accel_build(gpu, scene, r->vertices.buffer, r->indices.buffer, &r->accel)))
+        return false;
+    const struct bindings_request request = {
+        .loader = loader,
+        .own_buffers = {[TRACER_BINDING_VERTICES] = r->vertices.buffer,
+                        [TRACER_BINDING_INDICES] = r->indices.buffer,
+                        [TRACER_BINDING_INSTANCES] = r->instances.buffer,
+                        [TRACER_BINDING_NODES] = r->nodes.buffer,
+                        [TRACER_BINDING_FILM] = film->sums.buffer,
+                        [TRACER_BINDING_LATEST] = film->latest.buffer,
+                        [TRACER_BINDING_LISTS] = film->lists.buffer,
+                        [TRACER_BINDING_COUNTERS] = film->counters.buffer},
+        .scene = r->accel.scene.handle,
+    };
+    return bindings_create(gpu, &request, &r->bindings) && create_pipeline(gpu, options, scene, r);
+}
+
+void renderer_destroy(const struct gpu *gpu, struct renderer *r)
+{
+    ray_pipeline_destroy(gpu, &r->rays);
+    vkDestroyPipeline(gpu->device, r->compute, NULL);
+    bindings_destroy(gpu, &r->bindings);
+    accel_finish(gpu, &r->accel);
+    gpu_destroy_buffer(gpu, &r->vertices);
+    gpu_destroy_buffer(gpu, &r->indices);
+    gpu_destroy_buffer(gpu, &r->instances);
+    gpu_destroy_buffer(gpu, &r->nodes);
+}
+
+void renderer_record(const struct gpu *gpu, struct renderer *r, const SluiceDemandLoader *loader,
+                     const struct film *film, uint32_t sample, VkCommandBuffer commands)
+{
+    struct TracerLaunch launch = r->constants;
+    launch.count = film->missing_count;
+    launch.sampleIndex = sample;
+    launch.listIndex = film->list_index;
+    bindings_follow_pages(gpu, loader, &r->bindings);
+    if (r->uses_pipeline) {
+        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, &launch);
+        ray_pipeline_record(&r->rays, commands, launch.count);
+    } else {
+        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_COMPUTE, &launch);
+        compute_pipeline_record(r->compute, commands, launch.count);
+    }
+    film_record_end(commands);
+}

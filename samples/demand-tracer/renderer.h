@@ -1,0 +1,36 @@
+/** The scene on the device, and the path that traces it. */
+#ifndef TRACER_RENDERER_H
+#define TRACER_RENDERER_H
+
+#include "accel.h"
+#include "film.h"
+#include "options.h"
+#include "pipeline_compute.h"
+#include "pipeline_rays.h"
+#include "textures.h"
+
+/** Zeroed is empty. */
+struct renderer {
+    bool uses_pipeline; ///< for ray tracing; else the compute path
+    struct gpu_buffer vertices, indices, instances, nodes;
+    struct accel accel;
+    struct bindings bindings;
+    struct ray_pipeline rays;
+    VkPipeline compute;
+    struct TracerLaunch constants; ///< of the camera
+};
+
+/** Says on stderr why it failed, and which path it is if that is not the faster one. */
+bool renderer_create(const struct gpu *gpu, const struct tracer_options *options,
+                     const struct scene *scene, const struct textures *textures,
+                     const SluiceDemandLoader *loader, const struct film *film,
+                     struct renderer *renderer);
+void renderer_destroy(const struct gpu *gpu, struct renderer *renderer);
+
+/** Between sluicePrepareDemandLaunch and sluiceEndDemandLaunch: traces what the film still misses.
+ */
+void renderer_record(const struct gpu *gpu, struct renderer *renderer,
+                     const SluiceDemandLoader *loader, const struct film *film, uint32_t sample,
+                     VkCommandBuffer commands);
+
+#endif /* TRACER_RENDERER_H */

@@ -1,0 +1,13 @@
+/* What the stages of the ray-tracing pipeline tell each other. */
+#ifndef TRACER_RAYS_GLSL
+#define TRACER_RAYS_GLSL
+
+#include "textures.glsl"
+#include "scene.glsl"
+
+struct Payload {
+    Surface surface; /* `complete` also says so of holes on the way */
+    Cone cone;       /* of the ray */
+};
+
+#endif

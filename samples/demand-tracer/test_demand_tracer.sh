@@ -1,0 +1,156 @@
+#!/bin/sh
+# test_demand_tracer.sh DEMAND_TRACER FOLDER
+#
+# Traces small pictures and checks what demand loading must show: they become complete, are what
+# everything loaded before gives, along both paths, and nothing is opened that no ray hits. Exit
+# status 77: no device can page.
+set -eu
+tracer=$1 folder=$2
+
+rm -rf "$folder"
+mkdir -p "$folder"
+failed=0
+
+# What cannot be meant is refused before anything is done.
+refuse() {
+    status=0
+    "$tracer" --output "$folder/refused" "$@" >/dev/null 2>&1 || status=$?
+    [ "$status" -eq 2 ] || { echo "not refused: $*" >&2; failed=1; }
+}
+refuse --no-such-option
+refuse --size 96
+refuse --size 8x8
+refuse --path fastest
+refuse --texture-count 4
+refuse --bounces 9
+refuse --camera 1,2,3
+refuse --camera 0,5,0,0,1,0
+refuse --camera nan,0,0,1,1,1
+refuse --preview --preload
+[ ! -e "$folder/refused" ] || { echo "something was written" >&2; failed=1; }
+"$tracer" --help | grep -q -- '--contact-sheet FILE' || { echo "no help" >&2; failed=1; }
+
+trace() { # name, options
+    name=$1
+    shift
+    status=0
+    "$tracer" --size 96x54 --samples 2 --texture-count 30 --texture-size 512 --json \
+        --output "$folder/$name" "$@" >"$folder/$name.json" 2>"$folder/$name.log" || status=$?
+}
+
+succeeds() {
+    [ "$status" -eq 0 ] || { echo "$name: status $status" >&2; cat "$folder/$name.log" >&2; failed=1; }
+}
+
+value() { # name, figure
+    sed -n "s/.*\"$2\", \"value\": \([^,]*\),.*/\1/p" "$folder/$1.json"
+}
+
+# The value of a figure must satisfy an awk condition on v.
+check() { # name, figure, condition
+    awk -v v="$(value "$1" "$2")" 'BEGIN { exit !(v != "" && v != "null" && ('"$3"')) }' || {
+        echo "$1: $2 is $(value "$1" "$2"), but must satisfy: $3" >&2
+        failed=1
+    }
+}
+
+is_complete() { # name
+    check "$1" pixels_missing 'v + 0 == 0'
+    check "$1" samples_complete 'v + 0 == 2'
+}
+
+# How near a picture comes to the first one. What is equal is infinitely near.
+is_like_first() { # name, dB
+    check "$1" psnr "v + 0 >= $2"
+}
+
+validation=--validation
+trace first $validation --frames "$folder/frames" --contact-sheet "$folder/sheet.png"
+if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/first.log"; then
+    echo "there are no validation layers: tracing without them" >&2
+    validation=
+    trace first --frames "$folder/frames" --contact-sheet "$folder/sheet.png"
+fi
+[ "$status" -ne 77 ] || { cat "$folder/first.log" >&2; exit 77; }
+succeeds
+is_complete first
+check first launches 'v + 0 > 3'
+check first paths_traced 'v + 0 > 96 * 54 * 2'
+check first pages_served 'v + 0 > 10'
+check first reads_failed 'v + 0 == 0'
+check first textures 'v + 0 == 30'
+check first textures_opened 'v + 0 > 5 && v + 0 <= 30'
+check first textures_failed 'v + 0 == 0'
+check first virtual_bytes 'v + 0 == 30 * 1398100'
+for file in "$folder/first/picture.png" "$folder/first/picture.exr" "$folder/sheet.png" \
+    "$folder/frames/launch-00001.png" "$folder/frames/launch-00003.exr"; do
+    [ -s "$file" ] || { echo "$file was not written" >&2; failed=1; }
+done
+
+# Nothing is missing where all was loaded before, and the picture is the same.
+trace preloaded $validation --preload --compare "$folder/first/picture.png"
+succeeds
+is_complete preloaded
+check preloaded launches 'v + 0 == 2'
+check preloaded textures_opened 'v + 0 == 30'
+is_like_first preloaded 60
+
+# The same scene without a ray-tracing pipeline; edges may fall to the other side of a pixel.
+trace compute $validation --path compute --compare "$folder/first/picture.png"
+succeeds
+is_complete compute
+check compute ray_tracing_pipeline 'v + 0 == 0'
+check compute textures_opened "v + 0 == $(value first textures_opened)"
+is_like_first compute 40
+
+# A preview shows coarse levels from the second launch on, and ends as sharp.
+trace preview $validation --preview --frames "$folder/preview-frames" \
+    --compare "$folder/first/picture.png"
+succeeds
+is_complete preview
+is_like_first preview 60
+
+# A few tiles at a time.
+trace slow --requests 16 --threads 1 --compare "$folder/first/picture.png"
+succeeds
+is_complete slow
+check slow launches "v + 0 > $(value first launches)"
+is_like_first slow 60
+
+# Less memory than the picture needs: complete all the same.
+trace pressed --budget 4 --texture-size 4096 --texture-count 60 --anisotropy 1
+succeeds
+is_complete pressed
+check pressed tile_memory 'v + 0 <= 4 * 1024 * 1024'
+
+# What no ray hits is not opened: what is behind the camera, and everything below the sky.
+trace away --camera 0,1.5,-2,0,0.5,-9 --bounces 0
+succeeds
+is_complete away
+check away textures_opened 'v + 0 > 0 && v + 0 < 20'
+trace sky --camera 0,3,0,1,9,0
+succeeds
+is_complete sky
+check sky launches 'v + 0 == 2'
+check sky requests 'v + 0 == 0'
+check sky textures_opened 'v + 0 == 0'
+
+# Pictures from files, among them one that is none.
+mkdir "$folder/files"
+cp "$folder/first/picture.exr" "$folder/files/a.exr"
+echo "no picture" >"$folder/files/b.exr"
+trace files --textures "$folder/files"
+succeeds
+is_complete files
+check files textures 'v + 0 == 8' # two files, six of leaves
+check files textures_failed 'v + 0 == 1'
+grep -q 'b.exr' "$folder/files.log" || { echo "nobody said that b.exr is none" >&2; failed=1; }
+trace nothing --textures "$folder/frames/launch-00001.png.store"
+[ "$status" -eq 1 ] || { echo "no texture is no error" >&2; failed=1; }
+
+# Who stops too early says so.
+trace short --launches 1
+[ "$status" -eq 1 ] || { echo "an incomplete picture is no error" >&2; failed=1; }
+check short pixels_missing 'v + 0 > 0'
+
+exit $failed

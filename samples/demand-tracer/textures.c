@@ -1,0 +1,125 @@
+#include "textures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../streaming/picture_file.h"
+
+#define TEXTURE_SUFFIXES ".store|.exr|.dds|.ktx2"
+
+static SluiceResult open_file(const char *path, SluiceImageSource **source)
+{
+    enum picture_kind kind;
+    SluiceImageInfo info;
+    struct picture_opening opening = {.pixels = PIXEL_FORMAT_AUTO};
+    if (!picture_file_kind(path, &kind))
+        return SLUICE_ERROR_IO;
+    if (kind == PICTURE_OTHER) {
+        fprintf(stderr, "%s: is no OpenEXR, DDS or KTX2 file, nor a tile store\n", path);
+        return SLUICE_ERROR_UNSUPPORTED;
+    }
+    return picture_file_open(path, kind, &opening, source, &info);
+}
+
+/* On a thread of the loader, when a ray has hit the texture. */
+static SluiceResult open_texture(void *user_data, SluiceImageSource **source)
+{
+    const struct texture *texture = user_data;
+    if (texture->path)
+        return open_file(texture->path, source);
+    return pattern_open(&texture->pattern, texture->size, source);
+}
+
+static bool collect_files(const struct option_list *named, struct file_list *files)
+{
+    for (size_t i = 0; i < named->count; i++)
+        if (!files_collect(named->items[i], TEXTURE_SUFFIXES, files)) {
+            fprintf(stderr, "out of memory\n");
+            return false;
+        }
+    if (named->count > 0 && files->count == 0)
+        fprintf(stderr, "there is no file that could be a texture (" TEXTURE_SUFFIXES ")\n");
+    return named->count == 0 || files->count > 0;
+}
+
+static uint64_t chain_size(uint32_t size)
+{
+    uint64_t sum = 0;
+    for (; size > 0; size /= 2)
+        sum += (uint64_t)size * size * 4;
+    return sum;
+}
+
+/** Files go round; leaves need holes, so they are always computed. */
+static void choose_images(const struct tracer_options *options, struct textures *t)
+{
+    for (uint32_t i = 0; i < t->scene_count; i++) {
+        enum texture_use use = scene_texture_use(i, t->scene_count);
+        bool is_file = t->files.count > 0 && use != TEXTURE_OF_LEAVES;
+        if (is_file && i >= t->files.count) {
+            t->of_scene[i] = t->of_scene[i % t->files.count];
+            continue;
+        }
+        struct texture *texture = &t->items[t->count];
+        t->of_scene[i] = t->count++;
+        if (is_file) {
+            texture->path = t->files.paths[i];
+        } else {
+            texture->pattern = pattern_choose(use, i + options->seed - 1);
+            texture->size = options->texture_size;
+            t->virtual_size += chain_size(texture->size);
+        }
+    }
+}
+
+static bool create_texture(const struct tracer_options *options, SluiceDemandLoader *loader,
+                           struct texture *texture)
+{
+    bool leaf = !texture->path && texture->pattern.use == TEXTURE_OF_LEAVES;
+    VkSamplerAddressMode mode =
+        leaf ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    SluiceDemandTextureCreateInfo info = {
+        .image = {.pUserData = texture, .pfnOpen = open_texture},
+        .sampler = {.addressModeU = mode,
+                    .addressModeV = mode,
+                    .maxAnisotropy = (float)options->anisotropy},
+        .failureColor = {1.0f, 0.0f, 1.0f, 1.0f},
+    };
+    SluiceResult result = sluiceCreateDemandTexture(loader, &info, &texture->id);
+    if (result != SLUICE_SUCCESS)
+        fprintf(stderr, "a texture cannot be created: %s\n", sluiceResultString(result));
+    return result == SLUICE_SUCCESS;
+}
+
+bool textures_create(const struct tracer_options *options, SluiceDemandLoader *loader,
+                     struct textures *t)
+{
+    *t = (struct textures){.scene_count = options->texture_count};
+    if (!collect_files(&options->textures, &t->files))
+        return false;
+    t->items = calloc(t->scene_count, sizeof *t->items);
+    t->of_scene = calloc(t->scene_count, sizeof *t->of_scene);
+    if (!t->items || !t->of_scene) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    choose_images(options, t);
+    for (uint32_t i = 0; i < t->count; i++)
+        if (!create_texture(options, loader, &t->items[i]))
+            return false;
+    return true;
+}
+
+void textures_finish(struct textures *t)
+{
+    free(t->items);
+    free(t->of_scene);
+    files_finish(&t->files);
+    memset(t, 0, sizeof *t);
+}
+
+uint32_t textures_index(const struct textures *t, uint32_t index)
+{
+    return (uint32_t)t->items[t->of_scene[index]].id;
+}
