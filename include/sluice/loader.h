@@ -119,6 +119,13 @@ SLUICE_API SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const Slu
                                              uint64_t *pTicket);
 
 /**
+ * The same for `count` reads, all of them or, with NOT_READY or an error, none. Many reads are
+ * queued so without the threads, which begin when they all are, getting in the way.
+ */
+SLUICE_API SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t count,
+                                              const SluiceTileRead *pReads, uint64_t *pTickets);
+
+/**
  * Asks for a read to be dropped. It is collected all the same: as CANCELLED if it had not begun,
  * had regions left or was to be tried again, otherwise as if nothing had been said. Unknown and
  * collected tickets are ignored. Thread safety: any thread.

@@ -144,23 +144,29 @@ static void begin_task(SluiceDemandLoader *loader, struct slc_demand_job *job,
     slc_ticket_task_begins(&loader->tickets, ticket);
 }
 
-SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,
-                            SluiceTileRead *read, SluiceDemandTicket ticket)
+/* With the lock held, once the tile loader has the read. True: it was cancelled meanwhile. */
+static bool note_read(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                      SluiceDemandTicket ticket, uint64_t number)
+{
+    bool known;
+    const struct slc_ticket *found = slc_ticket_find(&loader->tickets, ticket, &known);
+    job->read = number;
+    return loader->tickets.aborted || (found && found->cancelled);
+}
+
+static SluiceResult submit_alone(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                                 const SluiceTileRead *read, SluiceDemandTicket ticket)
 {
     struct slc_tickets *tickets = &loader->tickets;
     uint64_t number = 0;
-    job->start = slc_monotonic_time();
+    bool cancelled = false;
     pthread_mutex_lock(&tickets->mutex);
     begin_task(loader, job, ticket);
     pthread_mutex_unlock(&tickets->mutex);
-    read->userValue = slc_job_index(loader, job);
     SluiceResult result = sluiceSubmitTileRead(loader->reader, read, &number);
     pthread_mutex_lock(&tickets->mutex);
-    bool known, cancelled = false;
     if (result == SLUICE_SUCCESS) {
-        const struct slc_ticket *found = slc_ticket_find(tickets, ticket, &known);
-        job->read = number;
-        cancelled = tickets->aborted || (found && found->cancelled);
+        cancelled = note_read(loader, job, ticket, number);
     } else {
         job->running = false;
         slc_ticket_task_withdraw(tickets, ticket);
@@ -169,6 +175,71 @@ SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *j
     if (cancelled)
         sluiceCancelTileRead(loader->reader, number);
     return result;
+}
+
+static void submit_batch(SluiceDemandLoader *loader)
+{
+    struct slc_job_batch *batch = &loader->batch;
+    struct slc_tickets *tickets = &loader->tickets;
+    uint64_t numbers[SLC_BATCH_JOBS];
+    uint32_t cancelled = 0;
+    if (batch->count == 0)
+        return;
+    pthread_mutex_lock(&tickets->mutex);
+    for (uint32_t i = 0; i < batch->count; i++)
+        begin_task(loader, batch->jobs[i], batch->tickets[i]);
+    pthread_mutex_unlock(&tickets->mutex);
+    SluiceResult result =
+        sluiceSubmitTileReads(loader->reader, batch->count, batch->reads, numbers);
+    assert(result == SLUICE_SUCCESS); /* the reader has room for all jobs */
+    (void)result;
+    pthread_mutex_lock(&tickets->mutex);
+    for (uint32_t i = 0; i < batch->count; i++)
+        if (note_read(loader, batch->jobs[i], batch->tickets[i], numbers[i]))
+            numbers[cancelled++] = numbers[i];
+    pthread_mutex_unlock(&tickets->mutex);
+    for (uint32_t i = 0; i < cancelled; i++)
+        sluiceCancelTileRead(loader->reader, numbers[i]);
+    batch->count = 0;
+}
+
+static void add_to_batch(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                         const SluiceTileRead *read, SluiceDemandTicket ticket)
+{
+    struct slc_job_batch *batch = &loader->batch;
+    uint32_t i = batch->count++;
+    batch->jobs[i] = job;
+    batch->tickets[i] = ticket;
+    batch->regions[i] = read->pRegions[0];
+    batch->texels[i] = read->ppTexels[0];
+    batch->reads[i] = *read;
+    batch->reads[i].pRegions = &batch->regions[i];
+    batch->reads[i].ppTexels = &batch->texels[i];
+    if (batch->count == SLC_BATCH_JOBS)
+        submit_batch(loader);
+}
+
+SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,
+                            SluiceTileRead *read, SluiceDemandTicket ticket)
+{
+    job->start = slc_monotonic_time();
+    read->userValue = slc_job_index(loader, job);
+    if (!loader->batch.open || read->regionCount > 1)
+        return submit_alone(loader, job, read, ticket);
+    add_to_batch(loader, job, read, ticket);
+    return SLUICE_SUCCESS;
+}
+
+void slc_jobs_begin_batch(SluiceDemandLoader *loader)
+{
+    assert(!loader->batch.open && loader->batch.count == 0);
+    loader->batch.open = true;
+}
+
+void slc_jobs_end_batch(SluiceDemandLoader *loader)
+{
+    submit_batch(loader);
+    loader->batch.open = false;
 }
 
 static void job_back(SluiceDemandLoader *loader, const SluiceTileReadResult *read)

@@ -124,6 +124,19 @@ struct slc_job_list {
     uint32_t first, last;
 };
 
+#define SLC_BATCH_JOBS 64u
+
+/** Reads of one region each that are submitted together. */
+struct slc_job_batch {
+    bool open;
+    uint32_t count;
+    struct slc_demand_job *jobs[SLC_BATCH_JOBS];
+    SluiceDemandTicket tickets[SLC_BATCH_JOBS];
+    SluiceTileRead reads[SLC_BATCH_JOBS]; ///< that point to the next two
+    SluiceImageRegion regions[SLC_BATCH_JOBS];
+    void *texels[SLC_BATCH_JOBS];
+};
+
 /* Levels of a texture that are still to be loaded without a shader asking. */
 struct slc_preload {
     SluiceDemandTextureId texture;
@@ -189,6 +202,7 @@ struct SluiceDemandLoader {
     struct slc_job_list free_tiles, free_others;
     struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
     uint32_t free_tile_count, free_other_count;
+    struct slc_job_batch batch;
     struct slc_tickets tickets;
 
     struct slc_preload *preloads; ///< owned, in the order in which they were asked for
@@ -275,6 +289,10 @@ uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_deman
  *  tile loader says. */
 SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,
                             SluiceTileRead *read, SluiceDemandTicket ticket);
+/** Between these calls the reads of single regions may wait for each other, so that threads do not
+ *  get in the way of the next. */
+void slc_jobs_begin_batch(SluiceDemandLoader *loader);
+void slc_jobs_end_batch(SluiceDemandLoader *loader);
 /** Reads that are over: images are open, values are there, tiles are in `arrived`. */
 void slc_jobs_collect(SluiceDemandLoader *loader);
 /** What jobs of this kind and owner read of pages from `first` on is not wanted. */

@@ -323,22 +323,44 @@ void sluiceDestroyTileLoader(SluiceTileLoader *loader)
     free_memory(loader, loader->thread_count);
 }
 
+static SluiceResult check_read(const SluiceTileRead *read)
+{
+    if (!read->source || !read->pRegions || !read->ppTexels)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (read->regionCount == 0 || read->regionCount > SLUICE_MAX_READ_REGIONS)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    for (uint32_t i = 0; i < read->regionCount; i++)
+        if (!read->ppTexels[i])
+            return SLUICE_ERROR_NULL_POINTER;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t count,
+                                   const SluiceTileRead *pReads, uint64_t *pTickets)
+{
+    if (!loader || (count > 0 && (!pReads || !pTickets)))
+        return SLUICE_ERROR_NULL_POINTER;
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceResult result = check_read(&pReads[i]);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    }
+    if (count == 0)
+        return SLUICE_SUCCESS;
+    pthread_mutex_lock(&loader->mutex);
+    bool room = loader->queue.free_count >= count;
+    for (uint32_t i = 0; room && i < count; i++)
+        slc_read_queue_submit(&loader->queue, &pReads[i], &pTickets[i]);
+    if (room)
+        signal_work(loader);
+    pthread_mutex_unlock(&loader->mutex);
+    return room ? SLUICE_SUCCESS : SLUICE_NOT_READY;
+}
+
 SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead *pRead,
                                   uint64_t *pTicket)
 {
-    if (!loader || !pRead || !pTicket || !pRead->source || !pRead->pRegions || !pRead->ppTexels)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (pRead->regionCount == 0 || pRead->regionCount > SLUICE_MAX_READ_REGIONS)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    for (uint32_t i = 0; i < pRead->regionCount; i++)
-        if (!pRead->ppTexels[i])
-            return SLUICE_ERROR_NULL_POINTER;
-    pthread_mutex_lock(&loader->mutex);
-    bool queued = slc_read_queue_submit(&loader->queue, pRead, pTicket);
-    if (queued)
-        signal_work(loader);
-    pthread_mutex_unlock(&loader->mutex);
-    return queued ? SLUICE_SUCCESS : SLUICE_NOT_READY;
+    return sluiceSubmitTileReads(loader, 1, pRead, pTicket);
 }
 
 void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)

@@ -265,6 +265,42 @@ static void capacity_counts_what_is_not_collected(void **state)
     teardown(&f);
 }
 
+static void reads_are_submitted_together_or_not_at_all(void **state)
+{
+    (void)state;
+    enum { COUNT = 4 };
+    struct fixture f;
+    setup(&f, 1, COUNT + 1);
+    float texels[COUNT];
+    SluiceImageRegion regions[COUNT];
+    void *places[COUNT];
+    SluiceTileRead reads[COUNT];
+    uint64_t tickets[COUNT];
+    for (uint32_t i = 0; i < COUNT; i++) {
+        regions[i] = (SluiceImageRegion){0, i, 0, 1, 1};
+        places[i] = &texels[i];
+        reads[i] = (SluiceTileRead){&f.source.base, 1, &regions[i], &places[i], COUNT - i, i};
+    }
+    f.source.holds = true;
+    CHECK_OK(sluiceSubmitTileReads(f.loader, COUNT, reads, tickets));
+    CHECK_RESULT(sluiceSubmitTileReads(f.loader, 2, reads, tickets), SLUICE_NOT_READY);
+    reads[COUNT - 1].regionCount = 0;
+    CHECK_RESULT(sluiceSubmitTileReads(f.loader, COUNT, reads, tickets),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_OK(sluiceSubmitTileReads(f.loader, 0, NULL, NULL));
+    fault_source_release(&f.source);
+    for (uint32_t i = 0; i < COUNT; i++) { /* the most urgent first */
+        SluiceTileReadResult result = collect_one(&f);
+        assert_int_equal(result.userValue, i);
+        assert_int_equal(result.ticket, tickets[i]);
+        assert_true(texels[i] == i);
+    }
+    SluiceTileLoaderStatistics statistics;
+    CHECK_OK(sluiceGetTileLoaderStatistics(f.loader, NULL, &statistics));
+    assert_int_equal(statistics.readCount, COUNT);
+    teardown(&f);
+}
+
 static void failures_of_the_source_reach_the_result(void **state)
 {
     (void)state;
@@ -436,6 +472,7 @@ int main(void)
         cmocka_unit_test(every_end_of_a_read_is_told_once_with_its_result),
         cmocka_unit_test(a_read_in_its_last_region_ends_as_if_nothing_had_been_said),
         cmocka_unit_test(capacity_counts_what_is_not_collected),
+        cmocka_unit_test(reads_are_submitted_together_or_not_at_all),
         cmocka_unit_test(failures_of_the_source_reach_the_result),
         cmocka_unit_test(destroying_drops_what_waits_and_waits_for_what_runs),
         cmocka_unit_test(every_read_is_collected_once_whoever_submits_and_collects),
