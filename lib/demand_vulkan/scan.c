@@ -9,8 +9,12 @@
 #include "demand_count_comp.h"
 #include "demand_list_comp.h"
 #include "demand_place_comp.h"
+#include "demand_whole_comp.h"
 
-enum { COMPACT, COUNT, PLACE, LIST, PASSES };
+enum { COMPACT, COUNT, PLACE, LIST, WHOLE, PASSES };
+
+/* Sections up to which one workgroup is quicker than four passes that wait for each other. */
+#define ONE_GROUP_SECTIONS 256u
 
 #define RESULT_WORDS 4u
 #define UPDATE_SIZE 4096u /* bytes */
@@ -90,7 +94,8 @@ static SluiceResult create_passes(struct slc_demand_scan *s, const struct slc_vk
         [PLACE] = {demand_place_comp,
                    sizeof demand_place_comp,
                    {slc_compute_group_size(vk, SLUICE_SCAN_PLACE_SIZE)}},
-        [LIST] = {demand_list_comp, sizeof demand_list_comp, {0}}};
+        [LIST] = {demand_list_comp, sizeof demand_list_comp, {0}},
+        [WHOLE] = {demand_whole_comp, sizeof demand_whole_comp, {0}}};
     struct slc_compute_create_info info = {.binding_count = 6,
                                            .push_size = sizeof(struct SluiceDemandScanParams),
                                            .set_count = 1,
@@ -121,7 +126,8 @@ SluiceResult slc_demand_scan_init(struct slc_demand_scan *scan, const struct slc
     *scan = (struct slc_demand_scan){.page_capacity = info->page_capacity,
                                      .slot_count = info->slot_count,
                                      .list_capacity = info->list_capacity,
-                                     .workgroup_count = workgroup_count(caps)};
+                                     .workgroup_count = workgroup_count(caps),
+                                     .one_group_sections = ONE_GROUP_SECTIONS};
     SluiceResult result = create_buffers(scan, vk, caps);
     if (result == SLUICE_SUCCESS)
         result = create_passes(scan, vk);
@@ -213,10 +219,14 @@ void slc_demand_scan_record(const struct slc_demand_scan *scan, const struct slc
     slc_compute_bind(&scan->compute, vk, commands, 0, &params);
     slc_compute_barrier(vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, shaders);
-    record_pass(scan, vk, commands, COMPACT, 1);
-    record_pass(scan, vk, commands, COUNT, scan->workgroup_count);
-    record_pass(scan, vk, commands, PLACE, 1);
-    record_pass(scan, vk, commands, LIST, scan->workgroup_count);
+    if (scan->section_count <= scan->one_group_sections) {
+        record_pass(scan, vk, commands, WHOLE, 1);
+    } else {
+        record_pass(scan, vk, commands, COMPACT, 1);
+        record_pass(scan, vk, commands, COUNT, scan->workgroup_count);
+        record_pass(scan, vk, commands, PLACE, 1);
+        record_pass(scan, vk, commands, LIST, scan->workgroup_count);
+    }
     slc_compute_barrier(vk, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                         VK_ACCESS_SHADER_WRITE_BIT,
                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
@@ -224,13 +234,14 @@ void slc_demand_scan_record(const struct slc_demand_scan *scan, const struct slc
                             VK_ACCESS_HOST_READ_BIT);
 }
 
-struct SluiceDemandScanResult slc_demand_scan_result(const struct slc_demand_scan *scan,
-                                                     uint32_t slot, const uint32_t **pages)
+struct SluiceDemandScanResult slc_demand_scan_result(struct slc_demand_scan *scan, uint32_t slot,
+                                                     const uint32_t **pages)
 {
     const uint32_t *words = scan->readback.mapped;
     words += (size_t)slot * slot_words(scan->list_capacity);
     *pages = words + RESULT_WORDS;
     struct SluiceDemandScanResult result = {words[0], words[1], words[2], words[3]};
     result.listedCount = slc_min_u32(result.listedCount, scan->list_capacity);
+    scan->section_count = result.sectionCount;
     return result;
 }

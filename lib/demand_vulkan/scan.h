@@ -35,6 +35,10 @@ struct slc_demand_scan {
     uint64_t page_capacity;
     uint32_t slot_count, list_capacity;
     uint32_t workgroup_count; ///< of the passes over requests
+    uint32_t section_count;   ///< of the last result
+    /** Up to so many in the last result the next scan is made by one workgroup; what it finds is
+     * the same. */
+    uint32_t one_group_sections;
 };
 
 /** Bytes of device memory of all buffers, but the readback, which is host memory. For 64 Mi pages
@@ -79,7 +83,7 @@ void slc_demand_scan_record(const struct slc_demand_scan *scan, const struct slc
 
 /** What the scan wrote, once its submission is complete. `*pages` has listedCount ids and stays
  *  until the slot is used again. */
-struct SluiceDemandScanResult slc_demand_scan_result(const struct slc_demand_scan *scan,
-                                                     uint32_t slot, const uint32_t **pages);
+struct SluiceDemandScanResult slc_demand_scan_result(struct slc_demand_scan *scan, uint32_t slot,
+                                                     const uint32_t **pages);
 
 #endif /* SLC_DEMAND_VULKAN_SCAN_H */

@@ -5,7 +5,7 @@
 #include "vulkan/dispatch.h"
 
 #define SLC_COMPUTE_BINDINGS 8u
-#define SLC_COMPUTE_PASSES 4u
+#define SLC_COMPUTE_PASSES 5u
 #define SLC_COMPUTE_SETS 16u
 
 struct slc_compute_pass {

@@ -1,46 +1,17 @@
-/* Counts the requests of a group of sections, by key. */
+/* The second pass of a scan of requests. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "requests.glsl"
+#include "sluice/shared/demand_scan.h"
 
-layout(std430, binding = 4) buffer Scratch { uint words[]; } scratch;
+layout(local_size_x = SLUICE_SCAN_GROUP_SIZE) in;
 
-/* In whatever order they are added up: it is a sum. The last one is of sections. */
-shared uint keySums[SLUICE_SCAN_SUMS];
-
-void sumKeys(uint section)
-{
-    if (totals[section] == 0u)
-        return;
-    atomicAdd(keySums[entries[section] >> SLUICE_SCAN_KEY_SHIFT], totals[section]);
-    atomicAdd(keySums[SLUICE_SCAN_KEYS], 1u);
-}
-
-void countGroup(uint scanGroup, uint sectionCount, uint groups)
-{
-    uint at = gl_LocalInvocationIndex;
-    if (at < SLUICE_SCAN_SUMS)
-        keySums[at] = 0u;
-    uint index = scanGroup * SLUICE_SCAN_GROUP_SECTIONS + at / SLUICE_SCAN_PARTS;
-    bool listed = index < sectionCount;
-    uint entry = listed ? scratch.words[SLUICE_SCAN_LIST + index] : 0u;
-    uint quad = sluicePartQuad(entry);
-    uvec4 low = listed ? requests.quads[quad] : uvec4(0u);
-    uvec4 high = listed ? requests.quads[quad + 1u] : uvec4(0u);
-    sluiceShareCounts(entry, low, high);
-    if (at < SLUICE_SCAN_GROUP_SECTIONS)
-        sumKeys(at);
-    barrier();
-    if (at < SLUICE_SCAN_SUMS)
-        scratch.words[params.firstSum + at * groups + scanGroup] = keySums[at];
-    barrier(); /* the next group may begin */
-}
+#include "count.glsl"
 
 void main()
 {
     uint sectionCount = scratch.words[SLUICE_SCAN_SECTION_COUNT];
     uint groups = sluiceScanGroups(sectionCount);
     for (uint i = gl_WorkGroupID.x; i < groups; i += gl_NumWorkGroups.x)
-        countGroup(i, sectionCount, groups);
+        sluiceCountGroup(i, sectionCount, groups);
 }

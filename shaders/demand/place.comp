@@ -1,56 +1,12 @@
-/*
- * One workgroup: counts become places, by key, then by group. Each invocation has a piece of the
- * counts, so that one prefix sum is enough. Writes the result.
- */
+/* The third pass of a scan of requests. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "scan.glsl"
-
 layout(local_size_x_id = 0) in;
-layout(std430, binding = 4) buffer Scratch { uint words[]; } scratch;
-/* Whole results, because each store may be a transfer to the host. */
-layout(std430, binding = 5) writeonly buffer Readback { uvec4 results[]; } readback;
 
-#include "prefix.glsl"
-
-shared uint requestCount;
-
-uint sumPiece(uint first, uint end)
-{
-    uint sum = 0u;
-    for (uint i = first; i < end; i++)
-        sum += scratch.words[params.firstSum + i];
-    return sum;
-}
-
-/** `sectionRow`: where the counts of sections begin, so that all before them are the requests. */
-void placePiece(uint first, uint end, uint before, uint sectionRow)
-{
-    for (uint i = first; i < end; i++) {
-        uint count = scratch.words[params.firstSum + i];
-        scratch.words[params.firstSum + i] = before;
-        if (i == sectionRow)
-            requestCount = before;
-        before += count;
-    }
-}
+#include "place.glsl"
 
 void main()
 {
-    uint groups = sluiceScanGroups(scratch.words[SLUICE_SCAN_SECTION_COUNT]);
-    uint count = groups * SLUICE_SCAN_SUMS, piece = (count + group - 1u) / group, total = 0u;
-    if (gl_LocalInvocationIndex == 0u)
-        requestCount = 0u;
-    if (groups > 0u) {
-        uint first = min(gl_LocalInvocationIndex * piece, count), end = min(first + piece, count);
-        uint before = sluiceSumBefore(sumPiece(first, end), total);
-        placePiece(first, end, before, groups * SLUICE_SCAN_KEYS);
-        barrier();
-    }
-    if (gl_LocalInvocationIndex > 0u)
-        return;
-    uint listed = min(requestCount, params.capacity);
-    readback.results[params.resultOffset / 4u] =
-        uvec4(listed, requestCount, total - requestCount, requestCount - listed);
+    sluicePlaceGroups();
 }

@@ -1,3 +1,6 @@
+#ifndef SLUICE_DEMAND_PREFIX_GLSL
+#define SLUICE_DEMAND_PREFIX_GLSL
+
 /* Prefix sums over a workgroup, in shared memory: the same whatever the size of a subgroup. */
 const uint group = gl_WorkGroupSize.x;
 shared uint sums[2u * group]; /* two, in turns: one barrier per step */
@@ -19,3 +22,5 @@ uint sluiceSumBefore(uint own, out uint total)
     total = sums[from + group - 1u];
     return sum - own;
 }
+
+#endif

@@ -1,11 +1,11 @@
 /*
  * The requests of a group of sections, for the passes that look at them: four invocations have 256
- * pages of each section.
+ * pages of each section. In workgroups of SLUICE_SCAN_GROUP_SIZE.
  */
-#include "scan.glsl"
+#ifndef SLUICE_DEMAND_REQUESTS_GLSL
+#define SLUICE_DEMAND_REQUESTS_GLSL
 
-layout(local_size_x = SLUICE_SCAN_GROUP_SIZE) in;
-layout(std430, binding = 0) buffer Requests { uvec4 quads[]; } requests;
+#include "scan.glsl"
 
 #define SLUICE_SCAN_PARTS 4u /* of a section */
 #define SLUICE_SCAN_PART_QUADS 2u
@@ -41,3 +41,5 @@ void sluiceShareCounts(uint entry, uvec4 low, uvec4 high)
     }
     barrier();
 }
+
+#endif

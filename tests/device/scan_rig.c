@@ -124,12 +124,15 @@ static void record_scan(void *user, VkCommandBuffer commands)
     r->clear = r->send_ranks = false;
     demand_rig_record_upload(&r->vk, commands, &r->requests, &r->scan.requests);
     demand_rig_record_upload(&r->vk, commands, &r->sections, &r->scan.sections);
+    /* by one workgroup or by several passes: nobody can tell */
+    r->scan.section_count = 1;
+    r->scan.one_group_sections = rand() % 2 ? UINT32_MAX : 0;
     slc_demand_scan_record(&r->scan, &r->vk, commands, r->slot, r->page_end, r->capacity);
     demand_rig_record_download(&r->vk, commands, &r->scan.requests, &r->requests_after);
     demand_rig_record_download(&r->vk, commands, &r->scan.sections, &r->sections_after);
 }
 
-static void check_list(const struct scan_rig *r)
+static void check_list(struct scan_rig *r)
 {
     const uint32_t *pages;
     struct SluiceDemandScanResult got = slc_demand_scan_result(&r->scan, r->slot, &pages);

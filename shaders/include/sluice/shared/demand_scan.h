@@ -4,7 +4,8 @@
  * The scan of requests: compact.comp lists the sections that are flagged, count.comp counts their
  * requests, place.comp turns counts into places and writes the result, list.comp writes page ids
  * and clears what it has listed. Flagged sections are worked on in groups of
- * SLUICE_SCAN_GROUP_SECTIONS, so all but the first pass cost what was requested.
+ * SLUICE_SCAN_GROUP_SECTIONS, so all but the first pass cost what was requested. whole.comp does
+ * the same in one workgroup.
  *
  * A section's key is its rank, plus SLUICE_DEMAND_RANKS if none of its bits is left over from a
  * scan before. Places are prefix sums over keys, then groups, then sections: the same requests give
@@ -21,8 +22,8 @@
 /* Per group: requests of each key, then sections that had any. */
 #define SLUICE_SCAN_SUMS 33
 /* Workgroups of count.comp and list.comp, that share the groups of sections. As many every time:
- * a device waits longer for the arguments of an indirect dispatch than these take to find that there
- * is nothing to do. */
+ * a device waits longer for the arguments of an indirect dispatch than these take to find that
+ * there is nothing to do. */
 #define SLUICE_SCAN_WORKGROUPS 128
 /* Sizes of the one workgroup of compact.comp and of place.comp, at most: specialization constant 0,
  * a power of two. */
