@@ -109,6 +109,16 @@ static void describe(const struct DemandInput *in, uint32_t mode, int channel, d
                   in->dy[1]);
 }
 
+/* Devices disagree about fractions of levels, and about levels of footprints that are no squares.
+ */
+static void make_whole(struct DemandInput *in, const struct demand_texture *t)
+{
+    double side = exp2(rand() % 8);
+    in->dx[0] = (float)(side / t->width);
+    in->dy[1] = (float)(side / t->height);
+    in->dx[1] = in->dy[0] = 0;
+}
+
 static void isotropic_samples_are_those_of_a_sampler(void **state)
 {
     struct demand_scene *scene = *state;
@@ -130,6 +140,8 @@ static void isotropic_samples_are_those_of_a_sampler(void **state)
             struct DemandInput *in = &demand_inputs(scene)[i];
             in[0] = demand_random_input(index, &t, false);
             in[0].kind = DEMAND_GRAD;
+            if (harness_level_error(scene->h) > 0)
+                make_whole(&in[0], &t);
             in[1] = in[0];
             in[1].kind = DEMAND_HARDWARE;
         }
