@@ -84,13 +84,12 @@ static SluiceResult submit_opening(SluiceDemandLoader *loader, struct slc_demand
     struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_OPEN);
     if (!job)
         return SLUICE_NOT_READY;
-    const struct slc_demand_texture *texture = &loader->textures[image->texture];
     const SluiceImageRegion region = {.width = 1, .height = 1};
     void *texels = image->read_color;
     job->page = image->texture;
     job->owner = image->slot;
     job->image = image;
-    job->id = (uint64_t)texture->generation << 32 | image->texture;
+    job->id = slc_texture_id(loader, image->texture);
     SluiceTileRead read = {.source = &loader->opener,
                            .regionCount = 1,
                            .pRegions = &region,

@@ -4,6 +4,20 @@
 
 #include <string.h>
 
+static SluiceResult reserve(SluiceDemandLoader *loader)
+{
+    uint32_t old = loader->preload_capacity, capacity = old ? 2 * old : 16;
+    if (loader->preload_count < old)
+        return SLUICE_SUCCESS;
+    struct slc_preload *preloads =
+        slc_regrow(&loader->cb, loader->preloads, old, capacity, sizeof *preloads);
+    if (!preloads)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    loader->preloads = preloads;
+    loader->preload_capacity = capacity;
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId,
                                         uint32_t finestLevel, SluiceDemandTicket *pTicket)
 {
@@ -18,21 +32,14 @@ SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemand
         index = loader->textures[index].base;
     if (loader->textures[index].kind == SLC_TEXTURE_GRID)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (loader->preload_count == loader->preload_capacity) {
-        uint32_t old = loader->preload_capacity, capacity = old ? 2 * old : 16;
-        struct slc_preload *preloads =
-            slc_regrow(&loader->cb, loader->preloads, old, capacity, sizeof *preloads);
-        if (!preloads)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        loader->preloads = preloads;
-        loader->preload_capacity = capacity;
-    }
-    result = slc_ticket_open(&loader->tickets, &ticket);
+    result = reserve(loader);
+    if (result == SLUICE_SUCCESS)
+        result = slc_ticket_open(&loader->tickets, &ticket);
     if (result != SLUICE_SUCCESS)
         return result;
     slc_ticket_add(&loader->tickets, ticket, 1); /* until it is known how many there are */
     loader->preloads[loader->preload_count++] =
-        (struct slc_preload){.texture = (uint64_t)loader->textures[index].generation << 32 | index,
+        (struct slc_preload){.texture = slc_texture_id(loader, index),
                              .ticket = ticket,
                              .finest_level = finestLevel,
                              .planned_count = 1};

@@ -57,7 +57,7 @@ uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
 }
 
 static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *image,
-                           struct slc_demand_job *job, uint32_t priority, SluiceDemandTicket ticket)
+                           struct slc_demand_job *job, uint32_t rank, SluiceDemandTicket ticket)
 {
     struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
     SluiceImageRegion regions[SLC_TILE_MAX_PARTS];
@@ -71,8 +71,26 @@ static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *
                            .regionCount = count,
                            .pRegions = regions,
                            .ppTexels = texels,
-                           .priority = priority};
+                           .priority = SLUICE_DEMAND_RANKS - rank};
     return slc_job_submit(loader, job, &read, ticket);
+}
+
+/* The page has a place. */
+static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_image *image,
+                               const struct slc_page_request *request, SluiceDemandTicket ticket)
+{
+    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_TILE);
+    job->page = request->page;
+    job->owner = image->slot;
+    job->image = image;
+    job->id = slc_texture_id(loader, image->texture);
+    job->place = slc_residency_place(loader->residency, request->page);
+    SluiceResult result = submit(loader, image, job, request->rank, ticket);
+    if (result == SLUICE_SUCCESS)
+        image->job_count++;
+    else
+        slc_job_free(loader, job);
+    return result;
 }
 
 enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
@@ -88,29 +106,19 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     uint32_t index, level = slc_tile_level(image, page, &index);
     if (level == image->regular_count && !tail)
         return SLC_REQUEST_RESIDENT; /* rounded up to whole blocks of ids */
-    uint32_t rank = tail ? 0 : slc_image_level_rank(image, level);
-    const struct slc_page_request request = {.page = page,
-                                             .class_index = SLC_CLASS_TILES,
-                                             .rank = (uint8_t)rank,
-                                             .pinned = tail,
-                                             .kind = image->info.format};
+    const struct slc_page_request request = {
+        .page = page,
+        .class_index = SLC_CLASS_TILES,
+        .rank = (uint8_t)(tail ? 0 : slc_image_level_rank(image, level)),
+        .pinned = tail,
+        .kind = image->info.format};
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     if (answer != SLC_REQUEST_LOAD)
         return answer;
-    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_TILE);
-    const struct slc_demand_texture *texture = &loader->textures[image->texture];
-    job->page = page;
-    job->owner = image->slot;
-    job->image = image;
-    job->id = (uint64_t)texture->generation << 32 | image->texture;
-    job->place = slc_residency_place(loader->residency, page);
-    *result = submit(loader, image, job, SLUICE_DEMAND_RANKS - rank, ticket);
-    if (*result == SLUICE_SUCCESS) {
-        image->job_count++;
+    *result = begin_read(loader, image, &request, ticket);
+    if (*result == SLUICE_SUCCESS)
         return SLC_REQUEST_LOAD;
-    }
     slc_residency_failed(loader->residency, page, false);
-    slc_job_free(loader, job);
     return SLC_REQUEST_POSTPONED;
 }
 

@@ -14,6 +14,7 @@
 #include <sluice/bake.h>
 #endif
 #ifdef WITH_VULKAN
+#include <sluice/demand.h>
 #include <sluice/vulkan.h>
 #include <vulkan/vulkan.h> /* behind it: the application's Vulkan is as it was */
 #endif
@@ -61,6 +62,7 @@ int main(void)
 #ifdef WITH_VULKAN
     (void)sizeof(&vkGetInstanceProcAddr); /* declared; not linked with */
     sluiceDestroyVulkanStreamer(NULL);
+    sluiceDestroyDemandLoader(NULL);
 #endif
     printf("sluice %d.%d.%d\n", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR, SLUICE_VERSION_PATCH);
     return 0;

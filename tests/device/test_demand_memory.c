@@ -172,6 +172,32 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     runner_image_finish(&other);
 }
 
+static void without_eviction_what_is_there_stays(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    const SluiceDemandLoaderCreateInfo info = {
+        .memoryBudget = 8u << 20, .maxTilesInFlight = 64, .noEviction = true};
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    add_tiles(&r, id, 0, 3);
+    runner_load(&r, 30);
+    runner_clear(&r);
+    add_tiles(&r, id, 10, 6); /* more than is left */
+    runner_load(&r, 30);
+    assert_int_equal(runner_statistics(&r).evictedCount, 0);
+    uint64_t reads = image.source.read_count;
+    runner_clear(&r);
+    add_tiles(&r, id, 0, 3);
+    runner_load(&r, 30);
+    assert_int_equal(image.source.read_count, reads);
+    assert_true(runner_statistics(&r).tileMemorySize <= info.memoryBudget);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
 static void formats_share_a_budget(void **state)
 {
     (void)state;
@@ -428,6 +454,7 @@ int main(void)
         cmocka_unit_test(tiles_that_nobody_uses_make_room_and_come_back_unread),
         cmocka_unit_test(views_that_walk_to_and_fro_never_show_other_texels),
         cmocka_unit_test(tiles_that_were_evicted_and_not_overwritten_need_no_read),
+        cmocka_unit_test(without_eviction_what_is_there_stays),
         cmocka_unit_test(formats_share_a_budget),
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
