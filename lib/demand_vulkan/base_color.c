@@ -58,7 +58,7 @@ static bool is_srgb(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK ||
            format == SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK || format == SLUICE_FORMAT_BC2_SRGB_BLOCK ||
-           format == SLUICE_FORMAT_BC3_SRGB_BLOCK;
+           format == SLUICE_FORMAT_BC3_SRGB_BLOCK || format == SLUICE_FORMAT_BC7_SRGB_BLOCK;
 }
 
 /* False for formats that take more than this. */
@@ -88,6 +88,8 @@ static bool block_color(SluiceFormat format, const uint8_t *block, float rgba[4]
     case SLUICE_FORMAT_BC4_SNORM_BLOCK:
         rgba[0] = bc4_texel(block, format == SLUICE_FORMAT_BC4_SNORM_BLOCK);
         return true;
+    case SLUICE_FORMAT_BC7_UNORM_BLOCK:
+    case SLUICE_FORMAT_BC7_SRGB_BLOCK: slc_bc7_texel(block, rgba); return true;
     default: return false;
     }
 }

@@ -9,11 +9,13 @@
 #define SLC_DEMAND_MAX_EXTENT (1u << 20)
 
 /**
- * The colour of the last level of a texture: its first texel, in linear light. Of BC6H and BC7,
- * which take a decoder, a mid grey: such a texture has to be less than a pixel to show it. `texel`:
- * a block of compressed formats.
+ * The colour of the last level of a texture: its first texel, in linear light. Of BC6H, which takes
+ * a decoder, a mid grey: such a texture has to be less than a pixel to show it. `texel`: a block of
+ * compressed formats.
  */
 void slc_base_color(SluiceFormat format, const void *texel, float rgba[4]);
+/** The first texel of a BC7 block, as the format stores it: sRGB ones are not decoded. */
+void slc_bc7_texel(const uint8_t block[16], float rgba[4]);
 
 /** Tiles of a regular level. */
 static inline uint32_t slc_image_level_width(const struct slc_demand_image *image, uint32_t level)

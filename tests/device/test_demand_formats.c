@@ -22,8 +22,12 @@ static bool is_usable(SluiceFormat format)
 
 static bool is_decoded(SluiceFormat format)
 {
-    return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK &&
-           format != SLUICE_FORMAT_BC7_UNORM_BLOCK && format != SLUICE_FORMAT_BC7_SRGB_BLOCK;
+    return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK;
+}
+
+static bool is_signed(SluiceFormat format)
+{
+    return format == SLUICE_FORMAT_BC4_SNORM_BLOCK || format == SLUICE_FORMAT_BC5_SNORM_BLOCK;
 }
 
 static bool is_srgb(SluiceFormat format)
@@ -162,13 +166,13 @@ static void destroy_block(SluiceImageSource *source)
 static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
 {
     (void)state;
-    enum { COUNT = 64, FIRST = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK };
+    enum { COUNT = 256, FIRST = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK };
     static const SluiceImageSourceInterface interface = {get_block_info, read_block, destroy_block};
     static struct random_block blocks[COUNT];
     uint32_t seed = 1;
-    for (uint32_t f = FIRST; f <= SLUICE_FORMAT_BC5_SNORM_BLOCK; f++) {
+    for (uint32_t f = FIRST; f <= SLUICE_FORMAT_BC7_SRGB_BLOCK; f++) {
         struct runner r;
-        if (!is_usable((SluiceFormat)f))
+        if (!is_usable((SluiceFormat)f) || !is_decoded((SluiceFormat)f))
             continue;
         runner_init(&r, &h, NULL);
         for (uint32_t i = 0; i < COUNT; i++) {
@@ -176,6 +180,8 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
             blocks[i] = (struct random_block){{&interface}, {2, 2, 2, (SluiceFormat)f, "random"}};
             for (uint32_t b = 0; b < 16; b++)
                 blocks[i].block[b] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
+            if (f >= SLUICE_FORMAT_BC7_UNORM_BLOCK) /* all modes */
+                blocks[i].block[0] = (uint8_t)((blocks[i].block[0] | 1) << i % 8);
             const SluiceDemandTextureCreateInfo info = {.image.source = &blocks[i].base,
                                                         .sampler = runner_nearest};
             CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
@@ -188,8 +194,10 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
             struct RunnerOutput decoded = runner_output(&r, 2 * i);
             struct RunnerOutput base = runner_output(&r, 2 * i + 1);
             assert_true(decoded.resident && base.resident);
+            /* Drivers interpolate in 8 bits, and those with a sign also from -128. */
+            float slack = is_signed((SluiceFormat)f) ? 2.0f / 127 : 0.012f;
             for (uint32_t c = 0; c < 4; c++)
-                if (!(fabsf(decoded.color[c] - base.color[c]) < 0.012f))
+                if (!(fabsf(decoded.color[c] - base.color[c]) < slack))
                     fail_msg("%s, channel %u: %g, and the device decodes %g",
                              sluiceFormatString((SluiceFormat)f), c, (double)base.color[c],
                              (double)decoded.color[c]);
