@@ -8,12 +8,10 @@
 /* Larger than any device asks for. */
 #define SCRATCH_ALIGNMENT 256u
 
-/** What has to be called for one structure. */
+/** What is recorded for one structure. */
 struct build {
-    const struct gpu *gpu;
     PFN_vkCmdBuildAccelerationStructuresKHR record;
     VkAccelerationStructureBuildGeometryInfoKHR info;
-    VkAccelerationStructureGeometryKHR geometry;
     VkAccelerationStructureBuildRangeInfoKHR range;
 };
 
@@ -57,15 +55,32 @@ static bool create_structure(const struct gpu *gpu, VkAccelerationStructureTypeK
                      "vkCreateAccelerationStructureKHR");
 }
 
-static bool run_build(const struct gpu *gpu, VkAccelerationStructureTypeKHR type,
-                      const VkAccelerationStructureGeometryKHR *geometry, uint32_t count,
-                      struct accel_structure *structure)
+static VkAccelerationStructureBuildSizesInfoKHR get_sizes(const struct gpu *gpu,
+                                                          const struct build *build)
 {
-    PFN_vkGetAccelerationStructureBuildSizesKHR get_sizes =
+    PFN_vkGetAccelerationStructureBuildSizesKHR get =
         (PFN_vkGetAccelerationStructureBuildSizesKHR)device_function(
             gpu, "vkGetAccelerationStructureBuildSizesKHR");
+    VkAccelerationStructureBuildSizesInfoKHR sizes = {
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
+    get(gpu->device, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &build->info,
+        &build->range.primitiveCount, &sizes);
+    return sizes;
+}
+
+static bool run_build(const struct gpu *gpu, struct build *build, const struct gpu_buffer *scratch)
+{
+    const VkDeviceSize mask = SCRATCH_ALIGNMENT - 1;
+    VkDeviceAddress address = accel_buffer_address(gpu, scratch->buffer);
+    build->info.scratchData.deviceAddress = (address + mask) & ~mask;
+    return one_time_run(gpu, record_build, build);
+}
+
+static bool build_structure(const struct gpu *gpu, VkAccelerationStructureTypeKHR type,
+                            const VkAccelerationStructureGeometryKHR *geometry, uint32_t count,
+                            struct accel_structure *structure)
+{
     struct build build = {
-        .gpu = gpu,
         .record = (PFN_vkCmdBuildAccelerationStructuresKHR)device_function(
             gpu, "vkCmdBuildAccelerationStructuresKHR"),
         .info = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR,
@@ -75,23 +90,15 @@ static bool run_build(const struct gpu *gpu, VkAccelerationStructureTypeKHR type
                  .geometryCount = 1,
                  .pGeometries = geometry},
         .range = {.primitiveCount = count}};
-    VkAccelerationStructureBuildSizesInfoKHR sizes = {
-        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
-    get_sizes(gpu->device, VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &build.info, &count,
-              &sizes);
+    VkAccelerationStructureBuildSizesInfoKHR sizes = get_sizes(gpu, &build);
     struct gpu_buffer scratch = {0};
     bool done = create_structure(gpu, type, sizes.accelerationStructureSize, structure) &&
                 gpu_create_buffer(gpu, sizes.buildScratchSize + SCRATCH_ALIGNMENT,
                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                       VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
                                   &scratch);
-    if (done) {
-        VkDeviceAddress address = accel_buffer_address(gpu, scratch.buffer);
-        build.info.dstAccelerationStructure = structure->handle;
-        build.info.scratchData.deviceAddress =
-            (address + SCRATCH_ALIGNMENT - 1) & ~(VkDeviceAddress)(SCRATCH_ALIGNMENT - 1);
-        done = one_time_run(gpu, record_build, &build);
-    }
+    build.info.dstAccelerationStructure = structure->handle;
+    done = done && run_build(gpu, &build, &scratch);
     gpu_destroy_buffer(gpu, &scratch);
     return done;
 }
@@ -114,8 +121,8 @@ static bool build_shape(const struct gpu *gpu, const struct scene *scene, enum s
             .indexType = VK_INDEX_TYPE_UINT32,
             .indexData.deviceAddress = accel_buffer_address(gpu, indices) +
                                        shape->first_index * sizeof *scene->mesh.indices}};
-    return run_build(gpu, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, &geometry,
-                     shape->index_count / 3, structure);
+    return build_structure(gpu, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, &geometry,
+                           shape->index_count / 3, structure);
 }
 
 static VkAccelerationStructureInstanceKHR place_instance(const struct gpu *gpu,
@@ -152,8 +159,8 @@ static bool build_scene(const struct gpu *gpu, const struct scene *scene, struct
         .geometry.instances = {
             .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
             .data.deviceAddress = accel_buffer_address(gpu, accel->instances.buffer)}};
-    return run_build(gpu, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, &geometry,
-                     scene->instance_count, &accel->scene);
+    return build_structure(gpu, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, &geometry,
+                           scene->instance_count, &accel->scene);
 }
 
 bool accel_build(const struct gpu *gpu, const struct scene *scene, VkBuffer vertices,

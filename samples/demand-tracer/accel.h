@@ -16,7 +16,7 @@ struct accel {
     struct gpu_buffer instances;
 };
 
-/** What the builds read, see scene_buffers.h, needs these usages. */
+/** Of the buffers that builds read. */
 #define ACCEL_INPUT_USAGE                                                                          \
     (VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |                        \
      VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)

@@ -64,7 +64,7 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
          "that hold such; they go to the ground and the things in turn.\n"
          "Without it textures are computed where they are looked at"},
         {OPTION_UINT, "texture-count", "N", &o->texture_count,
-         "computed textures, a fifth of them leaves", 5, 100000},
+         "computed textures, a fifth of them leaves", 5, 5000},
         {OPTION_UINT, "texture-size", "N", &o->texture_size, "their width and height in texels", 16,
          65536},
         {OPTION_REAL, "anisotropy", "N", &o->anisotropy, "of the filter, at most", 1, 64},

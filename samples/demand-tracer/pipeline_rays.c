@@ -87,37 +87,49 @@ static uint32_t round_up(uint32_t value, uint32_t alignment)
     return (value + alignment - 1) / alignment * alignment;
 }
 
-static bool create_table(const struct gpu *gpu, struct ray_pipeline *pipeline)
+static VkPhysicalDeviceRayTracingPipelinePropertiesKHR get_properties(const struct gpu *gpu)
 {
-    PFN_vkGetRayTracingShaderGroupHandlesKHR get_handles =
-        (PFN_vkGetRayTracingShaderGroupHandlesKHR)vkGetDeviceProcAddr(
-            gpu->device, "vkGetRayTracingShaderGroupHandlesKHR");
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &rays};
     vkGetPhysicalDeviceProperties2(gpu->physical_device, &properties);
+    return rays;
+}
+
+/** One group after the other, each as aligned as the device wants groups to be. */
+static void write_table(const struct gpu *gpu, const uint8_t *handles, uint32_t handle_size,
+                        uint32_t alignment, struct ray_pipeline *pipeline)
+{
+    const VkDeviceSize stride = round_up(handle_size, alignment);
+    VkDeviceAddress base = accel_buffer_address(gpu, pipeline->table.buffer);
+    VkDeviceSize first = (alignment - base % alignment) % alignment;
+    for (uint32_t i = 0; i < GROUP_COUNT; i++) {
+        VkDeviceSize place = first + i * stride;
+        memcpy((uint8_t *)pipeline->table.mapped + place, handles + (size_t)i * handle_size,
+               handle_size);
+        pipeline->groups[i] = (VkStridedDeviceAddressRegionKHR){base + place, stride, stride};
+    }
+}
+
+static bool create_table(const struct gpu *gpu, struct ray_pipeline *pipeline)
+{
+    PFN_vkGetRayTracingShaderGroupHandlesKHR get_handles =
+        (PFN_vkGetRayTracingShaderGroupHandlesKHR)vkGetDeviceProcAddr(
+            gpu->device, "vkGetRayTracingShaderGroupHandlesKHR");
+    const VkPhysicalDeviceRayTracingPipelinePropertiesKHR rays = get_properties(gpu);
     const uint32_t size = rays.shaderGroupHandleSize, alignment = rays.shaderGroupBaseAlignment;
-    const uint32_t stride = round_up(size, alignment);
     uint8_t *handles = malloc((size_t)GROUP_COUNT * size);
     bool done = handles &&
                 gpu_check(get_handles(gpu->device, pipeline->pipeline, 0, GROUP_COUNT,
                                       (size_t)GROUP_COUNT * size, handles),
                           "vkGetRayTracingShaderGroupHandlesKHR") &&
-                gpu_create_buffer(gpu, (GROUP_COUNT + 1) * stride,
+                gpu_create_buffer(gpu, (GROUP_COUNT + 1) * round_up(size, alignment),
                                   VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR |
                                       VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
                                   &pipeline->table);
-    if (done) {
-        VkDeviceAddress base = accel_buffer_address(gpu, pipeline->table.buffer);
-        VkDeviceSize skipped = (alignment - base % alignment) % alignment;
-        for (uint32_t i = 0; i < GROUP_COUNT; i++) {
-            memcpy((uint8_t *)pipeline->table.mapped + skipped + (VkDeviceSize)i * stride,
-                   handles + (size_t)i * size, size);
-            pipeline->groups[i] = (VkStridedDeviceAddressRegionKHR){
-                base + skipped + (VkDeviceSize)i * stride, stride, stride};
-        }
-    }
+    if (done)
+        write_table(gpu, handles, size, alignment, pipeline);
     free(handles);
     return done;
 }
