@@ -53,6 +53,12 @@ static bool fill_once(const struct bench *bench, const SluiceDemandLoaderCreateI
     return done;
 }
 
+/* Without tails, one of which the warming up has loaded. */
+static double tile_count(const SluiceDemandStatistics *s)
+{
+    return (double)(s->residentTileCount - s->texturesOpened);
+}
+
 static void report(uint32_t in_flight, const struct fill_times *times, double rate)
 {
     char name[64];
@@ -68,24 +74,23 @@ static void report(uint32_t in_flight, const struct fill_times *times, double ra
 
 bool measure_fill(const struct bench *bench)
 {
-    double best = 0;
+    double best = 0, best_again = 0;
     SluiceDemandStatistics s;
     for (uint32_t tiles = 512; tiles <= (options.quick ? 512u : 8192u); tiles *= 2) {
         SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = tiles};
-        struct fill_times times = {.seconds = INFINITY};
+        struct fill_times times = {.seconds = INFINITY}, both[2];
         for (uint32_t i = 0; i < (options.quick ? 1u : 3u); i++) {
-            struct fill_times once;
-            if (!fill_once(bench, &info, &once, &s))
+            if (!fill_twice(bench, &info, both, &s))
                 return false;
-            if (once.seconds < times.seconds)
-                times = once;
+            if (both[0].seconds < times.seconds)
+                times = both[0];
+            best_again = fmax(best_again, tile_count(&s) / both[1].seconds);
         }
-        double rate = (double)(s.residentTileCount - s.texturesOpened) / times.seconds;
-        report(tiles, &times, rate);
-        best = fmax(best, rate);
+        report(tiles, &times, tile_count(&s) / times.seconds);
+        best = fmax(best, tile_count(&s) / times.seconds);
     }
-    /* without tails, one of which the warming up has loaded */
-    figure("fill.tiles", NULL, (double)(s.residentTileCount - s.texturesOpened), "tiles");
+    figure("fill.tiles", NULL, tile_count(&s), "tiles");
     figure("fill.rate", NULL, best, "tiles/s");
+    figure("fill.again.rate", NULL, best_again, "tiles/s");
     return true;
 }

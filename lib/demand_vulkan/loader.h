@@ -202,6 +202,7 @@ struct SluiceDemandLoader {
     struct slc_job_list free_tiles, free_others;
     struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
     uint32_t free_tile_count, free_other_count;
+    uint32_t reading_count; ///< tiles that are submitted and not yet back
     struct slc_job_batch batch;
     struct slc_tickets tickets;
 

@@ -86,10 +86,12 @@ static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_ima
     job->id = slc_texture_id(loader, image->texture);
     job->place = slc_residency_place(loader->residency, request->page);
     SluiceResult result = submit(loader, image, job, request->rank, ticket);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS) {
         image->job_count++;
-    else
+        loader->reading_count++;
+    } else {
         slc_job_free(loader, job);
+    }
     return result;
 }
 
@@ -143,6 +145,7 @@ void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, S
 {
     struct slc_demand_image *image = job->image;
     loader->counts.bytesRead += size;
+    loader->reading_count--;
     if (result == SLUICE_SUCCESS && !job->stale) {
         slc_job_list_append(loader, &loader->arrived, job);
         return;

@@ -13,9 +13,23 @@ struct copies {
     VkBufferImageCopy list[COPY_BATCH];
 };
 
+/*
+ * While reads are under way a launch copies only its share of the staging memory: one part is
+ * copied, another waits for the end of its launch, and the rest is being read into. Whoever waited
+ * for all reads gets all.
+ */
+static uint32_t most_tiles(const SluiceDemandLoader *loader)
+{
+    if (loader->reading_count == 0)
+        return UINT32_MAX;
+    return slc_max_u32(1, loader->info.maxTilesInFlight / (loader->info.launchesInFlight + 1));
+}
+
 void slc_uploads_admit(SluiceDemandLoader *loader)
 {
-    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->arrived));) {
+    uint32_t left = most_tiles(loader);
+    for (struct slc_demand_job *job;
+         left > 0 && (job = slc_job_list_pop(loader, &loader->arrived));) {
         if (job->stale) {
             slc_residency_failed(loader->residency, job->page, false);
             slc_image_release(loader, job->image);
@@ -24,6 +38,7 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
         }
         slc_residency_loaded(loader->residency, job->page, job->place);
         slc_job_list_append(loader, &loader->admitted, job);
+        left--;
     }
 }
 
