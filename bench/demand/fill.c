@@ -42,12 +42,23 @@ static bool fill(struct rig *rig, struct fill_times *times)
     return done && rig_end(rig, &outcome) && all;
 }
 
-static bool fill_once(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,
-                      struct fill_times *times, SluiceDemandStatistics *statistics)
+static bool forget(struct rig *rig)
+{
+    for (uint32_t i = 0; i < rig->texture_count; i++)
+        if (!check(sluiceInvalidateDemandTexture(rig->loader, rig->ids[i]),
+                   "sluiceInvalidateDemandTexture"))
+            return false;
+    return true;
+}
+
+/* Once from nothing, and once more into memory that the device has given by then. */
+static bool fill_twice(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,
+                       struct fill_times times[2], SluiceDemandStatistics *statistics)
 {
     struct rig rig;
     bool done =
-        rig_create(&rig, bench, info, false) && rig_warm_up(&rig) && fill(&rig, times) &&
+        rig_create(&rig, bench, info, false) && rig_warm_up(&rig) && fill(&rig, &times[0]) &&
+        forget(&rig) && fill(&rig, &times[1]) &&
         check(sluiceGetDemandStatistics(rig.loader, statistics), "sluiceGetDemandStatistics");
     rig_destroy(&rig);
     return done;
