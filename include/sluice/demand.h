@@ -74,10 +74,11 @@ typedef struct SluiceDemandLoaderCreateInfo {
 } SluiceDemandLoaderCreateInfo;
 
 /**
- * Errors: NULL_POINTER; INVALID_ARGUMENT for values beyond their limits, or a budget below 4 MiB;
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for values beyond their limits, a budget below 4 MiB, or a
+ * queue family that does not compute;
  * UNSUPPORTED if the device cannot page; LIMIT_EXCEEDED if pageCapacity or maxTextureCount need a
- * storage buffer beyond the device's maxStorageBufferRange; OUT_OF_HOST_MEMORY,
- * OUT_OF_DEVICE_MEMORY, VULKAN.
+ * storage buffer beyond the device's maxStorageBufferRange, or there are fewer pages than textures;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
                                                  SluiceDemandLoader **pLoader);
