@@ -63,8 +63,10 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint32_t maxTilesInFlight;
     uint32_t loaderThreadCount;      ///< 0: as sluiceCreateTileLoader
     SluiceTileRetryPolicy readRetry; ///< also of resources that say NOT_READY
-    uint32_t maxReadsPerSource;      ///< at once; 0: as sluiceCreateTileLoader
-    uint32_t maxPageChunkCount;      ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
+    /** At once; all openings together count as one source, and so do the fills of a resource. 0: as
+     *  sluiceCreateTileLoader. */
+    uint32_t maxReadsPerSource;
+    uint32_t maxPageChunkCount; ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
     /** Nothing is ever evicted, and shaders do not say what they use: a little faster. */
     bool noEviction;
     /** With a working set larger than the budget some tiles stay away, and samples there take
