@@ -63,8 +63,10 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint32_t maxTilesInFlight;
     uint32_t loaderThreadCount;      ///< 0: as sluiceCreateTileLoader
     SluiceTileRetryPolicy readRetry; ///< also of resources that say NOT_READY
-    uint32_t maxReadsPerSource;      ///< at once; 0: as sluiceCreateTileLoader
-    uint32_t maxPageChunkCount;      ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
+    /** At once; all openings together count as one source, and so do the fills of a resource. 0: as
+     *  sluiceCreateTileLoader. */
+    uint32_t maxReadsPerSource;
+    uint32_t maxPageChunkCount; ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
     /** Nothing is ever evicted, and shaders do not say what they use: a little faster. */
     bool noEviction;
     /** With a working set larger than the budget some tiles stay away, and samples there take
@@ -74,10 +76,11 @@ typedef struct SluiceDemandLoaderCreateInfo {
 } SluiceDemandLoaderCreateInfo;
 
 /**
- * Errors: NULL_POINTER; INVALID_ARGUMENT for values beyond their limits, or a budget below 4 MiB;
+ * Errors: NULL_POINTER; INVALID_ARGUMENT for values beyond their limits, a budget below 4 MiB, or a
+ * queue family that does not compute;
  * UNSUPPORTED if the device cannot page; LIMIT_EXCEEDED if pageCapacity or maxTextureCount need a
- * storage buffer beyond the device's maxStorageBufferRange; OUT_OF_HOST_MEMORY,
- * OUT_OF_DEVICE_MEMORY, VULKAN.
+ * storage buffer beyond the device's maxStorageBufferRange, or there are fewer pages than textures;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
                                                  SluiceDemandLoader **pLoader);

@@ -180,8 +180,10 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
     gather(loader, launch, tracking);
     SluiceResult result =
         slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
-    if (result != SLUICE_SUCCESS)
-        return result; /* what was gathered is shown by the next */
+    if (result != SLUICE_SUCCESS) {
+        slc_uploads_drop(loader); /* before launches under way can make them go */
+        return result;
+    }
     loader->launch = launch;
     loader->tracked[slot_of(loader, launch)] = tracking;
     *pLaunch = (SluiceDemandLaunch){.launchIndex = launch,

@@ -17,6 +17,7 @@
 #define MAX_REQUESTS (1u << 20)
 #define MAX_TILES_IN_FLIGHT (1u << 16)
 #define MIN_BUDGET (UINT64_C(4) << 20)
+#define MAX_FAMILIES 64u     /* those beyond are believed */
 #define MAX_GRIDS (1u << 16) /* ranges of cells apart from each other */
 
 static uint32_t or_default(uint32_t value, uint32_t otherwise)
@@ -60,8 +61,19 @@ static void choose_budget(SluiceDemandLoader *loader)
         info->memoryBudget = most;
 }
 
+static bool family_computes(const SluiceDemandLoader *loader)
+{
+    VkQueueFamilyProperties families[MAX_FAMILIES];
+    uint32_t count = MAX_FAMILIES, index = loader->info.queueFamilyIndex;
+    loader->vk.GetPhysicalDeviceQueueFamilyProperties(loader->vk.physical_device, &count, families);
+    return index >= MAX_FAMILIES ||
+           (index < count && families[index].queueFlags & VK_QUEUE_COMPUTE_BIT);
+}
+
 static SluiceResult check_device(SluiceDemandLoader *loader)
 {
+    if (!family_computes(loader))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     const char *missing = slc_missing_for_mode(&loader->caps, SLUICE_RESIDENCY_MODE_PAGED);
     if (missing) {
         slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s has no %s", loader->caps.public.deviceName,

@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE /* mutexes that spin before they sleep */
 
 #include "demand_vulkan/tickets.h"
 
@@ -28,6 +28,18 @@ bool slc_deadline(uint64_t timeout, struct timespec *until)
     return true;
 }
 
+/* Taken for a moment, often, and by workers while they hold the tile loader's. */
+static void init_mutex(pthread_mutex_t *mutex)
+{
+    pthread_mutexattr_t attributes;
+    pthread_mutexattr_init(&attributes);
+#ifdef PTHREAD_ADAPTIVE_MUTEX_INITIALIZER_NP
+    pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_ADAPTIVE_NP);
+#endif
+    pthread_mutex_init(mutex, &attributes);
+    pthread_mutexattr_destroy(&attributes);
+}
+
 SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocationCallbacks *cb)
 {
     *tickets = (struct slc_tickets){.cb = *cb, .first_done = NONE, .last_done = NONE};
@@ -35,7 +47,7 @@ SluiceResult slc_tickets_init(struct slc_tickets *tickets, const SluiceAllocatio
     if (pthread_condattr_init(&attributes) != 0)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_mutex_init(&tickets->mutex, NULL);
+    init_mutex(&tickets->mutex);
     pthread_cond_init(&tickets->changed, &attributes);
     pthread_condattr_destroy(&attributes);
     tickets->ready = true;

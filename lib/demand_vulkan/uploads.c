@@ -42,6 +42,15 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
     }
 }
 
+void slc_uploads_drop(SluiceDemandLoader *loader)
+{
+    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
+        slc_residency_forget(loader->residency, job->page, 1);
+        slc_image_release(loader, job->image);
+        slc_job_free(loader, job);
+    }
+}
+
 static void flush(struct copies *c)
 {
     if (c->count)
@@ -74,7 +83,7 @@ static void add(struct copies *c, const struct slc_demand_job *job,
         sluiceFormatRegionSize(job->image->info.format, part->region.width, part->region.height);
 }
 
-/* Forgotten since it was admitted: the place may be another's. */
+/* Forgotten since it was admitted, because the page table had no room. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     return !job->stale && slc_page_directory_has(&loader->directory, job->page);

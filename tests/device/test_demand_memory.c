@@ -297,6 +297,7 @@ static struct {
     PFN_vkGetDeviceProcAddr get;
     PFN_vkAllocateMemory allocate;
     uint64_t left; ///< bytes; only large allocations count
+    bool refuses;  ///< everything
 } poor;
 
 static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
@@ -305,7 +306,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device,
                                                       VkDeviceMemory *memory)
 {
     bool large = info->allocationSize >= 2u << 20;
-    if (large && info->allocationSize > poor.left)
+    if (poor.refuses || (large && info->allocationSize > poor.left))
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     poor.left -= large ? info->allocationSize : 0;
     return poor.allocate(device, info, callbacks, memory);
@@ -358,6 +359,47 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
     assert_true(statistics.lodBias > 0);
     assert_true(statistics.tileMemorySize <= 20u << 20);
     assert_true(statistics.residentTileCount >= 64);
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    SluiceDemandLoader *loader;
+    SluiceDemandLoaderCreateInfo info = {
+        .memoryBudget = 16u << 20, .maxTextureCount = 64, .pageCapacity = 1u << 16};
+    runner_fill(&h, &info);
+    info.pfnGetInstanceProcAddr = get_of_instance;
+    poor.left = UINT64_MAX;
+    CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
+    runner_init_with(&r, &h, loader);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
+    SluiceDemandTextureId id = runner_add_texture(&r, &image);
+    uint32_t failures = 0;
+    h.quiet = true;
+    for (uint32_t rows = 1; rows < 7; rows++) {
+        runner_clear(&r);
+        add_tiles(&r, id, 0, rows);
+        for (uint32_t i = 0; i < 5; i++) {
+            poor.refuses = true;
+            SluiceResult result = runner_submit(&r);
+            poor.refuses = false;
+            failures += result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+            if (result != SLUICE_SUCCESS)
+                continue;
+            CHECK_OK(
+                sluiceProcessDemandRequests(loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
+            CHECK_OK(sluiceWaitDemandTicket(loader, r.ticket, UINT64_MAX, NULL));
+        }
+        runner_load(&r, 30);
+        for (uint32_t i = 0; i < r.count; i++)
+            runner_check_texel(&r, i, &image, 0, i % TILES * TILE + 7, i / TILES * TILE + 9);
+    }
+    h.quiet = false;
+    assert_true(failures > 0);
     runner_finish(&r);
     runner_image_finish(&image);
 }
@@ -459,6 +501,7 @@ int main(void)
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
         cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),
+        cmocka_unit_test(a_launch_that_cannot_be_prepared_takes_nothing_with_it),
         cmocka_unit_test(page_tables_of_64_mi_pages_cost_at_most_64_megabytes),
         cmocka_unit_test(a_loader_survives_every_refused_allocation),
     };

@@ -374,6 +374,13 @@ static void wrong_arguments_are_refused(void **state)
     info.memoryBudget = 0;
     info.launchesInFlight = 17;
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.launchesInFlight = 0;
+    info.queueFamilyIndex = 63;
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.queueFamilyIndex = h.family;
+    info.pageCapacity = 2048;
+    info.maxTextureCount = 2048;
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_LIMIT_EXCEEDED);
     runner_finish(&r);
     runner_image_finish(&image);
 }
