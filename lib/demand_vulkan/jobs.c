@@ -10,7 +10,7 @@
 
 #include <assert.h>
 
-#define BATCH 64u
+#define BATCH 256u
 
 void slc_job_list_append(SluiceDemandLoader *loader, struct slc_job_list *list,
                          struct slc_demand_job *job)

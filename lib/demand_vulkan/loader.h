@@ -124,7 +124,7 @@ struct slc_job_list {
     uint32_t first, last;
 };
 
-#define SLC_BATCH_JOBS 64u
+#define SLC_BATCH_JOBS 512u
 
 /** Reads of one region each that are submitted together. */
 struct slc_job_batch {

@@ -74,12 +74,14 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     slc_residency_begin(loader->residency, launch);
     if (loader->tracked[slot])
         feed_used(loader, slot);
+    slc_jobs_begin_batch(loader);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
         SluiceResult result; /* without host memory it is one of those that are postponed */
         enum slc_request_answer answer = slc_page_request_any(loader, pages[i], ticket, &result);
         count(&now, answer);
         now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
     }
+    slc_jobs_end_batch(loader);
     slc_residency_settle(loader->residency, scan.requestCount);
     slc_evicted_take(loader);
     add_counts(&loader->counts, &now);
