@@ -19,16 +19,17 @@
 #define DEMAND_BENCH_MISSING 0 /* samples that were not resident */
 #define DEMAND_BENCH_WORDS 1
 
-/* The samples are a square of edge x edge, cut into columns x columns fields of one texture each. */
+/* The samples are a square of edge x edge, cut into columns x columns fields of one texture each.
+ */
 struct DemandBenchParams {
     uint edge;
     uint columns;
     uint textures[DEMAND_BENCH_TEXTURES]; /* indices */
     float textureSize;                    /* texels */
-    float lod;      /* of most samples */
-    float fineLod;  /* of those in the patch around the origin */
-    float fineEdge; /* of the patch, in uv */
-    uint counting;  /* 1: samples that are missing are counted */
+    float lod;                            /* of most samples */
+    float fineLod;                        /* of those in the patch around the origin */
+    float fineEdge;                       /* of the patch, in uv */
+    uint counting;                        /* 1: samples that are missing are counted */
 };
 
 #endif
