@@ -194,8 +194,8 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
             struct RunnerOutput decoded = runner_output(&r, 2 * i);
             struct RunnerOutput base = runner_output(&r, 2 * i + 1);
             assert_true(decoded.resident && base.resident);
-            /* Devices interpolate in 8 bits, by coarse weights (up to 3 steps off), and those with a
-             * sign also from -128. */
+            /* Devices interpolate in 8 bits, by coarse weights (up to 3 steps off), and those with
+             * a sign also from -128. */
             float slack = is_signed((SluiceFormat)f) ? 2.0f / 127 : 3.5f / 255;
             for (uint32_t c = 0; c < 4; c++)
                 if (!(fabsf(decoded.color[c] - base.color[c]) < slack))
