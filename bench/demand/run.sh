@@ -20,7 +20,7 @@
 # and without asserts. README.md in this folder's parent says what each figure is. Needs awk; without
 # --bin also meson, ninja, a C compiler and glslangValidator.
 #
-# Exit status: 0; 1 if a measurement failed; 77 if no device can do it.
+# Exit status: 0; 1 if a measurement failed; 2 for a wrong option; 77 if no device can do it.
 
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -98,7 +98,10 @@ while [ $# -gt 0 ]; do
         sed -n '2,/^$/s/^# \{0,1\}//p' "$0"
         exit 0
         ;;
-    *) die "unknown option $1 (see --help)" ;;
+    *)
+        say "error: unknown option $1 (see --help)"
+        exit 2
+        ;;
     esac
     shift
 done
@@ -118,6 +121,7 @@ case " ${arguments[*]-} " in
 *" --quick "*) say "quick: few and small textures; not what the table says" ;;
 esac
 "$bin/demand_figures" "${arguments[@]}" >"$scratch/lines" || status=$?
+[ -s "$scratch/lines" ] || exit "$status"
 table | awk -F'|' -v figures="$scratch/lines" '
     BEGIN {
         while ((getline line < figures) > 0) {

@@ -108,6 +108,8 @@ typedef struct SluiceDemandImage {
     /** Not NULL: asked for its info when first sampled; must outlive the texture. It is never
      *  closed. Calls that take it away wait for its reads that are under way. */
     SluiceImageSource *source;
+    /** Of pfnOpen and pfnClose. Must stay as long as the texture, and where that is destroyed while
+     *  it is being opened until pfnClose, at the latest until the loader is destroyed. */
     void *pUserData;
     /** Where `source` is NULL. On a worker thread, at most once at a time; again after NOT_READY,
      *  IO and OUT_OF_HOST_MEMORY, see readRetry. `*pSource` has one array layer. */

@@ -176,7 +176,8 @@ static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *im
 static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
 {
     const char *name = image->source && image->info.pName ? image->info.pName : "image";
-    slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s cannot be used as a texture: %s%s%s", name,
+    slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+            "%s cannot be used as a texture (index %u): %s%s%s", name, image->texture,
             sluiceResultString(result), image->trouble ? ": " : "",
             image->trouble ? image->trouble : "");
     loader->textures[image->texture].failed = true;

@@ -102,9 +102,9 @@ static void show_progress(struct tracer *t, const struct launch_record *record,
 {
     const uint64_t pixels = (uint64_t)t->film.width * t->film.height;
     snprintf(t->progress_text, sizeof t->progress_text,
-             "launch %u, %u pages missing, %llu tiles, %llu MB", record->index,
+             "launch %u, %u pages missing, %llu tiles, %llu MB read", record->index,
              record->requests.missingCount, (unsigned long long)statistics->residentTileCount,
-             (unsigned long long)(statistics->bytesRead >> 20));
+             (unsigned long long)(statistics->bytesRead / 1000000u));
     progress_update(&t->progress, record->sample * pixels + pixels - record->missing_count);
 }
 

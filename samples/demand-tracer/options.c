@@ -5,7 +5,7 @@
 
 static const char usage[] =
     "demand-tracer [OPTION ...]\n\n"
-    "Traces paths of light through a garden in which everything has a texture of its own, 50 GB "
+    "Traces paths of light through a garden in which everything has a texture of its own, 72 GB "
     "of\n"
     "them without --textures. Nothing is loaded at first: each launch says which tiles it missed,\n"
     "they are loaded, and the pixels that missed them are traced again until none is left. "
@@ -35,6 +35,10 @@ static bool check(struct tracer_options *o)
     if (o->camera && !parse_camera(o->camera, &o->view)) {
         fprintf(stderr, "--camera %s: wants X,Y,Z,X,Y,Z, and must not look straight up or down\n",
                 o->camera);
+        return false;
+    }
+    if (o->budget > 0 && o->budget < 4) {
+        fprintf(stderr, "--budget %u: wants 4 MiB at least, or 0\n", o->budget);
         return false;
     }
     if (o->preview && o->preload) {
@@ -93,7 +97,7 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
         {OPTION_UINT, "requests", "N", &o->requests,
          "tiles that one launch may ask for; 0: as many as the library's\ndefault", 0, 1048576},
         {OPTION_UINT, "budget", "MIB", &o->budget,
-         "MiB for tiles at most; 0: half of the device's memory", 0, 1048576},
+         "MiB for tiles at most, 4 or more; 0: half of the device's memory", 0, 1048576},
         {OPTION_UINT, "threads", "N", &o->threads,
          "threads that load; 0: by the number of processors", 0, 256},
         {OPTION_TEXT, "device", "NAME", &o->device,

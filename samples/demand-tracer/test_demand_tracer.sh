@@ -23,6 +23,7 @@ refuse --size 8x8
 refuse --path fastest
 refuse --texture-count 4
 refuse --bounces 9
+refuse --budget 3
 refuse --camera 1,2,3
 refuse --camera 0,5,0,0,1,0
 refuse --camera nan,0,0,1,1,1
