@@ -384,6 +384,8 @@ static void wrong_arguments_are_refused(void **state)
     info.launchesInFlight = 0;
     info.queueFamilyIndex = 63;
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.queueFamilyIndex = UINT32_MAX;
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     info.queueFamilyIndex = h.family;
     info.pageCapacity = 2048;
     info.maxTextureCount = 2048;
