@@ -54,12 +54,14 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint32_t maxTextureCount;  ///< variants and grids count, too; at most 2^24; 0: 2^17
     uint64_t pageCapacity;     ///< virtual pages, at most 2^31, rounded up to 1024; 0: 2^26
     /** Pages that a scan lists and one call serves; the others wait for the next. At most 2^20;
-     *  0: 8192. */
+     *  0: 8192. Pages of resources that are refused, or not ready, are listed whenever they are
+     *  missed: it should be larger than their number. */
     uint32_t maxRequestsPerLaunch;
     /** Device memory for tiles, bytes; a hard cap. At most 128 MiB for each of maxPageChunkCount
      * are used. 0: half of the device's. */
     uint64_t memoryBudget;
-    /** Reads under way and texels not yet copied, in tiles of 64 KiB; at most 2^16; 0: 1024. */
+    /** Reads under way and texels not yet copied, in tiles of 64 KiB; at most 2^16; 0: 1024. Beside
+     *  them as many openings and fills, those that wait for another attempt included. */
     uint32_t maxTilesInFlight;
     uint32_t loaderThreadCount;      ///< 0: as sluiceCreateTileLoader
     SluiceTileRetryPolicy readRetry; ///< also of resources that say NOT_READY
@@ -112,7 +114,8 @@ typedef struct SluiceDemandImage {
      *  it is being opened until pfnClose, at the latest until the loader is destroyed. */
     void *pUserData;
     /** Where `source` is NULL. On a worker thread, at most once at a time; again after NOT_READY,
-     *  IO and OUT_OF_HOST_MEMORY, see readRetry. `*pSource` has one array layer. */
+     *  IO, OUT_OF_HOST_MEMORY and, once, CORRUPT_DATA, see readRetry. `*pSource` has one array
+     *  layer. */
     SluiceResult (*pfnOpen)(void *pUserData, SluiceImageSource **pSource);
     /** Once for each image that pfnOpen opened; no read of it is under way. NULL:
      *  sluiceDestroyImageSource. On any thread that uses the loader. */
@@ -201,7 +204,7 @@ typedef struct SluiceDemandResourceCreateInfo {
 } SluiceDemandResourceCreateInfo;
 
 /** `*pFirstPage` is what shaders add to. Errors: NULL_POINTER, INVALID_ARGUMENT, LIMIT_EXCEEDED
- *  beyond pageCapacity, OUT_OF_HOST_MEMORY. */
+ *  beyond pageCapacity or 254 resources with a limit of their own, OUT_OF_HOST_MEMORY. */
 SLUICE_API SluiceResult sluiceCreateDemandResource(
     SluiceDemandLoader *loader, const SluiceDemandResourceCreateInfo *pCreateInfo,
     SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage);

@@ -118,7 +118,9 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
     bool found = false;
     SluiceResult result =
         sluiceIsStoreTileWritten(copy->writer, layer, layout->tailFirstLevel, 0, 0, &found);
+    slc_jobs_lock(copy->jobs); /* tiles are still being copied */
     copy->found_tile_count += found;
+    pthread_mutex_unlock(&copy->jobs->mutex);
     for (uint32_t l = layout->tailFirstLevel; l < layout->mipLevelCount; l++) {
         SluiceImageRegion region;
         if (result == SLUICE_SUCCESS)

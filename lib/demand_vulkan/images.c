@@ -262,6 +262,7 @@ static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_ima
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     leave_refresh_list(loader, image);
+    slc_preloads_detach(loader, image->texture);
     drop_jobs(loader, image);
     if (image->origin.source && image->job_count) { /* which the application may destroy next */
         slc_jobs_wait(loader, SLC_JOB_TILE, image->slot);

@@ -66,8 +66,8 @@ static bool family_computes(const SluiceDemandLoader *loader)
     VkQueueFamilyProperties families[MAX_FAMILIES];
     uint32_t count = MAX_FAMILIES, index = loader->info.queueFamilyIndex;
     loader->vk.GetPhysicalDeviceQueueFamilyProperties(loader->vk.physical_device, &count, families);
-    return index >= MAX_FAMILIES ||
-           (index < count && families[index].queueFlags & VK_QUEUE_COMPUTE_BIT);
+    return index < count ? families[index].queueFlags & VK_QUEUE_COMPUTE_BIT
+                         : count == MAX_FAMILIES;
 }
 
 static SluiceResult check_device(SluiceDemandLoader *loader)

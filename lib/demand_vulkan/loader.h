@@ -143,6 +143,7 @@ struct slc_preload {
     SluiceDemandTicket ticket;
     uint32_t finest_level, level, next_page; ///< pages of the level, from 0
     bool opening, planned;
+    bool detached;          ///< the image that it was planned for is no texture's any more
     uint32_t planned_count; ///< tasks of the ticket that have not begun
 };
 
@@ -342,6 +343,8 @@ void slc_evicted_take(SluiceDemandLoader *loader);
 
 /* preload.c */
 void slc_preloads_continue(SluiceDemandLoader *loader);
+/** The image at the texture's index goes: pages that preloads know are not those of the next. */
+void slc_preloads_detach(SluiceDemandLoader *loader, uint32_t texture);
 void slc_preloads_finish(SluiceDemandLoader *loader);
 
 #endif /* SLC_DEMAND_VULKAN_LOADER_H */

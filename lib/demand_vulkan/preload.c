@@ -55,7 +55,8 @@ static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct sl
 {
     uint32_t index;
     SluiceResult result;
-    *over = slc_texture_find(loader, preload->texture, &index) != SLUICE_SUCCESS ||
+    *over = preload->detached ||
+            slc_texture_find(loader, preload->texture, &index) != SLUICE_SUCCESS ||
             slc_ticket_is_cancelled(&loader->tickets, preload->ticket) ||
             loader->textures[index].failed;
     if (*over)
@@ -63,8 +64,7 @@ static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct sl
     const struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->image != SLC_NONE && loader->images[texture->image]->state == SLC_IMAGE_OPEN)
         return loader->images[texture->image];
-    *over = preload->planned; /* another image since */
-    if (texture->image != SLC_NONE || *over)
+    if (texture->image != SLC_NONE)
         return NULL;
     *over = preload->opening; /* and could not be */
     if (*over)
@@ -162,6 +162,15 @@ void slc_preloads_continue(SluiceDemandLoader *loader)
         }
     }
     loader->preload_count = kept;
+}
+
+void slc_preloads_detach(SluiceDemandLoader *loader, uint32_t texture)
+{
+    for (uint32_t i = 0; i < loader->preload_count; i++) {
+        struct slc_preload *preload = &loader->preloads[i];
+        if ((uint32_t)preload->texture == texture && preload->planned)
+            preload->detached = true;
+    }
 }
 
 void slc_preloads_finish(SluiceDemandLoader *loader)

@@ -267,8 +267,10 @@ SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader, SluiceDemand
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_demand_texture *texture = &loader->textures[index];
-    float color[4] = {0};
-    if (texture->kind == SLC_TEXTURE_IMAGE) {
+    float color[4];
+    if (texture->kind == SLC_TEXTURE_GRID) {
+        memcpy(color, change_entry(loader, index)->baseColor, sizeof color);
+    } else if (texture->kind == SLC_TEXTURE_IMAGE) {
         memcpy(color, texture->failure_color, sizeof color);
         if (texture->image != SLC_NONE)
             slc_image_detach(loader, loader->images[texture->image]);
@@ -276,7 +278,7 @@ SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader, SluiceDemand
             next = loader->textures[texture->next].next;
             bury(loader, texture->next, color);
         }
-    } else if (texture->kind == SLC_TEXTURE_VARIANT) {
+    } else {
         memcpy(color, loader->textures[texture->base].failure_color, sizeof color);
         unlink_variant(loader, index);
     }

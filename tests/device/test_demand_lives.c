@@ -181,6 +181,41 @@ static void pictures_stay_right_with_little_memory_and_few_reads(void **state)
     run(&info);
 }
 
+/* Opened for the first launch, replaced and opened again for the second, all between two others. */
+static void a_preload_ends_with_the_image_that_it_was_asked_for(void **state)
+{
+    (void)state;
+    const SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = 4};
+    struct runner r;
+    struct runner_image images[2];
+    SluiceDemandTicket preload;
+    SluiceDemandTicketStatus status;
+    runner_init(&r, &h, &info);
+    runner_image_init(&images[0], SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, 1);
+    runner_image_init(&images[1], SLUICE_FORMAT_R8G8B8A8_UNORM, 8, 8, 2);
+    SluiceDemandTextureId id = runner_add_texture(&r, &images[0]);
+    runner_add_texel(&r, id, 8, 8, 0, 2, 2);
+    CHECK_OK(runner_submit(&r)); /* asks for the texture */
+    const SluiceDemandLaunch asks = r.launch;
+    CHECK_OK(sluicePreloadDemandTexture(r.loader, id, 0, &preload));
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, preload, UINT64_MAX, NULL));
+    CHECK_OK(runner_submit(&r)); /* as it is open, its tiles are being read */
+    const SluiceDemandImage other = runner_image_desc(&images[1]);
+    CHECK_OK(sluiceReplaceDemandImage(r.loader, id, &other));
+    CHECK_OK(sluiceProcessDemandRequests(r.loader, &asks, UINT64_MAX, &r.requests, &r.ticket));
+    assert_int_equal(r.requests.servedCount, 1);
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, NULL));
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &images[1], 0, 2, 2);
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, preload, UINT64_MAX, &status));
+    assert_int_equal(status.remainingCount, 0);
+    assert_int_equal(runner_statistics(&r).residentTileCount, 1);
+    runner_finish(&r);
+    runner_image_finish(&images[0]);
+    runner_image_finish(&images[1]);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -189,6 +224,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_stay_right_with_memory_for_all),
         cmocka_unit_test(pictures_stay_right_with_little_memory_and_few_reads),
+        cmocka_unit_test(a_preload_ends_with_the_image_that_it_was_asked_for),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -207,8 +207,15 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
     struct RunnerOutput out = runner_output(&r, 0);
     assert_memory_equal(out.color, missing, sizeof missing);
     runner_check_texel(&r, 1, &images[1], 0, 300, 20);
+    /* And a grid that goes shows nothing else any more. */
     CHECK_OK(sluiceDestroyDemandTexture(r.loader, grid));
     CHECK_OK(sluiceDestroyDemandTexture(r.loader, cells[5]));
+    runner_launch(&r);
+    for (uint32_t i = 0; i < 5; i++) {
+        out = runner_output(&r, i);
+        assert_true(out.resident);
+        assert_memory_equal(out.color, missing, sizeof missing);
+    }
     runner_finish(&r);
     for (uint32_t i = 0; i < 2; i++)
         runner_image_finish(&images[i]);
@@ -376,6 +383,8 @@ static void wrong_arguments_are_refused(void **state)
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     info.launchesInFlight = 0;
     info.queueFamilyIndex = 63;
+    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
+    info.queueFamilyIndex = UINT32_MAX;
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     info.queueFamilyIndex = h.family;
     info.pageCapacity = 2048;
