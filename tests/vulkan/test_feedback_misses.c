@@ -16,21 +16,31 @@ struct rectangle {
     uint32_t x, y, width, height;
 };
 
-/** A still picture of one region, and the part of it that four corners reach (shared quads). */
+/** A region on screen, in pixels, and how far the corners of a footprint are from its middle. */
+struct extent {
+    double x0, y0, x1, y1, reach;
+};
+
+/** A still picture of one region, and the pixels that touch it. */
 struct picture {
     SluiceFeedbackRate rate;
     struct rectangle pixels;
-    bool one_corner; ///< pixels reach it by their lower right corners alone; else by all
+    struct extent extent; ///< shared quads
     float probability;
 };
 
-/** The corner that sluiceWriteQuadFeedback gives a pixel: whether it is the lower, the right one.
- */
-static bool marks_by_corner(const struct picture *p, uint32_t x, uint32_t y, uint32_t seed)
+/** Whether the corner that sluiceWriteQuadFeedback gives a pixel is in the region. */
+static bool marks_by_corner(const struct extent *e, uint32_t x, uint32_t y, uint32_t seed)
 {
-    if (p->rate.selection != SLUICE_FEEDBACK_SELECTION_SHARED_QUADS || !p->one_corner)
-        return true;
-    return ((x ^ seed) & 1) && ((y ^ seed >> 1) & 1);
+    double corner_x = x + 0.5 + ((x ^ seed) & 1 ? e->reach : -e->reach);
+    double corner_y = y + 0.5 + ((y ^ seed >> 1) & 1 ? e->reach : -e->reach);
+    return corner_x >= e->x0 && corner_x < e->x1 && corner_y >= e->y0 && corner_y < e->y1;
+}
+
+static bool touches(const struct picture *p, uint32_t x, uint32_t y, uint32_t frame)
+{
+    return p->rate.selection != SLUICE_FEEDBACK_SELECTION_SHARED_QUADS ||
+           marks_by_corner(&p->extent, x, y, frame);
 }
 
 static bool selects(const struct picture *p, uint32_t x, uint32_t y, uint32_t frame)
@@ -48,7 +58,7 @@ static bool frame_marks(const struct picture *p, uint32_t frame)
     const struct rectangle *r = &p->pixels;
     for (uint32_t y = r->y; y < r->y + r->height; y++)
         for (uint32_t x = r->x; x < r->x + r->width; x++)
-            if (selects(p, x, y, frame) && marks_by_corner(p, x, y, frame))
+            if (selects(p, x, y, frame) && touches(p, x, y, frame))
                 return true;
     return false;
 }
@@ -107,9 +117,8 @@ static void expect_misses(const struct picture *p, uint32_t trials, bool exactly
 {
     double chance = predicted(p);
     uint32_t misses = count_misses(p, trials);
-    bool more = tail(trials, misses, chance, 1) < FIVE_SIGMA;
-    bool fewer = exactly && tail(trials, misses, chance, -1) < FIVE_SIGMA;
-    if (more || fewer)
+    if (tail(trials, misses, chance, 1) < FIVE_SIGMA ||
+        (exactly && tail(trials, misses, chance, -1) < FIVE_SIGMA))
         fail_msg("selection %d, %ux%u at %u,%u, in turns %d of %u: %u of %u, not %g",
                  (int)p->rate.selection, (unsigned)p->pixels.width, (unsigned)p->pixels.height,
                  (unsigned)p->pixels.x, (unsigned)p->pixels.y, p->rate.inTurns,
@@ -145,11 +154,6 @@ static const uint32_t sides[] = {1, 2, 3, 8, 15, 64};
 enum { SIDES = sizeof sides / sizeof *sides };
 static const uint32_t turns[] = {1, 10};
 
-static uint32_t trials_of(uint32_t side)
-{
-    return side > 16 ? 400 : 3000;
-}
-
 /* Pixels and quads that begin where the region does: what is predicted is exact. */
 static void check_random(SluiceFeedbackSelection selection, double allowed)
 {
@@ -158,7 +162,7 @@ static void check_random(SluiceFeedbackSelection selection, double allowed)
             struct rectangle pixels = {640, 358, sides[side], sides[side]};
             struct picture p = picture_of(selection, pixels, turns[i / 2], i % 2);
             assert_true(choose(&p, allowed));
-            expect_misses(&p, trials_of(sides[side]), true);
+            expect_misses(&p, sides[side] > 16 ? 400 : 3000, true);
         }
 }
 
@@ -189,34 +193,23 @@ static void quads_that_lie_across_a_region_miss_it_no_more_often(void **state)
         }
 }
 
-/* Its one quad marks it in a quarter of the frames, wherever in its quad the pixel is. */
+/** Reached by the lower right corner of one pixel alone, one of the four of a quad. */
+static struct picture picture_of_corner(uint32_t place, uint32_t turn, bool in_turns)
+{
+    struct rectangle pixel = {640 + place % 2, 358 + place / 2, 1, 1};
+    struct picture p = picture_of(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, pixel, turn, in_turns);
+    p.extent = (struct extent){pixel.x + 0.75, pixel.y + 0.75, 9999, 9999, 0.5};
+    return p;
+}
+
 static void one_corner_of_one_pixel_is_missed_as_often_as_predicted(void **state)
 {
     (void)state;
     for (uint32_t i = 0; i < 4; i++)
         for (uint32_t place = 0; place < 4; place++) {
-            struct rectangle pixels = {640 + place % 2, 358 + place / 2, 1, 1};
-            struct picture p =
-                picture_of(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, pixels, i / 2 ? 3 : 1, i % 2);
-            p.one_corner = true;
+            struct picture p = picture_of_corner(place, i / 2 ? 3 : 1, i % 2);
             assert_true(choose(&p, 0.3));
             expect_misses(&p, 3000, true);
-        }
-}
-
-/* Reached by one corner of each pixel, in part with quads that are cut in two. */
-static void shared_corners_miss_no_more_often_than_predicted(void **state)
-{
-    (void)state;
-    for (uint32_t side = 1; side < SIDES; side++)
-        for (uint32_t i = 0; i < 12; i++) {
-            uint32_t place = i / 3, turn = i % 3 ? 11 : 1; /* odd */
-            struct rectangle pixels = {640 + place % 2, 358 + place / 2, sides[side], sides[side]};
-            struct picture p =
-                picture_of(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, pixels, turn, i % 3 == 2);
-            p.one_corner = true;
-            if (choose(&p, 0.1))
-                expect_misses(&p, trials_of(sides[side]) / 4, false);
         }
 }
 
@@ -225,17 +218,108 @@ static void corners_are_never_marked_where_turns_are_an_even_number_apart(void *
     (void)state;
     uint32_t never = 0;
     for (uint32_t place = 0; place < 4; place++) {
-        struct rectangle pixels = {640 + place % 2, 358 + place / 2, 1, 1};
-        struct picture p = picture_of(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, pixels, 4, true);
-        p.one_corner = true;
-        p.probability = 1;
-        assert_true(predicted(&p) == 1);
+        struct picture p = picture_of_corner(place, 4, true);
         uint32_t hits = 0;
+        p.probability = 1;
         for (uint32_t frame = 0; frame < 4000; frame += 4)
             hits += frame_marks(&p, frame);
         never += hits == 0;
     }
     assert_int_equal(never, 3);
+}
+
+static double draw_between(double least, double greatest)
+{
+    static uint32_t drawn;
+    drawn++;
+    return least + (greatest - least) * (slc_twin_hash(drawn, 7, 11) >> 8) / 16777216.0;
+}
+
+/** Where a region of that size touches `count` pixels from `first` on; some are hidden. */
+static void draw_axis(double size, double reach, uint32_t *first, uint32_t *count, double *x0)
+{
+    *x0 = draw_between(64, 66);
+    double least = ceil(*x0 - reach - 0.5), greatest = ceil(*x0 + size + reach - 0.5) - 1;
+    least = fmin(least + floor(draw_between(0, 2.5)), greatest);
+    greatest = fmax(greatest - floor(draw_between(0, 2.5)), least);
+    *first = (uint32_t)least;
+    *count = (uint32_t)(greatest - least) + 1;
+}
+
+/** A region no smaller than footprints are, as all that are marked by their corners. */
+static struct picture draw_picture(double greatest)
+{
+    struct extent e = {.reach = draw_between(0.5, 1.2)};
+    double width = draw_between(2 * e.reach, greatest),
+           height = draw_between(2 * e.reach, greatest);
+    struct rectangle pixels;
+    draw_axis(width, e.reach, &pixels.x, &pixels.width, &e.x0);
+    draw_axis(height, e.reach, &pixels.y, &pixels.height, &e.y0);
+    e.x1 = e.x0 + width;
+    e.y1 = e.y0 + height;
+    struct picture p = picture_of(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, pixels, 1, false);
+    p.extent = e;
+    return p;
+}
+
+/** Quads that mark the region if they are selected in that frame. */
+static uint32_t count_quads(const struct picture *p, uint32_t frame)
+{
+    const struct rectangle *r = &p->pixels;
+    uint32_t quads = 0;
+    for (uint32_t y = r->y / 2; y <= (r->y + r->height - 1) / 2; y++)
+        for (uint32_t x = r->x / 2; x <= (r->x + r->width - 1) / 2; x++) {
+            bool marks = false;
+            for (uint32_t i = 0; i < 4; i++) {
+                uint32_t px = 2 * x + i % 2, py = 2 * y + i / 2;
+                marks |= px - r->x < r->width && py - r->y < r->height && /* unsigned */
+                         marks_by_corner(&p->extent, px, py, frame);
+            }
+            quads += marks;
+        }
+    return quads;
+}
+
+/** What is promised of four frames, from the prediction: at p = 1/2 each quad halves the chance. */
+static uint32_t promised_quads(struct picture *p)
+{
+    p->rate.timeout = 4 / p->rate.frameRate;
+    p->probability = 0.5f;
+    return (uint32_t)lround(-log2(predicted(p)));
+}
+
+/* In the worst case there are no more than promised, so no greater promise could be kept. */
+static void promised_quads_mark_wherever_corners_lie(void **state)
+{
+    (void)state;
+    uint32_t small = 0, large = 0;
+    for (uint32_t i = 0; i < 100000; i++) {
+        struct picture p = draw_picture(6);
+        uint32_t promised = promised_quads(&p), sum = 0, least = UINT32_MAX;
+        for (uint32_t frame = 0; frame < 4; frame++) {
+            uint32_t quads = count_quads(&p, frame);
+            sum += quads;
+            least = quads < least ? quads : least;
+        }
+        bool always = p.pixels.width > 2 && p.pixels.height > 2;
+        assert_true(always ? 4 * least >= promised : sum >= promised);
+        large += always && 4 * least == promised;
+        small += !always && sum == promised;
+    }
+    print_message("# as few as promised: %u small, %u large\n", (unsigned)small, (unsigned)large);
+    assert_true(small > 100 && large > 100);
+}
+
+static void shared_corners_miss_no_more_often_than_predicted(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 200; i++) {
+        struct picture p = draw_picture(i % 8 ? 12 : 64);
+        p.rate.textureCount = i % 3 ? 11 : 1; /* odd */
+        p.rate.inTurns = i % 3 == 2;
+        if (choose(&p, 0.1))
+            expect_misses(&p, 500, false);
+    }
 }
 
 /* No chance in it: all first frames, and the worst place of 64. */
@@ -307,6 +391,7 @@ int main(void)
         cmocka_unit_test(quads_that_lie_across_a_region_miss_it_no_more_often),
         cmocka_unit_test(one_corner_of_one_pixel_is_missed_as_often_as_predicted),
         cmocka_unit_test(shared_corners_miss_no_more_often_than_predicted),
+        cmocka_unit_test(promised_quads_mark_wherever_corners_lie),
         cmocka_unit_test(corners_are_never_marked_where_turns_are_an_even_number_apart),
         cmocka_unit_test(lattice_misses_exactly_as_often_as_predicted),
         cmocka_unit_test(delays_are_exceeded_as_often_as_predicted),
