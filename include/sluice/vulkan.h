@@ -201,7 +201,9 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * resolved at the end of the same frame: for the others that is one load and no arithmetic.
      * What it costs: with N textures not in a set a texture collects marks in one frame of
      * N / texturesPerFrame, not in all, so what few pixels see is noticed that many times later,
-     * and feedbackTimeout must be as much longer. Best where every visible pixel writes.
+     * and feedbackTimeout must be as much longer. Best where every visible pixel writes. Where
+     * N / texturesPerFrame is even, some corners of sluiceWriteQuadFeedback and some pixels of the
+     * lattice never have their turn (docs/trade-offs.md).
      */
     bool feedbackInTurns;
     /** Different tiles bound in the life of their images, see SluiceVulkanDeviceCapabilities; the

@@ -31,12 +31,17 @@ static inline uint32_t slc_twin_hash(uint32_t x, uint32_t y, uint32_t z)
 /* 2^23 as a float's bits: what adding to a whole number leaves of it */
 #define SLC_TWIN_FLOAT_ORIGIN 0x4B000000u
 
+static inline bool slc_twin_select_random(uint32_t x, uint32_t y, uint32_t frame_seed,
+                                          float probability)
+{
+    return (float)(slc_twin_mix(x, y, frame_seed) >> 9) * (1.0f / 8388608.0f) < probability;
+}
+
 static inline bool slc_twin_select_random_quad(uint32_t x, uint32_t y, uint32_t frame_seed,
                                                float probability)
 {
-    uint32_t mix = slc_twin_mix((x >> 1) + SLC_TWIN_FLOAT_ORIGIN, (y >> 1) + SLC_TWIN_FLOAT_ORIGIN,
-                                frame_seed);
-    return (float)(mix >> 9) * (1.0f / 8388608.0f) < probability;
+    return slc_twin_select_random((x >> 1) + SLC_TWIN_FLOAT_ORIGIN,
+                                  (y >> 1) + SLC_TWIN_FLOAT_ORIGIN, frame_seed, probability);
 }
 
 static inline bool slc_twin_select_lattice(uint32_t pixel_x, uint32_t pixel_y, uint32_t frame_index)
