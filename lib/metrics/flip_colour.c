@@ -15,7 +15,7 @@ static const double rgb_of_xyz[3][3] = {
     {0.052881292875543252, -0.20401120612390997, 1.1511299132483668},
 };
 
-/* Shares of the largest distance, and exponent: section 4.1 of the paper. */
+/* Exponent of distances; the share of the largest where the curve bends, and the error there. */
 static const double exponent = 0.7, knee_at = 0.4, knee_error = 0.95;
 
 static void transform(const double matrix[3][3], const double in[3], double out[3])
