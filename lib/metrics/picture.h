@@ -1,0 +1,32 @@
+/** Pictures as metrics read them: rows of luma or of linear RGB, in [0, 1]. */
+#ifndef SLC_METRICS_PICTURE_H
+#define SLC_METRICS_PICTURE_H
+
+#include <sluice/metrics.h>
+
+/** One picture of a pair, checked. */
+struct slc_picture {
+    const unsigned char *pixels;
+    size_t row_pitch; ///< bytes
+    uint32_t width;
+    SluicePixelFormat format;
+    double peak;
+    double linear[256]; ///< light of each encoded value
+};
+
+/** Looks at all that a caller says; `map` and `allocator` may be NULL. Fills both pictures. */
+SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *pair,
+                                   const SluiceMetricMap *map,
+                                   const SluiceAllocationCallbacks *allocator);
+
+/** Encoded luma of RGBA8, else linear luma over the peak. */
+void slc_picture_read_luma(const struct slc_picture *picture, uint32_t y, double *luma);
+
+/** Linear light, [width][3]. */
+void slc_picture_read_rgb(const struct slc_picture *picture, uint32_t y, double *rgb);
+
+/** Writes row y, converted to float; a map that is NULL is left. */
+void slc_metric_map_write(const SluiceMetricMap *map, uint32_t width, uint32_t y,
+                          const double *values);
+
+#endif /* SLC_METRICS_PICTURE_H */
