@@ -171,7 +171,7 @@ static void destroy_block(SluiceImageSource *source)
 static float decoding_slack(SluiceFormat format)
 {
     bool encoded = strstr(sluiceFormatString(format), "SRGB") != NULL;
-    return is_signed(format) ? 2.0f / 127 : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
+    return is_signed(format) ? 3.0f / 127 : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
 }
 
 static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
