@@ -164,14 +164,14 @@ static void destroy_block(SluiceImageSource *source)
 }
 
 /*
- * What Direct3D allows between end points of BC1: a step, and 3 % of their distance. Encoded
- * colours are up to 2.3 times as far apart when they are decoded. With a sign drivers interpolate
- * from -128.
+ * What Direct3D allows between end points: a step, and 3 % of their distance, which is up to 2 with
+ * a sign; there devices may interpolate from -128, too. Encoded colours are up to 2.3 times as far
+ * apart when they are decoded.
  */
 static float decoding_slack(SluiceFormat format)
 {
     bool encoded = strstr(sluiceFormatString(format), "SRGB") != NULL;
-    return is_signed(format) ? 3.0f / 127 : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
+    return is_signed(format) ? 2.0f / 127 + 0.06f : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
 }
 
 static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
