@@ -7,8 +7,8 @@
  * the next scan, and its sections are older from then on. The order is made of prefix sums: the
  * same requests, ranks and scans before give the same list on every device.
  *
- * Four dispatches, two of them indirect. One looks at a bit per 1024 pages, the others at sections
- * that are flagged: nothing else costs. Threads: external.
+ * One dispatch, or four where the last result had many sections. It looks at a bit per 1024 pages,
+ * and then at sections that are flagged: nothing else costs. Threads: external.
  */
 #ifndef SLC_DEMAND_VULKAN_SCAN_H
 #define SLC_DEMAND_VULKAN_SCAN_H

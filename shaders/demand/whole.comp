@@ -1,6 +1,6 @@
 /*
- * All passes of a scan in one workgroup, and so without waiting for the device between them: less than
- * half the time where few sections are flagged, or none.
+ * All passes of a scan in one workgroup, and so without waiting for the device between them: less
+ * time where few sections are flagged, or none.
  */
 #version 460
 #extension GL_EXT_control_flow_attributes : require

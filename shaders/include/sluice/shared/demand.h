@@ -67,7 +67,7 @@ struct SluiceDemandTexture {
     uint width, height; /* texels of level 0; level l has max(1, size >> l) */
     uint shape;
     uint levels;   /* first word in the buffer of levels: the first page of each regular level */
-    uint tailPage; /* one tile with all other levels: SluiceDemandTailPlace in demand.glsl */
+    uint tailPage; /* one tile with all other levels: see demand_texels.glsl */
     float maxAnisotropy; /* 1 to 64 */
     float lodBias;
     float baseColor[4]; /* of the last level, where a texture fits inside a pixel */
