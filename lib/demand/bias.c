@@ -10,7 +10,8 @@
 #define MAX_FAILED_TRIALS 6u
 #define TRIAL_PERIODS 8u
 
-void slc_demand_bias_forget(struct slc_demand_bias *bias)
+/* What was seen tells nothing any more: other places, other pages. */
+static void forget(struct slc_demand_bias *bias)
 {
     memset(bias->seen, 0, sizeof bias->seen);
     bias->loads = 0;
@@ -103,7 +104,7 @@ void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_deman
     if (bias->settled)
         bias->loads += need->loads;
     if ((float)bias->loads > 2 * pages + 16)
-        slc_demand_bias_forget(bias); /* another view */
+        forget(bias); /* another view */
     if (pages > room || need->fails) {
         learn(bias, pages, total);
         bias->seen[bias->quarters].fails = true;

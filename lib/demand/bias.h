@@ -41,7 +41,4 @@ struct slc_demand_need {
 /** A launch that was sampled with the present bias is over. */
 void slc_demand_bias_update(struct slc_demand_bias *bias, const struct slc_demand_need *need);
 
-/** What was seen tells nothing any more: other places, other pages. */
-void slc_demand_bias_forget(struct slc_demand_bias *bias);
-
 #endif /* SLC_DEMAND_BIAS_H */

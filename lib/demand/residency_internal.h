@@ -101,11 +101,6 @@ void slc_residency_release(struct slc_demand_residency *r, uint32_t index, bool 
 /** An absent page in no list may be retaken. */
 void slc_residency_become_ghost(struct slc_demand_residency *r, uint32_t index, uint32_t place);
 
-/* residency_request.c */
-
-/** The launch needs a resident page: it is not evicted before the next one. */
-void slc_residency_touch(struct slc_demand_residency *r, uint32_t index);
-
 /* residency_settle.c */
 
 /** A page of the class that has no place now will not get one while nothing changes. */

@@ -2,7 +2,8 @@
 
 #include <assert.h>
 
-void slc_residency_touch(struct slc_demand_residency *r, uint32_t index)
+/* The launch needs a resident page: it is not evicted before the next one. */
+static void touch(struct slc_demand_residency *r, uint32_t index)
 {
     struct slc_page_node *node = slc_node(r, index);
     if (node->touched == r->launch)
@@ -27,7 +28,7 @@ void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
         residency->use.used += !node->pinned;
         residency->use.used_pinned += node->pinned;
     }
-    slc_residency_touch(residency, index);
+    touch(residency, index);
 }
 
 /* It was asked for as any other page, and now as one that stays. */
@@ -53,7 +54,7 @@ static enum slc_request_answer answer_known(struct slc_demand_residency *r, uint
         pin(r, index);
     if (node->state == SLC_PAGE_LOADING)
         return SLC_REQUEST_PENDING;
-    slc_residency_touch(r, index);
+    touch(r, index);
     return SLC_REQUEST_RESIDENT;
 }
 
@@ -119,7 +120,7 @@ static enum slc_request_answer restore(struct slc_demand_residency *r, uint32_t 
     node->value = place;
     c->counts.resident++;
     c->counts.restored++;
-    slc_residency_touch(r, index);
+    touch(r, index);
     slc_residency_note(r, index);
     return SLC_REQUEST_RESTORED;
 }

@@ -18,7 +18,8 @@ uint64_t slc_monotonic_time(void)
     return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
-bool slc_deadline(uint64_t timeout, struct timespec *until)
+/* A point in time `timeout` ns from now for pthread_cond_timedwait on `changed`; false: never. */
+static bool find_deadline(uint64_t timeout, struct timespec *until)
 {
     uint64_t now = slc_monotonic_time();
     if (timeout > (UINT64_MAX >> 1) - now)
@@ -253,7 +254,7 @@ SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket tic
                              uint64_t timeout, SluiceDemandTicketStatus *status)
 {
     struct timespec until;
-    bool ends = slc_deadline(timeout, &until), over = timeout == 0;
+    bool ends = find_deadline(timeout, &until), over = timeout == 0;
     pthread_mutex_lock(&tickets->mutex);
     SluiceResult result = look(tickets, ticket, status);
     while (result == SLUICE_NOT_READY && !over) {

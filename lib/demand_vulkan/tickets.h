@@ -62,8 +62,6 @@ SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTick
 SluiceResult slc_ticket_wait(struct slc_tickets *tickets, SluiceDemandTicket ticket,
                              uint64_t timeout, SluiceDemandTicketStatus *status);
 
-/** A point in time `timeout` ns from now for pthread_cond_timedwait on `changed`; false: never. */
-bool slc_deadline(uint64_t timeout, struct timespec *until);
 uint64_t slc_monotonic_time(void); ///< ns
 
 #endif /* SLC_DEMAND_VULKAN_TICKETS_H */

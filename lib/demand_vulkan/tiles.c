@@ -9,7 +9,9 @@
 
 #define STAGING_ALIGNMENT 16u /* texels of any format and blocks begin at multiples of this */
 
-uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
+/* The level whose tile it is, `*index` of it row by row; regular_count for the tail, and for ids
+ * that are no tile's. */
+static uint32_t find_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index)
 {
     for (uint32_t l = 0; l < image->regular_count; l++) {
         uint32_t count = slc_image_level_width(image, l) * slc_image_level_height(image, l);
@@ -42,7 +44,7 @@ static uint32_t write_tail(const struct slc_demand_image *image,
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS])
 {
-    uint32_t index, level = slc_tile_level(image, page, &index);
+    uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count)
         return write_tail(image, parts);
     uint32_t x = index % slc_image_level_width(image, level) * image->tile_width;
@@ -105,7 +107,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     if (loader->free_tile_count == 0)
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
-    uint32_t index, level = slc_tile_level(image, page, &index);
+    uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count && !tail)
         return SLC_REQUEST_RESIDENT; /* rounded up to whole blocks of ids */
     const struct slc_page_request request = {
@@ -128,7 +130,7 @@ static void log_failure(const SluiceDemandLoader *loader, const struct slc_deman
                         uint32_t page, SluiceResult result)
 {
     const char *name = image->info.pName ? image->info.pName : "image";
-    uint32_t index, level = slc_tile_level(image, page, &index);
+    uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count)
         slc_log(&loader->info.log, SLUICE_LOG_ERROR,
                 "%s: levels from %u on cannot be read, and so it cannot be sampled: %s", name,

@@ -21,8 +21,4 @@ struct slc_tile_part {
 uint32_t slc_tile_parts(const struct slc_demand_image *image, uint32_t page,
                         struct slc_tile_part parts[SLC_TILE_MAX_PARTS]);
 
-/** The level whose tile it is, `*index` of it row by row; regular_count for the tail, and for ids
- *  that are no tile's. */
-uint32_t slc_tile_level(const struct slc_demand_image *image, uint32_t page, uint32_t *index);
-
 #endif /* SLC_DEMAND_VULKAN_TILES_H */
