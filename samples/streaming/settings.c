@@ -67,7 +67,9 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_SIZE, "size", "WxH", s->size, "pixels", 16, 8192},
         {OPTION_UINT, "frames", "N", &s->frames, "frames in all", 1, 100000},
         {OPTION_UINT, "rest-frames", "N", &s->rest_frames,
-         "so many of them at the end, in which the camera stands still", 0, 100000},
+         "so many of them at the end, in which the camera stands still;\nas many as there are: it "
+         "never moves",
+         0, 100000},
         {OPTION_UINT, "fps", "N", &s->frames_per_second,
          "frames per second: sets the time step, and frames do not come\nfaster", 1, 10000},
         {OPTION_UINT, "samples", "N", &s->samples, "per pixel along edges: 1, 2, 4 or 8", 1, 8},
