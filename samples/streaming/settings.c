@@ -120,10 +120,10 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
          "count samples of texels that are not there; auto: with\n--compare, where the device can"},
         {OPTION_CHOICE, "needs", "auto|on|off", &s->needs,
-         "find out which tiles each frame needs, and how long they take to\nshow; "
-         "auto: with --compare; costs a further pass, in no time stamp"},
+         "find out which tiles each frame needs, and how long they take\nto show; auto: with "
+         "--compare. Time stamps leave that pass out"},
         {OPTION_TEXT, "needs-trace", "FILE", &s->needs_trace,
-         "write what each frame needs as an SLTRACE1 trace for\nsluice-replay; with --needs on"},
+         "write what each frame needs as an SLTRACE1 trace, for\nsluice-replay; --needs on"},
         {OPTION_FLAG, "validation", NULL, &s->validation,
          "Vulkan's validation layers; any message is an error"},
         {OPTION_FLAG, "json", NULL, &s->json, "figures as JSON lines on stdout"},
