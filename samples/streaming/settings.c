@@ -67,7 +67,9 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_SIZE, "size", "WxH", s->size, "pixels", 16, 8192},
         {OPTION_UINT, "frames", "N", &s->frames, "frames in all", 1, 100000},
         {OPTION_UINT, "rest-frames", "N", &s->rest_frames,
-         "so many of them at the end, in which the camera stands still", 0, 100000},
+         "so many of them at the end, in which the camera stands still;\nas many as there are: it "
+         "never moves",
+         0, 100000},
         {OPTION_UINT, "fps", "N", &s->frames_per_second,
          "frames per second: sets the time step, and frames do not come\nfaster", 1, 10000},
         {OPTION_UINT, "samples", "N", &s->samples, "per pixel along edges: 1, 2, 4 or 8", 1, 8},
@@ -117,6 +119,11 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "residency of what is compared to; auto: sparse if that is what\nstreams, else dense"},
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
          "count samples of texels that are not there; auto: with\n--compare, where the device can"},
+        {OPTION_CHOICE, "needs", "auto|on|off", &s->needs,
+         "find out which tiles each frame needs, and how long they take\nto show; auto: with "
+         "--compare. Time stamps leave that pass out"},
+        {OPTION_TEXT, "needs-trace", "FILE", &s->needs_trace,
+         "write what each frame needs as an SLTRACE1 trace, for\nsluice-replay; --needs on"},
         {OPTION_FLAG, "validation", NULL, &s->validation,
          "Vulkan's validation layers; any message is an error"},
         {OPTION_FLAG, "json", NULL, &s->json, "figures as JSON lines on stdout"},
@@ -131,9 +138,13 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         fprintf(stderr, "--samples %u: wants 1, 2, 4 or 8\n", s->samples);
         return OPTIONS_ERROR;
     }
+    if (outcome == OPTIONS_RUN && s->needs_trace && s->needs == THREE_WAY_OFF) {
+        fprintf(stderr, "--needs-trace: not with --needs off\n");
+        return OPTIONS_ERROR;
+    }
     keep_to_budget(s);
-    if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
-        s->rest_frames = s->frames - 1;
+    if (outcome == OPTIONS_RUN && s->rest_frames > s->frames)
+        s->rest_frames = s->frames;
     return outcome;
 }
 
@@ -146,4 +157,10 @@ SluiceResidencyMode settings_residency_mode(int residency)
     case RESIDENCY_DENSE: return SLUICE_RESIDENCY_MODE_DENSE;
     }
     return SLUICE_RESIDENCY_MODE_AUTO;
+}
+
+bool settings_find_needs(const struct settings *settings)
+{
+    return settings->needs == THREE_WAY_ON || settings->needs_trace ||
+           (settings->needs == THREE_WAY_AUTO && settings->compare);
 }

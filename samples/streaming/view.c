@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../common/clock.h"
+#include "view_needs.h"
 
 #define WAIT_NANOSECONDS 60000000000ull
 
@@ -24,6 +25,12 @@ static bool check(SluiceResult result, const char *what)
     return false;
 }
 
+/** Floor, wall, and two of each picture. */
+static uint32_t max_texture_count(const struct view *view)
+{
+    return 2 + 2 * view->request.pictures->count;
+}
+
 static bool create_streamer(struct view *view)
 {
     const struct gpu *gpu = view->request.gpu;
@@ -40,7 +47,8 @@ static bool create_streamer(struct view *view)
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
         .log = {NULL, print_log},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
-        .maxTextureCount = 2 + 2 * view->request.pictures->count,
+        .maxTextureCount = max_texture_count(view),
+        .maxRegionCount = VIEW_MAX_REGIONS,
         .texturesPerFrame = settings->textures_per_frame,
         .tilesPerFrame = settings->tiles_per_frame,
         .loaderThreadCount = settings->loader_threads,
@@ -66,16 +74,20 @@ static bool add_texture(struct view *view, SluiceImageSource *source, SluiceText
     SluiceVulkanTextureCreateInfo info = {
         .source = source, .primaryId = primary, .addressModeU = mode, .addressModeV = mode};
     SluiceResult result = sluiceAddVulkanTexture(view->streamer, &info, texture);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS) {
+        view->texture_ids[view->texture_count] =
+            (struct needs_id){texture->textureId, texture->tableIndex};
+        view->sources[view->texture_count++] = source;
         return true;
+    }
     SluiceImageInfo image = {.pName = "a texture"};
     (void)sluiceGetImageInfo(source, &image);
     fprintf(stderr, "%s: cannot be streamed: %s\n", image.pName, sluiceResultString(result));
     return false;
 }
 
-static bool allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
-                          VkDescriptorSet *sets)
+bool view_allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
+                        VkDescriptorSet *sets)
 {
     for (uint32_t i = 0; i < count; i++) {
         VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -93,12 +105,12 @@ static bool create_descriptor_pool(struct view *view)
 {
     uint32_t surface_count = 2 + view->request.pictures->count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * 7 * VIEW_FRAMES_IN_FLIGHT},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         4 * surface_count + GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
+         4 * surface_count + 2 * GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
     };
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = VIEW_FRAMES_IN_FLIGHT + surface_count,
+                                       .maxSets = 2 * VIEW_FRAMES_IN_FLIGHT + surface_count,
                                        .poolSizeCount = 2,
                                        .pPoolSizes = sizes};
     return gpu_check(
@@ -146,10 +158,13 @@ static bool create_surfaces(struct view *view)
     const struct view_request *request = &view->request;
     uint32_t count = 2 + request->pictures->count;
     view->surfaces = calloc(count, sizeof *view->surfaces);
-    if (!view->surfaces)
+    view->texture_ids = calloc(max_texture_count(view), sizeof *view->texture_ids);
+    view->sources = calloc(max_texture_count(view), sizeof(SluiceImageSource *));
+    if (!view->surfaces || !view->texture_ids || !view->sources)
         return false;
     for (uint32_t i = 0; i < count; i++)
-        if (!allocate_sets(view, request->renderer->texture_layout, 1, &view->surfaces[i].textures))
+        if (!view_allocate_sets(view, request->renderer->texture_layout, 1,
+                                &view->surfaces[i].textures))
             return false;
     if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
         !create_tiled_surface(view, request->wall, &view->surfaces[1]))
@@ -177,7 +192,7 @@ static bool create_slot(struct view *view, struct view_slot *slot)
                            &slot->counts) ||
         !gpu_create_buffer(gpu, (VkDeviceSize)target->width * target->height * 4,
                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, &slot->pixels) ||
-        !allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
+        !view_allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
         return false;
     memset(slot->counts.mapped, 0, sizeof(struct GalleryCounts));
     SluiceVulkanBuffers buffers;
@@ -209,7 +224,8 @@ bool view_create(const struct view_request *request, const char *record_path, st
         created = check(sluiceBeginRecordingToFile(sluiceGetVulkanStreamerManager(view->streamer),
                                                    record_path, NULL, &view->recorder),
                         record_path);
-    if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view))
+    if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view) &&
+        view_needs_create(view))
         return true;
     view_destroy(view);
     return false;
@@ -229,10 +245,14 @@ bool view_destroy(struct view *view)
         gpu_destroy_buffer(gpu, &slot->frame);
         gpu_destroy_buffer(gpu, &slot->counts);
         gpu_destroy_buffer(gpu, &slot->pixels);
+        needs_slot_destroy(&view->needs, &slot->needs);
     }
+    needs_pass_destroy(&view->needs);
     vkDestroyQueryPool(gpu->device, view->timestamps, NULL);
     vkDestroyDescriptorPool(gpu->device, view->descriptor_pool, NULL);
     free(view->surfaces);
+    free(view->texture_ids);
+    free(view->sources);
     sluiceDestroyVulkanStreamer(view->streamer);
     *view = (struct view){0};
     return recorded;
@@ -284,15 +304,16 @@ static void record_counting(const struct view *view, const struct view_slot *slo
             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(request->target, slot->commands, black);
-    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces, true);
+    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces,
+                  RENDERER_COUNT);
     target_end(request->target, slot->commands);
     barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
             VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-/* One frame of an application that streams. */
+/* One frame of an application that streams; what is behind the last time stamp is no part of it. */
 static bool record_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
-                         SluiceStreamingFrame *frame)
+                         SluiceStreamingFrame *frame, double *needs_seconds)
 {
     const struct view_request *request = &view->request;
     static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
@@ -317,7 +338,7 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
         record_counting(view, slot);
 
     target_begin(request->target, commands, background);
-    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, false);
+    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, RENDERER_SURFACE);
     target_end(request->target, commands);
 
     /* Takes down what the shaders wanted. */
@@ -327,6 +348,10 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
     target_copy_out(request->target, commands, slot->pixels.buffer);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
                         query + 1);
+    double start = clock_seconds();
+    if (request->needs)
+        needs_pass_record(&view->needs, request->target, view->surfaces, &slot->needs, commands);
+    *needs_seconds = clock_seconds() - start;
     return true;
 }
 
@@ -356,18 +381,18 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     struct view_slot *slot = &view->slots[slot_index];
     if (!view_wait(view, slot_index))
         return false;
-    double start = clock_seconds();
+    double start = clock_seconds(), needs_seconds;
     write_frame_data(view, camera, slot->frame.mapped);
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     SluiceStreamingFrame frame;
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
-        !record_frame(view, slot, time_stamp, &frame) ||
+        !record_frame(view, slot, time_stamp, &frame, &needs_seconds) ||
         !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
         !submit(view, slot, &frame))
         return false;
-    out->host_seconds = clock_seconds() - start;
+    out->host_seconds = clock_seconds() - start - needs_seconds;
     sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
     view->frame_index++;
     return true;

@@ -5,10 +5,12 @@
 #ifndef SAMPLES_STREAMING_VIEW_H
 #define SAMPLES_STREAMING_VIEW_H
 
+#include "needs_pass.h"
 #include "renderer.h"
 #include "settings.h"
 
 #define VIEW_FRAMES_IN_FLIGHT 3
+#define VIEW_MAX_REGIONS (1u << 20)
 
 /** What is the same for both views. */
 struct view_request {
@@ -21,6 +23,7 @@ struct view_request {
     SluiceResidencyMode mode;
     bool everything; ///< resident: the truth to compare with
     bool counting;   ///< count samples of what is not there
+    bool needs;      ///< find out what each frame needs
 };
 
 /** One frame that may be on its way. */
@@ -29,13 +32,14 @@ struct view_slot {
     VkDescriptorSet frame_set;
     uint64_t page_generation; ///< of the pages in it
     struct gpu_buffer frame, counts, pixels;
+    struct needs_slot needs;
     VkSemaphore semaphore; ///< of the streamer
     uint64_t signal_value; ///< 0: never submitted
 };
 
 /** What is known of a frame when it was submitted. */
 struct view_frame {
-    double host_seconds; ///< from begin to submit
+    double host_seconds; ///< from begin to submit, without the needs pass
     SluiceVulkanStreamerStatistics statistics;
 };
 
@@ -45,7 +49,11 @@ struct view {
     SluiceRecorder *recorder;       ///< owned
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
+    struct needs_id *texture_ids;      ///< owned; of all textures, in the order of their making
+    SluiceImageSource **sources;       ///< owned; of the same
+    uint32_t texture_count;
     struct view_slot slots[VIEW_FRAMES_IN_FLIGHT];
+    struct needs_pass needs;
     VkQueryPool timestamps; ///< two per slot
     uint32_t frame_index;   ///< of the next frame
 };
