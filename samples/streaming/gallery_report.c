@@ -3,13 +3,14 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../common/report.h"
 
-void gallery_report_picture_path(const char *folder, bool truth, uint32_t frame, char *path,
+void gallery_report_picture_path(const char *folder, const char *kind, uint32_t frame, char *path,
                                  size_t size)
 {
-    snprintf(path, size, "%s/%s-%04u.png", folder, truth ? "truth" : "frame", frame);
+    snprintf(path, size, "%s/%s-%04u.png", folder, kind, frame);
 }
 
 typedef double (*frame_value)(const struct frame_record *now, const struct frame_record *before);
@@ -146,12 +147,23 @@ static void add_frames(struct report *report, const struct gallery_report_info *
         else if (info->compared)
             snprintf(caption + length, sizeof caption - (size_t)length, ", %.1f dB",
                      measure->frames[frame].psnr);
-        gallery_report_picture_path(info->folder, false, frame, path, sizeof path);
+        if (!isnan(measure->frames[frame].ssim)) {
+            length = (int)strlen(caption);
+            snprintf(caption + length, sizeof caption - (size_t)length, ", SSIM %.4f",
+                     measure->frames[frame].ssim);
+        }
+        gallery_report_picture_path(info->folder, "frame", frame, path, sizeof path);
         report_picture(report, path, caption);
         if (!info->compared)
             continue;
         snprintf(caption, sizeof caption, "frame %u, everything resident", frame);
-        gallery_report_picture_path(info->folder, true, frame, path, sizeof path);
+        gallery_report_picture_path(info->folder, "truth", frame, path, sizeof path);
+        report_picture(report, path, caption);
+        if (isnan(measure->frames[frame].flip))
+            continue;
+        snprintf(caption, sizeof caption, "frame %u, what one sees of the difference: FLIP %.4f",
+                 frame, measure->frames[frame].flip);
+        gallery_report_picture_path(info->folder, "flip", frame, path, sizeof path);
         report_picture(report, path, caption);
     }
     report_end_pictures(report);

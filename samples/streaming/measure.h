@@ -12,7 +12,8 @@ struct frame_record {
     double frame_seconds; ///< since the frame before was submitted
     double host_seconds;  ///< of the application's thread
     double gpu_seconds;
-    double psnr; ///< to the fully resident picture; NaN without a comparison
+    double psnr;       ///< to the fully resident picture; NaN without a comparison
+    double ssim, flip; ///< NaN in frames that were not looked at
     SluiceVulkanStreamerStatistics statistics;
     struct GalleryCounts counts;
 };
@@ -36,7 +37,7 @@ struct figure {
     const char *meaning; ///< for the report
 };
 
-#define MEASURE_MAX_FIGURES 32
+#define MEASURE_MAX_FIGURES 64
 #define MEASURE_TILE_BYTES 65536.0
 
 bool measure_begin(struct measure *measure, const struct settings *settings);

@@ -7,6 +7,7 @@
 
 #include "renderer.h"
 #include "settings.h"
+#include "slowness.h"
 
 #define VIEW_FRAMES_IN_FLIGHT 3
 
@@ -43,6 +44,7 @@ struct view {
     struct view_request request;
     SluiceVulkanStreamer *streamer; ///< owned
     SluiceRecorder *recorder;       ///< owned
+    struct slowness slowness;       ///< of its sources; the truth has none
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct view_slot slots[VIEW_FRAMES_IN_FLIGHT];
