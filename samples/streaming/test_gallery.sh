@@ -136,7 +136,7 @@ for picture in frame truth flip; do
     [ -s "$folder/reused/$picture-0011.png" ] || { echo "no picture: $picture" >&2; failed=1; }
 done
 grep -q 'FLIP' "$folder/reused/report.html" || { echo "the report has no FLIP" >&2; failed=1; }
-[ "$(ls "$folder/reused" | grep -vcE '^((frame|truth|flip)-[0-9]{4}.png|frames.csv|report.html)$')" -eq 0 ] || failed=1
+[ -z "$(find "$folder/reused" -name 'frames-*')" ] || { echo "frames were left behind" >&2; failed=1; }
 
 printf 'x' | dd of="$folder/truth/reference.frames" bs=1 seek=100000 conv=notrunc 2>/dev/null
 refer damaged --write-frames none --fade 0.05
