@@ -41,6 +41,8 @@ void report_end_table(struct report *report);
 void report_plot(struct report *report, const struct report_plot *plot);
 /** Pictures stand beside each other between begin and end. */
 void report_begin_pictures(struct report *report);
+/** The same, and they stay beside each other, smaller if there is no room. */
+void report_begin_row(struct report *report);
 /** Inlines a PNG file. */
 void report_picture(struct report *report, const char *png_path, const char *caption);
 void report_end_pictures(struct report *report);
