@@ -8,6 +8,7 @@
 #include "metrics/window.h"
 
 #include <math.h>
+#include <string.h>
 
 /** What is kept of each row of a picture: one plane per filter along x. */
 enum { PLANE_COUNT = SLC_FLIP_FILTER_COUNT };
@@ -22,7 +23,7 @@ struct flip {
     double *rows; ///< [2][RESULT_COUNT][padded]; in add_row: colours, then opponents, padded
     double *map_row;
     size_t padded, count;
-    double largest_distance;
+    struct slc_flip_curve curve;
 };
 
 static void finish(struct flip *flip, const SluiceAllocationCallbacks *allocator)
@@ -54,7 +55,7 @@ static SluiceResult init(struct flip *flip, const SluicePicturePair *pair,
     flip->rows = NULL;
     flip->count = 0;
     flip->windows[0] = flip->windows[1] = (struct slc_window){0};
-    flip->largest_distance = slc_flip_largest_distance();
+    slc_flip_curve_init(&flip->curve);
     if (!slc_flip_kernels_init(&flip->kernels, allocator, pixels_per_degree))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     bool ok = alloc_rows(flip, allocator, pair->width);
@@ -116,18 +117,6 @@ static double result_at(const struct flip *flip, int picture, int result, uint32
     return flip->rows[(picture * RESULT_COUNT + result) * flip->padded + x];
 }
 
-static double colour_error(const struct flip *flip, uint32_t x)
-{
-    double colours[2][3], narrow = flip->kernels.share_narrow;
-    for (int i = 0; i < 2; i++) {
-        colours[i][0] = result_at(flip, i, 0, x);
-        colours[i][1] = result_at(flip, i, RED_GREEN, x);
-        colours[i][2] =
-            narrow * result_at(flip, i, NARROW, x) + (1 - narrow) * result_at(flip, i, WIDE, x);
-    }
-    return slc_flip_colour_error(colours[0], colours[1], flip->largest_distance);
-}
-
 /** How much the lengths of a gradient differ. */
 static double feature_difference(const struct flip *flip, int along_x, int along_y, uint32_t x)
 {
@@ -146,19 +135,45 @@ static double feature_error(const struct flip *flip, uint32_t x)
     return fmin(sqrt(fmax(edge, point) / sqrt(2)), 1); /* rounding may pass 1 */
 }
 
+static double error_at(const struct flip *flip, uint32_t x)
+{
+    double colours[2][3], narrow = flip->kernels.share_narrow;
+    for (int i = 0; i < 2; i++) {
+        colours[i][0] = result_at(flip, i, 0, x);
+        colours[i][1] = result_at(flip, i, RED_GREEN, x);
+        colours[i][2] =
+            narrow * result_at(flip, i, NARROW, x) + (1 - narrow) * result_at(flip, i, WIDE, x);
+    }
+    return slc_flip_error(&flip->curve, colours[0], colours[1], feature_error(flip, x));
+}
+
+/** Fills map_row with the errors of row y and returns their sum. */
+static double compare_row(struct flip *flip, uint32_t y)
+{
+    double sum = 0;
+    filter_row(flip, 0, y);
+    filter_row(flip, 1, y);
+    for (uint32_t x = 0; x < flip->windows[0].width; x++)
+        sum += flip->map_row[x] = error_at(flip, x);
+    return sum;
+}
+
 static double compare(struct flip *flip, const SluiceMetricMap *map)
 {
     const struct slc_window *window = &flip->windows[0];
+    int64_t last_different = INT64_MIN; /* of the rows that were read */
     double sum = 0;
     for (uint32_t y = 0, next = 0; y < window->height; y++) {
         for (; next <= slc_window_last_row(window, y); next++) {
             add_row(flip, 0, next);
             add_row(flip, 1, next);
+            if (!slc_picture_row_is_equal(flip->pictures, next))
+                last_different = next;
         }
-        filter_row(flip, 0, y);
-        filter_row(flip, 1, y);
-        for (uint32_t x = 0; x < window->width; x++)
-            sum += flip->map_row[x] = pow(colour_error(flip, x), 1 - feature_error(flip, x));
+        if (last_different >= (int64_t)y - window->radius)
+            sum += compare_row(flip, y);
+        else
+            memset(flip->map_row, 0, window->width * sizeof *flip->map_row);
         slc_metric_map_write(map, window->width, y, flip->map_row);
     }
     return sum / ((double)window->width * (double)window->height);

@@ -1,6 +1,8 @@
 #include "metrics/flip_colour.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 /* Linear sRGB to XYZ over the XYZ of white, and back: from the primaries of IEC 61966-2-1 and D65
  * at (0.31271, 0.32902). Rows of the first sum to 1. */
@@ -38,13 +40,29 @@ static void linear_from_opponents(const double opponents[3], double rgb[3])
     double xyz[3] = {opponents[1] + opponents[0], opponents[0], opponents[0] - opponents[2]};
     transform(rgb_of_xyz, xyz, rgb);
     for (int i = 0; i < 3; i++)
-        rgb[i] = fmin(fmax(rgb[i], 0), 1);
+        rgb[i] = rgb[i] > 0 ? rgb[i] < 1 ? rgb[i] : 1 : 0;
+}
+
+/** To 13 digits, of values from 1e-3 to 2; a third of the time of cbrt, which knows all numbers. */
+static double cube_root(double value)
+{
+    uint64_t bits;
+    double root;
+    memcpy(&bits, &value, sizeof bits);
+    bits = bits / 3 + 0x2a9f789300000000u; /* a third of the exponent: 4 % off at most */
+    memcpy(&root, &bits, sizeof root);
+    for (int i = 0; i < 2; i++) { /* Halley: errors to the power of three */
+        double cube = root * root * root;
+        root *= (cube + 2 * value) / (2 * cube + value);
+    }
+    return root;
 }
 
 static double lightness_curve(double value)
 {
     const double delta = 6.0 / 29;
-    return value > delta * delta * delta ? cbrt(value) : value / (3 * delta * delta) + 4.0 / 29;
+    return value > delta * delta * delta ? cube_root(value)
+                                         : value / (3 * delta * delta) + 4.0 / 29;
 }
 
 /** L*a*b*, its a* and b* scaled by L* / 100 (Hunt: dark colours look less colourful). */
@@ -59,29 +77,44 @@ static void hunt_lab_from_linear(const double rgb[3], double lab[3])
     lab[2] = 0.01 * lab[0] * 200 * (xyz[1] - xyz[2]);
 }
 
-/** HyAB, city block between lightness and the plane of colours, to the power of the paper. */
+/** HyAB: city block between lightness and the plane of colours. */
 static double distance(const double rgb_a[3], const double rgb_b[3])
 {
     double a[3], b[3];
     hunt_lab_from_linear(rgb_a, a);
     hunt_lab_from_linear(rgb_b, b);
-    double hyab = fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]);
-    return pow(hyab, exponent);
+    double x = a[1] - b[1], y = a[2] - b[2];
+    return fabs(a[0] - b[0]) + sqrt(x * x + y * y);
 }
 
-double slc_flip_largest_distance(void)
+void slc_flip_curve_init(struct slc_flip_curve *curve)
 {
     const double green[3] = {0, 1, 0}, blue[3] = {0, 0, 1};
-    return distance(green, blue);
+    curve->largest = exponent * log(distance(green, blue));
+    curve->knee = log(knee_at);
+    curve->knee_slope = log(knee_error / knee_at);
 }
 
-double slc_flip_colour_error(const double a[3], const double b[3], double largest_distance)
+/** The logarithm of the error that belongs to a distance above 0. */
+static double compress(const struct slc_flip_curve *curve, double distance)
 {
-    double rgb_a[3], rgb_b[3];
-    linear_from_opponents(a, rgb_a);
-    linear_from_opponents(b, rgb_b);
-    double share = distance(rgb_a, rgb_b) / largest_distance;
-    if (share < knee_at)
-        return share / knee_at * knee_error;
-    return fmin(knee_error + (share - knee_at) / (1 - knee_at) * (1 - knee_error), 1);
+    double share = exponent * log(distance) - curve->largest;
+    if (share < curve->knee)
+        return share + curve->knee_slope;
+    double above = (exp(share) - knee_at) / (1 - knee_at);
+    return log(fmin(knee_error + above * (1 - knee_error), 1));
+}
+
+double slc_flip_error(const struct slc_flip_curve *curve, const double a[3], const double b[3],
+                      double feature)
+{
+    double rgb_a[3], rgb_b[3], apart = 0;
+    if (a[0] != b[0] || a[1] != b[1] || a[2] != b[2]) {
+        linear_from_opponents(a, rgb_a);
+        linear_from_opponents(b, rgb_b);
+        apart = distance(rgb_a, rgb_b);
+    }
+    if (apart == 0)
+        return pow(0, 1 - feature);
+    return exp((1 - feature) * compress(curve, apart));
 }

@@ -8,13 +8,20 @@
  */
 void slc_opponents_from_linear(const double rgb[3], double opponents[3]);
 
-/** The distance that FLIP gives to blue and green, of which others are a share. */
-double slc_flip_largest_distance(void);
+/** The curve from distances to errors, as logarithms. */
+struct slc_flip_curve {
+    double largest;    ///< distance: that of blue and green, of which others are a share
+    double knee;       ///< share where the curve bends
+    double knee_slope; ///< error by share below it
+};
+
+void slc_flip_curve_init(struct slc_flip_curve *curve);
 
 /**
- * The colour error of two filtered colours, in [0, 1]: brought into the cube of RGB, in L*a*b* with
- * Hunt's adjustment, apart by HyAB, compressed.
+ * The error of two filtered colours, in [0, 1]: brought into the cube of RGB, in L*a*b* with Hunt's
+ * adjustment, apart by HyAB, compressed; and raised by the error of features, `feature` in [0, 1].
  */
-double slc_flip_colour_error(const double a[3], const double b[3], double largest_distance);
+double slc_flip_error(const struct slc_flip_curve *curve, const double a[3], const double b[3],
+                      double feature);
 
 #endif /* SLC_METRICS_FLIP_COLOUR_H */

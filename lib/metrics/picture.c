@@ -122,6 +122,13 @@ void slc_picture_read_rgb(const struct slc_picture *picture, uint32_t y, double 
     }
 }
 
+bool slc_picture_row_is_equal(const struct slc_picture pictures[2], uint32_t y)
+{
+    return memcmp(pictures[0].pixels + y * pictures[0].row_pitch,
+                  pictures[1].pixels + y * pictures[1].row_pitch,
+                  pictures[0].width * pixel_size(pictures[0].format)) == 0;
+}
+
 void slc_metric_map_write(const SluiceMetricMap *map, uint32_t width, uint32_t y,
                           const double *values)
 {

@@ -25,6 +25,9 @@ void slc_picture_read_luma(const struct slc_picture *picture, uint32_t y, double
 /** Linear light, [width][3]. */
 void slc_picture_read_rgb(const struct slc_picture *picture, uint32_t y, double *rgb);
 
+/** Whether row y of both is the same, byte by byte. */
+bool slc_picture_row_is_equal(const struct slc_picture pictures[2], uint32_t y);
+
 /** Writes row y, converted to float; a map that is NULL is left. */
 void slc_metric_map_write(const SluiceMetricMap *map, uint32_t width, uint32_t y,
                           const double *values);

@@ -13,7 +13,10 @@ static void print_default(const struct option *option)
 {
     switch (option->kind) {
     case OPTION_UINT: printf(" [%u]", *(const uint32_t *)option->value); break;
-    case OPTION_REAL: printf(" [%g]", *(const double *)option->value); break;
+    case OPTION_REAL:
+        if (!isnan(*(const double *)option->value))
+            printf(" [%g]", *(const double *)option->value);
+        break;
     case OPTION_TEXT: {
         const char *text = *(const char *const *)option->value;
         if (text)

@@ -10,7 +10,8 @@ enum option_kind {
     OPTION_SECTION, ///< a heading in the help text; `help` is its words
     OPTION_FLAG,    ///< bool: true
     OPTION_UINT,    ///< uint32_t within [minimum, maximum]
-    OPTION_REAL,    ///< double within [minimum, maximum]; "1/16" is a number too
+    OPTION_REAL,    ///< double within [minimum, maximum]; "1/16" is a number too;
+                    ///< a default of NaN is none
     OPTION_TEXT,    ///< const char *, borrowed from argv
     OPTION_CHOICE,  ///< int: index in `choices`, which are separated by '|'
     OPTION_SIZE,    ///< uint32_t[2]: WxH, both within [minimum, maximum]

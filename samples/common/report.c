@@ -22,7 +22,8 @@ static const char *const style =
     "pre{background:#efece6;padding:.7em;white-space:pre-wrap}svg{background:#fff;border:1px solid "
     "#e3e0da}figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}"
     "figure img{max-width:480px;width:100%;display:block}figcaption{font-size:.85em;color:#555}"
-    ".k{font-size:.85em;margin-right:1.2em}";
+    ".k{font-size:.85em;margin-right:1.2em}.row{display:flex;gap:.6em}.row figure{flex:1;"
+    "max-width:480px;margin-right:0}";
 
 static const char *const colors[] = {"#1f6fb2", "#d1682c", "#3c8d40", "#8b4fb0", "#b03a48"};
 #define COLOR_COUNT (sizeof colors / sizeof *colors)
@@ -234,6 +235,11 @@ void report_bars(struct report *report, const struct report_bar *bars, size_t co
 void report_begin_pictures(struct report *report)
 {
     fputs("<div>\n", report->file);
+}
+
+void report_begin_row(struct report *report)
+{
+    fputs("<div class=\"row\">\n", report->file);
 }
 
 static void put_base64(FILE *out, FILE *in)

@@ -51,6 +51,8 @@ struct report_bar {
 void report_bars(struct report *report, const struct report_bar *bars, size_t count);
 /** Pictures stand beside each other between begin and end. */
 void report_begin_pictures(struct report *report);
+/** The same, and they stay beside each other, smaller if there is no room. */
+void report_begin_row(struct report *report);
 /** Inlines a PNG file. */
 void report_picture(struct report *report, const char *png_path, const char *caption);
 void report_end_pictures(struct report *report);

@@ -35,11 +35,16 @@ static bool counts_residency(const struct gallery *gallery)
                     (settings->check_residency == THREE_WAY_AUTO && settings->compare));
 }
 
-/* The truth is drawn from the entrance until it has all its tiles. */
-static bool fill_truth(struct gallery *gallery)
+struct camera gallery_camera(const struct settings *settings, const struct room *room,
+                             uint32_t frame)
 {
-    struct view *view = &gallery->truth;
-    struct camera camera = walk_camera(&gallery->room, 0.0f);
+    uint32_t rest = settings->frames - settings->rest_frames;
+    return walk_camera(room, frame < rest ? (float)frame / (float)rest : 1.0f);
+}
+
+bool gallery_fill(struct view *view, const struct room *room)
+{
+    struct camera camera = walk_camera(room, 0.0f);
     uint64_t tile_count = view_tile_count(view);
     struct progress progress;
     struct view_frame frame = {0};
@@ -94,7 +99,8 @@ static bool open_views(struct gallery *gallery)
                              false, false, paged, &gallery->truth_renderer))
             return false;
     }
-    return view_create(&request, NULL, &gallery->truth) && fill_truth(gallery);
+    return view_create(&request, NULL, &gallery->truth) &&
+           gallery_fill(&gallery->truth, &gallery->room);
 }
 
 static struct picture_limits device_limits(const struct gpu *gpu)
@@ -121,6 +127,7 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
     struct picture_limits limits = device_limits(&gallery->gpu);
     return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
+                   (!settings->reference || reference_open(gallery, &gallery->reference)) &&
                    open_views(gallery)
                ? GALLERY_READY
                : GALLERY_FAILED;
@@ -130,6 +137,7 @@ bool gallery_close(struct gallery *gallery)
 {
     bool recorded = view_destroy(&gallery->streamed);
     view_destroy(&gallery->truth);
+    reference_close(&gallery->reference);
     if (gallery->gpu.device) {
         renderer_destroy(&gallery->renderer);
         renderer_destroy(&gallery->truth_renderer);

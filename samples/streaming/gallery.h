@@ -2,6 +2,7 @@
 #ifndef SAMPLES_STREAMING_GALLERY_H
 #define SAMPLES_STREAMING_GALLERY_H
 
+#include "reference.h"
 #include "view.h"
 
 struct gallery {
@@ -14,7 +15,8 @@ struct gallery {
     struct target target;
     struct renderer renderer, truth_renderer; ///< the latter where the truth needs its own
     struct view streamed;
-    struct view truth; ///< only with --compare
+    struct view truth;          ///< only with --compare
+    struct reference reference; ///< only with --reference
 };
 
 enum gallery_outcome { GALLERY_READY, GALLERY_NO_DEVICE, GALLERY_FAILED };
@@ -23,5 +25,12 @@ enum gallery_outcome { GALLERY_READY, GALLERY_NO_DEVICE, GALLERY_FAILED };
 enum gallery_outcome gallery_open(struct gallery *gallery);
 /** False if the recording could not be written. */
 bool gallery_close(struct gallery *gallery);
+
+/** Of a frame of the walk; at rest in the last ones. */
+struct camera gallery_camera(const struct settings *settings, const struct room *room,
+                             uint32_t frame);
+
+/** Draws a view that wants everything, from the entrance, until it has all its tiles. */
+bool gallery_fill(struct view *view, const struct room *room);
 
 #endif /* SAMPLES_STREAMING_GALLERY_H */

@@ -7,10 +7,10 @@
 
 #include "../common/report.h"
 
-void gallery_report_picture_path(const char *folder, bool truth, uint32_t frame, char *path,
+void gallery_report_picture_path(const char *folder, const char *kind, uint32_t frame, char *path,
                                  size_t size)
 {
-    snprintf(path, size, "%s/%s-%04u.png", folder, truth ? "truth" : "frame", frame);
+    snprintf(path, size, "%s/%s-%04u.png", folder, kind, frame);
 }
 
 typedef double (*frame_value)(const struct frame_record *now, const struct frame_record *before);
@@ -205,27 +205,59 @@ static void add_figures(struct report *report, const struct measure *measure)
     report_end_table(report);
 }
 
+/** "frame 12, 34.5 dB, SSIM 0.9876", of what is known. */
+static void write_caption(const struct gallery_report_info *info, const struct measure *measure,
+                          uint32_t frame, char *caption, size_t size)
+{
+    const struct frame_record *record = &measure->frames[frame];
+    char psnr[32] = "", ssim[32] = "";
+    if (info->compared && isinf(record->psnr))
+        snprintf(psnr, sizeof psnr, ", the same picture");
+    else if (info->compared)
+        snprintf(psnr, sizeof psnr, ", %.1f dB", record->psnr);
+    if (!isnan(record->ssim))
+        snprintf(ssim, sizeof ssim, ", SSIM %.4f", record->ssim);
+    snprintf(caption, size, "frame %u%s%s", frame, psnr, ssim);
+}
+
+static void add_picture(struct report *report, const struct gallery_report_info *info,
+                        const char *kind, uint32_t frame, const char *caption)
+{
+    char path[4096];
+    gallery_report_picture_path(info->folder, kind, frame, path, sizeof path);
+    report_picture(report, path, caption);
+}
+
+/** The frame, its truth and its error in a row. */
+static void add_comparison(struct report *report, const struct gallery_report_info *info,
+                           const struct measure *measure, uint32_t frame)
+{
+    char caption[128];
+    report_begin_row(report);
+    write_caption(info, measure, frame, caption, sizeof caption);
+    add_picture(report, info, "frame", frame, caption);
+    add_picture(report, info, "truth", frame, "everything resident");
+    if (!isnan(measure->frames[frame].flip)) {
+        snprintf(caption, sizeof caption, "what one sees of the difference: FLIP %.4f",
+                 measure->frames[frame].flip);
+        add_picture(report, info, "flip", frame, caption);
+    }
+    report_end_pictures(report);
+}
+
 static void add_frames(struct report *report, const struct gallery_report_info *info,
                        const struct measure *measure)
 {
     report_heading(report, info->compared ? "Streamed, and with everything resident" : "Frames");
     report_begin_pictures(report);
     for (uint32_t i = 0; i < info->written_count; i++) {
-        uint32_t frame = info->written_frames[i];
-        char path[4096], caption[128];
-        int length = snprintf(caption, sizeof caption, "frame %u", frame);
-        if (info->compared && isinf(measure->frames[frame].psnr))
-            snprintf(caption + length, sizeof caption - (size_t)length, ", the same picture");
-        else if (info->compared)
-            snprintf(caption + length, sizeof caption - (size_t)length, ", %.1f dB",
-                     measure->frames[frame].psnr);
-        gallery_report_picture_path(info->folder, false, frame, path, sizeof path);
-        report_picture(report, path, caption);
-        if (!info->compared)
+        char caption[128];
+        if (info->compared) {
+            add_comparison(report, info, measure, info->written_frames[i]);
             continue;
-        snprintf(caption, sizeof caption, "frame %u, everything resident", frame);
-        gallery_report_picture_path(info->folder, true, frame, path, sizeof path);
-        report_picture(report, path, caption);
+        }
+        write_caption(info, measure, info->written_frames[i], caption, sizeof caption);
+        add_picture(report, info, "frame", info->written_frames[i], caption);
     }
     report_end_pictures(report);
 }

@@ -14,8 +14,8 @@ struct gallery_report_info {
     bool compared; ///< there are pictures of the truth, too
 };
 
-/** "folder/frame-0012.png", or "truth-0012.png". */
-void gallery_report_picture_path(const char *folder, bool truth, uint32_t frame, char *path,
+/** "folder/frame-0012.png"; `kind` is "frame", "truth" or "flip". */
+void gallery_report_picture_path(const char *folder, const char *kind, uint32_t frame, char *path,
                                  size_t size);
 
 /** Says on stderr why it failed. */

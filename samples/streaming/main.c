@@ -15,6 +15,7 @@
 #include "../common/files.h"
 #include "../common/png_file.h"
 #include "../common/progress.h"
+#include "comparison.h"
 #include "gallery.h"
 #include "gallery_report.h"
 #include "measure.h"
@@ -27,8 +28,8 @@
 struct walk {
     struct gallery *gallery;
     struct measure *measure;
-    uint32_t *written_frames; ///< owned
-    uint32_t written_count;
+    struct written_frames written; ///< owned
+    struct comparison comparison;
     struct needs needs; ///< of the frames collected, where they are found out
     struct needs_trace trace;
 };
@@ -52,7 +53,8 @@ static bool write_picture(const struct walk *walk, const uint8_t *pixels, bool t
 {
     const struct settings *settings = &walk->gallery->settings;
     char path[4096];
-    gallery_report_picture_path(settings->output, truth, frame, path, sizeof path);
+    gallery_report_picture_path(settings->output, truth ? "truth" : "frame", frame, path,
+                                sizeof path);
     return png_file_write(path, pixels, settings->size[0], settings->size[1]);
 }
 
@@ -110,9 +112,13 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
                                4, &record->psnr) != SLUICE_SUCCESS)
             return false;
     }
-    if (!is_written(walk, frame))
+    bool written = is_written(walk, frame);
+    if (written)
+        walk->written.frames[walk->written.count++] = frame;
+    if (!comparison_keep(&walk->comparison, frame, pixels, truth_pixels, written))
+        return false;
+    if (!written || gallery->settings.reference) /* then the comparison writes them */
         return true;
-    walk->written_frames[walk->written_count++] = frame;
     return write_picture(walk, pixels, false, frame) &&
            (!truth_pixels || write_picture(walk, truth_pixels, true, frame));
 }
@@ -121,9 +127,7 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
 static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
 {
     struct gallery *gallery = walk->gallery;
-    uint32_t rest = walk->measure->rest_frame;
-    float progress = frame < rest ? (float)frame / (float)rest : 1.0f;
-    struct camera camera = walk_camera(&gallery->room, progress);
+    struct camera camera = gallery_camera(&gallery->settings, &gallery->room, frame);
     struct view_frame drawn, truth;
     if (!view_draw(&gallery->streamed, &camera, time_stamp, &drawn))
         return false;
@@ -195,9 +199,9 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
         .command_line = command_line ? command_line : "",
         .device_name = gallery->gpu.properties.deviceName,
         .pictures = &gallery->pictures,
-        .written_frames = walk->written_frames,
-        .written_count = walk->written_count,
-        .compared = settings->compare,
+        .written_frames = walk->written.frames,
+        .written_count = walk->written.count,
+        .compared = settings->compare || settings->reference,
     };
     bool written =
         measure_write_csv(walk->measure, csv_path) && gallery_report_write(&report, walk->measure);
@@ -235,10 +239,11 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
 {
     struct measure measure;
     struct walk walk = {.gallery = gallery, .measure = &measure};
-    walk.written_frames = calloc(gallery->settings.frames, sizeof *walk.written_frames);
-    bool done = measure_begin(&measure, &gallery->settings) && walk.written_frames;
+    walk.written.frames = calloc(gallery->settings.frames, sizeof *walk.written.frames);
+    bool done = measure_begin(&measure, &gallery->settings) && walk.written.frames;
     if (!done)
         fprintf(stderr, "out of memory\n");
+    done = done && comparison_begin(gallery, &measure, &walk.comparison);
     measure.counting = gallery->streamed.request.counting;
     measure.tile_count = view_tile_count(&gallery->streamed);
     measure.picture_count = gallery->pictures.count;
@@ -247,13 +252,17 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
         SluiceVulkanStreamerStatistics truth;
         sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
         measure.truth_bytes = truth.deviceMemorySize;
+    } else if (gallery->settings.reference) {
+        measure.truth_bytes = gallery->reference.device_memory;
     }
     measure.texture_count = gallery->streamed.texture_count;
     done = done && begin_needs(&walk) && walk_through(&walk) && needs_wait_end(&walk.needs.wait);
     measure.reads = view_reads(&gallery->streamed);
-    done = needs_trace_end(&walk.trace) && done && write_results(&walk, argc, argv);
+    done = needs_trace_end(&walk.trace) && done &&
+           comparison_run(&walk.comparison, &walk.written) && write_results(&walk, argc, argv);
     needs_finish(&walk.needs);
-    free(walk.written_frames);
+    comparison_finish(&walk.comparison);
+    free(walk.written.frames);
     measure_finish(&measure);
     return done;
 }

@@ -12,6 +12,8 @@ bool measure_begin(struct measure *measure, const struct settings *settings)
     measure->frames = calloc(settings->frames, sizeof *measure->frames);
     measure->frame_count = settings->frames;
     measure->rest_frame = settings->frames - settings->rest_frames;
+    for (uint32_t i = 0; measure->frames && i < settings->frames; i++)
+        measure->frames[i].ssim = measure->frames[i].flip = NAN;
     return measure->frames != NULL;
 }
 
@@ -70,6 +72,39 @@ static double lowest_psnr(const struct measure *measure)
     for (uint32_t i = 0; i < measure->frame_count; i++)
         lowest = fmin(lowest, measure->frames[i].psnr);
     return finite_psnr(lowest);
+}
+
+/** Of the mean squared error over all frames. */
+static double mean_psnr(const struct measure *measure)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < measure->frame_count; i++)
+        sum += pow(10, -0.1 * measure->frames[i].psnr);
+    return finite_psnr(-10 * log10(sum / measure->frame_count));
+}
+
+/** What SSIM and FLIP are over the frames that were looked at. */
+struct metric_summary {
+    double mean; ///< of every Nth frame, whichever others were looked at
+    double lowest, highest;
+};
+
+static struct metric_summary summarise(const struct measure *measure, size_t offset)
+{
+    struct metric_summary summary = {0, NAN, NAN};
+    uint32_t count = 0, every = measure->settings->metrics_every;
+    for (uint32_t i = 0; i < measure->frame_count; i++) {
+        double value;
+        memcpy(&value, (const char *)&measure->frames[i] + offset, sizeof value);
+        summary.lowest = fmin(summary.lowest, value);
+        summary.highest = fmax(summary.highest, value);
+        if (every > 0 && i % every == 0) {
+            summary.mean += value;
+            count++;
+        }
+    }
+    summary.mean = count ? summary.mean / count : NAN;
+    return summary;
 }
 
 static double mean_missing(const struct measure *measure)
@@ -170,6 +205,8 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
         if (record->statistics.deviceMemorySize > peak_memory)
             peak_memory = record->statistics.deviceMemorySize;
     }
+    struct metric_summary ssim = summarise(measure, offsetof(struct frame_record, ssim));
+    struct metric_summary flip = summarise(measure, offsetof(struct frame_record, flip));
     const struct figure list[] = {
         {"pictures", measure->picture_count, "pictures", "that hang in the gallery"},
         {"pictures_left_out", measure->refused_count, "pictures", "that could not be opened"},
@@ -183,6 +220,13 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
         {"psnr_final_db", finite_psnr(last->psnr), "dB",
          "of the last frame to everything resident; 999: equal"},
         {"psnr_lowest_db", lowest_psnr(measure), "dB", "of the frame that differs most"},
+        {"psnr_mean_db", mean_psnr(measure), "dB", "of the mean squared error over all frames"},
+        {"ssim_mean", ssim.mean, "", "of every Nth frame (--metrics-every)"},
+        {"ssim_lowest", ssim.lowest, "",
+         "of these, the frame that differs most and those written as pictures"},
+        {"flip_mean", flip.mean, "", "of every Nth frame: 0, nothing to be seen, to 1"},
+        {"flip_worst", flip.highest, "",
+         "of these, the frame that differs most and those written as pictures"},
         {"frames_to_60db", frames_to_sharp(measure), "frames",
          "that the camera stands still until the PSNR stays at 60 dB or above"},
         {"resident_tiles_percent", 100.0 * peak_tiles / (double)measure->tile_count, "%",
@@ -250,9 +294,13 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
     else
         fprintf(file, ",,,,");
     if (measure->needs)
-        fprintf(file, "%u,%u\n", record->needs.needed_tiles, record->needs.missing_regions);
+        fprintf(file, "%u,%u", record->needs.needed_tiles, record->needs.missing_regions);
     else
-        fprintf(file, ",\n");
+        fprintf(file, ",");
+    if (!isnan(record->flip))
+        fprintf(file, ",%.6f,%.6f\n", record->ssim, record->flip);
+    else
+        fprintf(file, ",,\n");
 }
 
 bool measure_write_csv(const struct measure *measure, const char *path)
@@ -262,7 +310,7 @@ bool measure_write_csv(const struct measure *measure, const char *path)
         fputs("frame,at_rest,frame_ms,host_ms,gpu_ms,psnr_db,resident_tiles,mapped_tiles,"
               "standby_tiles,requested_tiles,loads_in_flight,tiles_mapped,tiles_unmapped,"
               "bytes_read,bytes_uploaded,device_memory,nonresident_reads,sampled_pixels,"
-              "missing_pixels,missing_levels,needed_tiles,missing_regions\n",
+              "missing_pixels,missing_levels,needed_tiles,missing_regions,ssim,flip\n",
               file);
         for (uint32_t i = 0; i < measure->frame_count; i++)
             write_csv_line(file, measure, i);
@@ -281,7 +329,7 @@ const char *measure_format(double value, char buffer[32])
     if (value == floor(value) && fabs(value) < 1e15)
         snprintf(buffer, 32, "%.0f", value);
     else
-        snprintf(buffer, 32, "%.3f", value);
+        snprintf(buffer, 32, fabs(value) < 1 ? "%.6f" : "%.3f", value);
     return buffer;
 }
 

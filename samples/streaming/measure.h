@@ -12,7 +12,8 @@ struct frame_record {
     double frame_seconds; ///< since the frame before was submitted
     double host_seconds;  ///< of the application's thread
     double gpu_seconds;
-    double psnr; ///< to the fully resident picture; NaN without a comparison
+    double psnr;       ///< to the fully resident picture; NaN without a comparison
+    double ssim, flip; ///< NaN in frames that were not looked at
     SluiceVulkanStreamerStatistics statistics;
     struct GalleryCounts counts;
     struct needs_frame needs; ///< where they are found out

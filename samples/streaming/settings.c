@@ -1,5 +1,6 @@
 #include "settings.h"
 
+#include <math.h>
 #include <stdio.h>
 
 static const char usage[] =
@@ -25,6 +26,26 @@ static void keep_to_budget(struct settings *s)
         s->max_heaps = tiles / s->heap_tiles;
 }
 
+/** What the truth takes over from the run. */
+static bool complete_reference(struct settings *s)
+{
+    s->reference_anisotropy = s->reference_anisotropy ? s->reference_anisotropy : s->anisotropy;
+    s->reference_samples = s->reference_samples ? s->reference_samples : s->samples;
+    if (isnan(s->reference_lod_bias))
+        s->reference_lod_bias = s->lod_bias;
+    if (!s->reference && !s->compare)
+        s->metrics_every = 0;
+    if (s->reference_samples & (s->reference_samples - 1))
+        fprintf(stderr, "--reference-samples %u: wants 1, 2, 4 or 8\n", s->reference_samples);
+    else if (s->reference_supersample == 3)
+        fprintf(stderr, "--reference-supersample 3: wants 1, 2 or 4\n");
+    else if (s->reference && s->compare)
+        fprintf(stderr, "--reference: compares instead of --compare, not with it\n");
+    else
+        return true;
+    return false;
+}
+
 enum option_outcome settings_parse(int argc, char *const *argv, struct settings *s)
 {
     *s = (struct settings){
@@ -43,6 +64,9 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         .standby = 1024,
         .heap_tiles = 256,
         .anisotropy = 1,
+        .reference_supersample = 1,
+        .reference_lod_bias = NAN,
+        .metrics_every = 10,
     };
     const struct option options[] = {
         {OPTION_SECTION, .help = "Pictures"},
@@ -105,6 +129,18 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "threads that read tiles; 0: by the number of processors", 0, 256},
         {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
          "on: a picture's relief follows the picture's feedback;\noff: it writes its own"},
+        {OPTION_UINT, "loads-in-flight", "N", &s->loads_in_flight,
+         "tiles being read or waiting for their upload at most; 0: 4 times\n--tiles-per-frame", 0,
+         65536},
+        {OPTION_REAL, "fade", "SECONDS", &s->fade,
+         "that a texel takes to become one level sharper; 0: at once", 0, 3600},
+        {OPTION_REAL, "source-latency", "MS", &s->source_latency,
+         "that each read takes longer, whatever else is read meanwhile, in\nthe frames' time "
+         "(--fps)",
+         0, 60000},
+        {OPTION_REAL, "source-bandwidth", "MB/S", &s->source_bandwidth,
+         "10^6 bytes of texels per second of the frames' time that all\nreads share; 0: no limit",
+         0, 1e9},
         {OPTION_TEXT, "record", "TRACE", &s->record, "record the manager for sluice-replay"},
 
         {OPTION_SECTION, .help = "Sampling"},
@@ -115,6 +151,24 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_SECTION, .help = "Checks"},
         {OPTION_FLAG, "compare", NULL, &s->compare,
          "draw each frame a second time with everything resident and\nreport the difference"},
+        {OPTION_TEXT, "reference", "DIR", &s->reference,
+         "compare with the frames in DIR instead, which are drawn with\n"
+         "everything resident before the walk; only once, unless DIR's\n"
+         "were drawn of something else or in another way"},
+        {OPTION_UINT, "reference-anisotropy", "N", &s->reference_anisotropy,
+         "of the frames in DIR; 0: as --anisotropy", 0, 16},
+        {OPTION_REAL, "reference-lod-bias", "B", &s->reference_lod_bias,
+         "of the frames in DIR; without it as --lod-bias", -8, 8},
+        {OPTION_UINT, "reference-samples", "N", &s->reference_samples,
+         "per pixel along edges in DIR; 0: as --samples", 0, 8},
+        {OPTION_UINT, "reference-supersample", "N", &s->reference_supersample,
+         "frames in DIR are drawn N times as wide and high, and averaged\nin linear light: 1, 2 or "
+         "4",
+         1, 4},
+        {OPTION_UINT, "metrics-every", "N", &s->metrics_every,
+         "SSIM and FLIP of every Nth frame, the one that differs most and\n"
+         "those written, if there is something to compare with; 0: none",
+         0, 100000},
         {OPTION_CHOICE, "compare-with", "auto|sparse|paged|dense", &s->compare_with,
          "residency of what is compared to; auto: sparse if that is what\nstreams, else dense"},
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
@@ -142,6 +196,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         fprintf(stderr, "--needs-trace: not with --needs off\n");
         return OPTIONS_ERROR;
     }
+    if (outcome == OPTIONS_RUN && !complete_reference(s))
+        return OPTIONS_ERROR;
     keep_to_budget(s);
     if (outcome == OPTIONS_RUN && s->rest_frames > s->frames)
         s->rest_frames = s->frames;
@@ -162,5 +218,5 @@ SluiceResidencyMode settings_residency_mode(int residency)
 bool settings_find_needs(const struct settings *settings)
 {
     return settings->needs == THREE_WAY_ON || settings->needs_trace ||
-           (settings->needs == THREE_WAY_AUTO && settings->compare);
+           (settings->needs == THREE_WAY_AUTO && (settings->compare || settings->reference));
 }

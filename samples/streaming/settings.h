@@ -37,6 +37,10 @@ struct settings {
     uint32_t standby, heap_tiles, max_heaps, loader_threads;
     uint32_t budget;  ///< MiB for tiles, 0: no cap; heap_tiles and max_heaps keep to it
     int texture_sets; ///< enum on_off
+    uint32_t loads_in_flight;
+    double fade;             ///< seconds
+    double source_latency;   ///< milliseconds of the frames' time
+    double source_bandwidth; ///< MB/s, 0: no limit
     const char *record;
     /* sampling */
     double lod_bias;
@@ -48,6 +52,11 @@ struct settings {
     int check_residency; ///< enum three_way
     int needs;           ///< enum three_way
     const char *needs_trace;
+    const char *reference;                            ///< folder of the truth; NULL: none is kept
+    uint32_t reference_anisotropy, reference_samples; ///< after parsing never 0
+    uint32_t reference_supersample;                   ///< 1, 2 or 4
+    double reference_lod_bias;                        ///< after parsing never NaN
+    uint32_t metrics_every;                           ///< 0 without a truth
     /* device */
     const char *device;
     bool list_devices;

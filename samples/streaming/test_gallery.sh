@@ -55,7 +55,10 @@ refuse --images "$folder" --images "$folder"
 refuse --samples 3
 refuse --tiles-per-frame 16385
 refuse --needs off --needs-trace "$folder/refused"
-[ ! -e "$folder/refused" ] || failed=1
+refuse --reference "$folder/truth" --compare
+refuse --reference-samples 3
+refuse --reference-supersample 3
+[ ! -e "$folder/refused" ] && [ ! -e "$folder/truth" ] || failed=1
 
 walk compared --frames 60 --rest-frames 30 --compare --validation
 if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/compared.log"; then
@@ -173,5 +176,53 @@ done
 compare needs-on missing_pixels_percent needs-off missing_pixels_percent 'a > 0 && a == b'
 grep -q '"needed_bytes", "value": null' "$folder/needs-off.json" || failed=1
 grep -q 'Only what the scene requires' "$folder/needs-on/report.html" || failed=1
+# The truth is drawn once, and again where it is not what the run asks for or damaged.
+refer() { # name, options
+    name=$1
+    shift
+    walk "$name" --reference "$folder/truth" --frames 12 --rest-frames 6 --deterministic --samples 1 \
+        --probability 1 --loader-threads 1 --metrics-every 11 "$@"
+    [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
+}
+said() { # name, words
+    grep -q -e "$2" "$folder/$1.log" || { echo "$1: not said: $2" >&2; failed=1; }
+}
+drawing='drawing the frames to compare with'
+refer drawn
+said drawn "$drawing"
+cp "$folder/truth/reference.frames" "$folder/frames"
+refer reused
+! grep "$drawing" "$folder/reused.log" >&2 || failed=1
+cut -d, -f1,6,21- "$folder/drawn/frames.csv" >"$folder/drawn.csv"
+cut -d, -f1,6,21- "$folder/reused/frames.csv" | cmp - "$folder/drawn.csv" >&2 || failed=1
+# When everything wanted is there nothing differs, and black is what the error is drawn as.
+grep -q '^11,999.000,.*1.000000,0.000000$' "$folder/drawn.csv" || { cat "$folder/drawn.csv" >&2; failed=1; }
+check reused psnr_lowest_db 'v < 50'
+check reused ssim_lowest 'v < 0.99'
+check reused flip_worst 'v > 0.01'
+for picture in frame truth flip; do
+    [ -s "$folder/reused/$picture-0011.png" ] || { echo "no picture: $picture" >&2; failed=1; }
+done
+grep -q 'FLIP' "$folder/reused/report.html" || { echo "the report has no FLIP" >&2; failed=1; }
+[ -z "$(find "$folder/reused" -name 'frames-*')" ] || { echo "frames were left behind" >&2; failed=1; }
+
+printf 'x' | dd of="$folder/truth/reference.frames" bs=1 seek=100000 conv=notrunc 2>/dev/null
+refer damaged --write-frames none --fade 0.05
+said damaged 'reference.frames: damaged'
+said damaged "$drawing"
+cmp "$folder/truth/reference.frames" "$folder/frames" >&2 || failed=1
+refer other --write-frames none --metrics-every 0 --reference-anisotropy 4 --reference-supersample 2
+said other 'have "supersample: 1", not "supersample: 2"'
+said other "$drawing"
+check other psnr_final_db 'v > 15 && v < 60'
+! grep -q '"ssim_mean", "value": [0-9]' "$folder/other.json" || failed=1
+
+# Sources behind a slow line: later, but all of it.
+walk slow --frames 40 --rest-frames 30 --deterministic --samples 1 --probability 1 --fade 0.05 \
+    --source-latency 20 --source-bandwidth 100 --loads-in-flight 128 --metrics-every 0 --compare
+[ "$status" -eq 0 ] || { cat "$folder/slow.log" >&2; failed=1; }
+check slow tiles_failed 'v == 0'
+check slow psnr_final_db 'v >= 60'
+check slow frames_to_60db 'v >= 1'
 
 exit $failed

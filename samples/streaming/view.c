@@ -57,12 +57,21 @@ static bool create_streamer(struct view *view)
         .numExtraStandbyTiles = settings->standby,
         .feedbackTimeout = (uint64_t)(settings->timeout * 1e6),
         .retryDelay = 250000,
+        .maxLoadsInFlight = settings->loads_in_flight,
+        .residencyFadeTime = (uint64_t)(settings->fade * 1e6),
     };
     if (view->request.everything) {
         info.mapEverything = true;
         info.tilesPerFrame = 1024;
         info.maxHeapCount = 0;
+        info.maxLoadsInFlight = 0;
+        info.residencyFadeTime = 0;
+    } else if (!slowness_begin(&view->slowness, settings, info.maxTextureCount)) {
+        fprintf(stderr, "out of memory\n");
+        return false;
     }
+    if (view->slowness.on) /* what is on its way is asked for once more, then in the next frame */
+        info.readRetry = (SluiceTileRetryPolicy){2, 1000000, 1000000};
     return check(sluiceCreateVulkanStreamer(&info, &view->streamer), "sluiceCreateVulkanStreamer");
 }
 
@@ -71,13 +80,16 @@ static bool add_texture(struct view *view, SluiceImageSource *source, SluiceText
 {
     VkSamplerAddressMode mode =
         repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    SluiceVulkanTextureCreateInfo info = {
-        .source = source, .primaryId = primary, .addressModeU = mode, .addressModeV = mode};
-    SluiceResult result = sluiceAddVulkanTexture(view->streamer, &info, texture);
+    SluiceVulkanTextureCreateInfo info = {.source = slowness_wrap(&view->slowness, source),
+                                          .primaryId = primary,
+                                          .addressModeU = mode,
+                                          .addressModeV = mode};
+    SluiceResult result = info.source ? sluiceAddVulkanTexture(view->streamer, &info, texture)
+                                      : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS) {
         view->texture_ids[view->texture_count] =
             (struct needs_id){texture->textureId, texture->tableIndex};
-        view->sources[view->texture_count++] = source;
+        view->sources[view->texture_count++] = info.source;
         return true;
     }
     SluiceImageInfo image = {.pName = "a texture"};
@@ -254,6 +266,7 @@ bool view_destroy(struct view *view)
     free(view->texture_ids);
     free(view->sources);
     sluiceDestroyVulkanStreamer(view->streamer);
+    slowness_finish(&view->slowness);
     *view = (struct view){0};
     return recorded;
 }
@@ -382,6 +395,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     if (!view_wait(view, slot_index))
         return false;
     double start = clock_seconds(), needs_seconds;
+    slowness_set_time(&view->slowness, time_stamp);
     write_frame_data(view, camera, slot->frame.mapped);
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,

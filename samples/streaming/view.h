@@ -8,6 +8,7 @@
 #include "needs_pass.h"
 #include "renderer.h"
 #include "settings.h"
+#include "slowness.h"
 
 #define VIEW_FRAMES_IN_FLIGHT 3
 #define VIEW_MAX_REGIONS (1u << 20)
@@ -47,6 +48,7 @@ struct view {
     struct view_request request;
     SluiceVulkanStreamer *streamer; ///< owned
     SluiceRecorder *recorder;       ///< owned
+    struct slowness slowness;       ///< of its sources; the truth has none
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct needs_id *texture_ids;      ///< owned; of all textures, in the order of their making

@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 
 packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spirv-tools
-    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev libzstd-dev
+    libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev zlib1g-dev libzstd-dev
     libxxhash-dev libvips-dev libsquish-dev g++)
 packages_to_test=(binutils clang libcmocka-dev vulkan-validationlayers)
 

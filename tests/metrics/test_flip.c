@@ -59,6 +59,27 @@ static void small_pictures_agree_with_direct_convolution(void **state)
     check_with_oracle(12, 14, 200);
 }
 
+static void one_pixel_is_seen_as_far_as_filters_reach(void **state)
+{
+    (void)state;
+    static uint8_t a[MAX_PIXELS * 4], b[MAX_PIXELS * 4];
+    static float values[MAX_PIXELS];
+    static double expected[MAX_PIXELS];
+    SluicePicturePair pair = rgba8_pair(a, b, SIZE, SIZE);
+    SluiceMetricMap map = {.pValues = values};
+    for (int row = 0; row < SIZE; row += 21) {
+        double mean;
+        fill_drawing(a, SIZE, SIZE);
+        memcpy(b, a, sizeof b);
+        b[4 * (row * SIZE + 40)] ^= 0x80;
+        CHECK_OK(sluiceComputeFlip(&pair, 67, &map, NULL, &mean));
+        flip_oracle(a, b, SIZE, SIZE, 67, expected);
+        assert_true(values[row * SIZE + 40] > 0.01f);
+        for (int i = 0; i < MAX_PIXELS; i++)
+            assert_true(fabs((double)values[i] - expected[i]) < 1e-6);
+    }
+}
+
 static void equal_pictures_have_exactly_none(void **state)
 {
     (void)state;
@@ -175,6 +196,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_pictures_agree_with_direct_convolution),
+        cmocka_unit_test(one_pixel_is_seen_as_far_as_filters_reach),
         cmocka_unit_test(equal_pictures_have_exactly_none),
         cmocka_unit_test(greys_follow_the_difference_of_lightness),
         cmocka_unit_test(blue_against_green_is_the_largest),

@@ -1,0 +1,121 @@
+#define _POSIX_C_SOURCE 200809L
+#include "reference_key.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../common/text.h"
+
+#define MAX_SIZE (16u << 20) ///< bytes of a text file that is looked at
+
+/** Size and time, or nothing where there is no file. A line each, whatever the name. */
+static void write_picture(FILE *out, const struct picture *picture)
+{
+    struct stat status;
+    fprintf(out, "picture: ");
+    text_write(out, picture->path);
+    if (stat(picture->path, &status) == 0)
+        fprintf(out, " %" PRIu64 " bytes of %" PRId64 ".%09ld", (uint64_t)status.st_size,
+                (int64_t)status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+    fprintf(out, "\n");
+}
+
+char *reference_key_create(const struct settings *settings, const struct gpu *gpu,
+                           const struct picture_list *pictures)
+{
+    static const char *const formats[] = {"auto", "rgba16f", "rgba8"};
+    static const char *const modes[] = {"auto", "sparse", "paged", "dense"};
+    char *key = NULL;
+    size_t size;
+    FILE *out = open_memstream(&key, &size);
+    if (!out)
+        return NULL;
+    fprintf(out, "frames of the gallery with everything resident, version 1\ndevice: ");
+    text_write(out, gpu->properties.deviceName);
+    fprintf(out, "\ndriver: %u\n", gpu->properties.driverVersion);
+    fprintf(out, "residency: %s\n", modes[gpu->modes[1]]);
+    fprintf(out, "size: %ux%u\n", settings->size[0], settings->size[1]);
+    fprintf(out, "frames: %u\nrest-frames: %u\n", settings->frames, settings->rest_frames);
+    fprintf(out, "samples: %u\n", settings->reference_samples);
+    fprintf(out, "supersample: %u\n", settings->reference_supersample);
+    fprintf(out, "anisotropy: %u\n", settings->reference_anisotropy);
+    fprintf(out, "lod-bias: %.9g\n", settings->reference_lod_bias);
+    fprintf(out, "generate-scale: %u\n", settings->generate_scale);
+    fprintf(out, "format: %s\n", formats[settings->format]);
+    for (uint32_t i = 0; i < pictures->count; i++)
+        write_picture(out, &pictures->pictures[i]);
+    bool written = !ferror(out);
+    if (fclose(out) == 0 && written)
+        return key;
+    free(key);
+    return NULL;
+}
+
+/** The whole file as a string to free; NULL if it cannot be read. */
+static char *read_text(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    char *text = file ? malloc(MAX_SIZE + 1) : NULL;
+    if (text) {
+        size_t size = fread(text, 1, MAX_SIZE, file);
+        text[size] = '\0';
+        if (size == MAX_SIZE || ferror(file) || strlen(text) != size) {
+            free(text);
+            text = NULL;
+        }
+    }
+    if (file)
+        fclose(file);
+    return text;
+}
+
+/** Names the first line in which the two differ. */
+static void explain(const char *path, const char *text, const char *key)
+{
+    while (*text && *key) {
+        int length = (int)strcspn(text, "\n"), key_length = (int)strcspn(key, "\n");
+        if (length != key_length || strncmp(text, key, (size_t)length) != 0) {
+            text_say("%s: these frames have \"%.*s\", not \"%.*s\"", path, length, text, key_length,
+                     key);
+            return;
+        }
+        text += length + (text[length] != '\0');
+        key += key_length + (key[key_length] != '\0');
+    }
+    text_say("%s: is cut off", path);
+}
+
+enum reference_match reference_key_compare(const char *path, const char *key,
+                                           struct reference_content *content)
+{
+    char *text = read_text(path);
+    size_t length = strlen(key);
+    enum reference_match match = text ? REFERENCE_DIFFERS : REFERENCE_MISSING;
+    if (text && strncmp(text, key, length) == 0 &&
+        sscanf(text + length, "device-memory: %" SCNu64 "\nchecksum: %" SCNx32,
+               &content->device_memory, &content->checksum) == 2)
+        match = REFERENCE_MATCHES;
+    else if (text)
+        explain(path, text, key);
+    free(text);
+    return match;
+}
+
+bool reference_key_write(const char *path, const char *key, const struct reference_content *content)
+{
+    char unfinished[4096];
+    snprintf(unfinished, sizeof unfinished, "%s.new", path);
+    FILE *file = fopen(unfinished, "wb");
+    bool written = file && fprintf(file, "%sdevice-memory: %" PRIu64 "\nchecksum: %08" PRIx32 "\n",
+                                   key, content->device_memory, content->checksum) > 0;
+    written = file && fclose(file) == 0 && written && rename(unfinished, path) == 0;
+    if (!written) {
+        text_say("%s: %s", path, strerror(errno));
+        remove(unfinished);
+    }
+    return written;
+}
