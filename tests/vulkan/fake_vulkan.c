@@ -26,7 +26,9 @@ static struct fake_vulkan *fake_of(void *handle)
 /* Counts the calls of functions that may fail. */
 static VkResult next_call(struct fake_vulkan *fake)
 {
-    return ++fake->calls == fake->failing_call ? fake->failure : VK_SUCCESS;
+    uint64_t call = ++fake->calls, failing = fake->failing_call;
+    bool fails = call == failing || (fake->fails_on && failing > 0 && call > failing);
+    return fails ? fake->failure : VK_SUCCESS;
 }
 
 #define MAY_FAIL(handle)                                                                           \
@@ -264,6 +266,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
     MAY_FAIL(device);
     (void)cb;
     struct fake_vulkan *fake = fake_of(device);
+    if (fake->memory_limit && fake->live_memory + info->allocationSize > fake->memory_limit)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     struct fake_object *object = make(fake, info->allocationSize);
     fake->live_memory += info->allocationSize;
     *memory = (VkDeviceMemory)object;
@@ -524,8 +528,9 @@ static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x,
 /* The resolve passes have none. */
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
-    (void)device;
-    return VK_SUCCESS;
+    struct fake_vulkan *fake = fake_of(device);
+    bool is_lost = fake->fails_on && fake->failing_call && fake->calls >= fake->failing_call;
+    return is_lost ? fake->failure : VK_SUCCESS;
 }
 
 /* The MinMip maps: they may only show what was copied before. */
