@@ -67,7 +67,7 @@ SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = 8,
-                                           .feedbackTimeout = 100,
+                                           .feedbackTimeout = 20,
                                            .pAllocator = &g->memory.callbacks};
     fake_vulkan_fill(&g->fake, &info);
     info.residencyMode = mode;

@@ -11,7 +11,7 @@
 /* Whatever a handle stands for. */
 struct fake_object {
     VkExtent3D extent;
-    uint32_t level_count;
+    uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
     VkImage image; ///< of a view
@@ -190,6 +190,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
     struct fake_object *object = make(fake_of(device), 0);
     object->extent = info->extent;
     object->level_count = info->mipLevels;
+    object->layer_count = info->arrayLayers;
     *image = (VkImage)object;
     return VK_SUCCESS;
 }
@@ -207,9 +208,9 @@ static VKAPI_ATTR void VKAPI_CALL destroy_image(VkDevice device, VkImage image,
 static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage image,
                                                      VkMemoryRequirements *requirements)
 {
-    (void)device, (void)image;
-    *requirements =
-        (VkMemoryRequirements){.size = 1 << 24, .alignment = 65536, .memoryTypeBits = 1};
+    uint64_t layer_size = fake_of(device)->layer_size;
+    uint64_t size = layer_size ? layer_size * OBJECT(image)->layer_count : 1u << 24;
+    *requirements = (VkMemoryRequirements){.size = size, .alignment = 65536, .memoryTypeBits = 1};
 }
 
 static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage image,
