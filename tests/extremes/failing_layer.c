@@ -83,11 +83,13 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
 #define FUNCTIONS(X)                                                                               \
     X(AllocateDescriptorSets)                                                                      \
     X(AllocateMemory)                                                                              \
-    X(BindBufferMemory) X(BindImageMemory) X(CreateBuffer) X(CreateComputePipelines)               \
-        X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage) X(CreateImageView)     \
-            X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore) X(CreateShaderModule)      \
-                X(DeviceWaitIdle) X(GetSemaphoreCounterValue) X(MapMemory) X(QueueBindSparse)      \
-                    X(WaitSemaphores)
+    X(BindBufferMemory)                                                                            \
+    X(BindImageMemory)                                                                             \
+    X(CreateBuffer)                                                                                \
+    X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
+        X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)             \
+            X(CreateShaderModule) X(DeviceWaitIdle) X(GetSemaphoreCounterValue) X(MapMemory)       \
+                X(QueueBindSparse) X(WaitSemaphores)
 
 static PFN_vkGetDeviceProcAddr next_GetDeviceProcAddr;
 
