@@ -80,16 +80,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
     return fails() ? failing_layer.failure : result;
 }
 
+/* clang-format off */
 #define FUNCTIONS(X)                                                                               \
-    X(AllocateDescriptorSets)                                                                      \
-    X(AllocateMemory)                                                                              \
-    X(BindBufferMemory)                                                                            \
-    X(BindImageMemory)                                                                             \
-    X(CreateBuffer)                                                                                \
-    X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
-        X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)             \
-            X(CreateShaderModule) X(DeviceWaitIdle) X(GetSemaphoreCounterValue) X(MapMemory)       \
-                X(QueueBindSparse) X(WaitSemaphores)
+    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
+    X(CreateBuffer) X(CreateComputePipelines) X(CreateDescriptorPool)                              \
+    X(CreateDescriptorSetLayout) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout)         \
+    X(CreateSampler) X(CreateSemaphore) X(CreateShaderModule) X(DeviceWaitIdle)                    \
+    X(GetSemaphoreCounterValue) X(MapMemory) X(QueueBindSparse) X(WaitSemaphores)
+/* clang-format on */
 
 static PFN_vkGetDeviceProcAddr next_GetDeviceProcAddr;
 
