@@ -365,8 +365,8 @@ SLUICE_API SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *man
                                                SluiceTextureId textureId);
 
 /**
- * Lists the tiles that became GIVEN_UP and were not listed yet. Calling convention as
- * sluiceGetTilesToMap; heapId and slot mean nothing here.
+ * Lists the tiles that became GIVEN_UP and were not listed yet, each once, however often it did.
+ * Calling convention as sluiceGetTilesToMap; heapId and slot mean nothing here.
  */
 SLUICE_API SluiceResult sluiceGetGivenUpTiles(SluiceStreamedTextureManager *manager,
                                               uint32_t *pTileCount, SluiceTile *pTiles);

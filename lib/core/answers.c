@@ -96,9 +96,12 @@ static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
     }
     slc_node_fail(m, node, time);
     const struct slc_node *n = slc_node_at(m, node);
-    if (n->state == SLUICE_TILE_STATE_GIVEN_UP)
-        m->given_up_reports[m->report_end++] =
-            (struct slc_given_up){slc_texture_id(slc_texture_at(m, n->texture)), n->tile};
+    uint64_t key = slc_pair_key(n->texture, n->tile);
+    if (n->state != SLUICE_TILE_STATE_GIVEN_UP || slc_map_get(&m->reported, key) != SLC_MAP_NONE)
+        return; /* nobody has asked since it was given up before */
+    slc_map_add(&m->reported, key, 0);
+    m->given_up_reports[m->report_end++] =
+        (struct slc_given_up){slc_texture_id(slc_texture_at(m, n->texture)), n->tile};
 }
 
 /** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
@@ -123,7 +126,7 @@ static bool reserve_reports(slc_manager *m, uint32_t count)
     if ((uint64_t)m->report_end + count <= m->report_room)
         return true;
     uint64_t room = (uint64_t)waiting + count + waiting / 2 + 16;
-    if (room > UINT32_MAX)
+    if (room >= 1u << 30 || slc_map_reserve(&m->reported, &m->cb, (uint32_t)room))
         return false;
     struct slc_given_up *reports = slc_alloc(&m->cb, (size_t)room, sizeof *reports);
     if (!reports)

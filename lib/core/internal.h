@@ -4,6 +4,7 @@
 
 #include <sluice/manager.h>
 
+#include "base/map.h"
 #include "core/observer.h"
 #include "core/tile_heap.h"
 
@@ -212,6 +213,7 @@ struct SluiceStreamedTextureManager {
 
     struct slc_given_up *given_up_reports; ///< owned queue: [first, end)
     uint32_t report_first, report_end, report_room;
+    struct slc_map reported; ///< (texture, tile) that are in it; room for report_room
 
     uint32_t prefetch_level, prefetch_texture; ///< what to look at next; levels from the coarsest
 

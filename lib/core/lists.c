@@ -547,6 +547,7 @@ static SluiceResult get_given_up_tiles(slc_manager *m, uint32_t *count, SluiceTi
         struct slc_given_up g = m->given_up_reports[m->report_first + i];
         struct slc_place p = slc_tile_place(slc_texture_at(m, (uint32_t)g.texture_id), g.tile);
         tiles[i] = (SluiceTile){g.texture_id, g.tile, p.level, p.x, p.y, 0, 0};
+        slc_map_remove(&m->reported, slc_pair_key((uint32_t)g.texture_id, g.tile));
     }
     m->report_first += written;
     if (m->report_first == m->report_end)

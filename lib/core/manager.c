@@ -103,6 +103,7 @@ void sluiceDestroyStreamedTextureManager(SluiceStreamedTextureManager *manager)
     slc_free(&m->cb, m->node_chunks, m->node_chunk_room, sizeof *m->node_chunks);
     slc_free(&m->cb, m->scratch, m->scratch_room, 1);
     slc_free(&m->cb, m->given_up_reports, m->report_room, sizeof *m->given_up_reports);
+    slc_map_finish(&m->reported, &m->cb);
     SluiceAllocationCallbacks given = m->given;
     slc_free(&given, m, 1, sizeof *m);
 }
@@ -350,9 +351,13 @@ SluiceResult sluiceAddStreamedTexture(SluiceStreamedTextureManager *manager,
 static void forget_reports(slc_manager *m, SluiceTextureId id)
 {
     uint32_t kept = m->report_first;
-    for (uint32_t i = m->report_first; i < m->report_end; i++)
-        if (m->given_up_reports[i].texture_id != id)
-            m->given_up_reports[kept++] = m->given_up_reports[i];
+    for (uint32_t i = m->report_first; i < m->report_end; i++) {
+        const struct slc_given_up *report = &m->given_up_reports[i];
+        if (report->texture_id == id)
+            slc_map_remove(&m->reported, slc_pair_key((uint32_t)id, report->tile));
+        else
+            m->given_up_reports[kept++] = *report;
+    }
     m->report_end = kept;
 }
 

@@ -92,8 +92,13 @@ static SluiceResult begin(SluiceStoreWriter *writer, const SluiceStoreCreateInfo
     bool matches = false;
     if (result == SLUICE_SUCCESS)
         result = find_match(writer, &matches);
-    if (result == SLUICE_SUCCESS)
-        result = matches ? go_on(writer) : begin_anew(writer);
+    if (result == SLUICE_SUCCESS && matches) {
+        result = go_on(writer);
+    } else if (result == SLUICE_SUCCESS) {
+        result = begin_anew(writer);
+        if (result != SLUICE_SUCCESS)
+            writer->may_resume = false; /* with what? */
+    }
     if (result != SLUICE_SUCCESS)
         return result;
     writer->has_mutex = pthread_mutex_init(&writer->mutex, NULL) == 0;

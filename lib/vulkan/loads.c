@@ -84,6 +84,7 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
     sluiceDestroyTileLoader(s->loader); /* first: its threads write into the staging slots */
     slc_buffer_finish(&s->staging, &s->vk);
     slc_map_finish(&s->tile_units, &s->cb);
+    slc_parked_tiles_finish(&s->parked, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);
 }
 
@@ -267,6 +268,14 @@ SluiceResult slc_loads_collect(SluiceVulkanStreamer *s)
     return SLUICE_SUCCESS;
 }
 
+static SluiceResult give_back(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    s->counts.tilesCancelled++;
+    return slc_streamer_check(
+        s, sluiceReportCancelledTiles(s->manager, s->textures[texture].id, 1, &tile->tileIndex, 0),
+        "sluiceReportCancelledTiles");
+}
+
 SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
 {
     SluiceTile tiles[BATCH];
@@ -279,6 +288,10 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
         for (uint32_t i = 0; i < count; i++) {
             uint32_t texture = s->by_manager_index[(uint32_t)tiles[i].textureId];
             uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tiles[i].tileIndex));
+            if (slc_parked_tiles_remove(&s->parked, texture, tiles[i].tileIndex)) {
+                give_back(s, texture, &tiles[i]);
+                continue;
+            }
             /* What has arrived goes on to standby: its read is paid for already. */
             if (unit == SLC_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
                 continue;
@@ -300,6 +313,39 @@ static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const
                               "sluiceReportFailedTiles");
 }
 
+/* There is no page for it. One that was asked to stop is not waited for. */
+static SluiceResult park_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    SluiceTileState state = SLUICE_TILE_STATE_CANCELLED;
+    sluiceGetTileState(s->manager, s->textures[texture].id, tile->tileIndex, &state, NULL);
+    if (state == SLUICE_TILE_STATE_CANCELLED ||
+        !slc_parked_tiles_add(&s->parked, &s->cb, texture, tile))
+        return give_back(s, texture, tile);
+    return SLUICE_SUCCESS;
+}
+
+/* Tiles that are going to ask for a page of the format. */
+static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < s->info.maxLoadsInFlight; i++) {
+        const struct slc_unit *unit = &s->units[i];
+        bool is_coming = unit->state == SLC_UNIT_READING || unit->state == SLC_UNIT_ARRIVED;
+        count += is_coming && unit->packed_unit == SLC_NONE &&
+                 s->textures[unit->texture].info.format == format;
+    }
+    return count;
+}
+
+static bool has_page(const SluiceVulkanStreamer *s, uint32_t texture)
+{
+    const struct slc_residency_interface *interface = s->residency->interface;
+    uint32_t room = interface->page_room ? interface->page_room(s->residency, texture) : UINT32_MAX;
+    if (room == 0 || room == UINT32_MAX)
+        return room > 0;
+    return room > count_loads(s, s->textures[texture].info.format);
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
@@ -312,11 +358,30 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     }
     if (interface->reserve && !interface->reserve(s->residency, texture, tile))
         return refuse_tile(s, texture, tile);
+    if (!has_page(s, texture))
+        return park_tile(s, texture, tile);
     uint32_t unit = unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
     SluiceResult result = submit_unit(s, unit);
     return result == SLUICE_SUCCESS ? result : tile_back(s, unit, result);
+}
+
+/* Those for which there is a page now, coarse ones first. */
+static SluiceResult start_parked(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->parked.count > 0 && level-- > 0;)
+        for (uint32_t i = 0; i < s->parked.count && s->free_unit_count > 0 && result >= 0;) {
+            struct slc_parked_tile parked = s->parked.tiles[i];
+            if (parked.tile.mipLevel != level || !has_page(s, parked.texture)) {
+                i++;
+                continue;
+            }
+            slc_parked_tiles_remove_at(&s->parked, i);
+            result = start_tile(s, parked.texture, &parked.tile);
+        }
+    return result;
 }
 
 static void collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index, const SluiceTile *tile)
@@ -381,6 +446,8 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
 {
     bool waits;
     SluiceResult result = start_packed_queue(s, &waits);
+    if (result >= 0 && !waits)
+        result = start_parked(s);
     uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
     if (result < 0 || waits || count == 0)
         return result;
@@ -424,7 +491,7 @@ static void bind_packed(SluiceVulkanStreamer *s)
 static void refuse_unit(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
-    refuse_tile(s, unit->texture, &unit->tile);
+    park_tile(s, unit->texture, &unit->tile);
     forget_tile(s, unit);
     slc_unit_free(s, index);
 }
@@ -487,6 +554,7 @@ void slc_loads_recycle(SluiceVulkanStreamer *s)
 
 void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
 {
+    slc_parked_tiles_drop(&s->parked, index);
     struct slc_texture *texture = &s->textures[index];
     for (uint32_t i = 0; i < s->packed_queue_count;) {
         if (s->packed_queue[i] == index)

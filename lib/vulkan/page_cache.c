@@ -108,6 +108,19 @@ uint32_t slc_page_cache_room(const struct slc_page_cache *cache)
     return most < left ? (uint32_t)most : left;
 }
 
+uint32_t slc_page_cache_free_count(const struct slc_page_cache *cache, SluiceFormat format)
+{
+    if (!cache->refused_frame)
+        return UINT32_MAX;
+    uint32_t count = !slc_page_cache_is_refused(cache);
+    for (uint32_t i = 0; i < cache->views->count; i++) {
+        const struct slc_page_chunk *chunk = &cache->chunks[i];
+        if (chunk->state == SLC_CHUNK_LIVE && chunk->format == format)
+            count += chunk->free_count;
+    }
+    return count;
+}
+
 /* Drivers may ask for more than the texels need. */
 static bool is_beyond_cap(const struct slc_page_cache *cache)
 {
@@ -137,6 +150,7 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
             chunk->state = SLC_CHUNK_LIVE;
             cache->page_count[format] += layers;
             cache->last_chunk[format] = at;
+            cache->refused_frame = 0;
             slc_page_views_set(cache->views, at, chunk->view);
             return true;
         }

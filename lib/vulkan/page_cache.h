@@ -46,7 +46,7 @@ struct slc_page_cache {
     uint32_t last_chunk[SLC_PAGE_FORMATS]; ///< that a page was taken from
     uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
     uint64_t frame;                        ///< the last one recorded
-    uint64_t refused_frame;                ///< the last in which the device had no memory
+    uint64_t refused_frame; ///< the last in which the device had no memory; 0: it had some then
     uint32_t max_layer_count;
     uint64_t max_size; ///< bytes of device memory, a hard cap; 0: none
     bool hurry;        ///< chunks that are empty go with the next record
@@ -65,6 +65,10 @@ uint32_t slc_page_cache_room(const struct slc_page_cache *cache);
 
 /** The device had no memory for a chunk a short while ago. */
 bool slc_page_cache_is_refused(const struct slc_page_cache *cache);
+
+/** Pages of the format that can be taken now. After a refusal one more than are free, so that the
+ *  device is asked again, and UINT32_MAX while it has not refused any. */
+uint32_t slc_page_cache_free_count(const struct slc_page_cache *cache, SluiceFormat format);
 
 /** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
 uint32_t slc_page_cache_take(struct slc_page_cache *cache, SluiceFormat format);

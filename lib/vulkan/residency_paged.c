@@ -60,7 +60,7 @@ struct paged_residency {
     struct store *stores;          ///< owned
     uint32_t store_count, store_capacity, upload_reserve;
     uint64_t completed_frame;
-    uint32_t next_heap;
+    uint32_t next_heap, heap_count;
 };
 
 static struct paged_residency *paged(struct slc_residency *residency)
@@ -203,13 +203,25 @@ static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size
     struct paged_residency *p = paged(residency);
     if (slc_page_cache_is_refused(&p->cache) || size > slc_device_memory_size(p->caps))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    /* After a refusal slots must not run ahead of the pages that there are. */
+    uint64_t slots = p->heap_count * (size / SLC_TILE_SIZE);
+    if (p->cache.refused_frame && slots > slc_page_cache_layer_count(&p->cache))
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     *heap_id = p->next_heap++;
+    p->heap_count++;
     return SLUICE_SUCCESS;
 }
 
 static void release_heap(struct slc_residency *residency, uint32_t heap_id)
 {
-    (void)residency, (void)heap_id;
+    (void)heap_id;
+    paged(residency)->heap_count--;
+}
+
+static uint32_t page_room(const struct slc_residency *residency, uint32_t index)
+{
+    const struct paged_residency *p = (const struct paged_residency *)residency;
+    return slc_page_cache_free_count(&p->cache, p->images[index].format);
 }
 
 static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
@@ -445,6 +457,7 @@ static const struct slc_residency_interface paged_interface = {
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
     .revive = revive,
+    .page_room = page_room,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,

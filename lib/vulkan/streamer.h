@@ -10,6 +10,7 @@
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
 #include "vulkan/page_views.h"
+#include "vulkan/parked_tiles.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/residency.h"
@@ -130,6 +131,7 @@ struct SluiceVulkanStreamer {
     struct slc_unit_list free_units, arrived, binding, uploaded;
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
+    struct slc_parked_tiles parked;
     struct slc_buffer staging;
     uint32_t *frame_units;     ///< owned; tilesPerFrame
     VkBufferImageCopy *copies; ///< owned

@@ -61,6 +61,9 @@ static void answer_failed(struct naive_manager *n, struct naive_texture *t, stru
     }
     tile->state = SLUICE_TILE_STATE_GIVEN_UP;
     tile->given_up_at = ++n->stamp;
+    for (uint32_t i = 0; i < n->given_up_count; i++)
+        if (n->given_up[i].texture == t->id && n->given_up[i].tile == (uint32_t)(tile - t->tiles))
+            return; /* it is in the list */
     n->given_up = realloc(n->given_up, (n->given_up_count + 1) * sizeof *n->given_up);
     if (!n->given_up)
         abort();

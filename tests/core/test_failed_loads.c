@@ -152,6 +152,37 @@ static void a_tile_given_up_is_listed_once(void **state)
     fixture_close(&f);
 }
 
+/* Nobody asks for the list, and what cannot be read is looked at again and again. */
+static void a_tile_given_up_again_and_again_is_in_the_list_once(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 16, false);
+    fixture_configure(&f, 0, 0, 1, 0);
+    SluiceTextureId ids[2] = {add_one_tile(&f), add_one_tile(&f)};
+    uint64_t early = 0;
+    for (uint32_t time = 0; time < 5000; time++) {
+        SluiceTextureId id = ids[time % 2];
+        fixture_feed(&f, id, 0, time, 0);
+        CHECK_OK(fixture_to_map(&f, id));
+        assert_int_equal(f.count, 1);
+        fail_load(&f, id, 0, time);
+        CHECK_STATE(&f, id, 0, GIVEN_UP);
+        fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
+        CHECK_STATE(&f, id, 0, FREE);
+        early = time == 10 ? f.memory.live_bytes : early;
+    }
+    assert_true(f.memory.live_bytes <= early);
+    for (uint32_t left = 2; left > 0; left--) { /* the one that was given up first comes first */
+        SluiceTile tile;
+        uint32_t count = 1;
+        CHECK_RESULT(sluiceGetGivenUpTiles(f.manager, &count, &tile),
+                     left > 1 ? SLUICE_INCOMPLETE : SLUICE_SUCCESS);
+        assert_true(count == 1 && tile.textureId == ids[2 - left]);
+    }
+    fixture_close(&f);
+}
+
 static void all_that_is_given_up_is_listed_in_order(void **state)
 {
     (void)state;
@@ -330,6 +361,7 @@ int main(void)
         cmocka_unit_test(a_refused_call_retries_nothing),
         cmocka_unit_test(five_attempts_are_the_default),
         cmocka_unit_test(a_tile_given_up_is_listed_once),
+        cmocka_unit_test(a_tile_given_up_again_and_again_is_in_the_list_once),
         cmocka_unit_test(the_given_up_list_outlives_the_want_but_not_the_texture),
         cmocka_unit_test(a_tile_no_longer_wanted_forgets_its_failures),
         cmocka_unit_test(a_tile_that_was_mapped_forgets_its_failures),

@@ -15,7 +15,8 @@ static void *allocate(void *user, size_t size, size_t alignment)
 {
     struct failing_allocator *a = user;
     assert_true(size > 0 && alignment > 0 && (alignment & (alignment - 1)) == 0);
-    if (a->calls++ >= a->refuse_from)
+    uint64_t call = a->calls++;
+    if (call >= a->refuse_from && (!a->refuse_count || call - a->refuse_from < a->refuse_count))
         return NULL;
     char *base = malloc(size + alignment + sizeof(struct header));
     if (!base)

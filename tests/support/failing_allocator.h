@@ -6,9 +6,10 @@
 #include <sluice/base.h>
 
 struct failing_allocator {
-    uint64_t calls;       ///< allocations asked for so far
-    uint64_t refuse_from; ///< this call and all later ones get NULL; UINT64_MAX: none
-    uint64_t live_bytes;  ///< not given back; threads must not overlap in it
+    uint64_t calls;        ///< allocations asked for so far
+    uint64_t refuse_from;  ///< this call and all later ones get NULL; UINT64_MAX: none
+    uint64_t refuse_count; ///< but after so many refusals all succeed; 0: none does
+    uint64_t live_bytes;   ///< not given back; threads must not overlap in it
     uint64_t live_count;
     SluiceAllocationCallbacks callbacks; ///< pass a pointer to this
 };

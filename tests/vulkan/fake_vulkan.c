@@ -11,7 +11,7 @@
 /* Whatever a handle stands for. */
 struct fake_object {
     VkExtent3D extent;
-    uint32_t level_count;
+    uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
     VkImage image; ///< of a view
@@ -26,7 +26,9 @@ static struct fake_vulkan *fake_of(void *handle)
 /* Counts the calls of functions that may fail. */
 static VkResult next_call(struct fake_vulkan *fake)
 {
-    return ++fake->calls == fake->failing_call ? fake->failure : VK_SUCCESS;
+    uint64_t call = ++fake->calls, failing = fake->failing_call;
+    bool fails = call == failing || (fake->fails_on && failing > 0 && call > failing);
+    return fails ? fake->failure : VK_SUCCESS;
 }
 
 #define MAY_FAIL(handle)                                                                           \
@@ -188,6 +190,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
     struct fake_object *object = make(fake_of(device), 0);
     object->extent = info->extent;
     object->level_count = info->mipLevels;
+    object->layer_count = info->arrayLayers;
     *image = (VkImage)object;
     return VK_SUCCESS;
 }
@@ -205,9 +208,9 @@ static VKAPI_ATTR void VKAPI_CALL destroy_image(VkDevice device, VkImage image,
 static VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice device, VkImage image,
                                                      VkMemoryRequirements *requirements)
 {
-    (void)device, (void)image;
-    *requirements =
-        (VkMemoryRequirements){.size = 1 << 24, .alignment = 65536, .memoryTypeBits = 1};
+    uint64_t layer_size = fake_of(device)->layer_size;
+    uint64_t size = layer_size ? layer_size * OBJECT(image)->layer_count : 1u << 24;
+    *requirements = (VkMemoryRequirements){.size = size, .alignment = 65536, .memoryTypeBits = 1};
 }
 
 static VKAPI_ATTR void VKAPI_CALL sparse_requirements(VkDevice device, VkImage image,
@@ -264,6 +267,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
     MAY_FAIL(device);
     (void)cb;
     struct fake_vulkan *fake = fake_of(device);
+    if (fake->memory_limit && fake->live_memory + info->allocationSize > fake->memory_limit)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     struct fake_object *object = make(fake, info->allocationSize);
     fake->live_memory += info->allocationSize;
     *memory = (VkDeviceMemory)object;
@@ -524,8 +529,9 @@ static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x,
 /* The resolve passes have none. */
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
-    (void)device;
-    return VK_SUCCESS;
+    struct fake_vulkan *fake = fake_of(device);
+    bool is_lost = fake->fails_on && fake->failing_call && fake->calls >= fake->failing_call;
+    return is_lost ? fake->failure : VK_SUCCESS;
 }
 
 /* The MinMip maps: they may only show what was copied before. */

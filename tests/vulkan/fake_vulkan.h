@@ -52,6 +52,9 @@ struct fake_vulkan {
     /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
     uint64_t calls, failing_call;
     VkResult failure;
+    bool fails_on;         ///< and so do all later ones, vkDeviceWaitIdle among them
+    uint64_t layer_size;   ///< bytes of a layer of an image; 0: 16 MiB for all layers together
+    uint64_t memory_limit; ///< bytes that the device has; 0: as many as are asked for
 
     /** Buffers that the test set, and what was filled in and updated there. */
     struct fake_watch {

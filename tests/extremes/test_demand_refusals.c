@@ -1,0 +1,226 @@
+/* Every allocation of every call of a demand loader is refused; the loader goes on with the next.
+ */
+#include "device/demand_runner.h"
+#include "extremes/note.h"
+#include "support/failing_allocator.h"
+
+static struct harness h;
+
+struct life {
+    struct failing_allocator memory;
+    struct runner r;
+    struct runner_image image, other;
+    SluiceDemandTextureId texture, variant, grid;
+    SluiceDemandResourceId resource;
+    uint32_t first_page;
+};
+
+static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
+{
+    (void)user;
+    *value = 1000 + page;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_texture(struct life *l)
+{
+    const SluiceDemandTextureCreateInfo info = {.image = runner_image_desc(&l->image),
+                                                .sampler = runner_nearest};
+    return sluiceCreateDemandTexture(l->r.loader, &info, &l->texture);
+}
+
+static SluiceResult create_variant(struct life *l)
+{
+    const SluiceDemandSampler sampler = {.maxAnisotropy = 8};
+    return sluiceCreateDemandTextureVariant(l->r.loader, l->texture, &sampler, &l->variant);
+}
+
+static SluiceResult create_grid(struct life *l)
+{
+    SluiceDemandTextureId ids[40];
+    const float missing[4] = {1, 0, 1, 1};
+    for (uint32_t i = 0; i < 40; i++)
+        ids[i] = i % 2 ? l->texture : SLUICE_NO_DEMAND_TEXTURE;
+    return sluiceCreateDemandUdim(l->r.loader, ids, 8, 5, missing, &l->grid);
+}
+
+static SluiceResult create_resource(struct life *l)
+{
+    const SluiceDemandResourceCreateInfo info = {
+        .pageCount = 3000, .maxResidentPageCount = 100, .pfnFill = fill};
+    return sluiceCreateDemandResource(l->r.loader, &info, &l->resource, &l->first_page);
+}
+
+static SluiceResult preload(struct life *l)
+{
+    SluiceDemandTicket ticket;
+    SluiceResult result = sluicePreloadDemandTexture(l->r.loader, l->texture, 0, &ticket);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceWaitDemandTicket(l->r.loader, ticket, UINT64_MAX, NULL);
+    return result;
+}
+
+static SluiceResult launch(struct life *l)
+{
+    SluiceResult result = runner_submit(&l->r);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceProcessDemandRequests(l->r.loader, &l->r.launch, UINT64_MAX, &l->r.requests,
+                                             &l->r.ticket);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceWaitDemandTicket(l->r.loader, l->r.ticket, UINT64_MAX, NULL);
+    return result;
+}
+
+static SluiceResult replace(struct life *l)
+{
+    const SluiceDemandImage image = runner_image_desc(&l->other);
+    return sluiceReplaceDemandImage(l->r.loader, l->texture, &image);
+}
+
+static SluiceResult invalidate(struct life *l)
+{
+    SluiceResult result = sluiceInvalidateDemandTexture(l->r.loader, l->texture);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceInvalidateDemandPages(l->r.loader, l->resource, 1, 2000);
+    return result;
+}
+
+static SluiceResult destroy(struct life *l)
+{
+    SluiceResult result = sluiceDestroyDemandTexture(l->r.loader, l->grid);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceDestroyDemandTexture(l->r.loader, l->texture);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceDestroyDemandResource(l->r.loader, l->resource);
+    return result;
+}
+
+/* In the order of a life; launches between show what was made and changed. */
+static SluiceResult (*const calls[])(struct life *) = {
+    create_texture, create_variant, create_grid, create_resource, launch,  launch,
+    launch,         preload,        launch,      invalidate,      launch,  launch,
+    replace,        launch,         launch,      launch,          destroy, launch};
+enum { CALLS = sizeof calls / sizeof calls[0] };
+
+static void open_life(struct life *l)
+{
+    failing_allocator_init(&l->memory, UINT64_MAX);
+    runner_image_init(&l->image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    runner_image_init(&l->other, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 2);
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
+                                               .maxTextureCount = 64,
+                                               .pageCapacity = 1u << 16,
+                                               .maxTilesInFlight = 16,
+                                               .loaderThreadCount = 1,
+                                               .pAllocator = &l->memory.callbacks};
+    runner_init(&l->r, &h, &info);
+}
+
+/* Which of two images level 0 shows, at a texel where they differ. */
+static void check_shown(struct life *l, struct runner_image *image)
+{
+    runner_clear(&l->r);
+    runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
+    CHECK_OK(launch(l));
+    CHECK_OK(launch(l));
+    CHECK_OK(launch(l));
+    assert_int_equal(l->r.requests.missingCount, 0);
+    runner_check_texel(&l->r, 0, image, 0, 299, 299);
+}
+
+static void aim(struct life *l)
+{
+    runner_clear(&l->r);
+    runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
+    for (uint32_t i = 0; i < 50; i++)
+        runner_add_page(&l->r, l->first_page + i * 50);
+}
+
+/* With `step` all calls before it have what they need, and it has not, n times. */
+static uint64_t press(struct life *l, uint32_t step, bool lasting)
+{
+    for (uint64_t n = 0;; n++) {
+        assert_true(n < 300);
+        l->memory.refuse_from = l->memory.calls + n;
+        l->memory.refuse_count = lasting ? 0 : 1;
+        SluiceResult result = calls[step](l);
+        bool refused = l->memory.calls > l->memory.refuse_from;
+        l->memory.refuse_from = UINT64_MAX;
+        if (result == SLUICE_SUCCESS && !refused)
+            return n;
+        if (result == SLUICE_SUCCESS && calls[step] != launch)
+            return n + 1; /* it did without */
+        if (result != SLUICE_SUCCESS)
+            CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    }
+}
+
+static void every_call_survives_every_refused_allocation(void **state)
+{
+    (void)state;
+    uint64_t refusals = 0, left = 0;
+    h.quiet = true;
+    for (uint32_t lasting = 0; lasting < 2; lasting++) {
+        static struct life l;
+        l = (struct life){0};
+        open_life(&l);
+        for (uint32_t step = 0; step < CALLS; step++) {
+            refusals += press(&l, step, lasting);
+            if (calls[step] == create_resource)
+                aim(&l);
+            if (calls[step] == preload)
+                check_shown(&l, &l.image);
+            if (calls[step] == replace)
+                check_shown(&l, &l.other);
+        }
+        runner_finish(&l.r);
+        left += l.memory.live_count + (l.image.opened - l.image.closed) +
+                (l.other.opened - l.other.closed);
+        runner_image_finish(&l.image);
+        runner_image_finish(&l.other);
+    }
+    h.quiet = false;
+    note("demand loader: refused allocations, what is left behind", refusals, (double)left, 0);
+    assert_int_equal(left, 0);
+    assert_true(refusals > 20);
+}
+
+static void questions_take_no_memory(void **state)
+{
+    (void)state;
+    static struct life l;
+    l = (struct life){0};
+    open_life(&l);
+    for (uint32_t step = 0; step < 6; step++)
+        CHECK_OK(calls[step](&l));
+    uint64_t calls_before = l.memory.calls;
+    l.memory.refuse_from = 0;
+    SluiceDemandBuffers buffers;
+    SluiceVulkanPages pages;
+    SluiceDemandTicketStatus status;
+    sluiceGetDemandBuffers(l.r.loader, &buffers);
+    sluiceGetDemandPages(l.r.loader, &pages);
+    (void)runner_statistics(&l.r);
+    CHECK_OK(sluiceGetDemandTicketStatus(l.r.loader, l.r.ticket, &status));
+    CHECK_OK(sluiceWaitDemandTicket(l.r.loader, l.r.ticket, 0, NULL));
+    CHECK_OK(sluiceCancelDemandTicket(l.r.loader, l.r.ticket));
+    CHECK_OK(sluiceAbortDemandLoader(l.r.loader));
+    assert_int_equal(l.memory.calls, calls_before);
+    l.memory.refuse_from = UINT64_MAX;
+    runner_finish(&l.r);
+    assert_int_equal(l.memory.live_count, 0);
+    runner_image_finish(&l.image);
+    runner_image_finish(&l.other);
+}
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_call_survives_every_refused_allocation),
+        cmocka_unit_test(questions_take_no_memory),
+    };
+    return harness_finish(&h, RUN_TESTS(tests));
+}
