@@ -102,8 +102,8 @@ static void check_page_axis(const uint32_t *a, const uint32_t *r, bool device,
     long double errors[2] = {axis_error(c * n - 0.5L, a[1], n, r),
                              nearest_error(c * n, a[1], n, (int32_t)r[3])};
     for (int i = 0; i < 2; i++)
-        extremes_add(&rows[i], (double)(errors[i] / fmaxl(1, scale)), "%.9g of %u texels, mode %u",
-                     (double)numerics_real(a, 0), a[2], a[1]);
+        extremes_add(&rows[i ? 2 : n > 1024], (double)(errors[i] / fmaxl(1, scale)),
+                     "%.9g of %u texels, mode %u", (double)numerics_real(a, 0), a[2], a[1]);
 }
 
 /* dx, dy in uv; 4: width and height; 5: levels; 6: lod; 7: taps at most. */
@@ -267,7 +267,8 @@ const struct numerics_function numerics_pages[NUMERICS_PAGE_COUNT] = {
                          NULL,
                          check_fold},
     AT(NUMERICS_PAGE_AXIS) = {"page_axis",
-                              {{"linear", "texels of 16384", NO_C, 0.006},
+                              {{"small", "texels", NO_C, 0.0025},
+                               {"large", "texels of 16384", NO_C, 0.006},
                                {"nearest", "texels of 16384", NO_C, 0.004}},
                               200000,
                               20000000,

@@ -54,7 +54,10 @@ static void check_walk(uint32_t first, uint32_t last, uint32_t axis_last, uint32
         walked[count] = slc_twin_next_region(walked[count - 1], last, axis_last, step);
         count++;
     }
+    uint32_t length = last >= first ? last - first : last + axis_last + 1 - first;
     double missed = count == 200 ? 1e9 : 0;
+    if (length >> level < 64) /* longer steps are for more tiles than these */
+        missed += step != 1u << level;
     if (step <= 1u << level)
         for (uint32_t at = first;; at = at == axis_last ? 0 : at + 1) {
             missed += !is_walked(walked, count, at, level);
