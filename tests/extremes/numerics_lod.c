@@ -329,7 +329,7 @@ static void check_half_box(const uint32_t *a, const uint32_t *r, bool device,
 
 const struct numerics_function numerics_lod[NUMERICS_LOD_COUNT] = {
     [NUMERICS_LODS] = {"compute_lods",
-                       {{"finest", "levels", 5e-4, 1e-3}, {"coarsest", "levels", 5e-4, 1e-3}},
+                       {{"finest", "levels", 7e-4, 1e-3}, {"coarsest", "levels", 7e-4, 1e-3}},
                        200000,
                        40000000,
                        make_lods,
@@ -343,7 +343,7 @@ const struct numerics_function numerics_lod[NUMERICS_LOD_COUNT] = {
                                call_quick_levels,
                                check_quick_levels},
     [NUMERICS_SAFE_LEVELS] = {"safe_levels",
-                              {{"lost", "levels", 5e-4, 1e-3}, {"more", "levels", 5e-4, 1e-3}},
+                              {{"lost", "levels", 7e-4, 1e-3}, {"more", "levels", 7e-4, 1e-3}},
                               200000,
                               40000000,
                               make_levels,

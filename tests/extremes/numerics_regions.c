@@ -23,6 +23,13 @@ static void make_region_range(uint64_t i, uint32_t *a)
     float box = i % 3 ? 0 : fabsf(extremes_float(i / 3)), apron = i % 5 ? 0.5625f : 1.5625f;
     a[1] = extremes_bits_of(apron * texel + box);
     a[2] = extremes_bits_of(0.5625f * texel + box);
+    const uint64_t pairs = (uint64_t)EXTREMES_SPECIALS * EXTREMES_SPECIALS;
+    if (i < 5 * pairs) { /* of special values, in all modes */
+        uint64_t pair = i % pairs;
+        a[0] = extremes_bits_of(extremes_specials[pair % EXTREMES_SPECIALS]);
+        a[1] = a[2] = extremes_bits_of(fabsf(extremes_specials[pair / EXTREMES_SPECIALS]));
+        a[3] = (uint32_t)(i / pairs);
+    }
 }
 
 static void call_region_range(const uint32_t *a, uint32_t *r)
