@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { SIZE = 32, PIXELS = SIZE * SIZE };
+enum { SIZE = 16, PIXELS = SIZE * SIZE };
 
 static SluicePicturePair pair_of(const float *a, const float *b, float peak)
 {
@@ -153,7 +153,7 @@ static void predicted_misses_are_those_of_long_double(void **state)
     (void)state;
     struct extremes_row row = {
         .name = "c.predict_feedback_miss.value", .unit = "of the stated error", .bound = 1};
-    uint64_t count = extremes_count(100000, 20000000);
+    uint64_t count = extremes_count(100000, 5000000);
     for (uint64_t i = 0; i < count; i++) {
         SluiceFeedbackRate rate = {.selection = SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS,
                                    .regionWidth = 1 + extremes_random(i) % (1u << i % 13),

@@ -139,7 +139,7 @@ static void compare(struct comparison *c, struct SluiceTextureEntry e, uint64_t 
 static void compare_shapes(struct harness *h, struct comparison *c, const float *anisotropies,
                            uint32_t count)
 {
-    uint64_t turns = extremes_count(1, 60);
+    uint64_t turns = extremes_count(1, 16);
     conform_init(&c->conform, h);
     for (uint32_t s = 0; s < sizeof shapes / sizeof shapes[0]; s++) {
         struct SluiceTextureEntry e =
