@@ -64,4 +64,5 @@ if [ "$quick" = no ]; then
     }
 fi
 
+print_extremes gcc
 end_stages

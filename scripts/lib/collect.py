@@ -2,6 +2,7 @@
 
     collect.py meson BUILD FOLDER        what `meson test` left in FOLDER/meson-logs/*.json
     collect.py tap BUILD TEST FILE RC    the TAP output of one program and its exit status
+    collect.py extremes FOLDER           the same logs' "# extremes:" lines, as a table
     collect.py summary FILE              prints failures, skips with reasons, and the totals
 
 Programs that print TAP count once per subtest, all others once.
@@ -62,18 +63,37 @@ def emit(build, test, facts):
         print("\t".join(" ".join(str(field).split()) for field in row))
 
 
-def collect_meson(build, folder):
+def runs_of(folder):
     logs = [p for p in pathlib.Path(folder, "meson-logs").glob("testlog*.json") if "junit" not in p.name]
     for log in sorted(logs):
         for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
-            run = json.loads(line)
-            good = run["result"] in ("OK", "SKIP", "EXPECTEDFAIL")
-            facts = facts_of(run.get("stdout", ""), run["returncode"], good)
-            emit(build, run["name"], facts)
-            if any(fact[0] == "failed" for fact in facts):
-                print("---- %s: %s (%s)" % (build, run["name"], run["result"]), file=sys.stderr)
-                for stream in ("stdout", "stderr"):
-                    print(run.get(stream, "")[-8000:].rstrip(), file=sys.stderr)
+            yield json.loads(line)
+
+
+def collect_meson(build, folder):
+    for run in runs_of(folder):
+        good = run["result"] in ("OK", "SKIP", "EXPECTEDFAIL")
+        facts = facts_of(run.get("stdout", ""), run["returncode"], good)
+        emit(build, run["name"], facts)
+        if any(fact[0] == "failed" for fact in facts):
+            print("---- %s: %s (%s)" % (build, run["name"], run["result"]), file=sys.stderr)
+            for stream in ("stdout", "stderr"):
+                print(run.get(stream, "")[-8000:].rstrip(), file=sys.stderr)
+
+
+def extremes_of(text):
+    """[name, cases, worst, bound] of each line "# extremes: name | cases | worst | bound"."""
+    lines = (line for line in text.splitlines() if line.startswith("# extremes:"))
+    rows = [[field.strip() for field in line[len("# extremes:"):].split("|")] for line in lines]
+    return [row for row in rows if len(row) == 4]
+
+
+def print_extremes(folder):
+    rows = sorted(row for run in runs_of(folder) for row in extremes_of(run.get("stdout", "")))
+    rows = [["name", "cases", "worst", "bound"]] + rows if rows else []
+    width = [max([len(row[i]) for row in rows], default=0) for i in (0, 1, 3)]
+    for name, cases, worst, bound in rows:
+        print("  %-*s %*s  %-*s %s" % (width[0], name, width[1], cases, width[2], bound, worst))
 
 
 def summary(path):
@@ -99,6 +119,8 @@ def summary(path):
 def main(arguments):
     if len(arguments) == 3 and arguments[0] == "meson":
         collect_meson(arguments[1], arguments[2])
+    elif len(arguments) == 2 and arguments[0] == "extremes":
+        print_extremes(arguments[1])
     elif len(arguments) == 5 and arguments[0] == "tap":
         text = pathlib.Path(arguments[3]).read_text(encoding="utf-8", errors="replace")
         code = int(arguments[4])

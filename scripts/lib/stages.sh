@@ -16,6 +16,12 @@ end_stages() {
     collect summary "$facts"
 }
 
+# print_extremes STAGE: how near the tests of extremes came to the bounds that they check.
+print_extremes() {
+    title "Extremes: the worst that was found, and its bound"
+    collect extremes "$tests_folder/$1"
+}
+
 # fact STATUS STAGE TEST NAME REASON
 fact() { (IFS=$'\t' && printf '%s\n' "$*") >>"$facts"; }
 

@@ -28,6 +28,9 @@ FACTS = {
     "skip_with_a_name_has_its_reason": reasons("1..1\nok 1 - a # SKIP no GPU\n") == ["no GPU"],
     "skip_without_a_name_takes_the_line_before": reasons("1..1\n# no GPU\nok 1 # SKIP a\n") == ["no GPU"],
     "empty_plan_is_one_skip": count("1..0 # SKIP no device\n") == [0, 0, 1],
+    "lines_of_extremes_are_rows": collect.extremes_of("ok 1 - a\n# extremes: b | 3 | 0.5 at 1 | 1 step\n")
+    == [["b", "3", "0.5 at 1", "1 step"]],
+    "other_lines_are_no_rows": collect.extremes_of("# b | 3 | 1 | 1\n# extremes: b | 3\nextremes: b | 1 | 2 | 3\n") == [],
     "late_plan_is_read": count("ok 1 - a\nok 2 - b\n1..2\n") == [2, 0, 0],
 }
 
