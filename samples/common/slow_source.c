@@ -76,23 +76,57 @@ static double send(struct slow_line *line, double now, uint64_t size)
     return line->free_at + line->info.latency;
 }
 
+/** Puts a region on its way at `now`. */
+static bool request(struct slow_source *source, const SluiceImageInfo *info,
+                    const SluiceImageRegion *region, uint64_t now)
+{
+    struct wanted *wanted = add(source, region);
+    if (!wanted)
+        return false;
+    uint64_t size = sluiceFormatRegionSize(info->format, region->width, region->height);
+    wanted->due = send(source->line, (double)now, size);
+    wanted->asked = now;
+    return true;
+}
+
+static SluiceImageRegion whole_level(const SluiceImageInfo *info, uint32_t level, uint32_t layer)
+{
+    uint32_t width = info->width >> level, height = info->height >> level;
+    return (SluiceImageRegion){level, 0, 0, width ? width : 1, height ? height : 1, layer};
+}
+
+/** With the coarser levels, if it is a whole one: they lie together, and are wanted together. */
+static SluiceResult request_all(struct slow_source *source, const SluiceImageRegion *region,
+                                uint64_t now)
+{
+    SluiceImageInfo info;
+    SluiceResult result = sluiceGetImageInfo(source->inner, &info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!request(source, &info, region, now))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    SluiceImageRegion whole = whole_level(&info, region->mipLevel, region->arrayLayer);
+    if (!same_region(region, &whole))
+        return SLUICE_SUCCESS;
+    for (uint32_t level = region->mipLevel + 1; level < info.mipLevelCount; level++) {
+        whole = whole_level(&info, level, region->arrayLayer);
+        if (!find(source, &whole) && !request(source, &info, &whole, now))
+            break; /* it is asked for later */
+    }
+    return SLUICE_SUCCESS;
+}
+
 /** Asks for the region; SUCCESS once it has come. The line is locked. */
 static SluiceResult ask(struct slow_source *source, const SluiceImageRegion *region)
 {
     uint64_t now = source->line->info.clock(source->line->info.user_data);
     forget(source, now);
-    struct wanted *wanted = find(source, region);
-    if (!wanted) {
-        SluiceImageInfo info;
-        SluiceResult result = sluiceGetImageInfo(source->inner, &info);
+    if (!find(source, region)) {
+        SluiceResult result = request_all(source, region, now);
         if (result != SLUICE_SUCCESS)
             return result;
-        wanted = add(source, region);
-        if (!wanted)
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-        uint64_t size = sluiceFormatRegionSize(info.format, region->width, region->height);
-        wanted->due = send(source->line, (double)now, size);
     }
+    struct wanted *wanted = find(source, region);
     wanted->asked = now;
     return (double)now < wanted->due ? SLUICE_NOT_READY : SLUICE_SUCCESS;
 }

@@ -38,7 +38,8 @@ void slow_line_finish(struct slow_line *line);
  * asked for; it has gone through the line when its bytes have, and one latency later it is there.
  * Until then reads of it answer NOT_READY, then they get it from `inner`. It stays there until a
  * second has passed without a read of it: reads of several regions begin anew where one of them has
- * not come. Any thread. Errors: OUT_OF_HOST_MEMORY, of reads also; what `inner` says.
+ * not come. A level that is asked for whole brings the coarser ones with it, which are read with
+ * it. Any thread. Errors: OUT_OF_HOST_MEMORY, of reads also; what `inner` says.
  */
 SluiceResult slow_source_create(struct slow_line *line, SluiceImageSource *inner,
                                 SluiceImageSource **source);

@@ -254,7 +254,8 @@ bool comparison_run(const struct comparison *comparison, struct written_frames *
     if (done) {
         choose(&pass, frames, is_written, written);
         pass.work = find_metrics;
-        done = pass.count == 0 || run_pass(&pass, "SSIM and FLIP");
+        const char *what = settings->metrics_every > 0 ? "SSIM and FLIP" : "writing pictures";
+        done = pass.count == 0 || run_pass(&pass, what);
     }
     free(frames);
     free(is_written);

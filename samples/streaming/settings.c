@@ -135,8 +135,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_REAL, "fade", "SECONDS", &s->fade,
          "that a texel takes to become one level sharper; 0: at once", 0, 3600},
         {OPTION_REAL, "source-latency", "MS", &s->source_latency,
-         "that each read takes longer, whatever else is read meanwhile, in\nthe frames' time "
-         "(--fps)",
+         "that each read takes longer, whatever else is read meanwhile, in\n"
+         "the frames' time (--fps); no two runs are quite the same then",
          0, 60000},
         {OPTION_REAL, "source-bandwidth", "MB/S", &s->source_bandwidth,
          "10^6 bytes of texels per second of the frames' time that all\nreads share; 0: no limit",
@@ -154,7 +154,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_TEXT, "reference", "DIR", &s->reference,
          "compare with the frames in DIR instead, which are drawn with\n"
          "everything resident before the walk; only once, unless DIR's\n"
-         "were drawn of something else or in another way"},
+         "were drawn of something else or in another way: to compare runs\n"
+         "with each other, give them the same of the four settings below"},
         {OPTION_UINT, "reference-anisotropy", "N", &s->reference_anisotropy,
          "of the frames in DIR; 0: as --anisotropy", 0, 16},
         {OPTION_REAL, "reference-lod-bias", "B", &s->reference_lod_bias,

@@ -140,6 +140,34 @@ static void what_came_stays_for_a_second_without_reads(void **state)
     tear_down(&rig);
 }
 
+static SluiceResult read_level(struct rig *rig, uint64_t now, uint32_t level)
+{
+    uint8_t texels[SIZE * SIZE];
+    SluiceImageRegion region = {level, 0, 0, SIZE >> level, SIZE >> level, 0};
+    rig->now = now;
+    return sluiceReadImageRegion(rig->slow, &region, texels, SIZE >> level);
+}
+
+static void whole_levels_bring_the_coarser_ones(void **state)
+{
+    (void)state;
+    struct rig rig;
+    set_up(&rig, 300, 1);
+    /* 64 bytes of level 3, 16 of level 4, 4 of level 5, 1 of level 6 */
+    CHECK_RESULT(read_level(&rig, 5000, 3), SLUICE_NOT_READY);
+    CHECK_RESULT(read_level(&rig, 5363, 3), SLUICE_NOT_READY);
+    CHECK_OK(read_level(&rig, 5364, 3));
+    CHECK_RESULT(read_level(&rig, 5364, 4), SLUICE_NOT_READY);
+    CHECK_RESULT(read_level(&rig, 5384, 6), SLUICE_NOT_READY);
+    CHECK_OK(read_level(&rig, 5385, 6));
+    CHECK_OK(read_level(&rig, 5385, 5));
+    CHECK_OK(read_level(&rig, 5385, 4));
+    CHECK_RESULT(read_level(&rig, 5385, 2), SLUICE_NOT_READY);
+    CHECK_RESULT(read_level(&rig, 5385 + 256 + 299, 2), SLUICE_NOT_READY);
+    CHECK_OK(read_level(&rig, 5385 + 256 + 300, 2));
+    tear_down(&rig);
+}
+
 static void without_latency_and_limit_nothing_waits(void **state)
 {
     (void)state;
@@ -174,6 +202,7 @@ int main(void)
         cmocka_unit_test(bytes_go_through_the_line_one_after_another),
         cmocka_unit_test(sources_share_the_line),
         cmocka_unit_test(what_came_stays_for_a_second_without_reads),
+        cmocka_unit_test(whole_levels_bring_the_coarser_ones),
         cmocka_unit_test(without_latency_and_limit_nothing_waits),
         cmocka_unit_test(errors_of_the_source_come_through),
     };
