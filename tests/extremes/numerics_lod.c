@@ -152,7 +152,7 @@ static void check_quick_levels(const uint32_t *a, const uint32_t *r, bool device
     float bias = numerics_real(a, 4);
     if (!(numerics_real(r, 3) < SLC_TWIN_QUICK_SQUARES) || !(fabsf(bias) <= SLC_TWIN_QUICK_BIAS))
         return; /* not to be used then */
-    if (device && has_nan(a + 5, 1))
+    if (has_nan(a, 4) || (device && has_nan(a + 5, 1)))
         return;
     struct numerics_lods exact = exact_lods(a, bias, numerics_real(a, 5));
     check_levels(&exact, numerics_real(a, 5), a[6], r, rows, a);

@@ -36,9 +36,12 @@ static void check_fold(const uint32_t *a, const uint32_t *r, bool device, struct
     bool periodic =
         a[1] == SLUICE_ADDRESS_MODE_REPEAT || a[1] == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
     const long double wanted[2] = {exact_page_fold(c, a[1], a[2]), numerics_exact_fold(c, a[1])};
-    for (uint32_t i = 0; i < 2; i++)
-        extremes_add(&rows[i], (double)fabsl(numerics_real(r, i) - wanted[i]), "%.9g, mode %u",
-                     (double)c, a[1]);
+    for (uint32_t i = 0; i < 2; i++) {
+        long double error = fabsl(numerics_real(r, i) - wanted[i]);
+        if (a[1] == SLUICE_ADDRESS_MODE_REPEAT) /* 0 and 1 are one place */
+            error = fminl(error, fabsl(1 - error));
+        extremes_add(&rows[i], (double)error, "%.9g, mode %u", (double)c, a[1]);
+    }
     long double near = numerics_real(r, 2), moved = fabsl(near - (long double)c);
     if (periodic) /* by whole periods, to 0 to 2 */
         moved = near >= 0 && near <= 2 ? fabsl(remainderl(near - (long double)c, 2))
@@ -99,8 +102,13 @@ static void check_page_axis(const uint32_t *a, const uint32_t *r, bool device,
     if (!numerics_are_finite(a, 1))
         return;
     long double c = exact_page_fold(numerics_real(a, 0), a[1], a[2]), scale = n / 16384.0L;
-    long double errors[2] = {axis_error(c * n - 0.5L, a[1], n, r),
-                             nearest_error(c * n, a[1], n, (int32_t)r[3])};
+    long double errors[2] = {INFINITY, INFINITY};
+    int turns = a[1] == SLUICE_ADDRESS_MODE_REPEAT; /* 0 and 1 are one place */
+    for (int turn = -turns; turn <= turns; turn++) {
+        long double place = (c + turn) * n;
+        errors[0] = fminl(errors[0], axis_error(place - 0.5L, a[1], n, r));
+        errors[1] = fminl(errors[1], nearest_error(place, a[1], n, (int32_t)r[3]));
+    }
     for (int i = 0; i < 2; i++)
         extremes_add(&rows[i ? 2 : n > 1024], (double)(errors[i] / fmaxl(1, scale)),
                      "%.9g of %u texels, mode %u", (double)numerics_real(a, 0), a[2], a[1]);
@@ -210,14 +218,13 @@ static void make_demand_lod(uint64_t i, uint32_t *a)
 static void check_demand_lod(const uint32_t *a, const uint32_t *r, bool device,
                              struct extremes_row *rows)
 {
-    (void)device;
     const float dx[2] = {numerics_real(a, 0), numerics_real(a, 1)};
     const float dy[2] = {numerics_real(a, 2), numerics_real(a, 3)};
     long double sum = 0;
     for (uint32_t i = 0; i < 4; i++)
         sum += fabsl(numerics_real(a, i));
-    if (!(sum <= 2.99e38L && sum >= 0x1p-126L))
-        return;
+    if (!(sum <= 2.99e38L && sum >= (device ? 0x1p-100L : 0x1p-126L)))
+        return; /* parts of a smaller one may be denormal, and 0 */
     struct numerics_lods lods = numerics_exact_lods(dx, dy, numerics_real(a, 4));
     extremes_add(rows, (double)fabsl(numerics_real(r, 0) - lods.finest),
                  "dx %g %g dy %g %g, %g to 1", (double)dx[0], (double)dx[1], (double)dy[0],

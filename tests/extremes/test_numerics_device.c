@@ -66,7 +66,8 @@ static void check_functions(struct harness *h, uint32_t first, uint32_t count)
         const struct numerics_function *f = numerics_find(function);
         struct extremes_row rows[NUMERICS_ROWS];
         numerics_begin(f, true, rows);
-        uint64_t cases = extremes_count(f->quick, f->many / 4);
+        uint64_t many = f->many / 4 > f->quick ? f->many / 4 : f->quick;
+        uint64_t cases = extremes_count(f->quick, many);
         for (uint64_t at = 0; at < cases; at += CAPACITY)
             run_cases(&c, function, at, (uint32_t)(cases - at < CAPACITY ? cases - at : CAPACITY),
                       rows);

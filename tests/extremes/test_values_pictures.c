@@ -241,8 +241,11 @@ static void check_filtered(struct scene *scene, enum form form, uint32_t texture
     extremes_end(&row);
 }
 
+/* Divisions by 255 may be products, denormals 0: FLIP grows with the root of a difference. */
+#define SHOWN_TOLERANCE 1e-3
+
 /* A NaN counts as 0 and an infinity as the largest there is, so file and store look alike. */
-static void check_alike(const float *a, const float *b, float peak)
+static void check_alike(const float *a, const float *b, float peak, double tolerance)
 {
     SluicePicturePair pair = {.pA = a,
                               .pB = b,
@@ -253,7 +256,7 @@ static void check_alike(const float *a, const float *b, float peak)
     double ssim, flip;
     CHECK_OK(sluiceComputeSsim(&pair, NULL, NULL, &ssim));
     CHECK_OK(sluiceComputeFlip(&pair, 0, NULL, NULL, &flip));
-    if (ssim != 1 || flip != 0)
+    if (!(ssim >= 1 - tolerance && flip <= tolerance))
         fail_msg("SSIM %g, FLIP %g", ssim, flip);
 }
 
@@ -272,10 +275,10 @@ static void values_reach_shaders_and_metrics(void **state)
         check_fetched(&scene, (enum form)form, textures[form], shown);
         if (form != FORM_FILE) {
             check_filtered(&scene, (enum form)form, textures[form]);
-            check_alike(shown, stored, form == FORM_FLOAT ? 0x1p120f : 65504.0f);
+            check_alike(shown, stored, form == FORM_FLOAT ? 0x1p120f : 65504.0f, SHOWN_TOLERANCE);
         }
         if (form == FORM_HALF)
-            check_alike(file, stored, 65504.0f);
+            check_alike(file, stored, 65504.0f, 0);
         free(shown);
         free(file);
         free(stored);
