@@ -41,10 +41,6 @@ MAKER(CreateComputePipelines,
 MAKER(AllocateDescriptorSets,
       (VkDevice device, const VkDescriptorSetAllocateInfo *info, VkDescriptorSet *made),
       (device, info, made))
-MAKER(AllocateMemory,
-      (VkDevice device, const VkMemoryAllocateInfo *info, const VkAllocationCallbacks *cb,
-       VkDeviceMemory *made),
-      (device, info, cb, made))
 MAKER(BindBufferMemory,
       (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
       (device, buffer, memory, offset))
@@ -59,6 +55,22 @@ MAKER(GetSemaphoreCounterValue, (VkDevice device, VkSemaphore semaphore, uint64_
 MAKER(QueueBindSparse,
       (VkQueue queue, uint32_t count, const VkBindSparseInfo *infos, VkFence fence),
       (queue, count, infos, fence))
+
+/* What is given back is not counted: the test says when there is memory again. */
+static PFN_vkAllocateMemory next_AllocateMemory;
+static VKAPI_ATTR VkResult VKAPI_CALL layer_AllocateMemory(VkDevice device,
+                                                           const VkMemoryAllocateInfo *info,
+                                                           const VkAllocationCallbacks *cb,
+                                                           VkDeviceMemory *memory)
+{
+    uint64_t size = info->allocationSize >= 1u << 18 ? info->allocationSize : 0;
+    if (fails())
+        return failing_layer.failure;
+    if (size > failing_layer.memory_left)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    failing_layer.memory_left -= size;
+    return next_AllocateMemory(device, info, cb, memory);
+}
 
 /* A device that is lost answers a wait at once. */
 static PFN_vkWaitSemaphores next_WaitSemaphores;
@@ -115,6 +127,9 @@ PFN_vkVoidFunction failing_layer_get(VkInstance instance, const char *name)
 
 void failing_layer_set(struct harness *h, uint64_t call, bool fails_on, VkResult failure)
 {
-    failing_layer = (struct failing_layer){
-        .get = h->get, .failing_call = call, .fails_on = fails_on, .failure = failure};
+    failing_layer = (struct failing_layer){.get = h->get,
+                                           .failing_call = call,
+                                           .fails_on = fails_on,
+                                           .failure = failure,
+                                           .memory_left = UINT64_MAX};
 }

@@ -11,12 +11,13 @@ struct failing_layer {
     uint64_t failing_call;         ///< from 1; 0: none
     bool fails_on;                 ///< and all later ones
     VkResult failure;
+    uint64_t memory_left;    ///< bytes of allocations of 256 KiB and more
     uint32_t waited_in_vain; ///< waits that were asked for after a failure that goes on
 };
 
 extern struct failing_layer failing_layer;
 
-/** Counts from 0; `call` fails. */
+/** Counts from 0; `call` fails. Memory is as much as there is. */
 void failing_layer_set(struct harness *h, uint64_t call, bool fails_on, VkResult failure);
 PFN_vkVoidFunction failing_layer_get(VkInstance instance, const char *name);
 
