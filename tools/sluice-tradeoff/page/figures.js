@@ -83,7 +83,7 @@ function withUnit(text, unit) {
 
 function formatValue(value, unit, count = 3) {
   const [divisor, shown] = scaleOf(unit, Math.abs(value));
-  return withUnit(digits(value / divisor, count), shown);
+  return Number.isNaN(value) ? digits(value, count) : withUnit(digits(value / divisor, count), shown);
 }
 
 /** As many digits as the half width makes sense of. */
