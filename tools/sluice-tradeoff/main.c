@@ -1,0 +1,30 @@
+/* Sweeps the settings of a scene and shows what each costs: see --help and docs/trade-offs.md. */
+#include "commands.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#ifdef HAVE_PLAY
+#include "play.h"
+#endif
+
+static const struct command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} commands[] = {
+    {"sweep", command_sweep},
+    {"page", command_page},
+#ifdef HAVE_PLAY
+    {"play", play_main},
+#endif
+};
+
+int main(int argc, char **argv)
+{
+    for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++)
+        if (strcmp(argv[1], commands[i].name) == 0) {
+            argv[1] = argv[0];
+            return commands[i].run(argc - 1, argv + 1);
+        }
+    return command_sweep(argc, argv);
+}
