@@ -50,12 +50,25 @@ static char *one_line(const char *text, size_t length)
     return line;
 }
 
+/* "[what]" or "(a number)" at the end; NULL: neither. */
+static char *find_default(char *meaning)
+{
+    size_t length = strlen(meaning);
+    char *bracket = strrchr(meaning, '['), *round = strrchr(meaning, '('), *end;
+    if (length > 0 && meaning[length - 1] == ']')
+        return bracket;
+    if (!round || meaning[length - 1] != ')')
+        return NULL;
+    strtod(round + 1, &end);
+    return end != round + 1 && end == meaning + length - 1 ? round : NULL;
+}
+
 static void split_default(struct help_entry *entry)
 {
     size_t length = strlen(entry->meaning);
-    char *open = strrchr(entry->meaning, '[');
+    char *open = find_default(entry->meaning);
     entry->default_value = memory_copy_text("");
-    if (!open || length == 0 || entry->meaning[length - 1] != ']')
+    if (!open)
         return;
     entry->meaning[length - 1] = '\0';
     free(entry->default_value);
@@ -65,21 +78,33 @@ static void split_default(struct help_entry *entry)
     *open = '\0';
 }
 
+/* The operand is one space away; where it has a column of its own it is a word of capitals, two
+ * spaces before what it means. Nothing: the option stands alone. */
+static size_t operand_length(const char *at, const char **start)
+{
+    const char *end;
+    *start = at + (*at == '=' || *at == ' ');
+    if (*at == ' ' && at[1] == ' ')
+        *start = at + strspn(at, " ");
+    size_t line = strcspn(*start, "\n");
+    end = strstr(*start, "  ");
+    size_t length = end && (size_t)(end - *start) < line ? (size_t)(end - *start) : line;
+    if (at[0] == ' ' && at[1] == ' ' &&
+        (length == line || strspn(*start, "ABCDEFGHIJKLMNOPQRSTUVWXYZ|/") != length))
+        return 0;
+    return length;
+}
+
 bool help_text_find(const char *help, const char *name, struct help_entry *entry)
 {
-    const char *at = find_line(help, name);
+    const char *at = find_line(help, name), *operand;
     *entry = (struct help_entry){0};
     if (!at)
         return false;
-    const char *end = entry_end(at), *line_end = at + strcspn(at, "\n");
-    at += 2 + strlen(name);
-    /* The operand is one space away, what it means two at least, or on the next line. */
-    const char *words = strstr(at, "  ");
-    if (!words || words > line_end)
-        words = line_end;
-    entry->operand = one_line(at, (size_t)(words - at));
-    if (entry->operand[0] == '=' || entry->operand[0] == ' ')
-        memmove(entry->operand, entry->operand + 1, strlen(entry->operand));
+    const char *end = entry_end(at);
+    size_t length = operand_length(at + 2 + strlen(name), &operand);
+    entry->operand = one_line(operand, length);
+    const char *words = operand + length;
     while (*words == ' ' || *words == '\n')
         words++;
     entry->meaning = one_line(words, words < end ? (size_t)(end - words) : 0);

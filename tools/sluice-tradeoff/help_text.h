@@ -1,4 +1,7 @@
-/** What a --help text says of an option: "  --name OPERAND   words over lines [default]". */
+/**
+ * What a --help text says of an option: "  --name OPERAND   words over lines [default]", or with
+ * the operand in a column of its own and a number in round brackets.
+ */
 #ifndef SLUICE_TRADEOFF_HELP_TEXT_H
 #define SLUICE_TRADEOFF_HELP_TEXT_H
 

@@ -8,7 +8,7 @@
 #include "../../samples/common/text.h"
 #include "help_text.h"
 
-#define MOST_POINTS 10000u
+#define MOST_POINTS 1000u
 #define MOST_GRID_SETTINGS 16u
 
 /** Values of one setting. */
