@@ -8,28 +8,25 @@
 #include "../../samples/common/files.h"
 #include "../../samples/common/text.h"
 #include "folders.h"
+#include "page.h"
 #include "recommend.h"
 #include "results.h"
 #include "session.h"
 #include "table.h"
-#ifdef HAVE_PAGE
-#include "page.h"
-#endif
 
-static bool write_file(const char *results, const char *name, const struct session *s,
-                       const struct sweep_recommendation *recommendations)
+/* As many of the files as can be written. */
+static bool write_files(const struct session *s, const struct sweep_recommendation *recommendations)
 {
-    char *path = memory_text("%s/%s", results, name);
-    bool written = strcmp(name, "points.csv") == 0 ? results_write_points(&s->sweep, path)
-                   : strcmp(name, "runs.csv") == 0
-                       ? results_write_runs(&s->runs, path)
-#ifdef HAVE_PAGE
-                       : page_write(&s->sweep, recommendations, RECOMMEND_COUNT, path);
-#else
-                       : recommendations != NULL;
-#endif
-    free(path);
-    return written;
+    char *points = memory_text("%s/points.csv", s->options.results);
+    char *runs = memory_text("%s/runs.csv", s->options.results);
+    char *page = memory_text("%s/page.html", s->options.results);
+    bool good = results_write_points(&s->sweep, points);
+    good = results_write_runs(&s->runs, runs) && good;
+    good = page_write(&s->sweep, recommendations, RECOMMEND_COUNT, page) && good;
+    free(points);
+    free(runs);
+    free(page);
+    return good;
 }
 
 /* Everything that is made of the runs. */
@@ -37,15 +34,12 @@ static int show_results(struct session *s)
 {
     struct sweep_recommendation recommendations[RECOMMEND_COUNT];
     const struct scene_roles *roles = &s->options.scene->roles;
-    const char *results = s->options.results;
     results_collect(&s->runs, &s->sweep);
     const struct recommend_metrics metrics = {results_pick(&s->sweep, roles->quality),
                                               results_pick(&s->sweep, roles->memory),
                                               results_pick(&s->sweep, roles->time)};
     recommend(&s->sweep, &metrics, recommendations);
-    bool good = write_file(results, "points.csv", s, recommendations);
-    good = write_file(results, "runs.csv", s, recommendations) && good;
-    good = write_file(results, "page.html", s, recommendations) && good;
+    bool good = write_files(s, recommendations);
     if (s->options.json)
         table_print_json(&s->runs, recommendations, RECOMMEND_COUNT);
     else

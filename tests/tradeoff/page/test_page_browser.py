@@ -1,0 +1,94 @@
+"""What a browser makes of the page. Prints TAP; skipped where there is no Chromium.
+
+Usage: test_page_browser.py WRITE_PAGE FOLDER
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import page_file
+
+POINTS, DONE, BASE, UNKNOWN = 11, 9, 2, 5
+
+chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+if not chromium:
+    print("1..0 # SKIP there is no Chromium")
+    sys.exit(0)
+
+
+def drawn(kind):
+    """The page's elements after its scripts ran; None where the browser itself does not start."""
+    path = page_file.write(sys.argv[1], kind, sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory() as profile:
+        run = subprocess.run(
+            [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--disable-sync",
+             "--disable-dev-shm-usage", f"--user-data-dir={profile}", "--dump-dom", path.as_uri()],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=120, check=False)
+    text = run.stdout.decode(errors="replace")
+    return page_file.Page(text) if "<body" in text else None
+
+
+pages = {kind: drawn(kind) for kind in ("plain", "hostile", "bare", "long")}
+if not all(pages.values()):
+    print("1..0 # SKIP Chromium does not start here")
+    sys.exit(0)
+plain, hostile, bare, long_page = pages.values()
+
+
+def ready(page):
+    trouble = next(attributes for _, attributes in page.elements if attributes.get("id") == "trouble")
+    if page.texts.get("trouble"):
+        print("#", page.texts["trouble"].strip().replace("\n", "; "))
+    return page.tags("html")[0].get("data-ready") == "yes" and "hidden" in trouble
+
+
+def marks(page, word=None):
+    """Points of the marks in all fronts, one list per front; the large one comes first."""
+    found = []
+    for tag, attributes in page.elements:
+        if tag == "svg" and "against" in (attributes.get("aria-label") or ""):
+            found.append([])
+        words = (attributes.get("class") or "").split()
+        if found and "data-point" in attributes and (word is None or word in words):
+            found[-1].append(int(attributes["data-point"]))
+    return found
+
+
+def memory(i):
+    return 1 + 5 * i % 11
+
+
+def flip(i):
+    return 1 + 7 * i % 11
+
+
+def best():
+    """By the definition: no other run is as good in both and better in one."""
+    return {i for i in range(DONE) if not any(memory(k) <= memory(i) and flip(k) <= flip(i) and k != i for k in range(DONE))}
+
+
+rows = plain.texts["table"]
+FACTS = {f"{kind}_page_runs_without_errors": ready(page) for kind, page in pages.items()}
+FACTS.update({
+    "the_front_shows_every_run": sorted(marks(plain)[0]) == list(range(DONE)),
+    "stairs_go_through_what_nothing_beats": set(marks(plain, "best")[0]) == best(),
+    "runs_without_a_figure_are_left_out_of_its_front": any(sorted(front) == [i for i in range(DONE) if i != UNKNOWN] for front in marks(plain)),
+    # three figures for each of two settings that are numbers, and three columns over the frames
+    "plots_have_lines": len([a for a in plain.of_class("line") if (a.get("d") or "").startswith("M")]) == 3 * 2 + 3,
+    "no_coordinate_is_lost": not any("NaN" in (value or "") or "Infinity" in (value or "")
+        for page in pages.values() for tag, a in page.elements if tag in ("path", "line", "circle", "rect", "text", "g", "svg") for value in a.values()),
+    "table_has_all_points": all(text in rows for text in ("budget 16", "it ended with status 1", "not run yet", "\u221e\u00a0dB")),
+    "failures_have_their_reasons": "budget 4: it ended with status 1" in plain.texts["failed"],
+    "rule_that_no_run_keeps_is_said": "No run keeps to this rule" in plain.texts["cards"],
+    "pictures_are_shown": len([a for a in plain.tags("img") if a["src"].startswith("data:image/png;base64,")]) >= 4,
+    "missing_pictures_and_frames_are_said": "no pictures on this page" in bare.texts["picture-body"]
+        and "No run has figures over its frames" in bare.texts["series-plots"],
+    "every_control_has_a_label": not any(page.unnamed for page in pages.values()),
+    "hostile_words_run_nothing": hostile.title != "taken" and not any("onerror" in a for _, a in hostile.elements)
+        and not any(a.get("src") == "x" for a in hostile.tags("img")),
+})
+sys.exit(page_file.report(FACTS))
