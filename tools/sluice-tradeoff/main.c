@@ -1,12 +1,9 @@
 /* Sweeps the settings of a scene and shows what each costs: see --help and docs/trade-offs.md. */
 #include "commands.h"
+#include "play.h"
 
 #include <stddef.h>
 #include <string.h>
-
-#ifdef HAVE_PLAY
-#include "play.h"
-#endif
 
 static const struct command {
     const char *name;
@@ -14,9 +11,7 @@ static const struct command {
 } commands[] = {
     {"sweep", command_sweep},
     {"page", command_page},
-#ifdef HAVE_PLAY
     {"play", play_main},
-#endif
 };
 
 int main(int argc, char **argv)

@@ -8,7 +8,7 @@
 #include "../../samples/common/text.h"
 
 #define DEFAULT_RESULTS "tradeoff-out"
-#define QUICK_REPEATS 2u
+#define QUICK_REPEATS 3u
 #define FULL_REPEATS 5u
 #define DEFAULT_RUN_LIMIT 600.0
 

@@ -114,6 +114,8 @@ static bool find_build(struct program *program, const char *folder)
     bool read = hash_file(program->arguments.items[0], &program->build);
     if (!read)
         text_say("sluice-tradeoff: %s: %s", program->arguments.items[0], strerror(errno));
+    for (size_t i = 1; i < program->arguments.count; i++)
+        hash_file(program->arguments.items[i], &program->build); /* a trace, if there is one */
     if (read && ask_help(program, list_path, trace))
         hash_libraries(list_path, &program->build);
     unlink(list_path);

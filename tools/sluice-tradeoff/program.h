@@ -10,7 +10,7 @@
 /** Zeroed is empty. */
 struct program {
     struct text_list arguments; ///< its path, and what always stands behind it
-    uint64_t build;             ///< hash over its file and over Sluice's libraries it is linked to
+    uint64_t build;             ///< hash over its files, and Sluice's libraries it is linked to
     char *help;                 ///< what it prints for --help
 };
 

@@ -9,7 +9,7 @@
 
 #include "statistics.h"
 
-#define RUNS_WITHOUT_THE_FIRST 3
+#define RUNS_WITHOUT_THE_FIRST 5
 
 static bool is_measured(const struct runs *runs, const char *name)
 {
