@@ -14,16 +14,14 @@ function withoutEqual(value, unit) {
   return unit === 'dB' && value >= equalPsnr ? Infinity : value;
 }
 
-/** {mean, half, least, most, count} of a metric at a point; NaN where nothing is known. */
+/** {mean, half, count} of a metric at a point; NaN where nothing is known. */
 function estimate(index, metric) {
   const given = points[index].estimates && metric >= 0 ? points[index].estimates[metric] : null;
   if (!given)
-    return {mean: NaN, half: NaN, least: NaN, most: NaN, count: 0};
-  const unit = sweep.metrics[metric].unit;
-  const [mean, half, least, most] = given.slice(0, 4).map(number);
-  const shown = withoutEqual(mean, unit);
-  return {mean: shown, half: Number.isFinite(shown) ? half : NaN, least: withoutEqual(least, unit),
-    most: withoutEqual(most, unit), count: given[4]};
+    return {mean: NaN, half: NaN, count: 0};
+  const [mean, half, count] = given.map(number);
+  const shown = withoutEqual(mean, sweep.metrics[metric].unit);
+  return {mean: shown, half: Number.isFinite(shown) ? half : NaN, count};
 }
 
 const known = sweep.metrics.map((metric, i) => i).filter(m => done.some(i => !Number.isNaN(estimate(i, m).mean)));
