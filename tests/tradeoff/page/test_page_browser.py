@@ -133,6 +133,8 @@ FACTS.update({
     "csv_has_a_line_per_point": len(csv_lines) == 1 + POINTS and csv_lines[1 + UNKNOWN].startswith("6,done,1/16,8,fast,"),
     "pages_that_were_used_have_no_errors": all(ready(page) for page in after.values()),
     "every_control_has_a_label": not any(page.unnamed for page in pages.values()),
+    "letters_that_turn_words_around_are_written_out": "\\u202e =1+1" in hostile.texts["title"] and "\u202e" not in "".join(
+        text for identity, text in hostile.texts.items() if not identity.endswith("-data")),
     "hostile_words_run_nothing": hostile.title != "taken" and not any("onerror" in a for _, a in hostile.elements)
         and not any(a.get("src") == "x" for a in hostile.tags("img")),
 })

@@ -81,7 +81,7 @@ function betterText(metrics, box) {
 function drawNames(indices, place, box) {
   const used = [];
   return indices.filter(i => roles(i).length > 0).map(i => {
-    const [x, y] = place(i), text = roles(i).join(', ');
+    const [x, y] = place(i), text = roles(i).join(', ').slice(0, 40);
     const start = x < box.left + (box.right - box.left) * 0.62;
     let at = y - 10 < box.top + 12 ? y + 20 : y - 10;
     while (used.some(u => Math.abs(u[0] - x) < 130 && Math.abs(u[1] - at) < 14))

@@ -65,7 +65,7 @@ function showRecommendations() {
   if (base >= 0)
     byId('cards-table').append(recommendationTable());
   else
-    byId('cards-table').append(html('p', {class: 'muted'}, 'The base failed, so there is nothing to compare with.'));
+    byId('cards-table').append(html('p', {class: 'muted'}, 'There are no figures of the base, so there is nothing to compare with.'));
 }
 
 function showChosen() {
