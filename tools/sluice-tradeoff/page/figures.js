@@ -91,7 +91,7 @@ function formatEstimate(e, unit) {
     return [formatValue(e.mean, unit, 4), ''];
   const [divisor, shown] = scaleOf(unit, Math.abs(e.mean));
   const half = e.half / divisor, mean = e.mean / divisor;
-  const count = mean === 0 ? 2 : Math.ceil(Math.log10(Math.abs(mean) / half)) + 2;
+  const count = mean === 0 ? 2 : Math.ceil(Math.log10(Math.abs(mean) / half)) + 1;
   return [withUnit(digits(mean, Math.min(Math.max(count, 2), 5)), shown), plusMinus + digits(half, 2)];
 }
 

@@ -24,15 +24,15 @@ function frontOf(x, y) {
   return front;
 }
 
-const pairs = [['resident_bytes_peak', 'flip_mean'], ['gpu_ms_median', 'psnr_mean_db'], ['frame_ms_median', 'psnr_mean_db'],
-  ['bytes_read', 'flip_mean'], ['host_ms_median', 'frames_until_sharp_p99'], ['resident_bytes_peak', 'psnr_lowest_db'],
+const pairs = [['resident_bytes_peak', 'flip_mean'], ['gpu_ms_median', 'psnr_mean_db'], ['time', 'flip_mean'], ['bytes_read', 'flip_mean'],
   ['resident_bytes_peak', 'levels_too_coarse'], ['loaded_bytes', 'levels_too_coarse'], ['resident_bytes_peak', 'frames_until_sharp_p99'],
-  ['resident_bytes_peak', 'loaded_per_needed'], ['time', 'flip_mean'], ['core_us_per_frame', 'levels_too_coarse'], ['bytes_read', 'psnr_lowest_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
+  ['resident_bytes_peak', 'psnr_lowest_db'], ['core_us_per_frame', 'levels_too_coarse'], ['resident_bytes_peak', 'loaded_per_needed'],
+  ['frame_ms_median', 'psnr_mean_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
 
 /** Pairs of metrics that are there; whatever there is, if none of the usual ones. */
 function usualPairs() {
   const there = pairs.map(pair => pair.map(findMetric)).filter(pair => pair[0] >= 0 && pair[1] >= 0);
-  const found = there.filter(pair => done.length < 2 || !pair.some(isConstant)).slice(0, 6);
+  const found = there.filter(pair => done.length < 2 || !pair.some(isConstant)).slice(0, 4);
   return found.length > 0 || known.length < 2 ? found : [[known[0], known[1]]];
 }
 
