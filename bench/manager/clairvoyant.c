@@ -1,23 +1,11 @@
 /**
  * Plays a trace of the feedback-replay harness with a policy that knows the whole of it, measured
- * as the harness measures a manager. In the folder of the harness (sltrace.h):
+ * as the harness measures a manager; run.sh builds it:
  *
- *     cc -std=c11 -O2 -I. SLUICE/bench/manager/clairvoyant*.c -lm -o clairvoyant
- *     ./clairvoyant traces/t1000.slt maxHeaps=4
+ *     clairvoyant traces/t1000.slt maxHeaps=4
  *
- * The rules are the harness's: a frame's maps are sampled before they are processed; a tile handed
- * out in a frame holds its slot from then on and is there for the maps of frame + latency + 1; at
- * most `budget` tiles are handed out per frame; a tile counts only if all coarser ones are there.
- * Nothing is loaded before frame 0, so the first latency + 1 frames see nothing. Every texture's
- * packed tiles are loaded and never dropped, and `cap` slots are shared with them. The residency
- * of followers is not sampled; their tiles are loaded and dropped with the primary's all the same.
- *
- * What is exact:
- * - "Belady": the fewest uploads with no level too coarse at all, whatever time they take.
- * - "bound": no schedule under these limits has fewer levels too coarse (clairvoyant_prices.c).
- * What is heuristic, and so an example of what can be reached:
- * - "deadline": earliest next use first, coarse levels first among equals; drops the farthest.
- * - "priced": what is worth most at the prices that gave the bound (clairvoyant_schedule.c).
+ * tools/clairvoyant/clairvoyant.h says by what rules, what is exact ("Belady", "bound") and what is
+ * heuristic ("deadline", "priced").
  *
  * A texture is on screen between its maps too, but the harness looks only when a map is read. With
  * hold=0 a schedule may use that: drop a tile after a map and bring it back just before the next.
@@ -45,7 +33,6 @@ struct options {
 
 static const char usage[] =
     "usage: clairvoyant [--json] TRACE [KEY=VALUE...]\n"
-    "       clairvoyant --self-test\n"
     "  maxHeaps=0      cap on the heaps; 0: none\n"
     "  heapTiles=1024  tiles per heap\n"
     "  budget=256      uploads per frame\n"
@@ -158,31 +145,6 @@ static bool write_plan(const struct options *o, const struct workload *w,
     return good;
 }
 
-/**
- * Searches for prices twice, because the one that counts whole crowds mostly ends with the better
- * schedule and the other with the better bound. The best of both is what is told.
- */
-static struct outcome play_priced(const struct options *o, const struct workload *w,
-                                  const struct limits *limits, uint64_t known, bool *planned)
-{
-    static const double crowds[] = {1e6, 4};
-    struct outcome best = {.deficit = UINT64_MAX};
-    double bound = 0, regions = w->regions ? (double)w->regions : 1;
-    for (uint32_t i = 0; i < 2; i++) {
-        struct prices prices;
-        clv_prices_find(&prices, w, limits, known, o->rounds, crowds[i]);
-        bound = prices.bound > bound ? prices.bound : bound;
-        struct outcome outcome = clv_schedule(w, limits, &prices, NULL);
-        if (outcome.deficit < best.deficit) {
-            best = outcome;
-            *planned &= write_plan(o, w, limits, &prices);
-        }
-        clv_prices_finish(&prices);
-    }
-    print(o, "bound", "mean_too_coarse", bound / regions, "levels");
-    return best;
-}
-
 static bool play(const struct options *o, const struct workload *w)
 {
     struct limits limits = {UINT64_MAX, o->budget, o->latency, o->hold};
@@ -200,9 +162,13 @@ static bool play(const struct options *o, const struct workload *w)
     print_outcome(o, w, "deadline", &outcome);
     if (!o->rounds)
         return write_plan(o, w, &limits, NULL);
-    bool planned = true;
-    outcome = play_priced(o, w, &limits, outcome.deficit, &planned);
+    struct prices prices;
+    outcome = clv_schedule_best(w, &limits, outcome.deficit, o->rounds, &prices);
+    print(o, "bound", "mean_too_coarse", prices.bound / (w->regions ? (double)w->regions : 1),
+          "levels");
     print_outcome(o, w, "priced", &outcome);
+    bool planned = write_plan(o, w, &limits, &prices);
+    clv_prices_finish(&prices);
     return planned;
 }
 
@@ -210,8 +176,6 @@ int main(int argc, char **argv)
 {
     struct options options = {.heap_tiles = 1024, .budget = 256, .latency = 2, .rounds = 300};
     struct workload workload;
-    if (argc == 2 && !strcmp(argv[1], "--self-test"))
-        return clv_self_test();
     if (argc == 2 && !strcmp(argv[1], "--help")) {
         fputs(usage, stdout);
         return 0;
@@ -220,9 +184,14 @@ int main(int argc, char **argv)
         fputs(usage, stderr);
         return 2;
     }
-    if (!clv_workload_read(&workload, options.trace, options.latency))
+    struct feedback_trace trace;
+    if (!feedback_trace_open(&trace, options.trace))
         return 1;
-    bool good = play(&options, &workload);
+    bool good = clv_workload_read(&workload, &trace, options.latency);
+    feedback_trace_close(&trace);
+    if (!good)
+        return 1;
+    good = play(&options, &workload);
     clv_workload_finish(&workload);
     return good ? 0 : 1;
 }

@@ -108,7 +108,8 @@ build_programs() {
     compile micro -DWITH_HARNESS -I"$harness" "${sources[@]}" "$here/micro_trace.c"
     compile replay -I"$harness" "$harness/replay.c" "$here/backend_sluice.c"
     compile generate -I"$harness" "$harness/sltrace_gen.c"
-    logged "$CC" -std=c11 -O2 -I"$harness" "$here"/clairvoyant*.c -lm -o "$work/clairvoyant"
+    compile clairvoyant -I"$root"/tools/{clairvoyant,feedback-trace} "$here/clairvoyant.c" \
+        "$root"/tools/{clairvoyant,feedback-trace}/*.c -lm
 }
 
 find_harness() {

@@ -73,7 +73,7 @@ void text_write_json(FILE *out, const char *text)
         uint32_t c = next_character(at, &size);
         if (c == '"' || c == '\\')
             fprintf(out, "\\%c", (int)c);
-        else if (c == NO_CHARACTER || is_active(c))
+        else if (c == NO_CHARACTER || is_active(c) || c == '<')
             fprintf(out, "\\u%04x", c == NO_CHARACTER ? 0xFFFDu : (unsigned)c);
         else
             fwrite(at, 1, size, out);

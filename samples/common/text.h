@@ -20,7 +20,10 @@ __attribute__((format(printf, 1, 2)))
 void
 text_say(const char *format, ...);
 
-/** A JSON string with its quotes; U+FFFD stands for bytes that are no UTF-8. */
+/**
+ * A JSON string with its quotes; U+FFFD stands for bytes that are no UTF-8. No '<' is in it, so
+ * that it ends no element of a web page that it is put into.
+ */
 void text_write_json(FILE *out, const char *text);
 
 #endif /* SAMPLES_COMMON_TEXT_H */

@@ -45,6 +45,7 @@ struct sweep_point {
     enum sweep_state state;
     char *reason;                     ///< why it failed, else NULL
     struct sweep_estimate *estimates; ///< per metric
+    struct sweep_estimate *deltas;    ///< per metric: to the base, repeat by repeat
 };
 
 struct sweep {

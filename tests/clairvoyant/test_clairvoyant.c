@@ -1,7 +1,8 @@
-/**
- * The self-test: tiny random traces of two sets, where everything can be tried out.
- */
-#include "clairvoyant.h"
+/* The policy that knows a whole trace, on tiny random ones of two sets, where everything can be
+ * tried out. */
+#include <clairvoyant.h>
+
+#include "support/test.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -240,14 +241,9 @@ static uint32_t least_deficit(const struct tiny *t, const struct limits *limits)
     return least;
 }
 
-static bool report(const char *fact, uint32_t wrong, uint32_t cases)
+static void belady_needs_no_more_uploads_than_the_best_of_all(void **state)
 {
-    printf("%s - %s (%u of %u cases)\n", wrong ? "not ok" : "ok", fact, cases - wrong, cases);
-    return wrong == 0;
-}
-
-static bool belady_is_minimal(void)
-{
+    (void)state;
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < CASES; i++) {
         struct tiny t;
@@ -259,11 +255,12 @@ static bool belady_is_minimal(void)
         wrong += result.uploads != result.distinct;
         clv_workload_finish(&t.w);
     }
-    return report("belady_needs_no_more_uploads_than_the_best_of_all", wrong, CASES);
+    assert_int_equal(wrong, 0);
 }
 
-static bool belady_tells_what_does_not_fit(void)
+static void belady_tells_how_much_an_instant_exceeds_the_cap(void **state)
 {
+    (void)state;
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < CASES; i++) {
         struct tiny t;
@@ -278,7 +275,7 @@ static bool belady_tells_what_does_not_fit(void)
         wrong += result.frames_over_cap != over || result.unserved != unserved;
         clv_workload_finish(&t.w);
     }
-    return report("belady_tells_how_much_an_instant_exceeds_the_cap", wrong, CASES);
+    assert_int_equal(wrong, 0);
 }
 
 /** Plays a written schedule by the rules of the exhaustive search. */
@@ -306,7 +303,7 @@ static bool plan_is_legal(const struct tiny *t, const struct limits *limits, FIL
     return legal && !more;
 }
 
-static bool schedules_are_legal_and_add_up(bool hold)
+static void check_legal(bool hold)
 {
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < 2 * CASES; i++) {
@@ -326,13 +323,11 @@ static bool schedules_are_legal_and_add_up(bool hold)
         clv_prices_finish(&prices);
         clv_workload_finish(&t.w);
     }
-    return report(hold ? "schedules_with_hold_keep_to_the_limits_and_their_deficits_add_up"
-                       : "schedules_keep_to_the_limits_and_their_deficits_add_up",
-                  wrong, 2 * CASES);
+    assert_int_equal(wrong, 0);
 }
 
 /** Schedules lie between the optimum and, summed over all cases, 1.1 times that. */
-static bool schedules_and_bound_enclose_the_optimum(bool hold)
+static void check_optimum(bool hold)
 {
     uint32_t wrong = 0, cases = CASES / 8;
     uint64_t optimum = 0, reached = 0;
@@ -355,16 +350,15 @@ static bool schedules_and_bound_enclose_the_optimum(bool hold)
         clv_prices_finish(&prices);
         clv_workload_finish(&t.w);
     }
-    printf("# hold=%d, levels too coarse: bound %.1f, optimum %llu, schedules %llu\n", hold, bounds,
-           (unsigned long long)optimum, (unsigned long long)reached);
-    bool tight = 10 * reached <= 11 * optimum && bounds >= 0.9 * (double)optimum;
-    bool good = report("no_schedule_beats_the_optimum_and_no_bound_exceeds_it", wrong, cases);
-    return report("schedules_and_bounds_are_within_a_tenth_of_the_optimum", !tight, 1) && good;
+    assert_int_equal(wrong, 0);
+    assert_true(10 * reached <= 11 * optimum);
+    assert_true(bounds >= 0.9 * (double)optimum);
 }
 
 /** Nothing is there before frame 0, so only its maps can be wrong. */
-static bool without_limits_only_frame_0_is_wrong(void)
+static void without_limits_only_the_first_frame_is_too_coarse(void **state)
 {
+    (void)state;
     uint32_t wrong = 0;
     struct limits limits = {UINT64_MAX, 1000, 0, false};
     for (uint32_t i = 0; i < CASES; i++) {
@@ -383,17 +377,31 @@ static bool without_limits_only_frame_0_is_wrong(void)
         clv_prices_finish(&prices);
         clv_workload_finish(&t.w);
     }
-    return report("without_limits_only_the_first_frame_is_too_coarse", wrong, CASES);
+    assert_int_equal(wrong, 0);
 }
 
-int clv_self_test(void)
+static void no_schedule_beats_the_optimum_and_no_bound_exceeds_it(void **state)
 {
-    bool good = belady_is_minimal();
-    good &= belady_tells_what_does_not_fit();
-    good &= schedules_and_bound_enclose_the_optimum(false);
-    good &= schedules_and_bound_enclose_the_optimum(true);
-    good &= schedules_are_legal_and_add_up(false);
-    good &= schedules_are_legal_and_add_up(true);
-    good &= without_limits_only_frame_0_is_wrong();
-    return good ? 0 : 1;
+    (void)state;
+    check_optimum(false);
+    check_optimum(true);
+}
+
+static void schedules_keep_to_the_limits_and_their_deficits_add_up(void **state)
+{
+    (void)state;
+    check_legal(false);
+    check_legal(true);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(belady_needs_no_more_uploads_than_the_best_of_all),
+        cmocka_unit_test(belady_tells_how_much_an_instant_exceeds_the_cap),
+        cmocka_unit_test(no_schedule_beats_the_optimum_and_no_bound_exceeds_it),
+        cmocka_unit_test(schedules_keep_to_the_limits_and_their_deficits_add_up),
+        cmocka_unit_test(without_limits_only_the_first_frame_is_too_coarse),
+    };
+    return RUN_TESTS(tests);
 }

@@ -1,6 +1,23 @@
 /**
- * What the parts of the clairvoyant policy share: the workload of a trace, the limits that it is
- * played under, and the outcomes. clairvoyant.c says what is optimal here and what is heuristic.
+ * A policy that knows the whole of a feedback trace in advance, and bounds for all others.
+ *
+ * The rules are those of docs/replay.md: a frame's maps are sampled before they are processed; a
+ * tile handed out in a frame holds its slot from then on and is there for the maps of frame +
+ * latency + 1; at most `budget` tiles are handed out per frame; a tile counts only if all coarser
+ * ones are there. Nothing is loaded before frame 0, so the first latency + 1 frames see nothing.
+ * Every texture's packed tiles are loaded and never dropped, and do not count in `cap`. The
+ * residency of followers is not sampled; their tiles are loaded and dropped with the primary's all
+ * the same.
+ *
+ * What is exact:
+ * - clv_belady: the fewest uploads with no level too coarse at all, whatever time they take.
+ * - struct prices, `bound`: no schedule under these limits has fewer levels too coarse.
+ * What is heuristic, and so an example of what can be reached:
+ * - clv_schedule without prices: earliest next use first, coarse levels first among equals; drops
+ *   the farthest.
+ * - with prices: what is worth most at the prices that gave the bound.
+ *
+ * Memory that runs out ends the program, with a message.
  *
  * A node is a tile of a set: the same tile of the primary and of each follower, so it stands for
  * `size` tiles. Nodes are numbered so that a parent (the coarser tile over it) comes first; the
@@ -9,11 +26,11 @@
 #ifndef CLAIRVOYANT_H
 #define CLAIRVOYANT_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include <feedback_trace.h>
+
 #include <stdio.h>
 
-enum { NO_NODE = 0xffffffff };
+#define NO_NODE UINT32_MAX
 
 /** A map that needs a node. A node absent there makes `regions` regions one level coarser. */
 struct use {
@@ -95,8 +112,12 @@ struct outcome {
 
 void *clv_alloc(size_t count, size_t size);
 
-/** `path` is a trace of the harness. False, with a message on stderr, if it cannot be used. */
-bool clv_workload_read(struct workload *w, const char *path, uint32_t latency);
+/**
+ * Reads the trace from its first frame on. False, with a message on stderr, if it cannot be used:
+ * textures of a set must stand together, be of one shape and have packed tiles, and a region must
+ * lie in one tile. `latency` is that of the reactive floor.
+ */
+bool clv_workload_read(struct workload *w, struct feedback_trace *trace, uint32_t latency);
 /** Numbers the uses by node and by frame; `draft` has them in order of time and of node. */
 void clv_workload_index(struct workload *w, const struct frame_use *draft,
                         const struct use *draft_uses);
@@ -118,6 +139,12 @@ void clv_prices_finish(struct prices *p);
 struct outcome clv_schedule(const struct workload *w, const struct limits *limits,
                             const struct prices *prices, FILE *plan);
 
-int clv_self_test(void);
+/**
+ * Looks twice, because the search that counts whole crowds mostly ends with the better schedule and
+ * the other with the better bound. `*best` are the prices of the schedule with fewer levels too
+ * coarse, which is returned; their bound is the better one of both. The caller finishes them.
+ */
+struct outcome clv_schedule_best(const struct workload *w, const struct limits *limits,
+                                 uint64_t known, uint32_t rounds, struct prices *best);
 
 #endif

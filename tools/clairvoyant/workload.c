@@ -1,15 +1,13 @@
 /**
- * From a trace of the harness to the uses of every tile that some map needs. Only touched tiles
+ * From a trace to the uses of every tile that some map needs. Only touched tiles
  * are stored, beside a table of 4 bytes per tile of each set that was ever seen.
  */
 #include "clairvoyant.h"
 
-#include "sltrace.h"
-
 #include <stdlib.h>
 #include <string.h>
 
-enum { NEVER = 0xffffffff };
+#define NEVER UINT32_MAX
 
 struct set_state {
     uint32_t texture, members;
@@ -19,7 +17,7 @@ struct set_state {
 };
 
 struct builder {
-    slt_trace trace;
+    struct feedback_trace *trace;
     struct set_state *sets;
     uint32_t *set_of; ///< per texture
     uint32_t set_count, latency;
@@ -73,58 +71,72 @@ static uint32_t add_node(struct builder *b, const struct node *node)
     return b->node_count++;
 }
 
-static bool same_shape(const slt_texture *a, const slt_texture *b)
+static bool same_shape(const SluiceStreamedTextureDesc *a, const SluiceStreamedTextureDesc *b)
 {
-    return a->width == b->width && a->height == b->height && a->tileW == b->tileW &&
-           a->tileH == b->tileH && a->mipCount == b->mipCount && a->regularMips == b->regularMips &&
-           a->packedTiles == b->packedTiles;
+    return a->width == b->width && a->height == b->height && a->tileWidth == b->tileWidth &&
+           a->tileHeight == b->tileHeight && a->mipLevelCount == b->mipLevelCount &&
+           a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount;
 }
 
-static bool usable(const slt_texture *t)
+static bool usable(const SluiceStreamedTextureLayout *t)
 {
-    return t->packedTiles && t->tileW && t->tileH && t->fbRegionW && t->fbRegionH &&
-           (uint32_t)t->fbW * t->fbH <= UINT16_MAX;
+    return t->desc.packedTileCount && t->desc.tileWidth % t->desc.feedbackRegionWidth == 0 &&
+           t->desc.tileHeight % t->desc.feedbackRegionHeight == 0 &&
+           t->feedbackWidth * t->feedbackHeight <= UINT16_MAX;
+}
+
+static const SluiceStreamedTextureLayout *layout_of(const struct builder *b, uint32_t set)
+{
+    return &b->trace->textures[b->sets[set].texture].layout;
 }
 
 static bool find_sets(struct builder *b)
 {
-    uint32_t count = b->trace.p.textureCount;
-    const slt_texture *textures = b->trace.tex;
+    uint32_t count = b->trace->texture_count;
+    const struct feedback_texture *textures = b->trace->textures;
     b->sets = clv_alloc(count, sizeof *b->sets);
     b->set_of = clv_alloc(count, sizeof *b->set_of);
     for (uint32_t i = 0; i < count; i++) {
-        if (textures[i].primary == i)
+        uint32_t primary = textures[i].primary;
+        if (primary == i)
             b->sets[b->set_count++] = (struct set_state){i, 0, NEVER, NEVER, NULL, NULL};
         uint32_t set = b->set_count - 1;
-        if (b->set_count == 0 || textures[i].primary != b->sets[set].texture ||
-            !same_shape(&textures[i], &textures[b->sets[set].texture]) || !usable(&textures[i])) {
+        if (b->set_count == 0 || primary != b->sets[set].texture ||
+            !same_shape(&textures[i].layout.desc, &textures[primary].layout.desc) ||
+            !usable(&textures[i].layout)) {
             fprintf(stderr,
-                    "texture %u: sets must stand together, be of one shape and have packed "
-                    "tiles and at most 65535 regions\n",
+                    "texture %u: sets must stand together, be of one shape and have packed tiles, "
+                    "at most 65535 regions, and regions that lie in one tile\n",
                     i);
             return false;
         }
         b->set_of[i] = set;
         b->sets[set].members++;
     }
-    for (uint32_t i = 0; i < b->set_count; i++) {
-        const slt_texture *t = &textures[b->sets[i].texture];
-        add_node(b, &(struct node){.set = i,
-                                   .parent = NO_NODE,
-                                   .packed = true,
-                                   .size = (uint16_t)(b->sets[i].members * t->packedTiles),
-                                   .level = t->regularMips,
-                                   .tile = t->regularTiles});
-    }
     return true;
 }
 
-static void first_sight(struct builder *b, struct set_state *s)
+/** Packed tiles come first. */
+static void add_packed_nodes(struct builder *b)
 {
+    for (uint32_t i = 0; i < b->set_count; i++) {
+        const SluiceStreamedTextureLayout *t = layout_of(b, i);
+        add_node(b, &(struct node){.set = i,
+                                   .parent = NO_NODE,
+                                   .packed = true,
+                                   .size = (uint16_t)(b->sets[i].members * t->desc.packedTileCount),
+                                   .level = (uint8_t)t->desc.regularMipCount,
+                                   .tile = t->regularTileCount});
+    }
+}
+
+static void first_sight(struct builder *b, uint32_t set)
+{
+    struct set_state *s = &b->sets[set];
     if (s->nodes)
         return;
-    const slt_texture *t = &b->trace.tex[s->texture];
-    size_t tiles = t->regularTiles, regions = (size_t)t->fbW * t->fbH;
+    const SluiceStreamedTextureLayout *t = layout_of(b, set);
+    size_t tiles = t->regularTileCount, regions = (size_t)t->feedbackWidth * t->feedbackHeight;
     s->nodes = clv_alloc(tiles, sizeof *s->nodes);
     s->region_touch = clv_alloc(regions, sizeof *s->region_touch);
     memset(s->nodes, 0xff, tiles * sizeof *s->nodes);
@@ -150,72 +162,78 @@ static void add_use(struct builder *b, uint32_t node, uint32_t frame, uint32_t l
     b->uses[last].exact = (uint16_t)(b->uses[last].exact + exact);
 }
 
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
 /** The node of the tile at (tx, ty) of level 0, at `level`. */
 static uint32_t node_at(struct builder *b, uint32_t set, uint32_t level, uint32_t parent,
                         uint32_t tx, uint32_t ty)
 {
     struct set_state *s = &b->sets[set];
-    const slt_texture *t = &b->trace.tex[s->texture];
-    uint32_t width, height, first = 0;
-    for (uint32_t m = 0; m < level; m++) {
-        slt_mip_tiles(t, m, &width, &height);
-        first += width * height;
-    }
-    slt_mip_tiles(t, level, &width, &height);
-    uint32_t x = tx >> level, y = ty >> level;
-    x = x < width ? x : width - 1;
-    y = y < height ? y : height - 1;
-    uint32_t *node = &s->nodes[first + y * width + x];
+    const SluiceStreamedTextureLayout *t = layout_of(b, set);
+    uint32_t x = least(tx >> level, t->levelWidthInTiles[level] - 1);
+    uint32_t y = least(ty >> level, t->levelHeightInTiles[level] - 1);
+    uint32_t tile = t->levelFirstTile[level] + y * t->levelWidthInTiles[level] + x;
+    uint32_t *node = &s->nodes[tile];
     if (*node == NEVER)
         *node = add_node(b, &(struct node){.set = set,
                                            .parent = parent,
                                            .level = (uint8_t)level,
                                            .size = (uint16_t)s->members,
-                                           .tile = first + y * width + x});
+                                           .tile = tile});
     return *node;
+}
+
+static void count_unseen(struct builder *b, uint32_t set, uint32_t touch, uint32_t frame,
+                         uint32_t unseen)
+{
+    uint64_t *cause = frame - b->sets[set].first_touch <= b->latency ? &b->reactive.appears
+                      : frame - touch <= b->latency                  ? &b->reactive.enters
+                                                                     : &b->reactive.finer;
+    *cause += unseen;
+    b->reactive.regions += unseen > 0;
 }
 
 static void add_region(struct builder *b, uint32_t set, uint32_t x, uint32_t y, uint32_t want,
                        uint32_t frame)
 {
     struct set_state *s = &b->sets[set];
-    const slt_texture *t = &b->trace.tex[s->texture];
-    uint32_t width, height, node = set, *touch = &s->region_touch[y * t->fbW + x];
-    slt_mip_tiles(t, 0, &width, &height);
-    uint32_t tx = x * t->fbRegionW / t->tileW, ty = y * t->fbRegionH / t->tileH;
-    tx = tx < width ? tx : width - 1;
-    ty = ty < height ? ty : height - 1;
-    want = want < t->regularMips ? want : t->regularMips;
+    const SluiceStreamedTextureLayout *t = layout_of(b, set);
+    uint32_t node = set, *touch = &s->region_touch[y * t->feedbackWidth + x];
+    uint32_t tx = x * t->desc.feedbackRegionWidth / t->desc.tileWidth;
+    uint32_t ty = y * t->desc.feedbackRegionHeight / t->desc.tileHeight;
+    uint32_t regular = t->desc.regularMipCount;
+    want = least(want, regular);
     s->first_touch = s->first_touch == NEVER ? frame : s->first_touch;
     *touch = *touch == NEVER ? frame : *touch;
     uint32_t unseen = 0;
-    for (uint32_t level = t->regularMips;; level--) {
-        if (level < t->regularMips)
+    for (uint32_t level = regular;; level--) {
+        if (level < regular)
             node = node_at(b, set, level, node, tx, ty);
         add_use(b, node, frame, s->last_visit, level == want);
         /* packed tiles need not be asked for */
-        unseen += level < t->regularMips && frame - b->first_frame[node] <= b->latency;
+        unseen += level < regular && frame - b->first_frame[node] <= b->latency;
         if (level == want)
             break;
     }
-    uint64_t *cause = frame - s->first_touch <= b->latency ? &b->reactive.appears
-                      : frame - *touch <= b->latency       ? &b->reactive.enters
-                                                           : &b->reactive.finer;
-    *cause += unseen;
-    b->reactive.regions += unseen > 0;
+    count_unseen(b, set, *touch, frame, unseen);
     b->regions++;
 }
 
 static void add_map(struct builder *b, uint32_t texture, const uint8_t *map, uint32_t frame)
 {
     uint32_t set = b->set_of[texture];
-    const slt_texture *t = &b->trace.tex[texture];
-    for (uint32_t y = 0; y < t->fbH; y++)
-        for (uint32_t x = 0; x < t->fbW; x++)
-            if (map[y * t->fbW + x] != 0xff) {
-                first_sight(b, &b->sets[set]);
-                add_region(b, set, x, y, map[y * t->fbW + x], frame);
-            }
+    const SluiceStreamedTextureLayout *t = layout_of(b, set);
+    for (uint32_t y = 0; y < t->feedbackHeight; y++)
+        for (uint32_t x = 0; x < t->feedbackWidth; x++) {
+            uint32_t want = map[y * t->feedbackWidth + x];
+            if (want == SLUICE_MIP_UNTOUCHED)
+                continue;
+            first_sight(b, set);
+            add_region(b, set, x, y, want, frame);
+        }
     b->visits = grow(b->visits, b->visit_count, &b->visit_room, sizeof *b->visits);
     b->visits[b->visit_count].set = set;
     b->visits[b->visit_count++].frame = frame;
@@ -224,22 +242,21 @@ static void add_map(struct builder *b, uint32_t texture, const uint8_t *map, uin
 
 static bool read_frames(struct builder *b)
 {
-    uint8_t *map = clv_alloc(UINT16_MAX, 1);
-    bool good = true;
-    for (uint32_t frame = 0; good && frame < b->trace.p.frameCount; frame++) {
+    feedback_trace_rewind(b->trace);
+    for (uint32_t frame = 0; frame < b->trace->frame_count; frame++) {
         uint64_t time;
         uint32_t maps, texture;
-        if (!slt_next_frame(&b->trace, &time, &maps))
-            break;
-        for (uint32_t i = 0; good && i < maps; i++) {
-            good =
-                slt_next_map(&b->trace, &texture, map) && b->trace.tex[texture].primary == texture;
-            if (good)
-                add_map(b, texture, map, frame);
+        feedback_trace_next_frame(b->trace, &time, &maps);
+        for (uint32_t i = 0; i < maps; i++) {
+            const uint8_t *map = feedback_trace_next_map(b->trace, &texture);
+            if (b->trace->textures[texture].primary != texture) {
+                fprintf(stderr, "texture %u: follows another one, and has a map\n", texture);
+                return false;
+            }
+            add_map(b, texture, map, frame);
         }
     }
-    free(map);
-    return good;
+    return true;
 }
 
 static void index_visits(struct workload *w, const struct builder *b)
@@ -283,7 +300,7 @@ void clv_workload_index(struct workload *w, const struct frame_use *draft,
 
 static void take_over(struct workload *w, struct builder *b)
 {
-    *w = (struct workload){.frame_count = b->trace.p.frameCount,
+    *w = (struct workload){.frame_count = b->trace->frame_count,
                            .set_count = b->set_count,
                            .node_count = b->node_count,
                            .use_count = b->use_count,
@@ -300,22 +317,22 @@ static void take_over(struct workload *w, struct builder *b)
     index_visits(w, b);
 }
 
-bool clv_workload_read(struct workload *w, const char *path, uint32_t latency)
+bool clv_workload_read(struct workload *w, struct feedback_trace *trace, uint32_t latency)
 {
-    struct builder b = {.latency = latency};
-    bool good = slt_open(&b.trace, path);
-    if (good && (good = find_sets(&b)))
+    struct builder b = {.trace = trace, .latency = latency};
+    bool good = find_sets(&b);
+    if (good) {
+        add_packed_nodes(&b);
         good = read_frames(&b);
+    }
     if (good)
         take_over(w, &b);
     else
-        fprintf(stderr, "%s: not a usable trace\n", path);
+        free(b.nodes);
     for (uint32_t i = 0; i < b.set_count; i++) {
         free(b.sets[i].nodes);
         free(b.sets[i].region_touch);
     }
-    if (!good)
-        free(b.nodes);
     free(b.sets);
     free(b.set_of);
     free(b.last_use);
@@ -323,8 +340,6 @@ bool clv_workload_read(struct workload *w, const char *path, uint32_t latency)
     free(b.order);
     free(b.uses);
     free(b.visits);
-    free(b.trace.tex);
-    free(b.trace.data);
     return good;
 }
 

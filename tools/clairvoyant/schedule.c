@@ -12,7 +12,7 @@
 
 #define WORTHLESS 1e-6
 
-enum { NONE = 0xffffffff };
+#define NONE UINT32_MAX
 enum presence { ABSENT, COMING, THERE };
 
 struct live {
@@ -312,7 +312,7 @@ static void hand_out_frame(struct play *p)
     p->out.peak = slots > p->out.peak ? slots : p->out.peak;
 }
 
-/** The harness's rule: nothing in the latest map of the set needs the tile that has come. */
+/** Nothing in the latest map of the set needs the tile that has come. */
 static bool is_stale(const struct play *p, uint32_t n)
 {
     const struct workload *w = p->w;
@@ -401,4 +401,27 @@ struct outcome clv_schedule(const struct workload *w, const struct limits *limit
     free(p.stays.bids);
     free(p.arrivals);
     return p.out;
+}
+
+struct outcome clv_schedule_best(const struct workload *w, const struct limits *limits,
+                                 uint64_t known, uint32_t rounds, struct prices *best)
+{
+    static const double crowds[] = {1e6, 4};
+    struct outcome least = {.deficit = UINT64_MAX};
+    double bound = 0;
+    *best = (struct prices){0};
+    for (uint32_t i = 0; i < sizeof crowds / sizeof *crowds; i++) {
+        struct prices prices;
+        clv_prices_find(&prices, w, limits, known, rounds, crowds[i]);
+        bound = prices.bound > bound ? prices.bound : bound;
+        struct outcome outcome = clv_schedule(w, limits, &prices, NULL);
+        bool better = outcome.deficit < least.deficit;
+        clv_prices_finish(better ? best : &prices);
+        if (better) {
+            least = outcome;
+            *best = prices;
+        }
+    }
+    best->bound = bound;
+    return least;
 }

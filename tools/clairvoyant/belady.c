@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { NO_USE = 0xffffffff };
+#define NO_USE UINT32_MAX
 
 struct entry {
     uint32_t next, node; ///< next: frame of the next use, NO_USE for none

@@ -1,0 +1,216 @@
+#!/bin/bash
+# test_sweep.sh SLUICE_TRADEOFF SCENE: sweeps of a program that draws nothing, in TAP.
+tool=$(realpath "$1") scene=$(realpath "$2")
+n=0
+failed=0
+folder=$(mktemp -d) || exit 99
+trap 'chmod -R u+rwx "$folder"; rm -rf "$folder"' EXIT
+cd "$folder" || exit 99
+export SCENE_LOG=$folder/log
+touch log
+
+report() { # name, whether it holds
+    n=$((n + 1))
+    if [ "$2" = 0 ]; then
+        echo "ok $n $1"
+    else
+        echo "not ok $n $1"
+        sed 's/^/# /' err out
+        failed=1
+    fi
+}
+
+status() { # expected exit status, command
+    want=$1
+    shift
+    "$@" >out 2>err
+    got=$?
+    [ $got = "$want" ] || { echo "exit status $got, not $want" >>err; return 1; }
+}
+
+# shellcheck disable=SC2317 # called by status
+sweep() { "$tool" gallery --program "$scene" "$@"; }
+
+# The cell of a CSV file without quoted commas: file, line's beginning, column's name.
+cell() {
+    awk -F, -v start="$2" -v name="$3" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
+        index($0, start) == 1 { print $column }' "$1"
+}
+
+status 0 "$tool" --help && grep -q -- '--repeats N .*\[3; 5 with --full\]' out
+report help_names_defaults $?
+
+wrong=0
+for arguments in '' 'nowhere' 'trace' 'gallery gallery' 'gallery --no-such-option' 'gallery --sweep' \
+    'gallery --repeats 0' 'gallery --repeats 1x' 'gallery --jobs 0' 'gallery --run-limit nan' \
+    'gallery --run-limit 0' 'gallery --grid' 'gallery --results' 'page' 'page a b'; do
+    # shellcheck disable=SC2086
+    status 2 "$tool" $arguments && [ -s err ] && [ ! -s out ] && [ ! -e tradeoff-out ] || wrong=1
+done
+report wrong_usage_exits_with_2_and_writes_nothing $wrong
+
+status 0 sweep --results a --sweep budget=8,16 --sweep probability=1/4 --repeats 3 &&
+    [ "$(wc -l <log)" = 12 ] && [ "$(wc -l <a/points.csv)" = 5 ] && [ "$(wc -l <a/runs.csv)" = 13 ]
+report each_point_is_run_as_often_as_asked $?
+
+[ "$(cell a/points.csv 1,budget resident_bytes_peak)" = 8388608 ] &&
+    [ "$(cell a/points.csv 1,budget resident_bytes_peak_half_width)" = 0 ] &&
+    [ "$(cell a/points.csv 1,budget resident_bytes_peak_delta)" = -96468992 ] &&
+    [ "$(cell a/points.csv 0,base psnr_mean_db)" = 30 ] &&
+    [ "$(cell a/points.csv 0,base flip_mean)" = 0.5 ] &&
+    [ "$(cell a/points.csv 0,base psnr_mean_db_delta)" = 0 ]
+report points_hold_means_intervals_and_differences $?
+
+# 12 +- 4.30265 / sqrt(3); of five without the first 13.5 +- 3.18245 * 1.29099 / 2.
+[ "$(cell a/points.csv 0,base gpu_ms_median)" = 12 ] &&
+    cell a/points.csv 0,base gpu_ms_median_half_width | grep -q '^2\.4841' &&
+    status 0 sweep --results k --sweep budget=8 --repeats 5 &&
+    [ "$(cell k/points.csv 0,base gpu_ms_median)" = 13.5 ] &&
+    cell k/points.csv 1,budget gpu_ms_median_half_width | grep -q '^2\.0542' &&
+    [ "$(cell k/points.csv 0,base resident_bytes_peak)" = 104857600 ]
+report times_of_first_runs_do_not_count_among_five $?
+
+sed -n '1,12s/.*--seed \([0-9]*\).*/\1/p' log | tr -d '\n' | grep -q '^111122223333$'
+report repeats_take_turns $?
+
+sed -i '13,$d' log
+[ "$(grep -c -- '--write-frames some' log)" = 4 ]
+report first_runs_alone_write_pictures $?
+
+status 0 sweep --results a --sweep budget=8,16 --sweep probability=1/4 --repeats 3 --json &&
+    [ "$(wc -l <log)" = 12 ] && grep -q '"runs_kept", "value": 12' out &&
+    grep -q '{"name": "recommended: small memory", "value": "budget 8", "unit": "point"}' out &&
+    grep -q '"psnr_mean_db", "value": 40, "unit": "dB", "half_width": 0, "point": "probability 1/4"' out
+report what_is_there_is_not_run_again $?
+
+python3 -c 'import json, sys
+for line in open("out"): json.loads(line)' 2>>err
+report json_lines_are_json $?
+
+status 0 sweep --results a --sweep budget=8,16,32 --sweep probability=1/4 --repeats 3 &&
+    [ "$(wc -l <log)" = 15 ]
+report a_wider_sweep_runs_what_is_new $?
+
+mv a moved
+status 0 "$tool" page moved && [ "$(wc -l <log)" = 15 ] && grep -q '^budget 32 ' out
+report results_are_shown_again_without_a_run $?
+
+status 1 "$tool" page nowhere && grep -q nowhere err
+report folder_without_a_sweep_has_no_page $?
+
+status 0 sweep --results moved --sweep budget=8 --repeats 1 --fresh &&
+    [ "$(wc -l <log)" = 17 ] && [ "$(find moved/runs -mindepth 1 -maxdepth 1 | wc -l)" = 2 ]
+report fresh_forgets_the_runs $?
+
+sed 's/999/998/; $a# another build' "$scene" >scene2
+chmod +x scene2
+: >log
+status 0 "$tool" gallery --program ./scene2 --results moved --sweep budget=8 --repeats 1 &&
+    [ "$(wc -l <log)" = 2 ]
+report another_build_is_run_again $?
+
+: >log
+status 1 sweep --results b --sweep mode=crash,fail,hang,rubbish,flood,slow --repeats 2 --run-limit 0.7 &&
+    [ "$(cell b/points.csv 0,base state)" = 'done' ] &&
+    [ "$(cell b/points.csv '6,mode slow' state)" = 'done' ] && [ "$(wc -l <log)" = 9 ] &&
+    grep -q '^1,mode crash,failed,signal 11' b/points.csv &&
+    grep -q '^3,mode hang,failed,it took longer than the time limit,' b/points.csv &&
+    grep -q '^4,mode rubbish,failed,it printed no figures,' b/points.csv &&
+    grep -q '^5,mode flood,failed,it ' b/points.csv && grep -q 'mode hang *failed: it took' out
+report failed_runs_are_failed_points_and_the_sweep_goes_on $?
+
+grep -q '^2,mode fail,failed,"exit status 3: the lights, and ""all"" of them, went out",' b/points.csv
+report commas_and_quotes_are_quoted $?
+
+python3 - <<'END' 2>>err
+import csv
+for name in "b/points.csv", "b/runs.csv":
+    rows = list(csv.reader(open(name, newline="")))
+    assert {len(row) for row in rows} == {len(rows[0])}
+    assert len(set(rows[0])) == len(rows[0])
+END
+report every_line_has_a_cell_for_each_column $?
+
+: >log
+status 1 sweep --results b --sweep mode=crash,fail --repeats 2 && [ "$(wc -l <log)" = 2 ]
+report failed_runs_are_tried_again $?
+
+status 77 sweep --results c --base mode=nodevice && grep -q 'there is no device' err &&
+    [ ! -e c/points.csv ]
+report without_a_device_the_sweep_ends_with_77 $?
+
+status 1 "$tool" gallery --program ./absent --results d && grep -q absent err
+report a_missing_program_is_named $?
+
+mkdir -p far/away
+cp "$tool" far/away/sluice-tradeoff
+LD_LIBRARY_PATH=$(dirname "$tool")/../../lib status 1 far/away/sluice-tradeoff gallery --results d && grep -q 'build the samples' err
+report samples_that_were_not_built_are_asked_for $?
+
+status 2 "$tool" gallery --program "$scene" --results d --jobs 1 --sweep && status 1 sweep --results d \
+    --sweep nothing=1 && grep -q 'no option --nothing' err
+report a_setting_that_the_program_lacks_is_named $?
+
+mkdir -p locked && chmod 500 locked
+if [ "$(id -u)" = 0 ]; then
+    touch file
+    status 1 sweep --results file/below && grep -q file err
+else
+    status 1 sweep --results locked/below && grep -q locked err
+fi
+report an_unwritable_folder_is_named $?
+
+# Files of 8 KiB at most: the program's own is too large, which is that point's failure.
+(ulimit -f 8; trap '' XFSZ; status 1 sweep --results e --sweep mode=full --repeats 1) &&
+    grep -q '^1,mode full,failed,exit status 1' e/points.csv && grep -q '^0,base,done' e/points.csv
+report a_full_disk_fails_the_run_that_met_it $?
+
+# No file can be written at all.
+(ulimit -f 0; trap '' XFSZ; status 1 sweep --results f --repeats 1) && [ ! -e f/points.csv ]
+report a_full_disk_ends_a_sweep_that_cannot_be_kept $?
+
+wait_for() { # command: until it holds, ten seconds at most
+    for _ in $(seq 200); do
+        "$@" && return
+        sleep 0.05
+    done
+    return 1
+}
+
+# shellcheck disable=SC2317 # called by wait_for
+begun() { [ "$(wc -l <log)" -ge "$1" ]; }
+
+: >log
+slow=(--results g --base mode=slow --sweep 'budget=1,2,3' --repeats 2)
+"$tool" gallery --program "$scene" "${slow[@]}" >out 2>err &
+pid=$!
+wait_for begun 3
+kill -9 $pid
+wait $pid 2>/dev/null
+kept=$(find g/runs -mindepth 1 -maxdepth 1 -name '*[0-9a-f]' | wc -l)
+[ ! -e g/points.csv ] && [ "$kept" -ge 1 ] && : >log && status 0 sweep "${slow[@]}" &&
+    [ "$(wc -l <log)" = $((8 - kept)) ] && [ "$(wc -l <g/runs.csv)" = 9 ] &&
+    [ -z "$(find g -name '*.partial')" ]
+report a_killed_sweep_goes_on_where_it_was $?
+
+: >log
+nap=1000.$$
+SCENE_SLEEP=$nap "$tool" gallery --program "$scene" --results h --base mode=hang >out2 2>err2 &
+pid=$!
+wait_for begun 1 && wait_for pgrep -f "^sleep $nap" >/dev/null
+status 1 sweep --results h && grep -q 'another sweep' err
+report one_sweep_at_a_time_in_a_folder $?
+
+kill -TERM $pid
+wait $pid
+[ $? = 130 ] && grep -q 'the same command goes on' err2 && [ ! -e h/points.csv ] &&
+    [ -z "$(find h/runs -mindepth 1)" ] && ! pgrep -f "^sleep $nap" >/dev/null
+report an_interruption_ends_what_was_started_and_keeps_the_rest $?
+
+status 0 sweep --results i --sweep name='a b,it'\''s' --repeats 1 --jobs 2 -- --budget 9 &&
+    grep -q "^1,name a b,done" i/points.csv && [ "$(wc -l <i/runs.csv)" = 4 ]
+report several_jobs_measure_the_same $?
+
+echo "1..$n"
+exit $failed

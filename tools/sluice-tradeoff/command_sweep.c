@@ -1,0 +1,160 @@
+#include "commands.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../samples/common/files.h"
+#include "../../samples/common/text.h"
+#include "folders.h"
+#include "page.h"
+#include "recommend.h"
+#include "results.h"
+#include "session.h"
+#include "table.h"
+
+/* As many of the files as can be written. */
+static bool write_files(const struct session *s, const struct sweep_recommendation *recommendations)
+{
+    char *points = memory_text("%s/points.csv", s->options.results);
+    char *runs = memory_text("%s/runs.csv", s->options.results);
+    char *page = memory_text("%s/page.html", s->options.results);
+    bool good = results_write_points(&s->sweep, points);
+    good = results_write_runs(&s->runs, runs) && good;
+    good = page_write(&s->sweep, recommendations, RECOMMEND_COUNT, page) && good;
+    free(points);
+    free(runs);
+    free(page);
+    return good;
+}
+
+/* Everything that is made of the runs. */
+static int show_results(struct session *s)
+{
+    struct sweep_recommendation recommendations[RECOMMEND_COUNT];
+    const struct scene_roles *roles = &s->options.scene->roles;
+    results_collect(&s->runs, &s->sweep);
+    const struct recommend_metrics metrics = {results_pick(&s->sweep, roles->quality),
+                                              results_pick(&s->sweep, roles->memory),
+                                              results_pick(&s->sweep, roles->time)};
+    recommend(&s->sweep, &metrics, recommendations);
+    bool good = write_files(s, recommendations);
+    if (s->options.json)
+        table_print_json(&s->runs, recommendations, RECOMMEND_COUNT);
+    else
+        table_print(&s->sweep, &metrics, recommendations, RECOMMEND_COUNT);
+    recommend_finish(recommendations);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        text_say("sluice-tradeoff: cannot write: %s", strerror(errno));
+        good = false;
+    }
+    for (uint32_t i = 0; i < s->sweep.point_count; i++)
+        good = good && s->sweep.points[i].state == SWEEP_DONE;
+    return good ? TRADEOFF_DONE : TRADEOFF_FAILED;
+}
+
+static bool forget(const char *results)
+{
+    static const char *const names[] = {"runs", "reference"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char *path = memory_text("%s/%s", results, names[i]);
+        bool removed = folders_remove(path);
+        if (!removed)
+            text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+        free(path);
+        if (!removed)
+            return false;
+    }
+    return true;
+}
+
+/* The results folder is this process's alone from here on. */
+static bool prepare_folder(const struct options *o)
+{
+    char *runs = memory_text("%s/runs", o->results);
+    bool ready = files_make_folders(o->results);
+    if (ready && !folders_lock(o->results)) {
+        ready = false;
+        if (errno == EACCES || errno == EAGAIN)
+            text_say("sluice-tradeoff: another sweep is at work in %s", o->results);
+        else
+            text_say("sluice-tradeoff: %s: %s", o->results, strerror(errno));
+    }
+    ready = ready && (!o->fresh || forget(o->results)) && files_make_folders(runs);
+    free(runs);
+    return ready;
+}
+
+static int make_runs(struct session *s)
+{
+    switch (runs_make(&s->runs)) {
+    case RUNS_DONE: return show_results(s);
+    case RUNS_INTERRUPTED:
+        text_say("sluice-tradeoff: interrupted; the same command goes on from here");
+        return TRADEOFF_INTERRUPTED;
+    case RUNS_NO_DEVICE: return TRADEOFF_NO_DEVICE;
+    case RUNS_UNWRITABLE: return TRADEOFF_FAILED;
+    }
+    return TRADEOFF_FAILED;
+}
+
+static char *join_words(int argc, char *const *argv)
+{
+    struct text_list words = {0};
+    text_list_add(&words, "sluice-tradeoff");
+    for (int i = 1; i < argc; i++)
+        text_list_add(&words, argv[i]);
+    char *line = text_list_join(&words);
+    text_list_finish(&words);
+    return line;
+}
+
+int command_sweep(int argc, char **argv)
+{
+    struct session s = {0};
+    int status = TRADEOFF_FAILED;
+    enum options_outcome outcome = options_parse_sweep(argc, argv, &s.options);
+    char *own_path = program_own_path(argv[0]);
+    child_watch_interruptions();
+    if (outcome != SWEEP_OPTIONS_RUN) {
+        status = outcome == SWEEP_OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
+    } else if (prepare_folder(&s.options)) {
+        s.sweep.command_line = join_words(argc, argv);
+        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv))
+            status = make_runs(&s);
+    }
+    session_close(&s);
+    free(own_path);
+    return status;
+}
+
+/* The folder may have been moved since. */
+static int show_again(struct session *s, const struct text_list *words, const char *own_path,
+                      const char *results, bool json)
+{
+    if (options_parse_sweep((int)words->count, words->items, &s->options) != SWEEP_OPTIONS_RUN)
+        return TRADEOFF_FAILED;
+    s->options.results = results;
+    s->options.json = json;
+    s->sweep.command_line = join_words((int)words->count, words->items);
+    return session_open(s, own_path, true) ? show_results(s) : TRADEOFF_FAILED;
+}
+
+int command_page(int argc, char **argv)
+{
+    struct session s = {0};
+    struct text_list words = {0};
+    bool json = argc > 2 && strcmp(argv[argc - 1], "--json") == 0;
+    if (argc != (json ? 3 : 2) || argv[1][0] == '-') {
+        text_say("usage: sluice-tradeoff page RESULTS [--json]");
+        return TRADEOFF_USAGE;
+    }
+    char *own_path = program_own_path(argv[0]);
+    int status = session_recall(argv[1], &words) ? show_again(&s, &words, own_path, argv[1], json)
+                                                 : TRADEOFF_FAILED;
+    session_close(&s);
+    text_list_finish(&words);
+    free(own_path);
+    return status;
+}

@@ -1,0 +1,30 @@
+/** The command line of a sweep. */
+#ifndef SLUICE_TRADEOFF_OPTIONS_H
+#define SLUICE_TRADEOFF_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "memory.h"
+#include "scenes.h"
+
+enum options_outcome { SWEEP_OPTIONS_RUN, SWEEP_OPTIONS_HELP, SWEEP_OPTIONS_ERROR };
+
+/** Texts are borrowed from the command line, but those of lists. */
+struct options {
+    const struct scene *scene;
+    const char *trace;              ///< of scene trace, else NULL
+    const char *results;            ///< folder
+    const char *program;            ///< NULL: found beside the tool
+    struct text_list sweeps, bases; ///< "name=value,value", "name=value"
+    struct text_list scene_arguments;
+    bool grid, full, fresh, json;
+    uint32_t repeats, jobs;
+    double run_limit; ///< seconds
+};
+
+/** Says on stderr what is wrong; prints the help text for --help. `argv[0]` is passed over. */
+enum options_outcome options_parse_sweep(int argc, char *const *argv, struct options *options);
+void options_finish(struct options *options);
+
+#endif /* SLUICE_TRADEOFF_OPTIONS_H */

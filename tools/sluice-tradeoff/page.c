@@ -1,0 +1,117 @@
+#include "page.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "page_choose.h"
+#include "page_json.h"
+#include "page_pictures.h"
+#include "page_series.h"
+#include "page_template.h"
+#include "text.h"
+
+#define SERIES_SIZE_MAX                                                                            \
+    ((size_t)3 << 19) /* bytes: a quarter of the page, pictures have the rest                      \
+                       */
+
+struct page {
+    FILE *file;
+    const struct sweep *sweep;
+    const struct sweep_recommendation *recommendations;
+    uint32_t recommendation_count;
+    struct page_choice *choices; ///< owned
+    uint32_t choice_count, prominent_count;
+    size_t template_left; ///< bytes that are still to be put
+};
+
+static size_t room_left(const struct page *page)
+{
+    long written = ftell(page->file);
+    size_t used = (written < 0 ? PAGE_SIZE_MAX : (size_t)written) + page->template_left;
+    used += 4096; /* brackets, and reasons for what is left out */
+    return used < PAGE_SIZE_MAX ? PAGE_SIZE_MAX - used : 0;
+}
+
+static bool put_part(struct page *page, enum page_template_part part)
+{
+    size_t room = room_left(page);
+    switch (part) {
+    case PAGE_TEMPLATE_SWEEP:
+        page_put_sweep(page->file, page->sweep, page->recommendations, page->recommendation_count);
+        return true;
+    case PAGE_TEMPLATE_SERIES:
+        return page_put_series(page->file, page->sweep, page->choices, page->choice_count,
+                               room < SERIES_SIZE_MAX ? room : SERIES_SIZE_MAX);
+    case PAGE_TEMPLATE_PICTURES:
+        return page_put_pictures(page->file, page->sweep, page->choices, page->prominent_count,
+                                 room);
+    }
+    return true;
+}
+
+/* The template's pieces stand around the parts. */
+static bool put_page(struct page *page)
+{
+    page->template_left = sizeof page_template;
+    for (size_t i = 0; i < PAGE_TEMPLATE_PIECES; i++) {
+        size_t begin = page_template_pieces[i], end = page_template_pieces[i + 1];
+        fwrite(page_template + begin, 1, end - begin, page->file);
+        page->template_left -= end - begin;
+        if (i + 1 < PAGE_TEMPLATE_PIECES && !put_part(page, page_template_parts[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool fill_file(struct page *page)
+{
+    page->choices = calloc((size_t)page->sweep->point_count + 1, sizeof *page->choices);
+    bool filled = page->choices != NULL;
+    if (filled) {
+        page->choice_count =
+            page_choose(page->sweep, page->recommendations, page->recommendation_count,
+                        page->choices, &page->prominent_count);
+        filled = put_page(page);
+    }
+    if (!filled)
+        text_say("the page could not be made: out of memory");
+    free(page->choices);
+    return filled;
+}
+
+/* Written beside its place first, so that a page is whole or is not there. */
+static bool write_file(struct page *page, const char *part_path, const char *path)
+{
+    page->file = fopen(part_path, "wb");
+    if (!page->file) {
+        text_say("%s: %s", part_path, strerror(errno));
+        return false;
+    }
+    bool filled = fill_file(page), written = !ferror(page->file);
+    written = fclose(page->file) == 0 && written;
+    if (filled && (!written || rename(part_path, path) != 0)) {
+        text_say("%s: %s", path, strerror(errno));
+        filled = false;
+    }
+    if (!filled)
+        remove(part_path);
+    return filled;
+}
+
+bool page_write(const struct sweep *sweep, const struct sweep_recommendation *recommendations,
+                uint32_t count, const char *path)
+{
+    struct page page = {
+        .sweep = sweep, .recommendations = recommendations, .recommendation_count = count};
+    size_t size = strlen(path) + sizeof ".part";
+    char *part_path = malloc(size);
+    if (!part_path) {
+        text_say("the page could not be made: out of memory");
+        return false;
+    }
+    snprintf(part_path, size, "%s.part", path);
+    bool written = write_file(&page, part_path, path);
+    free(part_path);
+    return written;
+}

@@ -1,0 +1,123 @@
+#include "results.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include "statistics.h"
+
+#define RUNS_WITHOUT_THE_FIRST 5
+
+static bool is_measured(const struct runs *runs, const char *name)
+{
+    for (uint32_t i = 0; i < runs->count; i++)
+        if (!isnan(figures_value(&runs->items[i].figures, name)))
+            return true;
+    return false;
+}
+
+static const struct scene_metric *find_metric(const struct scene *scene, const char *name)
+{
+    for (uint32_t i = 0; i < scene->metric_count; i++)
+        if (strcmp(scene->metrics[i].metric.name, name) == 0)
+            return &scene->metrics[i];
+    return NULL;
+}
+
+static void collect_metrics(const struct runs *runs, struct sweep *sweep)
+{
+    const struct scene *scene = runs->options->scene;
+    struct sweep_metric *metrics = memory_take(scene->metric_count, sizeof *metrics);
+    sweep->metric_count = 0;
+    for (uint32_t i = 0; i < scene->metric_count; i++)
+        if (is_measured(runs, scene->metrics[i].metric.name))
+            metrics[sweep->metric_count++] = scene->metrics[i].metric;
+    sweep->metrics = metrics;
+}
+
+/* [repeat] of a point; NaN where nothing is known. */
+static void get_values(const struct runs *runs, uint32_t point, const char *name, double *values)
+{
+    const struct scene_metric *metric = find_metric(runs->options->scene, name);
+    uint32_t repeats = runs->sweep->repeats;
+    for (uint32_t r = 0; r < repeats; r++)
+        values[r] = figures_value(&runs->items[r * runs->sweep->point_count + point].figures, name);
+    if (metric && metric->is_time && repeats >= RUNS_WITHOUT_THE_FIRST)
+        values[0] = NAN;
+}
+
+static void estimate_point(const struct runs *runs, struct sweep *sweep, uint32_t index)
+{
+    struct sweep_point *point = &sweep->points[index];
+    double *values = memory_take(sweep->repeats, sizeof *values);
+    double *base = memory_take(sweep->repeats, sizeof *base);
+    point->estimates = memory_take(sweep->metric_count, sizeof *point->estimates);
+    point->deltas = memory_take(sweep->metric_count, sizeof *point->deltas);
+    for (uint32_t m = 0; m < sweep->metric_count; m++) {
+        get_values(runs, index, sweep->metrics[m].name, values);
+        get_values(runs, sweep->base, sweep->metrics[m].name, base);
+        point->estimates[m] = statistics_estimate(values, sweep->repeats);
+        point->deltas[m] = statistics_paired(values, base, sweep->repeats);
+    }
+    free(values);
+    free(base);
+}
+
+static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t index)
+{
+    struct sweep_point *point = &sweep->points[index];
+    const struct run *first = &runs->items[index];
+    struct text_list arguments = {0};
+    uint32_t done = 0;
+    point->state = SWEEP_PENDING;
+    for (uint32_t i = index; i < runs->count; i += sweep->point_count) {
+        done += runs->items[i].state == SWEEP_DONE;
+        if (runs->items[i].state != SWEEP_FAILED || point->state == SWEEP_FAILED)
+            continue;
+        point->state = SWEEP_FAILED;
+        point->reason = memory_copy_text(runs->items[i].reason ? runs->items[i].reason : "");
+    }
+    if (done == sweep->repeats)
+        point->state = SWEEP_DONE;
+    runs_add_arguments(runs, first, first->folder, &arguments);
+    point->command_line = text_list_join(&arguments);
+    point->folder = memory_copy_text(first->folder);
+    text_list_finish(&arguments);
+}
+
+/* What drew it, if some run says so, and what else tells one machine from another. */
+static char *describe_machine(const struct runs *runs)
+{
+    struct utsname system = {0};
+    const struct figure *device = NULL;
+    for (uint32_t i = 0; i < runs->count && !device; i++)
+        device = figures_find(&runs->items[i].figures, "device");
+    uname(&system);
+    bool named = device && device->text;
+    return memory_text("%s%s%ld processors, %s %s %s", named ? device->text : "", named ? "; " : "",
+                       sysconf(_SC_NPROCESSORS_ONLN), system.sysname, system.release,
+                       system.machine);
+}
+
+void results_collect(const struct runs *runs, struct sweep *sweep)
+{
+    collect_metrics(runs, sweep);
+    for (uint32_t i = 0; i < sweep->point_count; i++) {
+        judge_point(runs, sweep, i);
+        estimate_point(runs, sweep, i);
+    }
+    sweep->machine = describe_machine(runs);
+}
+
+int results_pick(const struct sweep *sweep, const char *const *names)
+{
+    for (; names && *names; names++) {
+        int metric = sweep_find_metric(sweep, *names);
+        if (metric >= 0 && !isnan(sweep->points[sweep->base].estimates[metric].mean))
+            return metric;
+    }
+    return -1;
+}
