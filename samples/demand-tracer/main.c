@@ -147,6 +147,8 @@ static bool write_results(struct tracer *t, const struct launches *launches, dou
         (o->compare && !picture_compare(&t->picture, o->exposure, o->compare, &summary.psnr)) ||
         sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
         return false;
+    if (o->json)
+        gpu_print_json(&t->gpu);
     summary_print(&summary, o->json);
     if (!o->json)
         printf("picture.png and picture.exr are in %s\n", o->output);
