@@ -98,6 +98,20 @@ static void put_estimate(FILE *file, const struct sweep_estimate *estimate)
     fprintf(file, ",%" PRIu32 "]", estimate->count);
 }
 
+static void put_estimates(FILE *file, const struct sweep_estimate *estimates, uint32_t count)
+{
+    if (!estimates) {
+        fputs("null", file);
+        return;
+    }
+    fputc('[', file);
+    for (uint32_t i = 0; i < count; i++) {
+        fputs(i > 0 ? "," : "", file);
+        put_estimate(file, &estimates[i]);
+    }
+    fputc(']', file);
+}
+
 static void put_point(FILE *file, const struct sweep *sweep, const struct sweep_point *point)
 {
     fputs("{\"values\":[", file);
@@ -111,16 +125,11 @@ static void put_point(FILE *file, const struct sweep *sweep, const struct sweep_
     put_member(file, "folder", point->folder);
     put_member(file, "reason", point->reason);
     fprintf(file, "\"state\":\"%s\",\"estimates\":", state_name(point->state));
-    if (point->estimates && point->state == SWEEP_DONE) {
-        fputc('[', file);
-        for (uint32_t i = 0; i < sweep->metric_count; i++) {
-            fputs(i > 0 ? "," : "", file);
-            put_estimate(file, &point->estimates[i]);
-        }
-        fputs("]}", file);
-    } else {
-        fputs("null}", file);
-    }
+    bool done = point->state == SWEEP_DONE;
+    put_estimates(file, done ? point->estimates : NULL, sweep->metric_count);
+    fputs(",\"deltas\":", file);
+    put_estimates(file, done ? point->deltas : NULL, sweep->metric_count);
+    fputc('}', file);
 }
 
 static void put_recommendations(FILE *file, const struct sweep_recommendation *recommendations,

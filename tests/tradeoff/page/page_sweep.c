@@ -43,6 +43,18 @@ static void set_estimate(struct sweep_estimate *estimate, double mean)
     *estimate = (struct sweep_estimate){mean, half_width, mean - half_width, mean + half_width, 3};
 }
 
+/* All points have estimates when this is called. */
+static void set_deltas(struct page_sweep *s, uint32_t i)
+{
+    for (uint32_t k = 0; k < PAGE_SWEEP_METRICS; k++) {
+        double change = s->estimates[i][k].mean - s->estimates[PAGE_SWEEP_BASE][k].mean;
+        double half_width = k == PAGE_SWEEP_TIME ? 3.0 : 0.0;
+        s->deltas[i][k] = (struct sweep_estimate){change, half_width, change - half_width,
+                                                  change + half_width, 3};
+    }
+    s->points[i].deltas = s->deltas[i];
+}
+
 static void set_figures(struct page_sweep *s, uint32_t i)
 {
     struct sweep_estimate *estimates = s->estimates[i];
@@ -93,6 +105,8 @@ void page_sweep_init(struct page_sweep *s, const char *root, bool hostile)
                               .points = s->points};
     for (uint32_t i = 0; i < PAGE_SWEEP_POINTS; i++)
         set_point(s, i, root, hostile);
+    for (uint32_t i = 0; i < PAGE_SWEEP_POINTS; i++)
+        set_deltas(s, i);
     s->recommendations[0] =
         (struct sweep_recommendation){pick(hostile, "quality"), pick(hostile, "the best"), 0};
     s->recommendations[1] = (struct sweep_recommendation){"balanced", "between", 8};

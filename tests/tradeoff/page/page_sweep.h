@@ -25,6 +25,7 @@ struct page_sweep {
     struct sweep sweep;
     struct sweep_point points[PAGE_SWEEP_POINTS];
     struct sweep_estimate estimates[PAGE_SWEEP_POINTS][PAGE_SWEEP_METRICS];
+    struct sweep_estimate deltas[PAGE_SWEEP_POINTS][PAGE_SWEEP_METRICS];
     char *values[PAGE_SWEEP_POINTS][PAGE_SWEEP_SETTINGS];
     char folders[PAGE_SWEEP_POINTS][512];
     struct sweep_recommendation recommendations[PAGE_SWEEP_RECOMMENDATIONS];
@@ -33,7 +34,10 @@ struct page_sweep {
 /** What each word of the hostile sweep holds. */
 extern const char page_sweep_hostile[];
 
-/** Half widths are a fiftieth of the mean. Folders are ROOT/I. All words may be hostile ones. */
+/**
+ * Half widths are a fiftieth of the mean; of differences to the base they are 0, but 3 for
+ * gpu_ms_median. Folders are ROOT/I. All words may be hostile ones.
+ */
 void page_sweep_init(struct page_sweep *s, const char *root, bool hostile);
 
 /** Writes a file into a point's folder, which is made. */

@@ -3,7 +3,7 @@
 Usage: test_page_browser.py WRITE_PAGE FOLDER
 """
 
-import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -19,9 +19,27 @@ if not chromium:
     sys.exit(0)
 
 
-def drawn(kind):
+# What a reader does, one page each; each leaves the page as it is then.
+ACTIONS = {
+    "click": "document.querySelector('#front [data-point=\"4\"]').dispatchEvent(new Event('click'));",
+    "keys": "for (const key of ['ArrowRight', 'ArrowRight', 'Enter'])"
+            " document.querySelector('#front svg').dispatchEvent(new KeyboardEvent('keydown', {key}));",
+    "sort": "for (let i = 0; i < 2; i++) document.querySelectorAll('#table thead button')[2].click();",
+    "filter": "const box = document.getElementById('table-filter'); box.value = 'SLOW';"
+              "box.dispatchEvent(new Event('input'));",
+    "axes": "const x = document.getElementById('front-x'); x.value = '4'; x.dispatchEvent(new Event('change'));",
+    "csv": "document.getElementById('says').textContent = csvText();",
+}
+
+
+def drawn(kind, action=""):
     """The page's elements after its scripts ran; None where the browser itself does not start."""
     path = page_file.write(sys.argv[1], kind, sys.argv[2]).resolve()
+    if action:
+        script = f"<script>{ACTIONS[action]}</script></body>"
+        text = path.read_text(encoding="utf-8").replace("</body>", script)
+        path = path.with_name(f"{action}.html")
+        path.write_text(text, encoding="utf-8")
     with tempfile.TemporaryDirectory() as profile:
         run = subprocess.run(
             [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -32,11 +50,11 @@ def drawn(kind):
     return page_file.Page(text) if "<body" in text else None
 
 
-pages = {kind: drawn(kind) for kind in ("plain", "hostile", "bare", "long")}
+pages = {kind: drawn(kind) for kind in ("plain", "hostile", "bare", "long", "failed", "single")}
 if not all(pages.values()):
     print("1..0 # SKIP Chromium does not start here")
     sys.exit(0)
-plain, hostile, bare, long_page = pages.values()
+plain, hostile, bare, *_ = pages.values()
 
 
 def ready(page):
@@ -71,6 +89,21 @@ def best():
     return {i for i in range(DONE) if not any(memory(k) <= memory(i) and flip(k) <= flip(i) and k != i for k in range(DONE))}
 
 
+def options_of(page):
+    """The options that the panel of the chosen run shows."""
+    return page.texts["chosen"]
+
+
+def rows_of(page):
+    """Numbers of the points in the table, from its top."""
+    table = re.search(r'<table id="table">.*?</table>', page.text, re.DOTALL)[0]
+    return [int(number) - 1 for number in re.findall(r"<tr[^>]*><td>(\d+)</td>", table)]
+
+
+after = {action: drawn("plain", action) for action in ACTIONS}
+by_memory = sorted(range(DONE), key=memory)
+beside_chosen = by_memory[by_memory.index(8) + 1]  # the balanced one, 8, is chosen when the page opens
+csv_lines = after["csv"].texts["says"].strip().split("\n")
 rows = plain.texts["table"]
 FACTS = {f"{kind}_page_runs_without_errors": ready(page) for kind, page in pages.items()}
 FACTS.update({
@@ -87,6 +120,18 @@ FACTS.update({
     "pictures_are_shown": len([a for a in plain.tags("img") if a["src"].startswith("data:image/png;base64,")]) >= 4,
     "missing_pictures_and_frames_are_said": "no pictures on this page" in bare.texts["picture-body"]
         and "No run has figures over its frames" in bare.texts["series-plots"],
+    # point 0 has 4 MiB where the base has 44, and 2 ms less than the base's 4, give or take 3
+    "differences_are_those_of_repeats": "4\u00a0MiB\u2009\u00b1\u20090.08\u221291\u00a0%" in plain.texts["cards-table"]
+        and "2\u00a0ms\u2009\u00b1\u20090.04\u2248 same" in plain.texts["cards-table"],
+    "click_chooses_a_run": "--probability 1/256" in options_of(after["click"]) and "--mode slow" not in options_of(after["click"]),
+    "keys_choose_a_run": beside_chosen == 6 and "--budget 16" in options_of(after["keys"]) and "--mode" not in options_of(after["keys"]),
+    "table_is_sorted_and_unknown_comes_last": rows_of(after["sort"]) == sorted(range(DONE), key=memory, reverse=True) + [9, 10],
+    "filter_leaves_what_contains_the_word": rows_of(after["filter"]) == [7, 8, 10],
+    "a_sweep_without_runs_says_so": "nothing to compare with" in pages["failed"].texts["cards-table"] and not marks(pages["failed"]),
+    "the_base_alone_is_a_sweep": marks(pages["single"])[0] == [0],
+    "without_a_better_there_is_no_front": not marks(after["axes"], "best")[0] and "there is no front" in after["axes"].texts["front-text"],
+    "csv_has_a_line_per_point": len(csv_lines) == 1 + POINTS and csv_lines[1 + UNKNOWN].startswith("6,done,1/16,8,fast,"),
+    "pages_that_were_used_have_no_errors": all(ready(page) for page in after.values()),
     "every_control_has_a_label": not any(page.unnamed for page in pages.values()),
     "hostile_words_run_nothing": hostile.title != "taken" and not any("onerror" in a for _, a in hostile.elements)
         and not any(a.get("src") == "x" for a in hostile.tags("img")),

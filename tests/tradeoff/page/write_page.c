@@ -1,5 +1,6 @@
-/* Writes the page of a sweep that is made of formulas: write_page plain|hostile|bare|long FOLDER.
- * It is FOLDER/page.html; the runs of bare have no files, those of long have 900 frames. */
+/* Writes the page of a sweep that is made of formulas: write_page KIND FOLDER, which is
+ * FOLDER/page.html. KIND is plain, hostile, bare: runs have no files; long: they have 900 frames;
+ * failed: all of them did; single: the base alone. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <string.h>
@@ -30,6 +31,13 @@ int main(int argc, char **argv)
         return 2;
     mkdir(argv[2], 0777);
     page_sweep_init(&s, argv[2], strcmp(argv[1], "hostile") == 0);
+    for (uint32_t i = 0; i < PAGE_SWEEP_POINTS && strcmp(argv[1], "failed") == 0; i++)
+        s.points[i].state = SWEEP_FAILED;
+    if (strcmp(argv[1], "single") == 0) {
+        s.sweep.points = &s.points[PAGE_SWEEP_BASE];
+        s.sweep.point_count = 1;
+        s.sweep.base = 0;
+    }
     if (strcmp(argv[1], "bare") != 0)
         add_files(&s, strcmp(argv[1], "long") == 0 ? 900 : 60);
     if (strcmp(argv[1], "hostile") == 0)

@@ -99,15 +99,15 @@ function choose(index) {
 
 function roles(index) {
   const names = sweep.recommendations.filter(r => r.point === index).map(r => r.name);
-  return index === base ? ['defaults', ...names] : names;
+  return index === base ? ['base', ...names] : names;
 }
 
 function pointName(index) {
-  return points[index].label || (index === sweep.base ? 'the defaults' : `run ${index + 1}`);
+  return points[index].label || (index === sweep.base ? 'base' : `run ${index + 1}`);
 }
 
 function pointEntries(indices) {
-  return indices.map(i => [i, [pointName(i), ...roles(i).filter(r => r !== 'defaults').map(r => `\u2605 ${r}`)].join('  ')]);
+  return indices.map(i => [i, [pointName(i), ...roles(i).filter(r => r !== 'base').map(r => `\u2605 ${r}`)].join('  ')]);
 }
 
 /** Indices of the settings in which a point differs from the base. */
@@ -125,15 +125,15 @@ const varied = sweep.settings.map((setting, i) => i).filter(i => points.some((p,
 /** What a point's colour and shape stand for: the one setting that differs, several, or none. */
 function groupOf(index) {
   const d = differences(index);
-  return d.length === 0 ? 'defaults' : d.length > 1 ? 'several' : d[0];
+  return d.length === 0 ? 'base' : d.length > 1 ? 'several' : d[0];
 }
 
 function groupName(group) {
-  return group === 'defaults' || group === 'several' ? group : sweep.settings[group].name;
+  return group === 'base' || group === 'several' ? group : sweep.settings[group].name;
 }
 
 function groupColor(group) {
-  if (group === 'defaults')
+  if (group === 'base')
     return 'var(--ink)';
   return group === 'several' ? 'var(--other)' : `var(--c${varied.indexOf(group) % hueCount})`;
 }
@@ -144,7 +144,7 @@ function groupShape(group, r) {
   const k = r * 0.9, t = r * 1.15;
   const shapes = [circle, `M${-k} ${-k}H${k}V${k}H${-k}Z`, `M0 ${-t}L${t} ${t * 0.8}H${-t}Z`,
     `M0 ${-t * 1.1}L${t * 1.1} 0L0 ${t * 1.1}L${-t * 1.1} 0Z`, `M0 ${t}L${t} ${-t * 0.8}H${-t}Z`];
-  if (group === 'defaults' || group === 'several')
+  if (group === 'base' || group === 'several')
     return circle;
   const place = varied.indexOf(group);
   return shapes[(place + Math.floor(place / hueCount)) % shapeCount];

@@ -49,7 +49,7 @@ function drawValues(rows, xs, y) {
     if (xs[i] - half < free)
       return null;
     free = xs[i] + half + 3;
-    return svg('text', {x: xs[i], y, 'text-anchor': 'middle'}, row.text.length > 9 ? `${row.text.slice(0, 8)}\u2026` : row.text);
+    return svg('text', {x: xs[i], y, 'text-anchor': 'middle'}, row.text === '' ? 'unset' : row.text.length > 9 ? `${row.text.slice(0, 8)}\u2026` : row.text);
   });
 }
 
@@ -83,8 +83,8 @@ function drawEffect(place, setting, metric, range) {
 }
 
 /* One each of memory, picture, time and traffic. */
-const effectGroups = [['resident_bytes_peak', 'device_memory_peak'], ['flip_mean', 'psnr_mean_db', 'psnr_lowest_db'],
-  ['gpu_ms_median', 'frame_ms_median', 'host_ms_median'], ['bytes_read', 'frames_until_sharp_p99']].map(firstOf).filter(m => m !== undefined);
+const effectGroups = [['resident_bytes_peak', 'device_memory_peak'], ['flip_mean', 'psnr_mean_db', 'psnr_lowest_db', 'levels_too_coarse'],
+  ['gpu_ms_median', 'frame_ms_median', 'time', 'core_us_per_frame'], ['bytes_read', 'loaded_bytes', 'frames_until_sharp_p99']].map(firstOf).filter(m => m !== undefined);
 const effectMetrics = new Set(effectGroups.length > 0 ? effectGroups : tellingMetrics(4));
 
 function drawEffects() {

@@ -38,7 +38,8 @@ function firstOf(names) {
 }
 
 const telling = ['resident_bytes_peak', 'flip_mean', 'psnr_mean_db', 'psnr_lowest_db', 'ssim_mean', 'gpu_ms_median',
-  'host_ms_median', 'frame_ms_median', 'bytes_read', 'missing_pixels_percent', 'frames_until_sharp_p99', 'loaded_per_needed'];
+  'host_ms_median', 'frame_ms_median', 'levels_too_coarse', 'time', 'bytes_read', 'loaded_bytes', 'missing_pixels_percent',
+  'frames_until_sharp_p99', 'loaded_per_needed', 'wrong_evictions_percent', 'core_us_per_frame', 'requests'];
 
 /** Whether a figure is the same in all runs, so that it says nothing of the settings. */
 function isConstant(metric) {
@@ -83,7 +84,7 @@ function withUnit(text, unit) {
 
 function formatValue(value, unit, count = 3) {
   const [divisor, shown] = scaleOf(unit, Math.abs(value));
-  return withUnit(digits(value / divisor, count), shown);
+  return Number.isNaN(value) ? digits(value, count) : withUnit(digits(value / divisor, count), shown);
 }
 
 /** As many digits as the half width makes sense of. */
@@ -100,20 +101,31 @@ function estimateText(index, metric) {
   return formatEstimate(estimate(index, metric), sweep.metrics[metric].unit).join('');
 }
 
+/**
+ * {change, noise} to the base: repeat by repeat where that is known, since what repeats share, a slow
+ * hour or a seed, has no part in it then; else of the two means.
+ */
+function changeOf(index, metric) {
+  const given = points[index].deltas ? points[index].deltas[metric].map(number) : [NaN, NaN];
+  if (Number.isFinite(given[0]) && !Number.isNaN(given[1]))
+    return {change: given[0], noise: given[1]};
+  const mine = estimate(index, metric), usual = estimate(base, metric);
+  return {change: mine.mean - usual.mean, noise: Math.hypot(mine.half || 0, usual.half || 0)};
+}
+
 /** {text, kind}: how a point's figure differs from the base's; kind is better, worse, same or ''. */
 function compare(index, metric) {
   const {unit, better} = sweep.metrics[metric];
   if (base < 0 || index === base)
     return {text: '', kind: ''};
   const mine = estimate(index, metric), usual = estimate(base, metric);
-  const change = mine.mean - usual.mean;
   if (mine.mean === usual.mean)
     return {text: 'same', kind: 'same'};
-  if (Number.isNaN(change))
+  if (Number.isNaN(mine.mean - usual.mean))
     return {text: '\u2013', kind: 'same'};
-  if (!Number.isFinite(change))
-    return {text: mine.mean === Infinity ? `now ${infinitySign}` : `was ${infinitySign}`, kind: (change < 0) === (better === 'less') ? 'better' : 'worse'};
-  const noise = Math.hypot(mine.half || 0, usual.half || 0);
+  if (!Number.isFinite(mine.mean - usual.mean))
+    return {text: mine.mean === Infinity ? `now ${infinitySign}` : `was ${infinitySign}`, kind: (mine.mean < usual.mean) === (better === 'less') ? 'better' : 'worse'};
+  const {change, noise} = changeOf(index, metric);
   if (Math.abs(change) <= noise)
     return {text: '\u2248 same', kind: 'same'};
   const relative = unit !== 'dB' && unit !== '%' && usual.mean !== 0;
@@ -130,7 +142,7 @@ const titles = {psnr: 'PSNR', flip: 'FLIP', ssim: 'SSIM', gpu: 'GPU', p50: 'p50'
 function asWords(name, unit) {
   const words = name.split('_').filter(word => word !== '');
   const said = {dB: 'db', '%': 'percent'}[unit];
-  const kept = words.filter(word => word !== said).map(word => word === 'ms' && unit === 'ms' ? 'time' : word);
+  const kept = words.filter(word => word !== said).map(word => word === unit && ['ms', 'us'].includes(word) ? 'time' : word);
   return (kept.length > 0 ? kept : words).map(word => titles[word] || word).join(' ');
 }
 
@@ -159,6 +171,6 @@ function figureTable(index, metrics) {
 function optionList(index) {
   const d = differences(index);
   return html('ul', {class: 'options', 'aria-label': 'settings'}, d.length === 0
-    ? html('li', {class: 'plain'}, 'the scene\u2019s defaults')
+    ? html('li', {class: 'plain'}, 'the base settings')
     : d.map(i => html('li', {}, `--${sweep.settings[i].name} ${points[index].values[i]}`)));
 }

@@ -26,11 +26,13 @@ function frontOf(x, y) {
 
 const pairs = [['resident_bytes_peak', 'flip_mean'], ['gpu_ms_median', 'psnr_mean_db'], ['frame_ms_median', 'psnr_mean_db'],
   ['bytes_read', 'flip_mean'], ['host_ms_median', 'frames_until_sharp_p99'], ['resident_bytes_peak', 'psnr_lowest_db'],
-  ['bytes_read', 'psnr_lowest_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
+  ['resident_bytes_peak', 'levels_too_coarse'], ['loaded_bytes', 'levels_too_coarse'], ['resident_bytes_peak', 'frames_until_sharp_p99'],
+  ['resident_bytes_peak', 'loaded_per_needed'], ['time', 'flip_mean'], ['core_us_per_frame', 'levels_too_coarse'], ['bytes_read', 'psnr_lowest_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
 
 /** Pairs of metrics that are there; whatever there is, if none of the usual ones. */
 function usualPairs() {
-  const found = pairs.map(pair => pair.map(findMetric)).filter(pair => pair[0] >= 0 && pair[1] >= 0).slice(0, 6);
+  const there = pairs.map(pair => pair.map(findMetric)).filter(pair => pair[0] >= 0 && pair[1] >= 0);
+  const found = there.filter(pair => done.length < 2 || !pair.some(isConstant)).slice(0, 6);
   return found.length > 0 || known.length < 2 ? found : [[known[0], known[1]]];
 }
 
@@ -152,7 +154,7 @@ function drawFront(holder, metrics, height, large) {
 }
 
 function drawLegend() {
-  const groups = ['defaults', ...varied, ...(done.some(i => groupOf(i) === 'several') ? ['several'] : [])];
+  const groups = ['base', ...varied, ...(done.some(i => groupOf(i) === 'several') ? ['several'] : [])];
   byId('legend').replaceChildren(...groups.map(group => html('button', {type: 'button', 'aria-pressed': String(front.shown === group),
     onclick: () => { front.shown = front.shown === group ? null : group; drawFronts(); }},
   svg('svg', {viewBox: '-8 -8 16 16', 'aria-hidden': 'true'}, svg('path', {d: groupShape(group, 5.5), fill: groupColor(group)})), groupName(group))));

@@ -16,7 +16,7 @@ function showHead() {
   if (failed.length > 0)
     byId('failed').append(html('details', {class: 'note', open: failed.length < 6},
       html('summary', {}, failed.length === 1 ? 'One combination failed' : `${failed.length} combinations failed`),
-      html('ul', {}, failed.map(point => html('li', {}, html('b', {}, point.label || 'the defaults'), `: ${point.reason || 'no reason is known'}`)))));
+      html('ul', {}, failed.map(point => html('li', {}, html('b', {}, point.label || 'base'), `: ${point.reason || 'no reason is known'}`)))));
 }
 
 function showTheme() {
@@ -40,7 +40,7 @@ function card(recommendation) {
 /** Figures of the base and of what is recommended, beside each other. */
 function recommendationTable() {
   const shown = sweep.recommendations.filter(r => r.point >= 0 && points[r.point] && points[r.point].state === 'done');
-  const columns = [...(base >= 0 ? [['defaults', base]] : []), ...shown.map(r => [r.name, r.point])];
+  const columns = [...(base >= 0 ? [['base', base]] : []), ...shown.map(r => [r.name, r.point])];
   const cell = (index, metric) => {
     const [value, half] = formatEstimate(estimate(index, metric), sweep.metrics[metric].unit), change = compare(index, metric);
     return html('td', {}, value, html('span', {class: 'pm'}, half), html('div', {class: `change ${change.kind}`}, change.text));
@@ -56,7 +56,7 @@ function showRecommendations() {
   if (base >= 0)
     byId('cards-table').append(recommendationTable());
   else
-    byId('cards-table').append(html('p', {class: 'muted'}, 'The run with the defaults failed, so there is nothing to compare with.'));
+    byId('cards-table').append(html('p', {class: 'muted'}, 'The base failed, so there is nothing to compare with.'));
 }
 
 function showChosen() {

@@ -12,7 +12,7 @@ function attempt(section) {
 [showTheme, showHead, showRecommendations, showChosen, showFronts, showEffects, showSeries, showPictures, showTable].forEach(attempt);
 
 /* The first choice is what most want to know: the balanced one, else what is recommended first. */
-const offered = sweep.recommendations.filter(r => r.point >= 0 && r.point !== base);
+const offered = sweep.recommendations.filter(r => done.includes(r.point) && r.point !== base);
 attempt(function firstChoice() {
   const first = offered.find(r => r.name === 'balanced') || offered[0];
   choose(first ? first.point : base >= 0 ? base : done[0]);

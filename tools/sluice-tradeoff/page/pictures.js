@@ -99,7 +99,7 @@ function showMissingPictures() {
   const there = new Set(album.sets.map(set => set.point)), rest = done.filter(i => !there.has(i)).length;
   const lines = album.left_out.map(gone => html('li', {}, `${pointName(gone.point)}, frame ${gone.frame}: ${gone.why}`));
   byId('picture-missing').replaceChildren(html('p', {class: 'muted small'},
-    `Pictures are on this page for ${there.size} of ${done.length} runs: the defaults, what is recommended, and extremes.` +
+    `Pictures are on this page for ${there.size} of ${done.length} runs: the base, what is recommended, and extremes.` +
     (rest > 0 ? ' Those of the others are in their folders.' : '')),
   lines.length > 0 ? html('details', {class: 'note small'}, html('summary', {}, lines.length === 1 ? 'One frame was left out' : `${lines.length} frames were left out`), html('ul', {}, lines)) : '');
 }

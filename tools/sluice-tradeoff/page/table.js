@@ -38,7 +38,7 @@ function headCell(key, text, meaning) {
 }
 
 function row(index, metrics) {
-  const point = points[index], tags = roles(index).map(name => html('span', {class: 'tag'}, name));
+  const point = points[index], tags = roles(index).filter(name => name !== pointName(index)).map(name => html('span', {class: 'tag'}, name));
   const name = point.state === 'done'
     ? html('button', {type: 'button', class: 'link', title: point.command_line, onclick: () => choose(index)}, pointName(index)) : pointName(index);
   const cells = point.state === 'done'
