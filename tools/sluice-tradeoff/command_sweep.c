@@ -7,7 +7,7 @@
 
 #include "../../samples/common/files.h"
 #include "../../samples/common/text.h"
-#include "clairvoyant.h"
+#include "foresight.h"
 #include "folders.h"
 #include "page.h"
 #include "recommend.h"
@@ -90,7 +90,7 @@ static bool prepare_folder(const struct options *o)
 static int make_runs(struct session *s, const char *own_path)
 {
     switch (runs_make(&s->runs)) {
-    case RUNS_DONE: clairvoyant_add(&s->runs, own_path, false); return show_results(s);
+    case RUNS_DONE: foresight_add(&s->runs, own_path, false); return show_results(s);
     case RUNS_INTERRUPTED:
         text_say("sluice-tradeoff: interrupted; the same command goes on from here");
         return TRADEOFF_INTERRUPTED;
@@ -141,7 +141,7 @@ static int show_again(struct session *s, const struct text_list *words, const ch
     s->sweep.command_line = join_words((int)words->count, words->items);
     if (!session_open(s, own_path, true))
         return TRADEOFF_FAILED;
-    clairvoyant_add(&s->runs, own_path, true);
+    foresight_add(&s->runs, own_path, true);
     return show_results(s);
 }
 

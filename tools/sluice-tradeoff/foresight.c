@@ -1,4 +1,4 @@
-#include "clairvoyant.h"
+#include "foresight.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -106,7 +106,7 @@ static void add_answer(struct runs *runs, uint32_t point, const char *path)
     figures_finish(&answer);
 }
 
-void clairvoyant_add(struct runs *runs, const char *own_path, bool recall)
+void foresight_add(struct runs *runs, const char *own_path, bool recall)
 {
     char *folder = memory_text("%s/clairvoyant", runs->results);
     for (uint32_t point = 0; point < runs->sweep->point_count; point++) {

@@ -1,6 +1,6 @@
 /** What a policy that knows the future would have loaded, beside what was loaded. */
-#ifndef SLUICE_TRADEOFF_CLAIRVOYANT_H
-#define SLUICE_TRADEOFF_CLAIRVOYANT_H
+#ifndef SLUICE_TRADEOFF_FORESIGHT_H
+#define SLUICE_TRADEOFF_FORESIGHT_H
 
 #include "runs.h"
 
@@ -10,6 +10,6 @@
  * budget, by this tool's own `play`, and the answers are kept in RESULTS/clairvoyant; with `recall`
  * only what is kept is added. What cannot be played is said on stderr and has no such figures.
  */
-void clairvoyant_add(struct runs *runs, const char *own_path, bool recall);
+void foresight_add(struct runs *runs, const char *own_path, bool recall);
 
-#endif /* SLUICE_TRADEOFF_CLAIRVOYANT_H */
+#endif /* SLUICE_TRADEOFF_FORESIGHT_H */
