@@ -1,6 +1,7 @@
 #include "gpu.h"
 
 #include "gpu_rays.h"
+#include "text.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -165,6 +166,20 @@ uint32_t gpu_list_devices(void)
     }
     gpu_destroy(&gpu);
     return count;
+}
+
+void gpu_print_json(const struct gpu *gpu)
+{
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    vkGetPhysicalDeviceProperties2(gpu->physical_device, &properties);
+    printf("{\"name\": \"device\", \"value\": ");
+    text_write_json(stdout, gpu->properties.deviceName);
+    printf(", \"unit\": \"\"}\n{\"name\": \"driver\", \"value\": ");
+    text_write_json(stdout, driver.driverInfo[0] ? driver.driverInfo : driver.driverName);
+    printf(", \"unit\": \"\"}\n");
 }
 
 static bool contains_ignoring_case(const char *text, const char *part)

@@ -52,6 +52,9 @@ struct gpu_image {
 /** Prints a line per device. Returns how many there are. */
 uint32_t gpu_list_devices(void);
 
+/** Device and driver on stdout, as JSON lines like those of figures. */
+void gpu_print_json(const struct gpu *gpu);
+
 /**
  * Says on stderr what is missing. `*unsupported` tells a machine without a device that streams from
  * other failures.

@@ -41,6 +41,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
         !check(sluicePrepareDemandLaunch(l->loader, l->commands, &launch),
                "a launch cannot be prepared"))
         return false;
+    l->tile_count += launch.tileCount;
     if (l->film->missing_count > 0)
         renderer_record(l->gpu, l->renderer, l->loader, l->film, sample, l->commands);
     return check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") &&

@@ -25,6 +25,7 @@ struct launches {
     uint64_t ray_count;      ///< paths traced, again and again ones among them
     uint32_t complete_count; ///< samples per pixel that are complete
     uint32_t preload_count;  ///< launches of --preload, which trace nothing
+    uint64_t tile_count;     ///< tiles loaded, as often as they were, those of --preload included
     void *user_data;
     /** After each launch that traced something; false ends it all. */
     bool (*after_launch)(void *user_data, const struct launch_record *record);

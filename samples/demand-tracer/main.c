@@ -12,6 +12,7 @@
 #include "../common/files.h"
 #include "../common/progress.h"
 #include "contact_sheet.h"
+#include "history.h"
 #include "summary.h"
 
 #define EXIT_USAGE 2
@@ -28,6 +29,9 @@ struct tracer {
     struct renderer renderer;
     struct picture picture;
     struct contact_sheet sheet;
+    struct launches launches;
+    struct history history;
+    double start; ///< of the first launch, s
     struct progress progress;
     char progress_text[96];
 };
@@ -49,6 +53,7 @@ static bool create_loader(struct tracer *t)
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .queueFamilyIndex = t->gpu.family,
         .log = {.pfnLog = print_log},
+        .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
         .memoryBudget = (uint64_t)o->budget << 20,
         .loaderThreadCount = o->threads,
@@ -94,6 +99,7 @@ static void close_all(struct tracer *t)
     gpu_destroy(&t->gpu);
     picture_destroy(&t->picture);
     contact_sheet_finish(&t->sheet);
+    history_finish(&t->history);
     scene_finish(&t->scene);
 }
 
@@ -118,6 +124,18 @@ static bool add_to_sheet(struct tracer *t, const struct launch_record *record, u
     return contact_sheet_add(&t->sheet, &t->picture, t->options.exposure, caption);
 }
 
+static bool remember(struct tracer *t, const struct launch_record *record,
+                     const SluiceDemandStatistics *statistics)
+{
+    const struct history_row row = {.launch = *record,
+                                    .resident_tiles = statistics->residentTileCount,
+                                    .loaded_tiles = t->launches.tile_count,
+                                    .bytes_read = statistics->bytesRead,
+                                    .bytes_uploaded = statistics->bytesUploaded,
+                                    .seconds = clock_seconds() - t->start};
+    return history_add(&t->history, &row);
+}
+
 static bool after_launch(void *user_data, const struct launch_record *record)
 {
     struct tracer *t = user_data;
@@ -125,6 +143,8 @@ static bool after_launch(void *user_data, const struct launch_record *record)
     if (sluiceGetDemandStatistics(t->loader, &statistics) != SLUICE_SUCCESS)
         return false;
     show_progress(t, record, &statistics);
+    if (!remember(t, record, &statistics))
+        return false;
     bool sheet = t->options.contact_sheet &&
                  (contact_sheet_has_room(&t->sheet) || record->missing_count == 0);
     if (!sheet && !t->options.frames)
@@ -137,16 +157,40 @@ static bool after_launch(void *user_data, const struct launch_record *record)
             picture_write(&t->picture, t->options.exposure, t->options.frames, name));
 }
 
-static bool write_results(struct tracer *t, const struct launches *launches, double seconds)
+static bool write_files(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    struct summary summary = {.launches = launches, .seconds = seconds, .psnr = NAN};
-    if (!film_read(&t->gpu, &t->film, &t->picture) ||
-        !picture_write(&t->picture, o->exposure, o->output, "picture") ||
-        (o->contact_sheet && !contact_sheet_write(&t->sheet, o->contact_sheet)) ||
-        (o->compare && !picture_compare(&t->picture, o->exposure, o->compare, &summary.psnr)) ||
+    return film_read(&t->gpu, &t->film, &t->picture) &&
+           picture_write(&t->picture, o->exposure, o->output, "picture") &&
+           history_write(&t->history, o->output) &&
+           (!o->contact_sheet || contact_sheet_write(&t->sheet, o->contact_sheet));
+}
+
+static bool count_needs(struct tracer *t, double *tiles)
+{
+    uint64_t count = 0;
+    if (!t->options.needs)
+        return true;
+    bool done = needs_count(&t->gpu, &t->renderer.needs, &count);
+    *tiles = (double)count;
+    return done;
+}
+
+static bool print_summary(struct tracer *t, double seconds)
+{
+    const struct tracer_options *o = &t->options;
+    struct summary summary = {.launches = &t->launches,
+                              .seconds = seconds,
+                              .difference = {NAN, NAN, NAN},
+                              .needed_tiles = NAN,
+                              .resident_peak = t->history.resident_peak};
+    if ((o->compare &&
+         !picture_compare(&t->picture, o->exposure, o->compare, o->output, &summary.difference)) ||
+        !count_needs(t, &summary.needed_tiles) ||
         sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
         return false;
+    if (o->json)
+        gpu_print_json(&t->gpu);
     summary_print(&summary, o->json);
     if (!o->json)
         printf("picture.png and picture.exr are in %s\n", o->output);
@@ -160,27 +204,27 @@ static bool write_results(struct tracer *t, const struct launches *launches, dou
 static bool trace(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    struct launches launches = {.gpu = &t->gpu,
-                                .options = o,
-                                .loader = t->loader,
-                                .renderer = &t->renderer,
-                                .film = &t->film,
-                                .textures = &t->textures,
-                                .user_data = t,
-                                .after_launch = after_launch};
-    if (o->preload && !launches_preload(&launches))
+    t->launches = (struct launches){.gpu = &t->gpu,
+                                    .options = o,
+                                    .loader = t->loader,
+                                    .renderer = &t->renderer,
+                                    .film = &t->film,
+                                    .textures = &t->textures,
+                                    .user_data = t,
+                                    .after_launch = after_launch};
+    if (o->preload && !launches_preload(&t->launches))
         return false;
-    double start = clock_seconds();
+    t->start = clock_seconds();
     progress_begin(&t->progress, t->progress_text, "paths",
                    (uint64_t)o->samples * o->size[0] * o->size[1]);
-    if (!launches_run(&launches))
+    if (!launches_run(&t->launches))
         return false;
-    double seconds = clock_seconds() - start;
+    double seconds = clock_seconds() - t->start;
     progress_end(&t->progress);
     if (t->film.missing_count > 0)
         fprintf(stderr, "%u pixels are still missing after %u launches\n", t->film.missing_count,
-                launches.count);
-    return write_results(t, &launches, seconds) && t->film.missing_count == 0;
+                t->launches.count);
+    return write_files(t) && print_summary(t, seconds) && t->film.missing_count == 0;
 }
 
 int main(int argc, char **argv)

@@ -41,6 +41,7 @@ static bool check(struct tracer_options *o)
         fprintf(stderr, "--budget %u: wants 4 MiB at least, or 0\n", o->budget);
         return false;
     }
+    o->needs = o->count_needs == NEEDS_ON;
     if (o->preview && o->preload) {
         fprintf(stderr, "--preview and --preload: nothing would be missing; give one of them\n");
         return false;
@@ -107,14 +108,17 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
          "with the validation layers; their messages make the run fail"},
 
         {OPTION_SECTION, .help = "Output"},
-        {OPTION_TEXT, "output", "DIR", &o->output, "picture.png and picture.exr are written here"},
+        {OPTION_TEXT, "output", "DIR", &o->output,
+         "picture.png, picture.exr and frames.csv, a row for each launch,\nare written here"},
         {OPTION_TEXT, "frames", "DIR", &o->frames,
          "also write the picture after each launch here, as PNG and EXR"},
         {OPTION_TEXT, "contact-sheet", "FILE", &o->contact_sheet,
          "PNG of small pictures, one for each of the first launches;\n"
          "without --preview missing pixels are magenta"},
         {OPTION_TEXT, "compare", "FILE", &o->compare,
-         "print the PSNR against a PNG picture of another run"},
+         "print PSNR, SSIM and FLIP against a PNG picture of another run,\nwrite flip.png"},
+        {OPTION_CHOICE, "needs", "on|off", &o->count_needs,
+         "count the tiles that the finished picture needed"},
         {OPTION_FLAG, "json", NULL, &o->json, "a line of JSON for each figure"},
     };
     enum option_outcome outcome =

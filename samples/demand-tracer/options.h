@@ -5,6 +5,7 @@
 #include "../common/options.h"
 #include "scene.h"
 
+enum needs_choice { NEEDS_ON, NEEDS_OFF };
 enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
 
 struct tracer_options {
@@ -16,6 +17,8 @@ struct tracer_options {
     struct scene_camera view; ///< of `camera`
     int path;                 ///< enum path_choice
     bool preview, preload;
+    bool needs;      ///< of `count_needs`
+    int count_needs; ///< enum needs_choice
     double exposure; ///< stops
     uint32_t budget, threads, requests;
     double anisotropy;

@@ -24,9 +24,16 @@ void picture_develop(const struct picture *picture, double exposure, uint8_t *rg
 bool picture_write(const struct picture *picture, double exposure, const char *folder,
                    const char *name);
 
-/** PSNR in dB of the developed picture against a PNG file of the same size. Says on stderr why it
- *  failed. */
+/** Of two developed pictures. */
+struct picture_difference {
+    double psnr; ///< dB
+    double ssim; ///< 1: equal
+    double flip; ///< 0: equal
+};
+
+/** Of the picture and a PNG file of the same size; where they differ goes to FOLDER/flip.png. Says
+ * on stderr why it failed. */
 bool picture_compare(const struct picture *picture, double exposure, const char *path,
-                     double *psnr);
+                     const char *folder, struct picture_difference *difference);
 
 #endif /* TRACER_PICTURE_H */

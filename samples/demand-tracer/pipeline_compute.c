@@ -3,13 +3,14 @@
 #include "trace_comp.h"
 
 bool compute_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
-                             uint32_t scene_root, VkPipeline *pipeline)
+                             bool needs, uint32_t scene_root, VkPipeline *pipeline)
 {
-    const uint32_t values[2] = {preview, scene_root};
-    const VkSpecializationMapEntry entries[2] = {
+    const uint32_t values[3] = {preview, needs, scene_root};
+    const VkSpecializationMapEntry entries[3] = {
         {TRACER_CONSTANT_PREVIEW, 0, sizeof values[0]},
-        {TRACER_CONSTANT_SCENE_ROOT, sizeof values[0], sizeof values[1]}};
-    const VkSpecializationInfo constants = {2, entries, sizeof values, values};
+        {TRACER_CONSTANT_NEEDS, sizeof values[0], sizeof values[1]},
+        {TRACER_CONSTANT_SCENE_ROOT, 2 * sizeof values[0], sizeof values[2]}};
+    const VkSpecializationInfo constants = {3, entries, sizeof values, values};
     VkComputePipelineCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,

@@ -4,9 +4,10 @@
 
 #include "bindings.h"
 
-/** `scene_root`: node over all instances. Says on stderr why it failed. */
+/** `needs`: notes what complete paths sample. `scene_root`: node over all instances. Says on stderr
+ * why it failed. */
 bool compute_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
-                             uint32_t scene_root, VkPipeline *pipeline);
+                             bool needs, uint32_t scene_root, VkPipeline *pipeline);
 
 /** Records a launch; the descriptor sets are bound. */
 void compute_pipeline_record(VkPipeline pipeline, VkCommandBuffer commands, uint32_t pixel_count);

@@ -51,14 +51,16 @@ static VkRayTracingShaderGroupCreateInfoKHR general_group(uint32_t stage)
 }
 
 static bool create_pipeline(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
-                            struct ray_pipeline *pipeline)
+                            bool needs, struct ray_pipeline *pipeline)
 {
     PFN_vkCreateRayTracingPipelinesKHR create =
         (PFN_vkCreateRayTracingPipelinesKHR)vkGetDeviceProcAddr(gpu->device,
                                                                 "vkCreateRayTracingPipelinesKHR");
-    const VkBool32 values[1] = {preview};
-    const VkSpecializationMapEntry entry = {TRACER_CONSTANT_PREVIEW, 0, sizeof values[0]};
-    const VkSpecializationInfo constants = {1, &entry, sizeof values, values};
+    const VkBool32 values[2] = {preview, needs};
+    const VkSpecializationMapEntry entries[2] = {
+        {TRACER_CONSTANT_PREVIEW, 0, sizeof values[0]},
+        {TRACER_CONSTANT_NEEDS, sizeof values[0], sizeof values[1]}};
+    const VkSpecializationInfo constants = {2, entries, sizeof values, values};
     VkPipelineShaderStageCreateInfo stages[STAGE_COUNT];
     VkRayTracingShaderGroupCreateInfoKHR groups[GROUP_COUNT] = {
         general_group(STAGE_BEGIN), general_group(STAGE_MISS), general_group(VK_SHADER_UNUSED_KHR)};
@@ -134,12 +136,12 @@ static bool create_table(const struct gpu *gpu, struct ray_pipeline *pipeline)
     return done;
 }
 
-bool ray_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
+bool ray_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview, bool needs,
                          struct ray_pipeline *pipeline)
 {
     *pipeline = (struct ray_pipeline){
         .trace = (PFN_vkCmdTraceRaysKHR)vkGetDeviceProcAddr(gpu->device, "vkCmdTraceRaysKHR")};
-    return create_pipeline(gpu, layout, preview, pipeline) && create_table(gpu, pipeline);
+    return create_pipeline(gpu, layout, preview, needs, pipeline) && create_table(gpu, pipeline);
 }
 
 void ray_pipeline_destroy(const struct gpu *gpu, struct ray_pipeline *pipeline)

@@ -12,8 +12,8 @@ struct ray_pipeline {
     PFN_vkCmdTraceRaysKHR trace;
 };
 
-/** Says on stderr why it failed. */
-bool ray_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview,
+/** `needs`: notes what complete paths sample. Says on stderr why it failed. */
+bool ray_pipeline_create(const struct gpu *gpu, VkPipelineLayout layout, bool preview, bool needs,
                          struct ray_pipeline *pipeline);
 void ray_pipeline_destroy(const struct gpu *gpu, struct ray_pipeline *pipeline);
 

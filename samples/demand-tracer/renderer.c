@@ -73,9 +73,10 @@ static bool create_pipeline(const struct gpu *gpu, const struct tracer_options *
                             const struct scene *scene, struct renderer *r)
 {
     if (r->uses_pipeline)
-        return ray_pipeline_create(gpu, r->bindings.layout, options->preview, &r->rays);
-    return compute_pipeline_create(gpu, r->bindings.layout, options->preview, scene->bvh.scene_root,
-                                   &r->compute);
+        return ray_pipeline_create(gpu, r->bindings.layout, options->preview, options->needs,
+                                   &r->rays);
+    return compute_pipeline_create(gpu, r->bindings.layout, options->preview, options->needs,
+                                   scene->bvh.scene_root, &r->compute);
 }
 
 bool renderer_create(const struct gpu *gpu, const struct tracer_options *options,
@@ -84,6 +85,7 @@ bool renderer_create(const struct gpu *gpu, const struct tracer_options *options
 {
     *r = (struct renderer){.constants = camera_constants(options)};
     if (!choose_path(gpu, options->path, r) || !upload_scene(gpu, scene, textures, r) ||
+        !needs_create(gpu, options->needs, &r->needs) ||
         (r->uses_pipeline &&
          !accel_build(gpu, scene, r->vertices.buffer, r->indices.buffer, &r->accel)))
         return false;
@@ -96,7 +98,8 @@ bool renderer_create(const struct gpu *gpu, const struct tracer_options *options
                         [TRACER_BINDING_FILM] = film->sums.buffer,
                         [TRACER_BINDING_LATEST] = film->latest.buffer,
                         [TRACER_BINDING_LISTS] = film->lists.buffer,
-                        [TRACER_BINDING_COUNTERS] = film->counters.buffer},
+                        [TRACER_BINDING_COUNTERS] = film->counters.buffer,
+                        [TRACER_BINDING_NEEDS] = r->needs.pages.buffer},
         .scene = r->accel.scene.handle,
     };
     return bindings_create(gpu, &request, &r->bindings) && create_pipeline(gpu, options, scene, r);
@@ -112,6 +115,7 @@ void renderer_destroy(const struct gpu *gpu, struct renderer *r)
     gpu_destroy_buffer(gpu, &r->indices);
     gpu_destroy_buffer(gpu, &r->instances);
     gpu_destroy_buffer(gpu, &r->nodes);
+    needs_destroy(gpu, &r->needs);
 }
 
 void renderer_record(const struct gpu *gpu, struct renderer *r, const SluiceDemandLoader *loader,

@@ -4,6 +4,7 @@
 
 #include "accel.h"
 #include "film.h"
+#include "needs.h"
 #include "options.h"
 #include "pipeline_compute.h"
 #include "pipeline_rays.h"
@@ -13,6 +14,7 @@
 struct renderer {
     bool uses_pipeline; ///< for ray tracing; else the compute path
     struct gpu_buffer vertices, indices, instances, nodes;
+    struct needs needs;
     struct accel accel;
     struct bindings bindings;
     struct ray_pipeline rays;

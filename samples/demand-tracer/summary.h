@@ -7,8 +7,10 @@
 struct summary {
     const struct launches *launches;
     SluiceDemandStatistics statistics;
-    double seconds; ///< of all launches
-    double psnr;    ///< dB; NAN: nothing was compared
+    double seconds;                       ///< of all launches
+    struct picture_difference difference; ///< NANs: nothing was compared
+    double needed_tiles;                  ///< NAN: not counted
+    uint64_t resident_peak;               ///< tiles after a launch
 };
 
 /** A line for each figure on stdout, or a line of JSON. */

@@ -28,6 +28,7 @@ refuse --camera 1,2,3
 refuse --camera 0,5,0,0,1,0
 refuse --camera nan,0,0,1,1,1
 refuse --preview --preload
+refuse --needs perhaps
 [ ! -e "$folder/refused" ] || { echo "something was written" >&2; failed=1; }
 "$tracer" --help | grep -q -- '--contact-sheet FILE' || { echo "no help" >&2; failed=1; }
 
@@ -83,18 +84,36 @@ check first textures 'v + 0 == 30'
 check first textures_opened 'v + 0 > 5 && v + 0 <= 30'
 check first textures_failed 'v + 0 == 0'
 check first virtual_bytes 'v + 0 == 30 * 1398100'
-for file in "$folder/first/picture.png" "$folder/first/picture.exr" "$folder/sheet.png" \
+check first textures_never_opened "v + 0 == 30 - $(value first textures_opened)"
+check first needed_bytes 'v + 0 > 10 * 65536 && v % 65536 == 0'
+check first loaded_bytes "v + 0 == $(value first resident_bytes)" # nothing was evicted
+check first resident_bytes_peak "v + 0 == $(value first resident_bytes)"
+check first loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
+for file in "$folder/first/picture.png" "$folder/first/picture.exr" "$folder/first/frames.csv" "$folder/sheet.png" \
     "$folder/frames/launch-00001.png" "$folder/frames/launch-00003.exr"; do
     [ -s "$file" ] || { echo "$file was not written" >&2; failed=1; }
 done
 
-# Nothing is missing where all was loaded before, and the picture is the same.
+# Each launch has a row, and the last one misses nothing.
+awk -F, -v launches="$(value first launches)" -v bytes="$(value first loaded_bytes)" '
+    NR > 1 && $1 == NR - 1 { rows++; missing = $4; loaded = $7 }
+    END { exit !(rows == launches && NR == rows + 1 && missing == 0 && loaded * 65536 == bytes) }
+' "$folder/first/frames.csv" || { echo "frames.csv is not what was done" >&2; failed=1; }
+
+# Nothing is missing where all was loaded before, and the picture is the same. It needs the same, as
+# its paths never go astray.
 trace preloaded $validation --preload --compare "$folder/first/picture.png"
 succeeds
 is_complete preloaded
 check preloaded launches 'v + 0 == 2'
 check preloaded textures_opened 'v + 0 == 30'
+check preloaded textures_never_opened 'v + 0 == 0'
+check preloaded needed_bytes "v + 0 == $(value first needed_bytes)"
+check preloaded loaded_per_needed 'v + 0 > 2'
 is_like_first preloaded 60
+check preloaded ssim_mean 'v + 0 > 0.9999 && v + 0 <= 1'
+check preloaded flip_mean 'v + 0 >= 0 && v + 0 < 0.0001'
+[ -s "$folder/preloaded/flip.png" ] || { echo "flip.png was not written" >&2; failed=1; }
 
 # The same scene without a ray-tracing pipeline; edges may fall to the other side of a pixel.
 trace compute $validation --path compute --compare "$folder/first/picture.png"
@@ -102,13 +121,19 @@ succeeds
 is_complete compute
 check compute ray_tracing_pipeline 'v + 0 == 0'
 check compute textures_opened "v + 0 == $(value first textures_opened)"
+check compute needed_bytes "v >= 0.97 * $(value first needed_bytes) && v <= 1.03 * $(value first needed_bytes)"
+check compute loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
 is_like_first compute 40
+check compute ssim_mean 'v + 0 > 0.98 && v + 0 <= 1'
+check compute flip_mean 'v + 0 >= 0 && v + 0 < 0.02'
 
 # A preview shows coarse levels from the second launch on, and ends as sharp.
 trace preview $validation --preview --frames "$folder/preview-frames" \
     --compare "$folder/first/picture.png"
 succeeds
 is_complete preview
+check preview needed_bytes "v + 0 == $(value first needed_bytes)"
+check preview loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
 is_like_first preview 60
 
 # A few tiles at a time.
@@ -116,6 +141,7 @@ trace slow --requests 16 --threads 1 --compare "$folder/first/picture.png"
 succeeds
 is_complete slow
 check slow launches "v + 0 > $(value first launches)"
+check slow needed_bytes "v + 0 == $(value first needed_bytes)"
 is_like_first slow 60
 
 # Less memory than the picture needs: complete all the same.
@@ -123,17 +149,25 @@ trace pressed --budget 4 --texture-size 4096 --texture-count 60 --anisotropy 1
 succeeds
 is_complete pressed
 check pressed tile_memory 'v + 0 <= 4 * 1024 * 1024'
+check pressed resident_bytes_peak 'v + 0 <= 4 * 1024 * 1024'
+check pressed loaded_per_needed 'v + 0 > 0'
 
 # What no ray hits is not opened: what is behind the camera, and everything below the sky.
-trace away --camera 0,1.5,-2,0,0.5,-9 --bounces 0
+trace away --needs off --camera 0,1.5,-2,0,0.5,-9 --bounces 0
 succeeds
 is_complete away
 check away textures_opened 'v + 0 > 0 && v + 0 < 20'
-trace sky --camera 0,3,0,1,9,0
+[ "$(value away needed_bytes)" = null ] || { echo "needs were counted although off" >&2; failed=1; }
+trace sky --camera 0,3,0,1,9,0 --compare "$folder/first/picture.png"
 succeeds
 is_complete sky
 check sky launches 'v + 0 == 2'
 check sky requests 'v + 0 == 0'
+check sky needed_bytes 'v + 0 == 0'
+check sky loaded_bytes 'v + 0 == 0'
+check sky textures_never_opened 'v + 0 == 30'
+check sky ssim_mean 'v + 0 < 0.9' # another picture
+check sky flip_mean 'v + 0 > 0.1 && v + 0 < 1'
 check sky textures_opened 'v + 0 == 0'
 
 # Pictures from files, among them one that is none.

@@ -7,7 +7,8 @@
 /* Descriptor set 0: what sluice/demand.glsl needs, the tile arrays last. */
 #define TRACER_DEMAND_BUFFERS 7
 #define TRACER_BINDING_PAGES 7
-#define TRACER_PAGE_CHUNKS 64 /* maxPageChunkCount */
+#define TRACER_PAGE_CHUNKS 64            /* maxPageChunkCount */
+#define TRACER_PAGE_CAPACITY 0x04000000u /* pageCapacity */
 
 /* Descriptor set 1 */
 #define TRACER_BINDING_VERTICES 0
@@ -18,12 +19,14 @@
 #define TRACER_BINDING_LATEST 5
 #define TRACER_BINDING_LISTS 6
 #define TRACER_BINDING_COUNTERS 7
-#define TRACER_OWN_BUFFERS 8
-#define TRACER_BINDING_SCENE 8 /* the acceleration structure, of pipelines alone */
+#define TRACER_BINDING_NEEDS 8
+#define TRACER_OWN_BUFFERS 9
+#define TRACER_BINDING_SCENE 9 /* the acceleration structure, of pipelines alone */
 
 /* Specialization constants */
 #define TRACER_CONSTANT_PREVIEW 0
-#define TRACER_CONSTANT_SCENE_ROOT 1 /* of the compute path */
+#define TRACER_CONSTANT_NEEDS 1
+#define TRACER_CONSTANT_SCENE_ROOT 2 /* of the compute path */
 
 #define TRACER_ROW_WIDTH 1024 /* rays of one row of a launch */
 #define TRACER_GROUP_SIZE 64  /* threads of the compute path */

@@ -207,6 +207,8 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
         measure_write_csv(walk->measure, csv_path) && gallery_report_write(&report, walk->measure);
     free(command_line);
     if (settings->json)
+        gpu_print_json(&gallery->gpu);
+    if (settings->json)
         measure_print_json(figures, figure_count);
     else
         measure_print_text(figures, figure_count);

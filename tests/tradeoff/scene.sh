@@ -15,6 +15,8 @@ scene [OPTION ...]
   --name TEXT                 of no importance [x]
   --output DIR                where everything is written
   --write-frames some|none    pictures to write [some]
+  --record TRACE              of the manager
+  --needs-trace TRACE         of what frames need
   --json                      figures as JSON lines on stdout
   --help                      this text
 END
@@ -28,6 +30,8 @@ while [ $# -gt 0 ]; do
     --probability) probability=$2; shift ;;
     --seed) repeat=$2; shift ;;
     --output) output=$2; shift ;;
+    --record) [ -z "${SCENE_RECORDING-}" ] || cp "$SCENE_RECORDING" "$2"; shift ;;
+    --needs-trace) [ -z "${SCENE_NEEDS-}" ] || cp "$SCENE_NEEDS" "$2"; shift ;;
     --name | --write-frames | --generate-scale | --size | --samples | --frames | --rest-frames | --fps) shift ;;
     --json) ;;
     *) echo "scene: there is no option $1" >&2; exit 2 ;;
@@ -52,4 +56,5 @@ echo 'some words between'
 figure resident_bytes_peak $((1048576 * (budget > 0 ? budget : 100))) bytes
 figure gpu_ms_median $((10 + repeat)) ms
 figure psnr_mean_db "$([ "$probability" = 1/4 ] && echo 40 || echo 30)" dB
+figure frames 2 frames
 echo '{"name": "device", "value": "a \"fast\" one", "unit": "name"}'

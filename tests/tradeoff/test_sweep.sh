@@ -1,6 +1,6 @@
 #!/bin/bash
-# test_sweep.sh SLUICE_TRADEOFF SCENE: sweeps of a program that draws nothing, in TAP.
-tool=$(realpath "$1") scene=$(realpath "$2")
+# test_sweep.sh SLUICE_TRADEOFF SCENE RECORDING: sweeps of a program that draws nothing, in TAP.
+tool=$(realpath "$1") scene=$(realpath "$2") recording=$(realpath "$3")
 n=0
 failed=0
 folder=$(mktemp -d) || exit 99
@@ -211,6 +211,37 @@ report an_interruption_ends_what_was_started_and_keeps_the_rest $?
 status 0 sweep --results i --sweep name='a b,it'\''s' --repeats 1 --jobs 2 -- --budget 9 &&
     grep -q "^1,name a b,done" i/points.csv && [ "$(wc -l <i/runs.csv)" = 4 ]
 report several_jobs_measure_the_same $?
+
+# One texture of 64 + 16 + 4 + 1 tiles and a packed one, all of it wanted in each of 20 frames.
+python3 - <<'END' 2>>err
+from struct import pack
+with open("needs.trace", "wb") as file:
+    file.write(b"SLTRACE1" + pack("<14I", 1, 20, *[0] * 12))
+    file.write(pack("<2I2H4BI4H3I", 1024, 1024, 128, 128, 11, 4, 7, 1, 0, 128, 128, 8, 8, 65536, 85, 0))
+    for frame in range(20):
+        file.write(pack("<QIII2B", 16667 * (frame + 1), 1, 0, 2, 64, 0))
+END
+
+status 0 "$tool" trace needs.trace --results j --sweep budget=2,16 --repeats 2 &&
+    [ "$(cell j/points.csv 0,base clairvoyant_tiles)" = 86 ] &&
+    [ "$(cell j/points.csv 2,budget needed_bytes)" = $((86 * 65536)) ] &&
+    [ "$(cell j/points.csv 2,budget clairvoyant_tiles_half_width)" = 0 ] &&
+    [ "$(cell j/points.csv 1,budget resident_bytes_peak)" -le 2097152 ]
+report a_trace_is_played_without_a_program $?
+
+# Of 86 tiles 32 fit at 2 MiB, so that some regions stay coarser for good; at 16 MiB none does.
+awk -v a="$(cell j/points.csv 1,budget clairvoyant_levels_too_coarse)" \
+    -v b="$(cell j/points.csv 2,budget clairvoyant_levels_too_coarse)" 'BEGIN { exit !(a > b && b >= 0) }' &&
+    [ "$(find j/clairvoyant -type f | wc -l)" = 3 ]
+report a_policy_that_knows_the_trace_is_asked_once_per_budget $?
+
+export SCENE_RECORDING=$recording SCENE_NEEDS=$folder/needs.trace
+status 0 sweep --results l --sweep budget=16 --sweep probability=1/4 --repeats 2 &&
+    [ "$(cell l/points.csv 0,base clairvoyant_tiles)" = 86 ] &&
+    [ "$(find l/clairvoyant -type f | wc -l)" = 2 ] &&
+    awk -v v="$(cell l/points.csv 0,base core_us_per_frame)" 'BEGIN { exit !(v > 0) }' &&
+    status 0 "$tool" page l --json && grep -q '"clairvoyant_tiles", "value": 86, .*"point": "budget 16"' out
+report recordings_of_first_runs_are_played $?
 
 echo "1..$n"
 exit $failed

@@ -7,6 +7,7 @@
 
 #include "../../samples/common/files.h"
 #include "../../samples/common/text.h"
+#include "foresight.h"
 #include "folders.h"
 #include "page.h"
 #include "recommend.h"
@@ -56,7 +57,7 @@ static int show_results(struct session *s)
 
 static bool forget(const char *results)
 {
-    static const char *const names[] = {"runs", "reference"};
+    static const char *const names[] = {"runs", "reference", "clairvoyant"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char *path = memory_text("%s/%s", results, names[i]);
         bool removed = folders_remove(path);
@@ -86,10 +87,10 @@ static bool prepare_folder(const struct options *o)
     return ready;
 }
 
-static int make_runs(struct session *s)
+static int make_runs(struct session *s, const char *own_path)
 {
     switch (runs_make(&s->runs)) {
-    case RUNS_DONE: return show_results(s);
+    case RUNS_DONE: foresight_add(&s->runs, own_path, false); return show_results(s);
     case RUNS_INTERRUPTED:
         text_say("sluice-tradeoff: interrupted; the same command goes on from here");
         return TRADEOFF_INTERRUPTED;
@@ -122,7 +123,7 @@ int command_sweep(int argc, char **argv)
     } else if (prepare_folder(&s.options)) {
         s.sweep.command_line = join_words(argc, argv);
         if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv))
-            status = make_runs(&s);
+            status = make_runs(&s, own_path);
     }
     session_close(&s);
     free(own_path);
@@ -138,7 +139,10 @@ static int show_again(struct session *s, const struct text_list *words, const ch
     s->options.results = results;
     s->options.json = json;
     s->sweep.command_line = join_words((int)words->count, words->items);
-    return session_open(s, own_path, true) ? show_results(s) : TRADEOFF_FAILED;
+    if (!session_open(s, own_path, true))
+        return TRADEOFF_FAILED;
+    foresight_add(&s->runs, own_path, true);
+    return show_results(s);
 }
 
 int command_page(int argc, char **argv)

@@ -72,12 +72,9 @@ static void begin_job(struct maker *maker, struct job *job, struct run *run)
 /* What the tool itself measures stands behind what the program printed. */
 static bool add_own_figures(const struct job *job, double seconds)
 {
-    struct figures figures = {0};
-    figures_read(job->out, &figures);
     char *trace = memory_text("%s/manager.trace", job->partial);
-    double core = core_time_per_frame(trace, figures_value(&figures, "frames"));
+    double core = core_time_per_frame(trace);
     free(trace);
-    figures_finish(&figures);
     FILE *file = fopen(job->out, "a");
     if (!file)
         return false;

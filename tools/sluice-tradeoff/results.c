@@ -88,18 +88,27 @@ static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t i
     text_list_finish(&arguments);
 }
 
+/* A text that some run printed; NULL: none did. */
+static const char *find_text(const struct runs *runs, const char *name)
+{
+    for (uint32_t i = 0; i < runs->count; i++) {
+        const struct figure *figure = figures_find(&runs->items[i].figures, name);
+        if (figure && figure->text && *figure->text)
+            return figure->text;
+    }
+    return NULL;
+}
+
 /* What drew it, if some run says so, and what else tells one machine from another. */
 static char *describe_machine(const struct runs *runs)
 {
     struct utsname system = {0};
-    const struct figure *device = NULL;
-    for (uint32_t i = 0; i < runs->count && !device; i++)
-        device = figures_find(&runs->items[i].figures, "device");
+    const char *device = find_text(runs, "device"), *driver = find_text(runs, "driver");
     uname(&system);
-    bool named = device && device->text;
-    return memory_text("%s%s%ld processors, %s %s %s", named ? device->text : "", named ? "; " : "",
-                       sysconf(_SC_NPROCESSORS_ONLN), system.sysname, system.release,
-                       system.machine);
+    return memory_text("%s%s%s%s%s%ld processors, %s %s %s", device ? device : "",
+                       driver ? " (" : "", driver ? driver : "", driver ? ")" : "",
+                       device || driver ? "; " : "", sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
+                       system.release, system.machine);
 }
 
 void results_collect(const struct runs *runs, struct sweep *sweep)

@@ -30,7 +30,9 @@ void runs_add_arguments(const struct runs *runs, const struct run *run, const ch
                         struct text_list *arguments)
 {
     char *reference = memory_text("%s/reference", runs->results);
-    const struct scene_run place = {folder, reference, run->repeat};
+    const struct run *base = &runs->items[runs->sweep->base];
+    const struct scene_run place = {folder, reference, run == base ? NULL : base->folder,
+                                    run->repeat};
     add_deciding_arguments(runs, run, arguments);
     runs->options->scene->add_run_arguments(runs->program, &place, arguments);
     free(reference);

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#define WARM_UP_FRAMES "20"
+
 static const struct scene_setting settings[] = {
     {{"probability", "that a pixel quad writes feedback", ""},
      "1/16",
@@ -127,6 +129,9 @@ static void add_repeat_arguments(const struct program *program, uint32_t repeat,
     } else if (program_has_option(program, "compare")) {
         text_list_add(arguments, "--compare");
     }
+    /* A walk that begins with nothing in memory shows little else. */
+    if (program_has_option(program, "warm-up"))
+        text_list_add_parts(arguments, "--warm-up " WARM_UP_FRAMES, ' ');
     if (program_has_option(program, "seed")) {
         char *seed = memory_text("%u", repeat + 1);
         text_list_add(arguments, "--seed");

@@ -26,6 +26,7 @@ struct scene_roles {
 struct scene_run {
     const char *folder;    ///< of this run
     const char *reference; ///< folder that the runs of a sweep share
+    const char *base;      ///< folder of the base's first run, which is made first; NULL for itself
     uint32_t repeat;       ///< from 0
 };
 

@@ -8,6 +8,7 @@
 struct Payload {
     Surface surface; /* `complete` also says so of holes on the way */
     Cone cone;       /* of the ray */
+    bool noting;     /* see notes.glsl */
 };
 
 #endif

@@ -1,4 +1,5 @@
-/* Gives sluice/demand.glsl its bindings: this is all that sampling on demand needs of a shader. */
+/* Gives sluice/demand.glsl its bindings: this and notes.glsl, which only --needs wants, is all that
+ * sampling on demand needs of a shader. */
 #ifndef TRACER_TEXTURES_GLSL
 #define TRACER_TEXTURES_GLSL
 
@@ -37,12 +38,14 @@ layout(std430, set = 0, binding = 6) buffer DemandSections
 };
 layout(set = 0, binding = TRACER_BINDING_PAGES) uniform sampler2DArray pages[TRACER_PAGE_CHUNKS];
 
+#include "notes.glsl"
+
 #define SLUICE_DEMAND_TEXTURE(i) demandTextures[i]
 #define SLUICE_DEMAND_LEVEL_WORD(i) demandLevels[i]
-#define SLUICE_DEMAND_DIRECTORY_WORD(i) demandDirectory[i]
-#define SLUICE_DEMAND_BLOCK_WORD(i) demandBlocks[i]
+#define SLUICE_DEMAND_DIRECTORY_WORD(i) demandDirectory[noteGroup(i)]
+#define SLUICE_DEMAND_BLOCK_WORD(i) demandBlocks[notePage(i)]
 #define SLUICE_DEMAND_MASKS(i) demandMasks[i]
-#define SLUICE_DEMAND_REQUEST_WORD(i) demandRequests[i]
+#define SLUICE_DEMAND_REQUEST_WORD(i) demandRequests[noteMiss(i)]
 #define SLUICE_DEMAND_SECTION_WORD(i) demandSections[i]
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #define SLUICE_DEMAND_PREVIEW preview

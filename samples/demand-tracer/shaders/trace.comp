@@ -50,6 +50,7 @@ void main()
         return;
     uint pixel = pixelAt(place);
     Path path = startPixel(pixel);
+    noting = true;
     Walk walk = startRay(path);
     while (!path.done) {
         Hit hit;

@@ -12,6 +12,7 @@ hitAttributeEXT vec2 weights;
 void main()
 {
     bool complete = payload.surface.complete;
+    noting = payload.noting;
     payload.surface = surfaceAt(gl_InstanceID, gl_PrimitiveID, weights, gl_WorldRayDirectionEXT,
                                 gl_HitTEXT, payload.cone);
     payload.surface.complete = payload.surface.complete && complete;

@@ -1,0 +1,27 @@
+/** What was known after each launch: rows of frames.csv. */
+#ifndef TRACER_HISTORY_H
+#define TRACER_HISTORY_H
+
+#include "launches.h"
+
+struct history_row {
+    struct launch_record launch;
+    uint64_t resident_tiles, loaded_tiles, bytes_read, bytes_uploaded; ///< so far
+    double seconds; ///< since the first launch began
+};
+
+/** Zeroed is empty. */
+struct history {
+    struct history_row *rows; ///< owned
+    size_t count, room;
+    uint64_t resident_peak; ///< tiles
+};
+
+/** Says on stderr if memory is short. */
+bool history_add(struct history *history, const struct history_row *row);
+void history_finish(struct history *history);
+
+/** FOLDER/frames.csv. Says on stderr why it failed. */
+bool history_write(const struct history *history, const char *folder);
+
+#endif /* TRACER_HISTORY_H */

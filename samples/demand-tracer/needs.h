@@ -1,0 +1,21 @@
+/** What the finished picture needed: the pages that its complete paths have sampled, see
+ *  shaders/notes.glsl. */
+#ifndef TRACER_NEEDS_H
+#define TRACER_NEEDS_H
+
+#include "../common/gpu.h"
+
+/** Zeroed is empty. */
+struct needs {
+    bool on;
+    struct gpu_buffer pages; ///< on the device: a bit per page; small when off
+};
+
+/** No page is needed yet. Says on stderr why it failed. */
+bool needs_create(const struct gpu *gpu, bool on, struct needs *needs);
+void needs_destroy(const struct gpu *gpu, struct needs *needs);
+
+/** When no launch is under way. Says on stderr why it failed. */
+bool needs_count(const struct gpu *gpu, const struct needs *needs, uint64_t *page_count);
+
+#endif /* TRACER_NEEDS_H */

@@ -1,0 +1,124 @@
+#include "foresight.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../../samples/common/files.h"
+#include "../../samples/common/text.h"
+#include "../sluice-replay/file.h"
+
+#define ROUNDS "100" ///< of the search; more hardly change what it finds
+
+/** One question: a trace and the settings that bound the policy. */
+struct question {
+    const char *own_path;
+    char *trace, *answer;                 ///< paths; owned
+    const char *budget, *tiles_per_frame; ///< values of the point, NULL: not a setting
+};
+
+static const char *find_value(const struct sweep *sweep, uint32_t point, const char *name)
+{
+    for (uint32_t i = 0; i < sweep->setting_count; i++)
+        if (strcmp(sweep->settings[i].name, name) == 0 && *sweep->points[point].values[i])
+            return sweep->points[point].values[i];
+    return NULL;
+}
+
+static uint64_t hash_text(uint64_t hash, const char *text)
+{
+    return text ? program_hash(hash, text, strlen(text) + 1) : hash;
+}
+
+/* False if there is no such trace. */
+static bool make_question(const struct runs *runs, uint32_t point, struct question *question)
+{
+    const char *own_trace = runs->options->trace;
+    char *data;
+    size_t size;
+    question->trace = own_trace ? memory_copy_text(own_trace)
+                                : memory_text("%s/needs.trace", runs->items[point].folder);
+    question->budget = find_value(runs->sweep, point, "budget");
+    question->tiles_per_frame = find_value(runs->sweep, point, "tiles-per-frame");
+    if (!read_file(question->trace, &data, &size))
+        return false;
+    uint64_t hash = program_hash(PROGRAM_HASH_START, data, size);
+    free(data);
+    hash = hash_text(hash_text(hash, question->budget), question->tiles_per_frame);
+    question->answer = memory_text("%s/clairvoyant/%016" PRIx64 ".jsonl", runs->results, hash);
+    return true;
+}
+
+static void add_option(struct text_list *arguments, const char *option, const char *value)
+{
+    if (!value)
+        return;
+    text_list_add(arguments, option);
+    text_list_add(arguments, value);
+}
+
+/* The answer gets its name when it is complete. */
+static void ask(const struct question *question, double limit)
+{
+    struct text_list arguments = {0};
+    char *partial = memory_text("%s.partial", question->answer);
+    char *error = memory_text("%s.log", question->answer);
+    struct child child;
+    int status = 0;
+    text_list_add(&arguments, question->own_path);
+    text_list_add(&arguments, "play");
+    text_list_add(&arguments, question->trace);
+    text_list_add_parts(&arguments, "--clairvoyant --json --rounds " ROUNDS, ' ');
+    add_option(&arguments, "--budget", question->budget);
+    add_option(&arguments, "--tiles-per-frame", question->tiles_per_frame);
+    const struct child_info info = {arguments.items, partial, error, limit, NULL};
+    if (!child_begin(&info, &child)) {
+        text_say("sluice-tradeoff: %s: %s", partial, strerror(errno));
+    } else if (child_wait(&child, &status) == CHILD_DONE) {
+        rename(partial, question->answer);
+    } else if (!child_is_interrupted()) {
+        char *reason = child_reason(&child, status);
+        text_say("%s, clairvoyant: %s", question->trace, reason);
+        free(reason);
+    }
+    unlink(partial);
+    unlink(error);
+    free(partial);
+    free(error);
+    text_list_finish(&arguments);
+}
+
+static void add_answer(struct runs *runs, uint32_t point, const char *path)
+{
+    static const char *const names[] = {"clairvoyant_tiles", "clairvoyant_levels_too_coarse"};
+    struct figures answer = {0};
+    if (!figures_read(path, &answer))
+        return;
+    for (uint32_t i = point; i < runs->count; i += runs->sweep->point_count)
+        for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+            const struct figure *figure = figures_find(&answer, names[n]);
+            if (figure && runs->items[i].state == SWEEP_DONE)
+                figures_add(&runs->items[i].figures, names[n], figure->value, figure->unit);
+        }
+    figures_finish(&answer);
+}
+
+void foresight_add(struct runs *runs, const char *own_path, bool recall)
+{
+    char *folder = memory_text("%s/clairvoyant", runs->results);
+    for (uint32_t point = 0; point < runs->sweep->point_count; point++) {
+        struct question question = {.own_path = own_path};
+        if (runs->items[point].state == SWEEP_DONE && make_question(runs, point, &question)) {
+            if (!recall && access(question.answer, F_OK) != 0 && !child_is_interrupted() &&
+                files_make_folders(folder))
+                ask(&question, runs->options->run_limit);
+            add_answer(runs, point, question.answer);
+        }
+        free(question.trace);
+        free(question.answer);
+    }
+    free(folder);
+}
