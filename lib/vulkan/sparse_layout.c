@@ -115,6 +115,16 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
     return SLUICE_SUCCESS;
 }
 
+/* They lie in an image of their own, not each on a page. */
+static uint32_t packed_pages(const SluiceStreamedTextureDesc *desc, const SluiceImageInfo *info)
+{
+    uint64_t size = 0;
+    for (uint32_t level = desc->regularMipCount; level < desc->mipLevelCount; level++)
+        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                       slc_mip_size(info->height, level));
+    return (uint32_t)((size + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE);
+}
+
 SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const SluiceImageInfo *info)
 {
     VkExtent3D tile = {.depth = 1};
@@ -127,6 +137,7 @@ SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout, const Sl
                                                   .tileWidth = tile.width,
                                                   .tileHeight = tile.height}};
     set_own_packed_levels(&layout->desc, info, tile);
+    layout->desc.packedTileCount = packed_pages(&layout->desc, info);
     set_regions(&layout->desc);
     layout->uneven = !halves_evenly(info->width, info->mipLevelCount) ||
                      !halves_evenly(info->height, info->mipLevelCount);

@@ -39,7 +39,8 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
 
 /**
  * Of images that no driver cuts into tiles: the standard shapes, and the levels packed that fit
- * into one tile. Errors: UNSUPPORTED if the format has no standard shape.
+ * into one tile; they count as the tiles that their texels together fill. Errors: UNSUPPORTED if
+ * the format has no standard shape.
  */
 SluiceResult slc_standard_layout_init(struct slc_sparse_layout *layout,
                                       const SluiceImageInfo *info);

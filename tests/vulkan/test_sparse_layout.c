@@ -101,6 +101,28 @@ static void without_a_tail_levels_within_one_tile_are_packed(void **state)
     }
 }
 
+/* Their packed levels are an image of their own. */
+static void standard_layouts_count_packed_levels_by_their_texels(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t width, height, regular, packed;
+        SluiceFormat format;
+    } cases[] = {{1024, 1024, 3, 2, SLUICE_FORMAT_R8G8B8A8_UNORM}, /* 65536 + 16384 + ... */
+                 {1000, 1000, 3, 2, SLUICE_FORMAT_R8G8B8A8_UNORM}, /* 62500 + 15376 + ... */
+                 {100, 30, 0, 1, SLUICE_FORMAT_R8G8B8A8_UNORM},    /* 12000 + 3000 + ... */
+                 {1, 1, 0, 1, SLUICE_FORMAT_R8G8B8A8_UNORM},
+                 {1024, 1024, 2, 2, SLUICE_FORMAT_R8_UNORM},           /* 256 x 256 and less */
+                 {128, 128, 1, 1, SLUICE_FORMAT_R16G16B16A16_SFLOAT}}; /* tiles of 128 x 64 */
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        SluiceImageInfo info = image(cases[i].width, cases[i].height, cases[i].format);
+        struct slc_sparse_layout layout;
+        CHECK_OK(slc_standard_layout_init(&layout, &info));
+        assert_int_equal(layout.desc.regularMipCount, cases[i].regular);
+        assert_int_equal(layout.desc.packedTileCount, cases[i].packed);
+    }
+}
+
 static void regular_tile_is_where_it_says(void **state)
 {
     (void)state;
@@ -230,6 +252,7 @@ int main(void)
         cmocka_unit_test(many_page_tail_is_as_many_packed_tiles),
         cmocka_unit_test(image_that_is_all_tail_has_one_region),
         cmocka_unit_test(without_a_tail_levels_within_one_tile_are_packed),
+        cmocka_unit_test(standard_layouts_count_packed_levels_by_their_texels),
         cmocka_unit_test(regular_tile_is_where_it_says),
         cmocka_unit_test(sizes_that_do_not_halve_evenly_are_told),
         cmocka_unit_test(tiles_that_are_not_pages_and_images_beyond_the_space_are_refused),
