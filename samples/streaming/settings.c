@@ -103,6 +103,11 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "threads that read tiles; 0: by the number of processors", 0, 256},
         {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
          "on: a picture's relief follows the picture's feedback;\noff: it writes its own"},
+        {OPTION_REAL, "predict", "SECONDS", &s->predict,
+         "also ask for what the camera will see so much later, if it\nmoves on as it did in the "
+         "last "
+         "frames; 0: do not",
+         0, 10},
         {OPTION_TEXT, "record", "TRACE", &s->record, "record the manager for sluice-replay"},
 
         {OPTION_SECTION, .help = "Sampling"},

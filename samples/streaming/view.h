@@ -5,6 +5,8 @@
 #ifndef SAMPLES_STREAMING_VIEW_H
 #define SAMPLES_STREAMING_VIEW_H
 
+#include "motion.h"
+#include "predict.h"
 #include "renderer.h"
 #include "settings.h"
 
@@ -47,7 +49,11 @@ struct view {
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct view_slot slots[VIEW_FRAMES_IN_FLIGHT];
     VkQueryPool timestamps; ///< two per slot
-    uint32_t frame_index;   ///< of the next frame
+    struct predict predict; ///< only with --predict
+    struct motion motion;   ///< of the camera
+    bool looks_ahead;       ///< the frame that is recorded, to `ahead`
+    struct camera ahead;
+    uint32_t frame_index; ///< of the next frame
 };
 
 /** Says on stderr what is wrong. `record_path` may be NULL. */
