@@ -311,7 +311,11 @@ SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
 SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
                                                   SluiceTextureId textureId);
 
-/** The buffers that shaders need, as storage buffers; the same for the streamer's whole life. */
+/**
+ * The buffers that shaders need, as storage buffers; the same for the streamer's whole life. All
+ * but the page table may be copied from, between sluiceBeginStreamingFrame and submission: what the
+ * streamer wrote there in this frame are transfers.
+ */
 typedef struct SluiceVulkanBuffers {
     VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
     VkBuffer feedback;      ///< uint[], read and written

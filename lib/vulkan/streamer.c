@@ -171,8 +171,9 @@ static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
 
 static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 {
-    const VkBufferUsageFlags usage =
-        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     uint64_t min_mip_size = (uint64_t)s->regions.size * sizeof(uint32_t);
     SluiceResult result = check_buffer_sizes(s);
     if (result == SLUICE_SUCCESS)

@@ -72,24 +72,26 @@ static bool open_views(struct gallery *gallery)
         .wall = gallery->wall,
         .mode = gallery->gpu.modes[0],
         .counting = counts_residency(gallery),
+        .needs = settings_find_needs(settings),
     };
     if (!target_create(&gallery->gpu, settings->size[0], settings->size[1], settings->samples,
                        &gallery->target) ||
         !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
-                         request.counting, request.mode == SLUICE_RESIDENCY_MODE_PAGED,
-                         &gallery->renderer) ||
+                         request.counting, request.needs,
+                         request.mode == SLUICE_RESIDENCY_MODE_PAGED, &gallery->renderer) ||
         !view_create(&request, settings->record, &gallery->streamed))
         return false;
     if (!settings->compare)
         return true;
     request.everything = true;
     request.counting = false;
+    request.needs = false;
     request.mode = gallery->gpu.modes[1];
     bool paged = request.mode == SLUICE_RESIDENCY_MODE_PAGED;
     if (paged != gallery->renderer.paged) {
         request.renderer = &gallery->truth_renderer;
         if (!renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
-                             false, paged, &gallery->truth_renderer))
+                             false, false, paged, &gallery->truth_renderer))
             return false;
     }
     return view_create(&request, NULL, &gallery->truth) && fill_truth(gallery);

@@ -18,6 +18,7 @@
 #include "gallery.h"
 #include "gallery_report.h"
 #include "measure.h"
+#include "needs_trace.h"
 
 #define EXIT_USAGE 2
 #define EXIT_NO_DEVICE 77
@@ -28,6 +29,8 @@ struct walk {
     struct measure *measure;
     uint32_t *written_frames; ///< owned
     uint32_t written_count;
+    struct needs needs; ///< of the frames collected, where they are found out
+    struct needs_trace trace;
 };
 
 /** The way, the moment when the camera stops and what follows it, the end. */
@@ -53,6 +56,35 @@ static bool write_picture(const struct walk *walk, const uint8_t *pixels, bool t
     return png_file_write(path, pixels, settings->size[0], settings->size[1]);
 }
 
+/** Time stamps follow the frames, not the clock: a slow machine streams the same way. */
+static uint64_t time_stamp_of(const struct settings *settings, uint32_t frame)
+{
+    return (uint64_t)(frame + 1) * 1000000u / settings->frames_per_second;
+}
+
+/** What the frame needed, and how much of it was not to be seen. */
+static bool collect_needs(struct walk *walk, uint32_t frame)
+{
+    struct view *view = &walk->gallery->streamed;
+    struct frame_record *record = &walk->measure->frames[frame];
+    uint64_t missing = record->counts.missingPixels, sampled = record->counts.sampled;
+    if (view->request.needs) {
+        if (!view_needs(view, frame % VIEW_FRAMES_IN_FLIGHT, &walk->needs, &record->needs)) {
+            fprintf(stderr, "out of memory\n");
+            return false;
+        }
+        needs_trace_add_frame(&walk->trace, &walk->needs,
+                              time_stamp_of(&walk->gallery->settings, frame));
+        missing = record->needs.missing_pixels;
+        sampled = record->needs.sampled_pixels;
+    } else if (!view->request.counting) {
+        record->missing_percent = NAN;
+        return true;
+    }
+    record->missing_percent = sampled ? 100.0 * (double)missing / (double)sampled : 0.0;
+    return true;
+}
+
 /** Waits for a frame that was submitted earlier and looks at what came out. */
 static bool collect_frame(struct walk *walk, uint32_t frame)
 {
@@ -65,6 +97,8 @@ static bool collect_frame(struct walk *walk, uint32_t frame)
     record->gpu_seconds = view_gpu_seconds(streamed, slot);
     record->counts = view_counts(streamed, slot);
     record->psnr = NAN;
+    if (!collect_needs(walk, frame))
+        return false;
     const uint8_t *pixels = view_pixels(streamed, slot), *truth_pixels = NULL;
     if (gallery->settings.compare) {
         /* The truth has drawn more frames: those in which it was filled. */
@@ -93,6 +127,8 @@ static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
     struct view_frame drawn, truth;
     if (!view_draw(&gallery->streamed, &camera, time_stamp, &drawn))
         return false;
+    if (gallery->streamed.request.needs)
+        needs_add_loaded(&walk->needs, sluiceGetVulkanStreamerManager(gallery->streamed.streamer));
     walk->measure->frames[frame].host_seconds = drawn.host_seconds;
     walk->measure->frames[frame].statistics = drawn.statistics;
     return !gallery->settings.compare || view_draw(&gallery->truth, &camera, time_stamp, &truth);
@@ -112,9 +148,7 @@ static bool walk_through(struct walk *walk)
             clock_sleep_until(due);
         due = fmax(due + step, clock_seconds());
 
-        /* Time stamps follow the frames, not the clock: a slow machine streams the same way. */
-        uint64_t time_stamp = (uint64_t)(frame + 1) * 1000000u / settings->frames_per_second;
-        if (!draw_frame(walk, frame, time_stamp))
+        if (!draw_frame(walk, frame, time_stamp_of(settings, frame)))
             return false;
         double now = clock_seconds();
         walk->measure->frames[frame].frame_seconds = now - submitted;
@@ -181,6 +215,22 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
     return written;
 }
 
+static bool begin_needs(struct walk *walk)
+{
+    const struct gallery *gallery = walk->gallery;
+    const struct settings *settings = &gallery->settings;
+    if (!gallery->streamed.request.needs)
+        return true;
+    walk->measure->needs = &walk->needs;
+    if (!view_needs_begin(&gallery->streamed, &walk->needs)) {
+        fprintf(stderr, "out of memory\n");
+        return false;
+    }
+    return !settings->needs_trace ||
+           needs_trace_begin(&walk->trace, settings->needs_trace, &walk->needs, settings->frames,
+                             1000000u / settings->frames_per_second);
+}
+
 static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
 {
     struct measure measure;
@@ -198,7 +248,11 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
         sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
         measure.truth_bytes = truth.deviceMemorySize;
     }
-    done = done && walk_through(&walk) && write_results(&walk, argc, argv);
+    measure.texture_count = gallery->streamed.texture_count;
+    done = done && begin_needs(&walk) && walk_through(&walk) && needs_wait_end(&walk.needs.wait);
+    measure.reads = view_reads(&gallery->streamed);
+    done = needs_trace_end(&walk.trace) && done && write_results(&walk, argc, argv);
+    needs_finish(&walk.needs);
     free(walk.written_frames);
     measure_finish(&measure);
     return done;

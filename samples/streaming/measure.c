@@ -72,6 +72,89 @@ static double lowest_psnr(const struct measure *measure)
     return finite_psnr(lowest);
 }
 
+static double mean_missing(const struct measure *measure)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < measure->frame_count; i++)
+        sum += measure->frames[i].missing_percent;
+    return sum / measure->frame_count;
+}
+
+static double loaded_bytes(const struct measure *measure)
+{
+    const SluiceVulkanStreamerStatistics *statistics =
+        &measure->frames[measure->frame_count - 1].statistics;
+    return MEASURE_TILE_BYTES * (double)(statistics->tilesMapped - statistics->tilesRevived);
+}
+
+static double needed_bytes_peak(const struct measure *measure)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < measure->frame_count; i++)
+        if (measure->frames[i].needs.needed_tiles > most)
+            most = measure->frames[i].needs.needed_tiles;
+    return MEASURE_TILE_BYTES * most;
+}
+
+/** Bytes of different tiles; NaN where it is not known what was needed. */
+static double tile_bytes(const struct needs *needs, bool loaded, bool needed)
+{
+    return needs ? MEASURE_TILE_BYTES * (double)needs_count_tiles(needs, loaded, needed) : NAN;
+}
+
+/* What was loaded, and what of it had to be. */
+static uint32_t loaded_figures(const struct measure *measure, struct figure *figures)
+{
+    const struct needs *needs = measure->needs;
+    double needed = needs ? MEASURE_TILE_BYTES * (double)needs->needed_tiles : NAN;
+    double loaded = loaded_bytes(measure);
+    double idle = tile_bytes(needs, true, false), used = tile_bytes(needs, true, true);
+    const struct figure list[] = {
+        {"needed_bytes", needed, "bytes",
+         "of the tiles that samples of any frame ask for, with all coarser ones, each once"},
+        {"needed_bytes_peak", needs ? needed_bytes_peak(measure) : NAN, "bytes",
+         "that one frame needs at the most"},
+        {"loaded_bytes", loaded, "bytes", "of tiles that were read and mapped, each time"},
+        {"loaded_per_needed", loaded / needed, "", "1: only what the walk required"},
+        {"loaded_unneeded_bytes", idle, "bytes",
+         "of tiles that were loaded and no frame needed; packed levels of all textures are loaded"},
+        {"loaded_again_bytes", loaded - idle - used, "bytes", "of tiles, all but the first time"},
+        {"needed_unloaded_bytes", tile_bytes(needs, false, true), "bytes",
+         "of tiles that were needed, but no longer before they were loaded"},
+        {"textures", measure->texture_count, "textures", "that are streamed"},
+        {"textures_never_sampled", needs ? needs_count_never_sampled(needs) : NAN, "textures",
+         "by no pixel of any frame"},
+        {"textures_never_read", measure->reads.never, "textures",
+         "without a read from their source; packed levels are read when a texture is added"},
+        {"textures_packed_alone", measure->reads.packed, "textures",
+         "of which nothing but these packed levels was read"},
+    };
+    memcpy(figures, list, sizeof list);
+    return sizeof list / sizeof *list;
+}
+
+/* How long the picture was coarser than wanted, and where. */
+static uint32_t wait_figures(const struct measure *measure, struct figure *figures)
+{
+    const struct needs_wait *wait = measure->needs ? &measure->needs->wait : NULL;
+    const struct figure list[] = {
+        {"frames_until_sharp_p50", wait ? needs_wait_quantile(wait, 0.5) : NAN, "frames",
+         "from the first that needs a finer level in a region to the first that shows it"},
+        {"frames_until_sharp_p99", wait ? needs_wait_quantile(wait, 0.99) : NAN, "frames",
+         "99 of 100 are there so soon; one that is in vain counts as long as it was needed"},
+        {"details_needed", wait ? (double)wait->count : NAN, "details",
+         "times that a region needed a finer level than in the frame before"},
+        {"details_unmet", wait ? (double)wait->unmet : NAN, "details",
+         "of them in vain: no longer needed, or the walk was over, before they were there"},
+        {"missing_pixels_percent", mean_missing(measure), "%",
+         "of the streamed pixels are coarser than wanted; mean over frames"},
+        {"missing_pixels_percent_p99", FRAME_QUANTILE(measure, missing_percent, 0.99), "%",
+         "99 of 100 frames have no more"},
+    };
+    memcpy(figures, list, sizeof list);
+    return sizeof list / sizeof *list;
+}
+
 uint32_t measure_figures(const struct measure *measure, struct figure figures[MEASURE_MAX_FIGURES])
 {
     const struct frame_record *last = &measure->frames[measure->frame_count - 1];
@@ -135,7 +218,9 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
          "of the GPU, for the streamed picture"},
     };
     memcpy(figures, list, sizeof list);
-    return sizeof list / sizeof *list;
+    uint32_t count = sizeof list / sizeof *list;
+    count += loaded_figures(measure, figures + count);
+    return count + wait_figures(measure, figures + count);
 }
 
 static void write_csv_line(FILE *file, const struct measure *measure, uint32_t index)
@@ -158,10 +243,14 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
             (unsigned long long)(now->bytesUploaded - then->bytesUploaded),
             (unsigned long long)now->deviceMemorySize);
     if (measure->counting)
-        fprintf(file, "%u,%u,%u,%u\n", record->counts.nonResident, record->counts.sampled,
+        fprintf(file, "%u,%u,%u,%u,", record->counts.nonResident, record->counts.sampled,
                 record->counts.missingPixels, record->counts.missingLevels);
     else
-        fprintf(file, ",,,\n");
+        fprintf(file, ",,,,");
+    if (measure->needs)
+        fprintf(file, "%u,%u\n", record->needs.needed_tiles, record->needs.missing_regions);
+    else
+        fprintf(file, ",\n");
 }
 
 bool measure_write_csv(const struct measure *measure, const char *path)
@@ -171,7 +260,7 @@ bool measure_write_csv(const struct measure *measure, const char *path)
         fputs("frame,at_rest,frame_ms,host_ms,gpu_ms,psnr_db,resident_tiles,mapped_tiles,"
               "standby_tiles,requested_tiles,loads_in_flight,tiles_mapped,tiles_unmapped,"
               "bytes_read,bytes_uploaded,device_memory,nonresident_reads,sampled_pixels,"
-              "missing_pixels,missing_levels\n",
+              "missing_pixels,missing_levels,needed_tiles,missing_regions\n",
               file);
         for (uint32_t i = 0; i < measure->frame_count; i++)
             write_csv_line(file, measure, i);

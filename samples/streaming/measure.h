@@ -3,7 +3,7 @@
 #define SAMPLES_STREAMING_MEASURE_H
 
 #include "settings.h"
-#include "view.h"
+#include "view_needs.h"
 
 #define MEASURE_SHARP_DB 60.0  ///< "the same picture"
 #define MEASURE_EQUAL_DB 999.0 ///< stands for infinity where only numbers may be written
@@ -15,6 +15,8 @@ struct frame_record {
     double psnr; ///< to the fully resident picture; NaN without a comparison
     SluiceVulkanStreamerStatistics statistics;
     struct GalleryCounts counts;
+    struct needs_frame needs; ///< where they are found out
+    double missing_percent;   ///< of the sampled pixels; NaN where nothing counts them
 };
 
 struct measure {
@@ -25,7 +27,10 @@ struct measure {
     bool counting;       ///< counts are valid
     uint64_t tile_count; ///< of all textures
     uint32_t picture_count, refused_count;
-    uint64_t truth_bytes; ///< that the fully resident pictures take; 0 without a comparison
+    uint32_t texture_count;
+    struct view_reads reads;
+    const struct needs *needs; ///< borrowed; of all frames; NULL: not found out
+    uint64_t truth_bytes;      ///< that the fully resident pictures take; 0 without a comparison
 };
 
 /** One named figure. */
@@ -36,7 +41,7 @@ struct figure {
     const char *meaning; ///< for the report
 };
 
-#define MEASURE_MAX_FIGURES 32
+#define MEASURE_MAX_FIGURES 64
 #define MEASURE_TILE_BYTES 65536.0
 
 bool measure_begin(struct measure *measure, const struct settings *settings);

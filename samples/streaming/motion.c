@@ -6,7 +6,7 @@
 #define STILL_METRES 0.004f
 #define STILL_RADIANS 0.004f
 
-#define MOST_SPEEDING_UP 2.0f ///< times the way that the speed of now makes
+#define MOST_SPEEDING_UP 1.0f ///< times the way that the speed of now makes
 #define JUMP 4.0f             ///< times as long as the other steps together
 
 enum { OLDEST = 0, MIDDLE = MOTION_FRAMES / 2, NEWEST = MOTION_FRAMES - 1 };

@@ -6,6 +6,7 @@
 #include "gallery_vert.h"
 #include "count_frag.h"
 #include "count_paged_frag.h"
+#include "needs_frag.h"
 #include "plain_frag.h"
 #include "surface_frag.h"
 #include "surface_paged_frag.h"
@@ -171,7 +172,8 @@ bool renderer_create_pipeline(const struct renderer *renderer, const struct targ
         "vkCreateGraphicsPipelines");
 }
 
-static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting)
+static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting,
+                             bool needs)
 {
     const struct gpu *gpu = renderer->gpu;
     const struct {
@@ -182,23 +184,25 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
             [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
             [RENDERER_SURFACE] = {surface_frag, sizeof surface_frag},
             [RENDERER_COUNT] = {count_frag, sizeof count_frag},
+            [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
         },
       paged_fragments[RENDERER_PASS_COUNT] = {
           [RENDERER_PLAIN] = {plain_frag, sizeof plain_frag},
           [RENDERER_SURFACE] = {surface_paged_frag, sizeof surface_paged_frag},
           [RENDERER_COUNT] = {count_paged_frag, sizeof count_paged_frag},
+          [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
       };
     renderer->vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
     bool created = renderer->vertex != VK_NULL_HANDLE;
     for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
-        if (i == RENDERER_COUNT && !counting)
+        if ((i == RENDERER_COUNT && !counting) || (i == RENDERER_NEEDS && !needs))
             continue;
         VkShaderModule fragment =
             renderer->paged
                 ? gpu_create_shader(gpu, paged_fragments[i].words, paged_fragments[i].size)
                 : gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
         created = fragment != VK_NULL_HANDLE &&
-                  renderer_create_pipeline(renderer, target, fragment, i != RENDERER_COUNT,
+                  renderer_create_pipeline(renderer, target, fragment, i < RENDERER_COUNT,
                                            &renderer->pipelines[i]);
         vkDestroyShaderModule(gpu->device, fragment, NULL);
     }
@@ -206,11 +210,12 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
 }
 
 bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, bool paged, struct renderer *renderer)
+                     uint32_t anisotropy, bool counting, bool needs, bool paged,
+                     struct renderer *renderer)
 {
     *renderer = (struct renderer){.gpu = gpu, .room = room, .paged = paged};
     if (create_layouts(renderer) && create_samplers(renderer, anisotropy) &&
-        create_buffers(renderer) && create_pipelines(renderer, target, counting))
+        create_buffers(renderer) && create_pipelines(renderer, target, counting, needs))
         return true;
     renderer_destroy(renderer);
     return false;
@@ -326,7 +331,7 @@ static struct GalleryDraw draw_of(const struct room_part *part,
 }
 
 void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
-                   const struct renderer_surface *surfaces, bool counting)
+                   const struct renderer_surface *surfaces, enum renderer_pass pass)
 {
     const struct room *room = renderer->room;
     const VkDeviceSize offset = 0;
@@ -337,9 +342,7 @@ void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, Vk
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
         const struct renderer_surface *surface = renderer_surface_of(part, surfaces);
-        VkPipeline pipeline = renderer->pipelines[!surface   ? RENDERER_PLAIN
-                                                  : counting ? RENDERER_COUNT
-                                                             : RENDERER_SURFACE];
+        VkPipeline pipeline = renderer->pipelines[surface ? pass : RENDERER_PLAIN];
         if (pipeline != bound)
             vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
         bound = pipeline;

@@ -7,7 +7,13 @@
 #include "room.h"
 #include "walk.h"
 
-enum renderer_pass { RENDERER_PLAIN, RENDERER_SURFACE, RENDERER_COUNT, RENDERER_PASS_COUNT };
+enum renderer_pass {
+    RENDERER_PLAIN,
+    RENDERER_SURFACE,
+    RENDERER_COUNT,
+    RENDERER_NEEDS,
+    RENDERER_PASS_COUNT
+};
 
 struct renderer {
     const struct gpu *gpu;   ///< borrowed
@@ -16,7 +22,7 @@ struct renderer {
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
     VkShaderModule vertex;                     ///< of all pipelines
-    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the counting one only where it was asked for
+    VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last two only where asked for
     VkSampler clamp, repeat;                   ///< as drawn
     VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
     struct gpu_buffer vertices, lights;
@@ -33,7 +39,8 @@ struct renderer_surface {
 
 /** `pass` of a target that is compatible with those drawn to. */
 bool renderer_create(const struct gpu *gpu, const struct room *room, const struct target *target,
-                     uint32_t anisotropy, bool counting, bool paged, struct renderer *renderer);
+                     uint32_t anisotropy, bool counting, bool needs, bool paged,
+                     struct renderer *renderer);
 /** A zeroed struct is fine. */
 void renderer_destroy(struct renderer *renderer);
 
@@ -57,8 +64,9 @@ bool renderer_create_pipeline(const struct renderer *renderer, const struct targ
 const struct renderer_surface *renderer_surface_of(const struct room_part *part,
                                                    const struct renderer_surface *surfaces);
 
-/** `surfaces`: floor, wall, then one per picture. Inside a render pass. */
+/** `surfaces`: floor, wall, then one per picture; `pass` is how they are drawn. Inside a render
+ * pass. */
 void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, VkDescriptorSet frame,
-                   const struct renderer_surface *surfaces, bool counting);
+                   const struct renderer_surface *surfaces, enum renderer_pass pass);
 
 #endif /* SAMPLES_STREAMING_RENDERER_H */

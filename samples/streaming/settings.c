@@ -122,6 +122,11 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "residency of what is compared to; auto: sparse if that is what\nstreams, else dense"},
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
          "count samples of texels that are not there; auto: with\n--compare, where the device can"},
+        {OPTION_CHOICE, "needs", "auto|on|off", &s->needs,
+         "find out which tiles each frame needs, and how long they take to\nshow; "
+         "auto: with --compare; costs a further pass, in no time stamp"},
+        {OPTION_TEXT, "needs-trace", "FILE", &s->needs_trace,
+         "write what each frame needs as an SLTRACE1 trace for\nsluice-replay; with --needs on"},
         {OPTION_FLAG, "validation", NULL, &s->validation,
          "Vulkan's validation layers; any message is an error"},
         {OPTION_FLAG, "json", NULL, &s->json, "figures as JSON lines on stdout"},
@@ -136,9 +141,13 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         fprintf(stderr, "--samples %u: wants 1, 2, 4 or 8\n", s->samples);
         return OPTIONS_ERROR;
     }
+    if (outcome == OPTIONS_RUN && s->needs_trace && s->needs == THREE_WAY_OFF) {
+        fprintf(stderr, "--needs-trace: not with --needs off\n");
+        return OPTIONS_ERROR;
+    }
     keep_to_budget(s);
-    if (outcome == OPTIONS_RUN && s->rest_frames >= s->frames)
-        s->rest_frames = s->frames - 1;
+    if (outcome == OPTIONS_RUN && s->rest_frames > s->frames)
+        s->rest_frames = s->frames;
     return outcome;
 }
 
@@ -151,4 +160,10 @@ SluiceResidencyMode settings_residency_mode(int residency)
     case RESIDENCY_DENSE: return SLUICE_RESIDENCY_MODE_DENSE;
     }
     return SLUICE_RESIDENCY_MODE_AUTO;
+}
+
+bool settings_find_needs(const struct settings *settings)
+{
+    return settings->needs == THREE_WAY_ON || settings->needs_trace ||
+           (settings->needs == THREE_WAY_AUTO && settings->compare);
 }

@@ -47,6 +47,8 @@ struct settings {
     bool compare, validation, json;
     int compare_with;    ///< enum residency
     int check_residency; ///< enum three_way
+    int needs;           ///< enum three_way
+    const char *needs_trace;
     /* device */
     const char *device;
     bool list_devices;
@@ -55,5 +57,7 @@ struct settings {
 enum option_outcome settings_parse(int argc, char *const *argv, struct settings *settings);
 
 SluiceResidencyMode settings_residency_mode(int residency);
+/** Whether it is to be found out what frames need. */
+bool settings_find_needs(const struct settings *settings);
 
 #endif /* SAMPLES_STREAMING_SETTINGS_H */

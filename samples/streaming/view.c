@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../common/clock.h"
+#include "view_needs.h"
 
 _Static_assert(PREDICT_SLOTS == VIEW_FRAMES_IN_FLIGHT, "one for each frame in flight");
 
@@ -26,6 +27,12 @@ static bool check(SluiceResult result, const char *what)
     return false;
 }
 
+/** Floor, wall, and two of each picture. */
+static uint32_t max_texture_count(const struct view *view)
+{
+    return 2 + 2 * view->request.pictures->count;
+}
+
 static bool create_streamer(struct view *view)
 {
     const struct gpu *gpu = view->request.gpu;
@@ -42,7 +49,8 @@ static bool create_streamer(struct view *view)
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
         .log = {NULL, print_log},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
-        .maxTextureCount = 2 + 2 * view->request.pictures->count,
+        .maxTextureCount = max_texture_count(view),
+        .maxRegionCount = VIEW_MAX_REGIONS,
         .texturesPerFrame = settings->textures_per_frame,
         .tilesPerFrame = settings->tiles_per_frame,
         .loaderThreadCount = settings->loader_threads,
@@ -68,16 +76,20 @@ static bool add_texture(struct view *view, SluiceImageSource *source, SluiceText
     SluiceVulkanTextureCreateInfo info = {
         .source = source, .primaryId = primary, .addressModeU = mode, .addressModeV = mode};
     SluiceResult result = sluiceAddVulkanTexture(view->streamer, &info, texture);
-    if (result == SLUICE_SUCCESS)
+    if (result == SLUICE_SUCCESS) {
+        view->texture_ids[view->texture_count] =
+            (struct needs_id){texture->textureId, texture->tableIndex};
+        view->sources[view->texture_count++] = source;
         return true;
+    }
     SluiceImageInfo image = {.pName = "a texture"};
     (void)sluiceGetImageInfo(source, &image);
     fprintf(stderr, "%s: cannot be streamed: %s\n", image.pName, sluiceResultString(result));
     return false;
 }
 
-static bool allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
-                          VkDescriptorSet *sets)
+bool view_allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
+                        VkDescriptorSet *sets)
 {
     for (uint32_t i = 0; i < count; i++) {
         VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -95,12 +107,12 @@ static bool create_descriptor_pool(struct view *view)
 {
     uint32_t surface_count = 2 + view->request.pictures->count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 7 * VIEW_FRAMES_IN_FLIGHT},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * 7 * VIEW_FRAMES_IN_FLIGHT},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         4 * surface_count + GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
+         4 * surface_count + 2 * GALLERY_PAGE_CHUNKS * VIEW_FRAMES_IN_FLIGHT},
     };
     VkDescriptorPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = VIEW_FRAMES_IN_FLIGHT + surface_count,
+                                       .maxSets = 2 * VIEW_FRAMES_IN_FLIGHT + surface_count,
                                        .poolSizeCount = 2,
                                        .pPoolSizes = sizes};
     return gpu_check(
@@ -148,10 +160,13 @@ static bool create_surfaces(struct view *view)
     const struct view_request *request = &view->request;
     uint32_t count = 2 + request->pictures->count;
     view->surfaces = calloc(count, sizeof *view->surfaces);
-    if (!view->surfaces)
+    view->texture_ids = calloc(max_texture_count(view), sizeof *view->texture_ids);
+    view->sources = calloc(max_texture_count(view), sizeof(SluiceImageSource *));
+    if (!view->surfaces || !view->texture_ids || !view->sources)
         return false;
     for (uint32_t i = 0; i < count; i++)
-        if (!allocate_sets(view, request->renderer->texture_layout, 1, &view->surfaces[i].textures))
+        if (!view_allocate_sets(view, request->renderer->texture_layout, 1,
+                                &view->surfaces[i].textures))
             return false;
     if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
         !create_tiled_surface(view, request->wall, &view->surfaces[1]))
@@ -179,7 +194,7 @@ static bool create_slot(struct view *view, struct view_slot *slot)
                            &slot->counts) ||
         !gpu_create_buffer(gpu, (VkDeviceSize)target->width * target->height * 4,
                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, &slot->pixels) ||
-        !allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
+        !view_allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
         return false;
     memset(slot->counts.mapped, 0, sizeof(struct GalleryCounts));
     SluiceVulkanBuffers buffers;
@@ -222,7 +237,7 @@ bool view_create(const struct view_request *request, const char *record_path, st
                                                    record_path, NULL, &view->recorder),
                         record_path);
     if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view) &&
-        create_prediction(view))
+        view_needs_create(view) && create_prediction(view))
         return true;
     view_destroy(view);
     return false;
@@ -242,11 +257,15 @@ bool view_destroy(struct view *view)
         gpu_destroy_buffer(gpu, &slot->frame);
         gpu_destroy_buffer(gpu, &slot->counts);
         gpu_destroy_buffer(gpu, &slot->pixels);
+        needs_slot_destroy(&view->needs, &slot->needs);
     }
     predict_destroy(&view->predict);
+    needs_pass_destroy(&view->needs);
     vkDestroyQueryPool(gpu->device, view->timestamps, NULL);
     vkDestroyDescriptorPool(gpu->device, view->descriptor_pool, NULL);
     free(view->surfaces);
+    free(view->texture_ids);
+    free(view->sources);
     sluiceDestroyVulkanStreamer(view->streamer);
     *view = (struct view){0};
     return recorded;
@@ -310,7 +329,8 @@ static void record_counting(const struct view *view, const struct view_slot *slo
             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(request->target, slot->commands, black);
-    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces, true);
+    renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces,
+                  RENDERER_COUNT);
     target_end(request->target, slot->commands);
     barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
             VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
@@ -345,7 +365,7 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
         record_prediction(view, commands);
 
     target_begin(request->target, commands, background);
-    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, false);
+    renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, RENDERER_SURFACE);
     target_end(request->target, commands);
 
     /* Takes down what the shaders wanted. */
@@ -355,6 +375,8 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
     target_copy_out(request->target, commands, slot->pixels.buffer);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
                         query + 1);
+    if (request->needs)
+        needs_pass_record(&view->needs, request->target, view->surfaces, &slot->needs, commands);
     return true;
 }
 

@@ -6,11 +6,13 @@
 #define SAMPLES_STREAMING_VIEW_H
 
 #include "motion.h"
+#include "needs_pass.h"
 #include "predict.h"
 #include "renderer.h"
 #include "settings.h"
 
 #define VIEW_FRAMES_IN_FLIGHT 3
+#define VIEW_MAX_REGIONS (1u << 20)
 
 /** What is the same for both views. */
 struct view_request {
@@ -23,6 +25,7 @@ struct view_request {
     SluiceResidencyMode mode;
     bool everything; ///< resident: the truth to compare with
     bool counting;   ///< count samples of what is not there
+    bool needs;      ///< find out what each frame needs
 };
 
 /** One frame that may be on its way. */
@@ -31,6 +34,7 @@ struct view_slot {
     VkDescriptorSet frame_set;
     uint64_t page_generation; ///< of the pages in it
     struct gpu_buffer frame, counts, pixels;
+    struct needs_slot needs;
     VkSemaphore semaphore; ///< of the streamer
     uint64_t signal_value; ///< 0: never submitted
 };
@@ -47,13 +51,17 @@ struct view {
     SluiceRecorder *recorder;       ///< owned
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
+    struct needs_id *texture_ids;      ///< owned; of all textures, in the order of their making
+    SluiceImageSource **sources;       ///< owned; of the same
+    uint32_t texture_count;
     struct view_slot slots[VIEW_FRAMES_IN_FLIGHT];
+    struct needs_pass needs;
     VkQueryPool timestamps; ///< two per slot
+    uint32_t frame_index;   ///< of the next frame
     struct predict predict; ///< only with --predict
     struct motion motion;   ///< of the camera
     bool looks_ahead;       ///< the frame that is recorded, to `ahead`
     struct camera ahead;
-    uint32_t frame_index; ///< of the next frame
 };
 
 /** Says on stderr what is wrong. `record_path` may be NULL. */
