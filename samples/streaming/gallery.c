@@ -59,6 +59,21 @@ static bool fill_truth(struct gallery *gallery)
     return true;
 }
 
+/* In whole rounds of the frames in flight: so the walk's first frame is the first slot's again. */
+static bool warm_up(struct gallery *gallery)
+{
+    struct view *view = &gallery->streamed;
+    struct camera camera = walk_camera(&gallery->room, 0.0f);
+    struct view_frame frame;
+    while (view->frame_index < gallery->settings.warm_up ||
+           view->frame_index % VIEW_FRAMES_IN_FLIGHT > 0)
+        if (!view_draw(view, &camera, 0, &frame) ||
+            !view_wait(view, (view->frame_index - 1) % VIEW_FRAMES_IN_FLIGHT) || !view_settle(view))
+            return false;
+    view->frame_index = 0;
+    return true;
+}
+
 static bool open_views(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
@@ -79,7 +94,7 @@ static bool open_views(struct gallery *gallery)
         !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
                          request.counting, request.needs,
                          request.mode == SLUICE_RESIDENCY_MODE_PAGED, &gallery->renderer) ||
-        !view_create(&request, settings->record, &gallery->streamed))
+        !view_create(&request, settings->record, &gallery->streamed) || !warm_up(gallery))
         return false;
     if (!settings->compare)
         return true;

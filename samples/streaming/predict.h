@@ -27,6 +27,9 @@ struct predict {
 /** `picture`: what the frames are drawn to. Says on stderr what is wrong. */
 bool predict_create(const struct renderer *renderer, const struct target *picture,
                     const SluiceVulkanBuffers *buffers, struct predict *predict);
+/** How far a frame looks ahead, of `seconds`: all the way and half of it, in turns. */
+double predict_horizon(double seconds, uint32_t frame);
+
 /** A zeroed struct is fine. */
 void predict_destroy(struct predict *predict);
 

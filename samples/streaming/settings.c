@@ -103,6 +103,10 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "threads that read tiles; 0: by the number of processors", 0, 256},
         {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
          "on: a picture's relief follows the picture's feedback;\noff: it writes its own"},
+        {OPTION_UINT, "warm-up", "N", &s->warm_up,
+         "so many frames from the entrance go before the walk, and wait for\nwhat they load, as "
+         "behind a loading screen; in no figure of time",
+         0, 1000},
         {OPTION_REAL, "predict", "SECONDS", &s->predict,
          "also ask for what the camera will see so much later, if it\nmoves on as it did in the "
          "last "

@@ -38,7 +38,8 @@ struct settings {
     uint32_t budget;  ///< MiB for tiles, 0: no cap; heap_tiles and max_heaps keep to it
     int texture_sets; ///< enum on_off
     const char *record;
-    double predict; ///< seconds
+    double predict;   ///< seconds
+    uint32_t warm_up; ///< frames
     /* sampling */
     double lod_bias;
     uint32_t anisotropy;

@@ -409,9 +409,9 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     double start = clock_seconds();
     write_frame_data(view, camera, slot->frame.mapped);
     motion_add(&view->motion, camera, 1e-6 * (double)time_stamp);
+    double horizon = predict_horizon(view->request.settings->predict, view->frame_index);
     view->looks_ahead =
-        view->predict.renderer &&
-        motion_look_ahead(&view->motion, view->request.settings->predict, &view->ahead);
+        view->predict.renderer && motion_look_ahead(&view->motion, horizon, &view->ahead);
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
