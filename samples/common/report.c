@@ -10,6 +10,9 @@
 #define MARGIN_TOP 10
 #define MARGIN_BOTTOM 24
 #define MARGIN_RIGHT 14
+#define BAR_HEIGHT 24
+#define BAR_LEFT 210
+#define BAR_ROOM 460.0
 
 static const char *const style =
     "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
@@ -195,6 +198,37 @@ void report_plot(struct report *report, const struct report_plot *plot)
     fputs("<span class=\"k\">", file);
     put_escaped(file, plot->unit);
     fputs(" over frames</span></div>\n", file);
+}
+
+void report_bars(struct report *report, const struct report_bar *bars, size_t count)
+{
+    FILE *file = report->file;
+    double largest = 0.0;
+    int y = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, bars[i].value);
+    fprintf(file,
+            "<svg viewBox=\"0 0 %d %d\" width=\"100%%\" font-size=\"12\" fill=\"#444\" "
+            "font-family=\"system-ui,sans-serif\">",
+            PLOT_WIDTH, (int)count * BAR_HEIGHT);
+    for (size_t i = 0; i < count; i++) {
+        if (!(bars[i].value >= 0.0) || largest == 0.0)
+            continue;
+        double width = BAR_ROOM * bars[i].value / largest,
+               first = BAR_ROOM * bars[i].first / largest;
+        fprintf(file, "<text x=\"6\" y=\"%d\">", y + 17);
+        put_escaped(file, bars[i].name);
+        fprintf(file,
+                "</text><rect x=\"%d\" y=\"%d\" width=\"%.1f\" height=\"14\" fill=\"%s\"/>"
+                "<rect x=\"%.1f\" y=\"%d\" width=\"%.1f\" height=\"14\" fill=\"%s\"/>"
+                "<text x=\"%.1f\" y=\"%d\">",
+                BAR_LEFT, y + 5, first, colors[0], BAR_LEFT + first, y + 5, width - first,
+                colors[1], BAR_LEFT + width + 6, y + 17);
+        put_escaped(file, bars[i].text);
+        fputs("</text>", file);
+        y += BAR_HEIGHT;
+    }
+    fputs("</svg>\n", file);
 }
 
 void report_begin_pictures(struct report *report)

@@ -39,6 +39,16 @@ void report_row(struct report *report, const char *name, const char *value, cons
                 const char *meaning);
 void report_end_table(struct report *report);
 void report_plot(struct report *report, const struct report_plot *plot);
+
+/** A bar as long as its value beside the largest; the first part of it is in another colour. */
+struct report_bar {
+    const char *name;
+    double value;     ///< NaN: the bar is left out
+    double first;     ///< 0 to value
+    const char *text; ///< behind it
+};
+
+void report_bars(struct report *report, const struct report_bar *bars, size_t count);
 /** Pictures stand beside each other between begin and end. */
 void report_begin_pictures(struct report *report);
 /** Inlines a PNG file. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../common/report.h"
 
@@ -51,7 +52,20 @@ static double uploaded_value(const struct frame_record *now, const struct frame_
 static double missing_value(const struct frame_record *now, const struct frame_record *before)
 {
     (void)before;
-    return now->counts.sampled ? 100.0 * now->counts.missingPixels / now->counts.sampled : 0.0;
+    return now->missing_percent;
+}
+
+static double needed_value(const struct frame_record *now, const struct frame_record *before)
+{
+    (void)before;
+    return now->needs.needed_tiles;
+}
+
+static double missing_regions_value(const struct frame_record *now,
+                                    const struct frame_record *before)
+{
+    (void)before;
+    return now->needs.missing_regions;
 }
 
 static double frame_time_value(const struct frame_record *now, const struct frame_record *before)
@@ -105,23 +119,82 @@ static void add_plots(struct report *report, const struct measure *measure, bool
     static const struct plot_line flow[] = {{"mapped", mapped_value}, {"unmapped", unmapped_value}};
     static const struct plot_line bytes[] = {{"uploaded", uploaded_value}};
     static const struct plot_line missing[] = {{"pixels coarser than wanted", missing_value}};
+    static const struct plot_line needed[] = {{"resident", resident_value},
+                                              {"needed by the frame", needed_value}};
+    static const struct plot_line regions[] = {{"regions that wait", missing_regions_value}};
     static const struct plot_line times[] = {{"frame", frame_time_value},
                                              {"the application's thread", host_time_value}};
     if (compared)
         add_plot(report, measure, "Difference to everything resident", "dB (equality at the top)",
                  80.0, psnr, 1);
-    if (measure->counting)
+    if (measure->counting || measure->needs)
         add_plot(report, measure, "Missing detail", "% of the streamed pixels", 0.0, missing, 1);
     add_plot(report, measure, "Tiles in memory", "tiles of 64 KiB", 0.0, tiles, 2);
+    if (measure->needs) {
+        add_plot(report, measure, "Tiles in memory and needed", "tiles of 64 KiB", 0.0, needed, 2);
+        add_plot(report, measure, "Detail that is not there yet", "regions of a tile", 0.0, regions,
+                 1);
+    }
     add_plot(report, measure, "Tiles mapped and unmapped", "tiles per frame", 0.0, flow, 2);
     add_plot(report, measure, "Uploads", "MiB per frame", 0.0, bytes, 1);
     add_plot(report, measure, "Time", "ms per frame", 0.0, times, 2);
+}
+
+static double figure_value(const struct figure *figures, uint32_t count, const char *name)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (strcmp(figures[i].name, name) == 0)
+            return figures[i].value;
+    return NAN;
+}
+
+/** "12.5 MiB, 6.3 % of all" */
+static const char *share_text(double bytes, double all, char text[64])
+{
+    snprintf(text, 64, "%.1f MiB, %.1f %% of all", bytes / 1048576.0, 100.0 * bytes / all);
+    return text;
+}
+
+/** Whether only what the walk required was loaded. */
+static void add_required(struct report *report, const struct figure *figures, uint32_t count)
+{
+    double all = figure_value(figures, count, "virtual_bytes");
+    double needed = figure_value(figures, count, "needed_bytes");
+    double loaded = figure_value(figures, count, "loaded_bytes");
+    double used = needed - figure_value(figures, count, "needed_unloaded_bytes");
+    double peak = figure_value(figures, count, "resident_bytes_peak");
+    char texts[5][64], line[256];
+    if (isnan(needed))
+        return;
+    const struct report_bar bars[] = {
+        {"all textures", all, all, share_text(all, all, texts[0])},
+        {"needed by some frame", needed, needed, share_text(needed, all, texts[1])},
+        {"loaded (orange: in vain)", loaded, used, share_text(loaded, all, texts[2])},
+        {"in memory, at most", peak, peak, share_text(peak, all, texts[3])},
+        {"needed by one frame, at most", figure_value(figures, count, "needed_bytes_peak"),
+         figure_value(figures, count, "needed_bytes_peak"),
+         share_text(figure_value(figures, count, "needed_bytes_peak"), all, texts[4])},
+    };
+    report_heading(report, "Only what the scene requires");
+    report_bars(report, bars, sizeof bars / sizeof *bars);
+    snprintf(line, sizeof line,
+             "Loaded per needed: %.3f. Of %.0f textures %.0f were never sampled, %.0f never read. "
+             "Half of the detail that came to be needed was there after %.0f frames, 99 %% of it "
+             "after %.0f.",
+             loaded / needed, figure_value(figures, count, "textures"),
+             figure_value(figures, count, "textures_never_sampled"),
+             figure_value(figures, count, "textures_never_read"),
+             figure_value(figures, count, "frames_until_sharp_p50"),
+             figure_value(figures, count, "frames_until_sharp_p99"));
+    report_text(report, line);
 }
 
 static void add_figures(struct report *report, const struct measure *measure)
 {
     struct figure figures[MEASURE_MAX_FIGURES];
     uint32_t count = measure_figures(measure, figures);
+    add_required(report, figures, count);
+    report_heading(report, "Figures");
     report_begin_table(report);
     for (uint32_t i = 0; i < count; i++) {
         char buffer[32];

@@ -21,11 +21,23 @@ walk() { # name, options
 
 # The value of a figure must satisfy an awk condition on v.
 check() { # name, figure, condition
-    awk -F'"value": ' -v figure="\"$2\"" '
+    awk -F'"value": ' -v figure="\"name\": \"$2\"" '
         index($0, figure) { found = 1; sub(/,.*/, "", $2); v = $2; good = v != "null" && ('"$3"') }
         END { exit !(found && good) }' "$folder/$1.json" || {
         echo "$1: $2 must satisfy: $3" >&2
         grep "$2" "$folder/$1.json" >&2 || true
+        failed=1
+    }
+}
+
+# Two figures, of a walk each, must satisfy an awk condition on a and b.
+figure() { # name, figure
+    sed -n "s/^{\"name\": \"$2\", \"value\": \([^,]*\),.*/\1/p" "$folder/$1.json"
+}
+compare() { # name, figure a, name, figure b, condition
+    awk -v a="$(figure "$1" "$2")" -v b="$(figure "$3" "$4")" \
+        'BEGIN { exit !(a != "" && b != "" && a != "null" && b != "null" && ('"$5"')) }' || {
+        echo "$1: $2 and $3: $4 must satisfy: $5" >&2
         failed=1
     }
 }
@@ -42,6 +54,7 @@ refuse --images="$folder"
 refuse --images "$folder" --images "$folder"
 refuse --samples 3
 refuse --tiles-per-frame 16385
+refuse --needs off --needs-trace "$folder/refused"
 [ ! -e "$folder/refused" ] || failed=1
 
 walk compared --frames 60 --rest-frames 30 --compare --validation
@@ -61,6 +74,18 @@ if ! grep -q '"nonresident_reads", "value": null' "$folder/compared.json"; then
 fi
 grep -q '</svg>' "$folder/compared/report.html" || { echo "the report has no plots" >&2; failed=1; }
 "$replay" "$folder/compared.trace" >/dev/null || failed=1
+
+# Only what the walk required: what it needed is found out where the picture is compared.
+check compared textures 'v == 16'
+check compared textures_never_sampled 'v == 0'
+check compared textures_never_read 'v == 0'
+check compared loaded_per_needed 'v > 0.5 && v <= 1.15'
+check compared frames_until_sharp_p50 'v >= 0'
+compare compared needed_bytes compared virtual_bytes 'a > 0 && a <= b'
+compare compared needed_bytes_peak compared needed_bytes 'a > 0 && a <= b'
+compare compared resident_bytes_peak compared loaded_bytes 'a <= b'
+compare compared details_unmet compared details_needed 'a <= b'
+compare compared frames_until_sharp_p50 compared frames_until_sharp_p99 'a <= b'
 
 # In paged residency and against another mode the same picture, but for the last bit of the filters.
 walk paged --residency paged --frames 60 --rest-frames 30 --compare --validation
@@ -104,5 +129,49 @@ cmp "$folder/first.trace" "$folder/second.trace" >&2 || failed=1
 for picture in "$folder"/first/*.png; do
     cmp "$picture" "$folder/second/${picture##*/}" >&2 || failed=1
 done
+
+# Where every pixel writes feedback and each frame has all that was asked for before, a camera that
+# stands still loads what a manager asks for that is given the exact maps: no tile more, none less.
+replayed() { # name: tiles that a manager maps that plays the walk's needs
+    "$replay" "$folder/$1.needs" --json | sed -n 's/.*"mapped_total", "value": \([0-9]*\),.*/\1/p'
+}
+walk still --frames 24 --rest-frames 24 --deterministic --probability 1 --texture-sets off \
+    --residency dense --needs-trace "$folder/still.needs"
+[ "$status" -eq 0 ] || { cat "$folder/still.log" >&2; failed=1; }
+check still loaded_bytes "v == 65536 * $(replayed still)"
+check still needed_unloaded_bytes 'v == 0'
+check still loaded_again_bytes 'v == 0'
+check still textures_never_sampled 'v > 0' # so their packed levels are more than is needed
+compare still loaded_unneeded_bytes still needed_bytes 'a > 0 && a < b'
+[ "$(tail -n 1 "$folder/still/frames.csv" | cut -d, -f22)" = 0 ] || {
+    echo "still: regions are missing in the end" >&2
+    failed=1
+}
+
+# The same with a camera that moves past all pictures: what the trace needs is what was counted.
+walk past --frames 60 --rest-frames 20 --deterministic --probability 1 --residency dense \
+    --check-residency off --needs-trace "$folder/past.needs"
+[ "$status" -eq 0 ] || { cat "$folder/past.log" >&2; failed=1; }
+check past textures_never_sampled 'v == 0'
+check past needed_bytes "v == 65536 * $(replayed past)"
+check past loaded_per_needed 'v >= 0.98 && v <= 1.02'
+
+# The pass that finds out needs sees the same pixels, and the same lack of detail, as the one that
+# counts, and changes neither decisions nor pictures.
+for needs in on off; do
+    walk needs-$needs --frames 30 --rest-frames 8 --deterministic --loader-threads 1 --needs $needs \
+        --residency paged --check-residency "$([ $needs = on ] && echo off || echo on)" \
+        --write-frames all
+    [ "$status" -eq 0 ] || { cat "$folder/needs-$needs.log" >&2; failed=1; }
+    cut -d, -f1,18,19 "$folder/needs-$needs/frames.csv" >"$folder/needs-$needs.pixels"
+done
+cmp "$folder/needs-on.pixels" "$folder/needs-off.pixels" >&2 || failed=1
+cmp "$folder/needs-on.trace" "$folder/needs-off.trace" >&2 || failed=1
+for picture in "$folder"/needs-on/*.png; do
+    cmp "$picture" "$folder/needs-off/${picture##*/}" >&2 || failed=1
+done
+compare needs-on missing_pixels_percent needs-off missing_pixels_percent 'a > 0 && a == b'
+grep -q '"needed_bytes", "value": null' "$folder/needs-off.json" || failed=1
+grep -q 'Only what the scene requires' "$folder/needs-on/report.html" || failed=1
 
 exit $failed

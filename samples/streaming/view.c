@@ -336,9 +336,9 @@ static void record_counting(const struct view *view, const struct view_slot *slo
             VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-/* One frame of an application that streams. */
+/* One frame of an application that streams; what is behind the last time stamp is no part of it. */
 static bool record_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
-                         SluiceStreamingFrame *frame)
+                         SluiceStreamingFrame *frame, double *needs_seconds)
 {
     const struct view_request *request = &view->request;
     static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
@@ -375,8 +375,10 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
     target_copy_out(request->target, commands, slot->pixels.buffer);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
                         query + 1);
+    double start = clock_seconds();
     if (request->needs)
         needs_pass_record(&view->needs, request->target, view->surfaces, &slot->needs, commands);
+    *needs_seconds = clock_seconds() - start;
     return true;
 }
 
@@ -406,7 +408,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     struct view_slot *slot = &view->slots[slot_index];
     if (!view_wait(view, slot_index))
         return false;
-    double start = clock_seconds();
+    double start = clock_seconds(), needs_seconds;
     write_frame_data(view, camera, slot->frame.mapped);
     motion_add(&view->motion, camera, 1e-6 * (double)time_stamp);
     double horizon = predict_horizon(view->request.settings->predict, view->frame_index);
@@ -417,11 +419,11 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     SluiceStreamingFrame frame;
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
-        !record_frame(view, slot, time_stamp, &frame) ||
+        !record_frame(view, slot, time_stamp, &frame, &needs_seconds) ||
         !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
         !submit(view, slot, &frame))
         return false;
-    out->host_seconds = clock_seconds() - start;
+    out->host_seconds = clock_seconds() - start - needs_seconds;
     sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
     view->frame_index++;
     return true;

@@ -41,7 +41,7 @@ struct view_slot {
 
 /** What is known of a frame when it was submitted. */
 struct view_frame {
-    double host_seconds; ///< from begin to submit
+    double host_seconds; ///< from begin to submit, without the needs pass
     SluiceVulkanStreamerStatistics statistics;
 };
 
