@@ -65,11 +65,14 @@ static bool warm_up(struct gallery *gallery)
     struct view *view = &gallery->streamed;
     struct camera camera = walk_camera(&gallery->room, 0.0f);
     struct view_frame frame;
-    while (view->frame_index < gallery->settings.warm_up ||
-           view->frame_index % VIEW_FRAMES_IN_FLIGHT > 0)
-        if (!view_draw(view, &camera, 0, &frame) ||
-            !view_wait(view, (view->frame_index - 1) % VIEW_FRAMES_IN_FLIGHT) || !view_settle(view))
+    uint32_t count = gallery->settings.warm_up;
+    for (uint32_t i = 0; i < count || i % VIEW_FRAMES_IN_FLIGHT > 0; i++) {
+        uint64_t steps = i < count ? i + 1 : count;
+        uint64_t time_stamp = steps * 1000000u / gallery->settings.frames_per_second;
+        if (!view_draw(view, &camera, time_stamp, &frame) ||
+            !view_wait(view, i % VIEW_FRAMES_IN_FLIGHT) || !view_settle(view))
             return false;
+    }
     view->frame_index = 0;
     return true;
 }
