@@ -64,6 +64,24 @@ bool gallery_fill(struct view *view, const struct room *room)
     return true;
 }
 
+/* In whole rounds of the frames in flight: so the walk's first frame is the first slot's again. */
+static bool warm_up(struct gallery *gallery)
+{
+    struct view *view = &gallery->streamed;
+    struct camera camera = walk_camera(&gallery->room, 0.0f);
+    struct view_frame frame;
+    uint32_t count = gallery->settings.warm_up;
+    for (uint32_t i = 0; i < count || i % VIEW_FRAMES_IN_FLIGHT > 0; i++) {
+        uint64_t steps = i < count ? i + 1 : count;
+        uint64_t time_stamp = steps * 1000000u / gallery->settings.frames_per_second;
+        if (!view_draw(view, &camera, time_stamp, &frame) ||
+            !view_wait(view, i % VIEW_FRAMES_IN_FLIGHT) || !view_settle(view))
+            return false;
+    }
+    view->frame_index = 0;
+    return true;
+}
+
 static bool open_views(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
@@ -84,7 +102,7 @@ static bool open_views(struct gallery *gallery)
         !renderer_create(&gallery->gpu, &gallery->room, &gallery->target, settings->anisotropy,
                          request.counting, request.needs,
                          request.mode == SLUICE_RESIDENCY_MODE_PAGED, &gallery->renderer) ||
-        !view_create(&request, settings->record, &gallery->streamed))
+        !view_create(&request, settings->record, &gallery->streamed) || !warm_up(gallery))
         return false;
     if (!settings->compare)
         return true;

@@ -33,10 +33,12 @@ struct GalleryFrame {
     float lodBias;
     float maxAnisotropy;
     uint feedbackSeed;
-    uint latticeFrame; /* the lattice's step; GALLERY_NO_TEXTURE: random instead */
-    uint highlight;    /* 1: tint what is coarser than wanted */
+    uint latticeFrame;   /* the lattice's step; GALLERY_NO_TEXTURE: random instead */
+    uint highlight;      /* 1: tint what is coarser than wanted */
+    float presentEye[3]; /* where the eye is; `eye` is where it will be, where that is drawn */
+    float pixelScale;    /* width of the picture's pixels, in pixels of what is drawn */
 };
-SLUICE_SHARED_SIZE(struct GalleryFrame, 112)
+SLUICE_SHARED_SIZE(struct GalleryFrame, 128)
 
 /* Push constants of one draw. */
 struct GalleryDraw {

@@ -61,7 +61,7 @@ static bool write_picture(const struct walk *walk, const uint8_t *pixels, bool t
 /** Time stamps follow the frames, not the clock: a slow machine streams the same way. */
 static uint64_t time_stamp_of(const struct settings *settings, uint32_t frame)
 {
-    return (uint64_t)(frame + 1) * 1000000u / settings->frames_per_second;
+    return ((uint64_t)settings->warm_up + frame + 1) * 1000000u / settings->frames_per_second;
 }
 
 /** What the frame needed, and how much of it was not to be seen. */

@@ -102,14 +102,13 @@ static const VkVertexInputAttributeDescription vertex_attributes[] = {
     {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(struct room_vertex, uv)},
 };
 
-static bool create_pipeline(struct renderer *renderer, const struct target *target,
-                            VkShaderModule vertex, VkShaderModule fragment, bool writes_color,
-                            VkPipeline *pipeline)
+bool renderer_create_pipeline(const struct renderer *renderer, const struct target *target,
+                              VkShaderModule fragment, bool writes_color, VkPipeline *pipeline)
 {
     const VkPipelineShaderStageCreateInfo stages[] = {
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_VERTEX_BIT,
-         .module = vertex,
+         .module = renderer->vertex,
          .pName = "main"},
         {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
          .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
@@ -156,7 +155,7 @@ static bool create_pipeline(struct renderer *renderer, const struct target *targ
         .pDynamicStates = dynamic_states};
     const VkGraphicsPipelineCreateInfo info = {.sType =
                                                    VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                               .stageCount = 2,
+                                               .stageCount = fragment ? 2 : 1,
                                                .pStages = stages,
                                                .pVertexInputState = &input,
                                                .pInputAssemblyState = &assembly,
@@ -193,8 +192,8 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
           [RENDERER_COUNT] = {count_paged_frag, sizeof count_paged_frag},
           [RENDERER_NEEDS] = {needs_frag, sizeof needs_frag},
       };
-    VkShaderModule vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
-    bool created = vertex != VK_NULL_HANDLE;
+    renderer->vertex = gpu_create_shader(gpu, gallery_vert, sizeof gallery_vert);
+    bool created = renderer->vertex != VK_NULL_HANDLE;
     for (int i = 0; created && i < RENDERER_PASS_COUNT; i++) {
         if ((i == RENDERER_COUNT && !counting) || (i == RENDERER_NEEDS && !needs))
             continue;
@@ -203,11 +202,10 @@ static bool create_pipelines(struct renderer *renderer, const struct target *tar
                 ? gpu_create_shader(gpu, paged_fragments[i].words, paged_fragments[i].size)
                 : gpu_create_shader(gpu, fragments[i].words, fragments[i].size);
         created = fragment != VK_NULL_HANDLE &&
-                  create_pipeline(renderer, target, vertex, fragment, i < RENDERER_COUNT,
-                                  &renderer->pipelines[i]);
+                  renderer_create_pipeline(renderer, target, fragment, i < RENDERER_COUNT,
+                                           &renderer->pipelines[i]);
         vkDestroyShaderModule(gpu->device, fragment, NULL);
     }
-    vkDestroyShaderModule(gpu->device, vertex, NULL);
     return created;
 }
 
@@ -230,6 +228,7 @@ void renderer_destroy(struct renderer *renderer)
     VkDevice device = renderer->gpu->device;
     for (int i = 0; i < RENDERER_PASS_COUNT; i++)
         vkDestroyPipeline(device, renderer->pipelines[i], NULL);
+    vkDestroyShaderModule(device, renderer->vertex, NULL);
     gpu_destroy_buffer(renderer->gpu, &renderer->vertices);
     gpu_destroy_buffer(renderer->gpu, &renderer->lights);
     vkDestroySampler(device, renderer->clamp, NULL);
@@ -297,8 +296,8 @@ void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet
     vkUpdateDescriptorSets(renderer->gpu->device, 1, &write, 0, NULL);
 }
 
-static const struct renderer_surface *surface_of(const struct room_part *part,
-                                                 const struct renderer_surface *surfaces)
+const struct renderer_surface *renderer_surface_of(const struct room_part *part,
+                                                   const struct renderer_surface *surfaces)
 {
     switch (part->surface) {
     case ROOM_PLAIN: return NULL;
@@ -342,7 +341,7 @@ void renderer_draw(const struct renderer *renderer, VkCommandBuffer commands, Vk
                             1, &frame, 0, NULL);
     for (uint32_t i = 0; i < room->part_count; i++) {
         const struct room_part *part = &room->parts[i];
-        const struct renderer_surface *surface = surface_of(part, surfaces);
+        const struct renderer_surface *surface = renderer_surface_of(part, surfaces);
         VkPipeline pipeline = renderer->pipelines[surface ? pass : RENDERER_PLAIN];
         if (pipeline != bound)
             vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);

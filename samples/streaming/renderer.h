@@ -21,6 +21,7 @@ struct renderer {
     bool paged;              ///< its shaders are for paged residency
     VkDescriptorSetLayout frame_layout, texture_layout;
     VkPipelineLayout pipeline_layout;
+    VkShaderModule vertex;                     ///< of all pipelines
     VkPipeline pipelines[RENDERER_PASS_COUNT]; ///< the last two only where asked for
     VkSampler clamp, repeat;                   ///< as drawn
     VkSampler probe_clamp, probe_repeat;       ///< nearest between levels, for the counting pass
@@ -52,6 +53,16 @@ void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
 /** Descriptors of set 1; without a relief, pass the colour's view twice. */
 void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
                                 VkImageView color, VkImageView relief, bool repeat);
+
+/**
+ * A pipeline of the room's vertices. Without a `fragment` shader it writes depth alone. `target` is
+ * of the pass and the samples that are drawn to.
+ */
+bool renderer_create_pipeline(const struct renderer *renderer, const struct target *target,
+                              VkShaderModule fragment, bool writes_color, VkPipeline *pipeline);
+/** What a part is drawn with; NULL if it has no texture. */
+const struct renderer_surface *renderer_surface_of(const struct room_part *part,
+                                                   const struct renderer_surface *surfaces);
 
 /** `surfaces`: floor, wall, then one per picture; `pass` is how they are drawn. Inside a render
  * pass. */

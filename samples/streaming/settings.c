@@ -141,6 +141,15 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_REAL, "source-bandwidth", "MB/S", &s->source_bandwidth,
          "10^6 bytes of texels per second of the frames' time that all\nreads share; 0: no limit",
          0, 1e9},
+        {OPTION_UINT, "warm-up", "N", &s->warm_up,
+         "so many frames from the entrance go before the walk, and wait for\nwhat they load, as "
+         "behind a loading screen; in no figure of time",
+         0, 1000},
+        {OPTION_REAL, "predict", "SECONDS", &s->predict,
+         "also ask for what the camera will see so much later, if it\nmoves on as it did in the "
+         "last "
+         "frames; 0: do not",
+         0, 10},
         {OPTION_TEXT, "record", "TRACE", &s->record, "record the manager for sluice-replay"},
 
         {OPTION_SECTION, .help = "Sampling"},

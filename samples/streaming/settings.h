@@ -42,6 +42,8 @@ struct settings {
     double source_latency;   ///< milliseconds of the frames' time
     double source_bandwidth; ///< MB/s, 0: no limit
     const char *record;
+    double predict;   ///< seconds
+    uint32_t warm_up; ///< frames
     /* sampling */
     double lod_bias;
     uint32_t anisotropy;

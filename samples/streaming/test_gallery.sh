@@ -91,9 +91,9 @@ compare compared details_unmet compared details_needed 'a <= b'
 compare compared frames_until_sharp_p50 compared frames_until_sharp_p99 'a <= b'
 
 # In paged residency and against another mode the same picture, but for the last bit of the filters.
-walk paged --residency paged --frames 60 --rest-frames 30 --compare --validation
+walk paged --residency paged --frames 60 --rest-frames 30 --predict 0.1 --compare --validation
 if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/paged.log"; then
-    walk paged --residency paged --frames 60 --rest-frames 30 --compare
+    walk paged --residency paged --frames 60 --rest-frames 30 --predict 0.1 --compare
 fi
 if [ "$status" -ne 77 ]; then
     [ "$status" -eq 0 ] || { cat "$folder/paged.log" >&2; failed=1; }
@@ -132,6 +132,31 @@ cmp "$folder/first.trace" "$folder/second.trace" >&2 || failed=1
 for picture in "$folder"/first/*.png; do
     cmp "$picture" "$folder/second/${picture##*/}" >&2 || failed=1
 done
+
+# Who looks ahead misses less on the way, for few tiles more, and comes to rest before the same picture.
+walk unforeseen --frames 110 --rest-frames 10 --fps 30 --deterministic --samples 1 --write-frames none \
+    --warm-up 7 --needs on
+[ "$status" -eq 0 ] || { cat "$folder/unforeseen.log" >&2; failed=1; }
+walk foreseen --frames 110 --rest-frames 10 --fps 30 --deterministic --samples 1 --write-frames none \
+    --warm-up 7 --predict 0.2 --compare
+[ "$status" -eq 0 ] || { cat "$folder/foreseen.log" >&2; failed=1; }
+compare unforeseen needed_bytes foreseen needed_bytes 'a == b'
+compare unforeseen missing_pixels_percent foreseen missing_pixels_percent 'b < 0.5 * a'
+compare unforeseen details_unmet foreseen details_unmet 'b < 0.6 * a'
+compare unforeseen frames_until_sharp_p99 foreseen frames_until_sharp_p99 'b <= a'
+check foreseen loaded_per_needed 'v <= 1.3'
+check foreseen psnr_final_db 'v >= 45'
+"$replay" "$folder/foreseen.trace" >/dev/null || failed=1
+
+# A camera that stands still is not ahead of itself: the same decisions as without a look ahead.
+for name in here ahead; do
+    seconds=0
+    [ $name = here ] || seconds=0.3
+    walk $name --frames 16 --rest-frames 16 --deterministic --loader-threads 1 --samples 1 \
+        --write-frames none --predict $seconds
+    [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
+done
+cmp "$folder/here.trace" "$folder/ahead.trace" >&2 || failed=1
 
 # Where every pixel writes feedback and each frame has all that was asked for before, a camera that
 # stands still loads what a manager asks for that is given the exact maps: no tile more, none less.

@@ -7,6 +7,8 @@
 #include "../common/clock.h"
 #include "view_needs.h"
 
+_Static_assert(PREDICT_SLOTS == VIEW_FRAMES_IN_FLIGHT, "one for each frame in flight");
+
 #define WAIT_NANOSECONDS 60000000000ull
 
 static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
@@ -227,6 +229,16 @@ static bool create_slots(struct view *view)
         "vkCreateQueryPool");
 }
 
+static bool create_prediction(struct view *view)
+{
+    const struct view_request *request = &view->request;
+    if (request->settings->predict <= 0.0 || request->everything)
+        return true;
+    SluiceVulkanBuffers buffers;
+    sluiceGetVulkanBuffers(view->streamer, &buffers);
+    return predict_create(request->renderer, request->target, &buffers, &view->predict);
+}
+
 bool view_create(const struct view_request *request, const char *record_path, struct view *view)
 {
     *view = (struct view){.request = *request};
@@ -237,7 +249,7 @@ bool view_create(const struct view_request *request, const char *record_path, st
                                                    record_path, NULL, &view->recorder),
                         record_path);
     if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view) &&
-        view_needs_create(view))
+        view_needs_create(view) && create_prediction(view))
         return true;
     view_destroy(view);
     return false;
@@ -259,6 +271,7 @@ bool view_destroy(struct view *view)
         gpu_destroy_buffer(gpu, &slot->pixels);
         needs_slot_destroy(&view->needs, &slot->needs);
     }
+    predict_destroy(&view->predict);
     needs_pass_destroy(&view->needs);
     vkDestroyQueryPool(gpu->device, view->timestamps, NULL);
     vkDestroyDescriptorPool(gpu->device, view->descriptor_pool, NULL);
@@ -296,6 +309,18 @@ static void write_frame_data(const struct view *view, const struct camera *camer
         frame->latticeFrame = GALLERY_NO_TEXTURE;
     }
     memcpy(frame->viewProjection, view_projection.m, sizeof frame->viewProjection);
+}
+
+/** Feedback, and nothing else, from where the camera will be. */
+static void record_prediction(const struct view *view, VkCommandBuffer commands)
+{
+    const struct camera *now = &view->motion.past[MOTION_FRAMES - 1];
+    struct GalleryFrame frame;
+    write_frame_data(view, &view->ahead, &frame);
+    memcpy(frame.presentEye, &now->eye, sizeof frame.presentEye);
+    frame.pixelScale = (float)view->predict.target.height / (float)view->request.target->height;
+    predict_record(&view->predict, commands, view->frame_index % VIEW_FRAMES_IN_FLIGHT, &frame,
+                   view->surfaces);
 }
 
 static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
@@ -349,6 +374,8 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
 
     if (request->counting)
         record_counting(view, slot);
+    if (view->looks_ahead)
+        record_prediction(view, commands);
 
     target_begin(request->target, commands, background);
     renderer_draw(request->renderer, commands, slot->frame_set, view->surfaces, RENDERER_SURFACE);
@@ -397,6 +424,10 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
     double start = clock_seconds(), needs_seconds;
     slowness_set_time(&view->slowness, time_stamp);
     write_frame_data(view, camera, slot->frame.mapped);
+    motion_add(&view->motion, camera, 1e-6 * (double)time_stamp);
+    double horizon = predict_horizon(view->request.settings->predict, view->frame_index);
+    view->looks_ahead =
+        view->predict.renderer && motion_look_ahead(&view->motion, horizon, &view->ahead);
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};

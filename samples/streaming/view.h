@@ -5,7 +5,9 @@
 #ifndef SAMPLES_STREAMING_VIEW_H
 #define SAMPLES_STREAMING_VIEW_H
 
+#include "motion.h"
 #include "needs_pass.h"
+#include "predict.h"
 #include "renderer.h"
 #include "settings.h"
 #include "slowness.h"
@@ -58,6 +60,10 @@ struct view {
     struct needs_pass needs;
     VkQueryPool timestamps; ///< two per slot
     uint32_t frame_index;   ///< of the next frame
+    struct predict predict; ///< only with --predict
+    struct motion motion;   ///< of the camera
+    bool looks_ahead;       ///< the frame that is recorded, to `ahead`
+    struct camera ahead;
 };
 
 /** Says on stderr what is wrong. `record_path` may be NULL. */

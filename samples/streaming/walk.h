@@ -2,12 +2,8 @@
 #ifndef SAMPLES_STREAMING_WALK_H
 #define SAMPLES_STREAMING_WALK_H
 
-#include "../common/vecmath.h"
+#include "camera.h"
 #include "room.h"
-
-struct camera {
-    struct vec3 eye, target;
-};
 
 #define WALK_FIELD_OF_VIEW 0.95f ///< vertical, radians
 

@@ -1,0 +1,32 @@
+/* The streamed surfaces from where the camera will be: asks for what it will need, and draws nothing. */
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+/* What will be hidden is not asked for. */
+layout(early_fragment_tests) in;
+
+#include "gallery.glsl"
+#include "sluice/feedback.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 uv;
+layout(location = 2) flat in vec3 normal;
+layout(location = 3) flat in vec3 tangent;
+
+/* The camera comes less close than it seems to more often than not: at most a level finer than now. */
+float farther()
+{
+    float now = distance(toVec3(frame.presentEye), position);
+    float ahead = distance(toVec3(frame.eye), position);
+    return max(1.0, 0.5 * now / max(ahead, 1.0e-6));
+}
+
+void main()
+{
+    /* As if each pixel were one of the picture. */
+    float scale = frame.pixelScale * farther();
+    vec2 dx = dFdx(uv) * scale, dy = dFdy(uv) * scale;
+    sluiceWriteFeedback(draw.colorTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
+    if (draw.reliefFeedback != 0u)
+        sluiceWriteFeedback(draw.reliefTexture, uv, dx, dy, frame.lodBias, frame.maxAnisotropy);
+}

@@ -1,0 +1,253 @@
+/** Where the gallery's camera is expected, against the motions that it is shown. */
+#include "motion.h"
+
+#include <math.h>
+
+#include "support/test.h"
+
+#define FRAME (1.0 / 60.0)
+
+static double distance_between(struct vec3 a, struct vec3 b)
+{
+    return hypot(hypot((double)a.x - b.x, (double)a.y - b.y), (double)a.z - b.z);
+}
+
+static void assert_near(struct vec3 got, struct vec3 expected, double tolerance)
+{
+    double distance = distance_between(got, expected);
+    if (!(distance <= tolerance))
+        fail_msg("(%g %g %g) is %g from (%g %g %g)", got.x, got.y, got.z, distance, expected.x,
+                 expected.y, expected.z);
+}
+
+static bool is_finite(const struct camera *camera)
+{
+    return isfinite(camera->eye.x) && isfinite(camera->eye.y) && isfinite(camera->eye.z) &&
+           isfinite(camera->target.x) && isfinite(camera->target.y) && isfinite(camera->target.z);
+}
+
+/** Looks at what is ahead in -z from x, which is all that moves. */
+static struct camera at(double x)
+{
+    return (struct camera){{(float)x, 1.6f, 0.0f}, {(float)x, 1.6f, -3.0f}};
+}
+
+/** Shows x = path(t) in frames of uneven length that end at `now`. */
+static struct motion follow(double (*path)(double), double now)
+{
+    static const double steps[] = {0.9, 1.3, 0.7, 1.1, 1.0, 0.8};
+    struct motion motion = {0};
+    double t = now - 5.8 * FRAME;
+    for (int i = 0; i < 6; i++) {
+        t += steps[i] * FRAME;
+        struct camera camera = at(path(t));
+        motion_add(&motion, &camera, t);
+    }
+    return motion;
+}
+
+static void check_path(double (*path)(double), double now, double ahead, double expected)
+{
+    struct motion motion = follow(path, now);
+    struct camera camera;
+    assert_true(motion_look_ahead(&motion, ahead, &camera));
+    assert_near(camera.eye, at(expected).eye, 2e-3);
+    assert_near(camera.target, at(expected).target, 2e-3);
+}
+
+static double evenly(double t)
+{
+    return 1.5 * t - 2.0;
+}
+
+static double speeding_up(double t)
+{
+    return 0.5 + t * t;
+}
+
+static double slowing_down(double t)
+{
+    return 3.0 * t - 2.0 * t * t; /* to a halt at t = 0.75 */
+}
+
+static double standing(double t)
+{
+    (void)t;
+    return 4.0;
+}
+
+static void even_motion_goes_on(void **state)
+{
+    (void)state;
+    for (double ahead = 0.05; ahead < 2.0; ahead *= 2.0)
+        check_path(evenly, 1.0, ahead, evenly(1.0 + ahead));
+}
+
+static void motion_that_speeds_up_goes_on(void **state)
+{
+    (void)state;
+    check_path(speeding_up, 1.0, 0.1, speeding_up(1.1));
+    check_path(speeding_up, 1.0, 0.5, speeding_up(1.5));
+}
+
+static void motion_that_slows_down_ends_at_its_halt(void **state)
+{
+    (void)state;
+    check_path(slowing_down, 0.4, 0.1, slowing_down(0.5));
+    check_path(slowing_down, 0.4, 0.35, slowing_down(0.75));
+    check_path(slowing_down, 0.4, 0.6, slowing_down(0.75));
+    check_path(slowing_down, 0.4, 30.0, slowing_down(0.75));
+}
+
+static struct camera turned(double angle)
+{
+    return (struct camera){
+        {1.0f, 1.6f, -2.0f},
+        {1.0f + (float)(2.0 * sin(angle)), 1.6f, -2.0f - (float)(2.0 * cos(angle))}};
+}
+
+static void a_turn_goes_on(void **state)
+{
+    (void)state;
+    struct motion motion = {0};
+    struct camera ahead, camera;
+    for (int i = 0; i < MOTION_FRAMES; i++) {
+        camera = turned(0.9 * i * FRAME);
+        motion_add(&motion, &camera, i * FRAME);
+    }
+    assert_true(motion_look_ahead(&motion, 0.4, &ahead));
+    assert_near(ahead.eye, camera.eye, 0.0);
+    assert_near(ahead.target, turned(0.9 * ((MOTION_FRAMES - 1) * FRAME + 0.4)).target, 0.02);
+    assert_float_equal(distance_between(ahead.target, ahead.eye), 2.0, 1e-5);
+}
+
+static void who_stands_still_stays(void **state)
+{
+    (void)state;
+    struct motion motion = follow(standing, 1.0);
+    struct camera ahead;
+    assert_false(motion_look_ahead(&motion, 0.5, &ahead));
+    assert_near(ahead.eye, at(4.0).eye, 0.0);
+    assert_near(ahead.target, at(4.0).target, 0.0);
+}
+
+static void nothing_is_said_of_now_or_without_a_past(void **state)
+{
+    (void)state;
+    struct motion motion = {0};
+    struct camera ahead;
+    assert_false(motion_look_ahead(&motion, 0.5, &ahead));
+    for (int i = 0; i < MOTION_FRAMES; i++) {
+        struct camera camera = at(0.1 * i);
+        assert_false(motion_look_ahead(&motion, 0.5, &ahead));
+        motion_add(&motion, &camera, i * FRAME);
+    }
+    assert_true(motion_look_ahead(&motion, 0.5, &ahead));
+    assert_false(motion_look_ahead(&motion, 0.0, &ahead));
+    assert_near(ahead.eye, at(0.1 * (MOTION_FRAMES - 1)).eye, 0.0);
+}
+
+static void a_jump_is_no_motion(void **state)
+{
+    (void)state;
+    struct motion motion = {0};
+    struct camera ahead;
+    for (int i = 0; i < 2 * MOTION_FRAMES; i++) {
+        struct camera camera = at(i < MOTION_FRAMES ? 0.0 : 25.0);
+        motion_add(&motion, &camera, i * FRAME);
+        assert_false(motion_look_ahead(&motion, 0.3, &ahead));
+        assert_near(ahead.eye, camera.eye, 0.0);
+    }
+}
+
+static void a_pause_is_forgotten_over(void **state)
+{
+    (void)state;
+    struct motion motion = follow(evenly, 1.0);
+    struct camera camera = at(evenly(9.0)), ahead;
+    motion_add(&motion, &camera, 9.0);
+    assert_false(motion_look_ahead(&motion, 0.3, &ahead));
+    motion = follow(evenly, 1.0);
+    camera = at(evenly(1.0));
+    motion_add(&motion, &camera, 1.0); /* the same time again */
+    assert_false(motion_look_ahead(&motion, 0.3, &ahead));
+}
+
+static uint32_t random_state;
+
+/** From -1 to 1. */
+static double draw(void)
+{
+    random_state = random_state * 1664525u + 1013904223u;
+    return (double)random_state / 2147483648.0 - 1.0;
+}
+
+/* The speed that fits is at most twice that of the fastest step; speeding up adds as much again. */
+static void no_tremble_makes_the_way_longer_than_four_times_the_fastest_step(void **state)
+{
+    (void)state;
+    random_state = 7;
+    for (int round = 0; round < 2000; round++) {
+        struct motion motion = {0};
+        struct camera ahead, before = at(0.0);
+        double fastest = 0.0, seconds = 0.5 + 0.5 * draw();
+        for (int i = 0; i < MOTION_FRAMES; i++) {
+            struct camera camera = {{(float)draw(), (float)draw(), (float)draw()},
+                                    {(float)draw(), (float)draw(), -5.0f}};
+            if (i > 0)
+                fastest = fmax(fastest, distance_between(camera.eye, before.eye) / FRAME);
+            before = camera;
+            motion_add(&motion, &camera, i * FRAME);
+        }
+        (void)motion_look_ahead(&motion, seconds, &ahead);
+        assert_true(is_finite(&ahead));
+        assert_true(distance_between(ahead.eye, before.eye) <= 4.001 * fastest * seconds);
+        assert_true(fabs(distance_between(ahead.target, ahead.eye) -
+                         distance_between(before.target, before.eye)) < 1e-3 * fastest);
+    }
+}
+
+static void nothing_makes_a_place_that_is_no_number(void **state)
+{
+    (void)state;
+    static const float odd[] = {0.0f, 1.0f, -1.0f, 1e-38f, 1e10f, 3e38f, INFINITY, NAN};
+    static const double times[] = {0.0, 1e-300, 1e-3, 0.1, 1e300, INFINITY, NAN};
+    const int odd_count = sizeof odd / sizeof *odd, time_count = sizeof times / sizeof *times;
+    random_state = 11;
+    for (int round = 0; round < 20000; round++) {
+        struct motion motion = {0};
+        struct camera ahead;
+        double now = 0.0;
+        for (int i = 0; i < 8; i++) {
+            float values[6];
+            for (int k = 0; k < 6; k++)
+                values[k] = odd[(int)((draw() * 0.5 + 0.5) * odd_count) % odd_count];
+            struct camera camera = {{values[0], values[1], values[2]},
+                                    {values[3], values[4], values[5]}};
+            double step = times[(int)((draw() * 0.5 + 0.5) * time_count) % time_count];
+            now = round % 2 ? i * FRAME : now + step;
+            motion_add(&motion, &camera, now);
+        }
+        for (int i = 0; i < time_count; i++) {
+            (void)motion_look_ahead(&motion, times[i], &ahead);
+            assert_true(is_finite(&ahead));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(even_motion_goes_on),
+        cmocka_unit_test(motion_that_speeds_up_goes_on),
+        cmocka_unit_test(motion_that_slows_down_ends_at_its_halt),
+        cmocka_unit_test(a_turn_goes_on),
+        cmocka_unit_test(who_stands_still_stays),
+        cmocka_unit_test(nothing_is_said_of_now_or_without_a_past),
+        cmocka_unit_test(a_jump_is_no_motion),
+        cmocka_unit_test(a_pause_is_forgotten_over),
+        cmocka_unit_test(no_tremble_makes_the_way_longer_than_four_times_the_fastest_step),
+        cmocka_unit_test(nothing_makes_a_place_that_is_no_number),
+    };
+    return RUN_TESTS(tests);
+}
