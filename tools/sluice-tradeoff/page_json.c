@@ -84,17 +84,14 @@ static const char *state_name(enum sweep_state state)
     return "failed";
 }
 
-/* Means keep enough digits for bytes to be exact: differences are made from them. */
+/* [mean, half width, count]. Means keep enough digits for bytes to be exact: differences are made
+ * from them. */
 static void put_estimate(FILE *file, const struct sweep_estimate *estimate)
 {
     fputc('[', file);
     put_digits(file, estimate->mean, 12);
     fputc(',', file);
     page_put_number(file, estimate->half_width);
-    fputc(',', file);
-    put_digits(file, estimate->least, 12);
-    fputc(',', file);
-    put_digits(file, estimate->most, 12);
     fprintf(file, ",%" PRIu32 "]", estimate->count);
 }
 

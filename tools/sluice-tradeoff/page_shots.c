@@ -47,14 +47,16 @@ static uint32_t find_shots(struct shot *found, const char *folder)
     return count;
 }
 
-static void rate_shots(struct shot *found, uint32_t count, const struct page_frames *frames)
+static bool rate_shots(struct shot *found, uint32_t count, const struct page_frames *frames,
+                       const char *name, double sign)
 {
-    int flip = page_frames_find(frames, "flip"), psnr = page_frames_find(frames, "psnr_db");
+    bool all_known = true;
+    int column = page_frames_find(frames, name);
     for (uint32_t i = 0; i < count; i++) {
-        found[i].badness = page_frames_get(frames, found[i].frame, flip);
-        if (isnan(found[i].badness))
-            found[i].badness = -page_frames_get(frames, found[i].frame, psnr);
+        found[i].badness = sign * page_frames_get(frames, found[i].frame, column);
+        all_known = all_known && !isnan(found[i].badness);
     }
+    return all_known;
 }
 
 bool page_shots_get(struct page_shots *shots, const char *folder)
@@ -67,7 +69,8 @@ bool page_shots_get(struct page_shots *shots, const char *folder)
     if (read == PAGE_OUT_OF_MEMORY)
         return false;
     if (read == PAGE_READ)
-        rate_shots(found, shots->count, &frames);
+        (void)(rate_shots(found, shots->count, &frames, "flip", 1.0) ||
+               rate_shots(found, shots->count, &frames, "psnr_db", -1.0));
     page_frames_finish(&frames);
     qsort(found, shots->count, sizeof *found, compare_shots);
     for (uint32_t i = 0; i < shots->count; i++)

@@ -13,8 +13,8 @@ struct page_shots {
 };
 
 /**
- * Looks for frame-NNNN.png, and orders them by the columns flip or psnr_db of frames.csv if it has
- * them. A folder that cannot be read has none. False when out of memory.
+ * Looks for frame-NNNN.png, and orders them by the column flip of frames.csv if that knows all of
+ * them, else by psnr_db. A folder that cannot be read has none. False when out of memory.
  */
 bool page_shots_get(struct page_shots *shots, const char *folder);
 

@@ -13,7 +13,7 @@ const char page_sweep_hostile[] =
 
 static const struct sweep_setting settings[PAGE_SWEEP_SETTINGS] = {
     {"probability", "that a pixel quad writes feedback", ""},
-    {"budget", "for tiles at most", "MiB"},
+    {"budget", "for tiles at most; 0: no cap", "MiB"},
     {"mode", "of working", ""}};
 static const struct sweep_metric metrics[PAGE_SWEEP_METRICS] = {
     {"resident_bytes_peak", "bytes", "most that was resident", SWEEP_LESS_IS_BETTER},

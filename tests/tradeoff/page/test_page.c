@@ -123,10 +123,18 @@ static void frames_are_ordered_from_the_worst(void **state)
         page_sweep_add_picture(&s, 0, "frame", frame, 1, 0);
     page_sweep_add_file(&s, 0, "frame-0004.png.part", "", 0);
     page_sweep_add_file(&s, 0, "frame--001.png", "", 0);
-    assert_true(page_shots_get(&shots, s.folders[0]));
-    const uint32_t expected[] = {2, 0, 1, 3}; /* nothing is known of 3 */
+    const uint32_t by_psnr[] = {2, 0, 1, 3}, by_flip[] = {1, 2, 0, 3};
+    assert_true(page_shots_get(&shots, s.folders[0])); /* nothing is known of 3 */
     assert_int_equal(shots.count, 4);
-    assert_memory_equal(shots.frames, expected, sizeof expected);
+    assert_memory_equal(shots.frames, by_psnr, sizeof by_psnr);
+    text = "frame,psnr_db,flip\n0,30,0.2\n1,999,0.9\n2,12,0.5\n3,999,0\n";
+    page_sweep_add_file(&s, 0, "frames.csv", text, strlen(text));
+    assert_true(page_shots_get(&shots, s.folders[0]));
+    assert_memory_equal(shots.frames, by_flip, sizeof by_flip);
+    text = "frame,psnr_db,flip\n0,30,0.2\n1,999,0.9\n2,12,\n"; /* flip does not know all */
+    page_sweep_add_file(&s, 0, "frames.csv", text, strlen(text));
+    assert_true(page_shots_get(&shots, s.folders[0]));
+    assert_memory_equal(shots.frames, by_psnr, sizeof by_psnr);
 }
 
 static void every_point_that_is_done_is_chosen_once_the_base_first(void **state)

@@ -105,6 +105,7 @@ by_memory = sorted(range(DONE), key=memory)
 beside_chosen = by_memory[by_memory.index(8) + 1]  # the balanced one, 8, is chosen when the page opens
 csv_lines = after["csv"].texts["says"].strip().split("\n")
 rows = plain.texts["table"]
+labels = "\n".join(a.get("aria-label") or "" for a in plain.tags("svg"))
 FACTS = {f"{kind}_page_runs_without_errors": ready(page) for kind, page in pages.items()}
 FACTS.update({
     "the_front_shows_every_run": sorted(marks(plain)[0]) == list(range(DONE)),
@@ -112,6 +113,8 @@ FACTS.update({
     "runs_without_a_figure_are_left_out_of_its_front": any(sorted(front) == [i for i in range(DONE) if i != UNKNOWN] for front in marks(plain)),
     # three figures for each of two settings that are numbers, and three columns over the frames
     "plots_have_lines": len([a for a in plain.of_class("line") if (a.get("d") or "").startswith("M")]) == 3 * 2 + 3,
+    "zero_that_means_no_cap_comes_last": re.search(
+        f"for budget: 8: {4 * memory(5)}\u00a0MiB.*, 16: {4 * memory(6)}\u00a0MiB.*, 0: {4 * memory(BASE)}\u00a0MiB", labels) is not None,
     "no_coordinate_is_lost": not any("NaN" in (value or "") or "Infinity" in (value or "")
         for page in pages.values() for tag, a in page.elements if tag in ("path", "line", "circle", "rect", "text", "g", "svg") for value in a.values()),
     "table_has_all_points": all(text in rows for text in ("budget 16", "it ended with status 1", "not run yet", "\u221e\u00a0dB")),
@@ -133,6 +136,8 @@ FACTS.update({
     "csv_has_a_line_per_point": len(csv_lines) == 1 + POINTS and csv_lines[1 + UNKNOWN].startswith("6,done,1/16,8,fast,"),
     "pages_that_were_used_have_no_errors": all(ready(page) for page in after.values()),
     "every_control_has_a_label": not any(page.unnamed for page in pages.values()),
+    "letters_that_turn_words_around_are_written_out": "\\u202e =1+1" in hostile.texts["title"] and "\u202e" not in "".join(
+        text for identity, text in hostile.texts.items() if not identity.endswith("-data")),
     "hostile_words_run_nothing": hostile.title != "taken" and not any("onerror" in a for _, a in hostile.elements)
         and not any(a.get("src") == "x" for a in hostile.tags("img")),
 })

@@ -9,9 +9,15 @@ function showTrouble(error) {
 }
 window.addEventListener('error', event => showTrouble(event.message));
 
-const sweep = JSON.parse(document.getElementById('sweep-data').textContent);
-const series = JSON.parse(document.getElementById('series-data').textContent);
-const album = JSON.parse(document.getElementById('picture-data').textContent);
+/** Controls, and what turns the direction of writing, would make words look like others. */
+function visible(key, value) {
+  return typeof value !== 'string' ? value : value.replace(/[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g,
+    letter => `\\u${letter.charCodeAt(0).toString(16).padStart(4, '0')}`);
+}
+
+const sweep = JSON.parse(document.getElementById('sweep-data').textContent, visible);
+const series = JSON.parse(document.getElementById('series-data').textContent, visible);
+const album = JSON.parse(document.getElementById('picture-data').textContent, visible);
 const svgNamespace = document.getElementById('marks').namespaceURI;
 
 const byId = id => document.getElementById(id);

@@ -7,18 +7,28 @@ function settingNumber(text) {
   return parts ? Number(parts[1]) / (parts[2] ? Number(parts[2]) : 1) : NaN;
 }
 
+/** Whether the setting's 0 stands for no bound at all, and so for more than any number. */
+function zeroIsAll(setting) {
+  return /\b0: (no|any|all|as many)\b/.test(sweep.settings[setting].meaning);
+}
+
 /** [{index, text, value}] of the runs that differ from the base in this setting alone, and the base. */
 function alone(setting) {
   const rows = done.filter(i => i === sweep.base || groupOf(i) === setting)
-    .map(index => ({index, text: points[index].values[setting], value: settingNumber(points[index].values[setting])}));
-  const numeric = rows.every(row => Number.isFinite(row.value));
+    .map(index => ({index, text: points[index].values[setting], value: settingNumber(points[index].values[setting])}))
+    .map(row => row.value === 0 && zeroIsAll(setting) ? {...row, value: Infinity} : row);
+  const numeric = rows.every(row => !Number.isNaN(row.value));
   rows.sort((a, b) => numeric ? a.value - b.value : (a.index === sweep.base ? -1 : b.index === sweep.base ? 1 : a.index - b.index));
   return {rows, numeric};
 }
 
 /** Values at even distances, unless numbers of one magnitude: then where they are. */
 function alongX({rows, numeric}, left, right) {
-  const values = rows.map(row => row.value), low = Math.min(...values), high = Math.max(...values);
+  const values = rows.map(row => row.value), finite = values.filter(Number.isFinite), low = Math.min(...finite), high = Math.max(...finite);
+  if (numeric && values.includes(Infinity) && finite.length > 0) { // at the end, beyond a gap
+    const others = alongX({rows: rows.slice(0, finite.length), numeric}, left, right - (right - left) / 4);
+    return i => values[i] === Infinity ? right : others(i);
+  }
   const even = i => left + (rows.length > 1 ? i / (rows.length - 1) : 0.5) * (right - left);
   if (!numeric || low === high)
     return even;

@@ -14,16 +14,14 @@ function withoutEqual(value, unit) {
   return unit === 'dB' && value >= equalPsnr ? Infinity : value;
 }
 
-/** {mean, half, least, most, count} of a metric at a point; NaN where nothing is known. */
+/** {mean, half, count} of a metric at a point; NaN where nothing is known. */
 function estimate(index, metric) {
   const given = points[index].estimates && metric >= 0 ? points[index].estimates[metric] : null;
   if (!given)
-    return {mean: NaN, half: NaN, least: NaN, most: NaN, count: 0};
-  const unit = sweep.metrics[metric].unit;
-  const [mean, half, least, most] = given.slice(0, 4).map(number);
-  const shown = withoutEqual(mean, unit);
-  return {mean: shown, half: Number.isFinite(shown) ? half : NaN, least: withoutEqual(least, unit),
-    most: withoutEqual(most, unit), count: given[4]};
+    return {mean: NaN, half: NaN, count: 0};
+  const [mean, half, count] = given.map(number);
+  const shown = withoutEqual(mean, sweep.metrics[metric].unit);
+  return {mean: shown, half: Number.isFinite(shown) ? half : NaN, count};
 }
 
 const known = sweep.metrics.map((metric, i) => i).filter(m => done.some(i => !Number.isNaN(estimate(i, m).mean)));
@@ -93,7 +91,7 @@ function formatEstimate(e, unit) {
     return [formatValue(e.mean, unit, 4), ''];
   const [divisor, shown] = scaleOf(unit, Math.abs(e.mean));
   const half = e.half / divisor, mean = e.mean / divisor;
-  const count = mean === 0 ? 2 : Math.ceil(Math.log10(Math.abs(mean) / half)) + 2;
+  const count = mean === 0 ? 2 : Math.ceil(Math.log10(Math.abs(mean) / half)) + 1;
   return [withUnit(digits(mean, Math.min(Math.max(count, 2), 5)), shown), plusMinus + digits(half, 2)];
 }
 

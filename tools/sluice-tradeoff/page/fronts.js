@@ -24,15 +24,15 @@ function frontOf(x, y) {
   return front;
 }
 
-const pairs = [['resident_bytes_peak', 'flip_mean'], ['gpu_ms_median', 'psnr_mean_db'], ['frame_ms_median', 'psnr_mean_db'],
-  ['bytes_read', 'flip_mean'], ['host_ms_median', 'frames_until_sharp_p99'], ['resident_bytes_peak', 'psnr_lowest_db'],
+const pairs = [['resident_bytes_peak', 'flip_mean'], ['gpu_ms_median', 'psnr_mean_db'], ['time', 'flip_mean'], ['bytes_read', 'flip_mean'],
   ['resident_bytes_peak', 'levels_too_coarse'], ['loaded_bytes', 'levels_too_coarse'], ['resident_bytes_peak', 'frames_until_sharp_p99'],
-  ['resident_bytes_peak', 'loaded_per_needed'], ['time', 'flip_mean'], ['core_us_per_frame', 'levels_too_coarse'], ['bytes_read', 'psnr_lowest_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
+  ['resident_bytes_peak', 'psnr_lowest_db'], ['core_us_per_frame', 'levels_too_coarse'], ['resident_bytes_peak', 'loaded_per_needed'],
+  ['frame_ms_median', 'psnr_mean_db'], ['resident_bytes_peak', 'missing_pixels_percent'], ['resident_bytes_peak', 'gpu_ms_median']];
 
 /** Pairs of metrics that are there; whatever there is, if none of the usual ones. */
 function usualPairs() {
   const there = pairs.map(pair => pair.map(findMetric)).filter(pair => pair[0] >= 0 && pair[1] >= 0);
-  const found = there.filter(pair => done.length < 2 || !pair.some(isConstant)).slice(0, 6);
+  const found = there.filter(pair => done.length < 2 || !pair.some(isConstant)).slice(0, 4);
   return found.length > 0 || known.length < 2 ? found : [[known[0], known[1]]];
 }
 
@@ -81,7 +81,7 @@ function betterText(metrics, box) {
 function drawNames(indices, place, box) {
   const used = [];
   return indices.filter(i => roles(i).length > 0).map(i => {
-    const [x, y] = place(i), text = roles(i).join(', ');
+    const [x, y] = place(i), text = roles(i).join(', ').slice(0, 40);
     const start = x < box.left + (box.right - box.left) * 0.62;
     let at = y - 10 < box.top + 12 ? y + 20 : y - 10;
     while (used.some(u => Math.abs(u[0] - x) < 130 && Math.abs(u[1] - at) < 14))

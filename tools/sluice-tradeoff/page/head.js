@@ -7,7 +7,7 @@ function showHead() {
   byId('scene').textContent = sweep.scene;
   byId('machine').textContent = sweep.machine;
   const failed = points.filter(point => point.state === 'failed'), pending = points.filter(point => point.state === 'pending');
-  const runs = done.reduce((sum, i) => sum + Math.max(1, ...points[i].estimates.map(e => e ? e[4] : 0)), 0);
+  const runs = done.reduce((sum, i) => sum + Math.max(1, ...points[i].estimates.map(e => e[2])), 0);
   const counts = [['combinations of settings', points.length], ['runs that count', runs], ['settings varied', sweep.settings.filter((s, i) => points.some(p => p.values[i] !== points[0].values[i])).length],
     ['figures', known.length], ['failed', failed.length], ['not run yet', pending.length]];
   byId('counts').append(...counts.filter(([name, value]) => value > 0).map(([name, value]) =>
@@ -19,9 +19,18 @@ function showHead() {
       html('ul', {}, failed.map(point => html('li', {}, html('b', {}, point.label || 'base'), `: ${point.reason || 'no reason is known'}`)))));
 }
 
+/** Light or dark as the system is, until somebody says otherwise; paper is light. */
 function showTheme() {
+  const root = document.documentElement;
+  let before;
+  window.addEventListener('beforeprint', () => { before = root.dataset.theme; root.dataset.theme = 'light'; });
+  window.addEventListener('afterprint', () => {
+    if (before)
+      root.dataset.theme = before;
+    else
+      delete root.dataset.theme;
+  });
   byId('theme').addEventListener('click', () => {
-    const root = document.documentElement;
     const dark = root.dataset.theme ? root.dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
     root.dataset.theme = dark ? 'light' : 'dark';
   });
@@ -56,7 +65,7 @@ function showRecommendations() {
   if (base >= 0)
     byId('cards-table').append(recommendationTable());
   else
-    byId('cards-table').append(html('p', {class: 'muted'}, 'The base failed, so there is nothing to compare with.'));
+    byId('cards-table').append(html('p', {class: 'muted'}, 'There are no figures of the base, so there is nothing to compare with.'));
 }
 
 function showChosen() {

@@ -55,7 +55,9 @@ function drawRest(point, along, box) {
 
 function drawLine(data, kind, along, scale) {
   const at = (values, i) => [along(i * data.step + (data.step - 1) / 2), scale.place(values[i])];
-  const middle = data.most.map((v, i) => at(data.most, i));
+  const middle = data.most.map((v, i) => at(data.most, i)), known = middle.filter(p => !Number.isNaN(p[1]));
+  if (known.length * 2 < middle.length) // of every few frames alone: dots, and a line through them
+    return [svg('path', {class: `line thin ${kind}`, d: path(known)}), ...known.map(p => svg('circle', {class: `dot ${kind}`, cx: p[0], cy: p[1], r: 2.5}))];
   if (data.step === 1)
     return [svg('path', {class: `line ${kind}`, d: path(middle)})];
   const least = data.least.map((v, i) => at(data.least, i)), clean = points => points.filter(p => !Number.isNaN(p[1]));

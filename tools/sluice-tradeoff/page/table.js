@@ -72,7 +72,7 @@ function csvText() {
   const finite = value => value === null ? '' : value;
   const rows = points.map((point, i) => [i + 1, point.state, ...point.values,
     ...known.flatMap(m => point.estimates ? point.estimates[m].slice(0, 2).map(finite) : ['', '']),
-    point.estimates ? Math.max(0, ...point.estimates.map(e => e[4])) : 0, point.command_line, point.reason || '']);
+    point.estimates ? Math.max(0, ...point.estimates.map(e => e[2])) : 0, point.command_line, point.reason || '']);
   return [head, ...rows].map(cells => cells.map(csvCell).join(',')).join('\n') + '\n';
 }
 
