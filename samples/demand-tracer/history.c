@@ -45,7 +45,7 @@ bool history_write(const struct history *h, const char *folder)
     snprintf(path, sizeof path, "%s/frames.csv", folder);
     FILE *file = fopen(path, "w");
     if (file)
-        fputs("launch,sample,traced_pixels,missing_pixels,missing_pages,served_pages,loaded_tiles,"
+        fputs("frame,sample,traced_pixels,missing_pixels,missing_pages,served_pages,loaded_tiles,"
               "resident_tiles,bytes_read,bytes_uploaded,lod_bias,seconds\n",
               file);
     for (size_t i = 0; file && i < h->count; i++)

@@ -184,8 +184,9 @@ static bool print_summary(struct tracer *t, double seconds)
                               .difference = {NAN, NAN, NAN},
                               .needed_tiles = NAN,
                               .resident_peak = t->history.resident_peak};
+    const struct picture_place place = {o->output, t->launches.count};
     if ((o->compare &&
-         !picture_compare(&t->picture, o->exposure, o->compare, o->output, &summary.difference)) ||
+         !picture_compare(&t->picture, o->exposure, o->compare, &place, &summary.difference)) ||
         !count_needs(t, &summary.needed_tiles) ||
         sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
         return false;

@@ -1,5 +1,8 @@
-/** What the finished picture needed: the pages that its complete paths have sampled, see
- *  shaders/notes.glsl. */
+/**
+ * What the finished picture needed: the pages that its complete paths have sampled, see
+ * shaders/notes.glsl. Those that were refused for want of memory are among them; and where memory
+ * is so short that samples become blurrier meanwhile, those of the sharper samples before.
+ */
 #ifndef TRACER_NEEDS_H
 #define TRACER_NEEDS_H
 

@@ -116,7 +116,8 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
          "PNG of small pictures, one for each of the first launches;\n"
          "without --preview missing pixels are magenta"},
         {OPTION_TEXT, "compare", "FILE", &o->compare,
-         "print PSNR, SSIM and FLIP against a PNG picture of another run,\nwrite flip.png"},
+         "print PSNR, SSIM and FLIP against a PNG picture of another run,\nwrite frame-N.png, "
+         "truth-N.png and flip-N.png, N launches"},
         {OPTION_CHOICE, "needs", "on|off", &o->count_needs,
          "count the tiles that the finished picture needed"},
         {OPTION_FLAG, "json", NULL, &o->json, "a line of JSON for each figure"},

@@ -91,28 +91,35 @@ bool picture_write(const struct picture *picture, double exposure, const char *f
     return done && write_exr(picture, path);
 }
 
-/** FLIP, and its map in colours. */
-static bool compare_flip(const SluicePicturePair *pair, const char *folder, double *flip)
+static bool write_numbered(const struct picture_place *place, const char *kind, const uint8_t *rgba,
+                           const SluicePicturePair *pair)
 {
     char path[4096];
+    snprintf(path, sizeof path, "%s/%s-%04u.png", place->folder, kind, place->number);
+    return png_file_write(path, rgba, pair->width, pair->height);
+}
+
+/** FLIP, and its map in colours. */
+static bool compare_flip(const SluicePicturePair *pair, const struct picture_place *place,
+                         double *flip)
+{
     const size_t count = (size_t)pair->width * pair->height;
     float *errors = malloc(count * sizeof *errors);
     uint8_t *colours = malloc(count * 4);
     const SluiceMetricMap map = {.pValues = errors};
-    snprintf(path, sizeof path, "%s/flip.png", folder);
     bool done = errors && colours &&
                 sluiceComputeFlip(pair, 0.0f, &map, NULL, flip) == SLUICE_SUCCESS &&
                 sluiceColourMagma(errors, count, colours) == SLUICE_SUCCESS;
     if (!done)
         fprintf(stderr, "out of memory\n");
-    done = done && png_file_write(path, colours, pair->width, pair->height);
+    done = done && write_numbered(place, "flip", colours, pair);
     free(errors);
     free(colours);
     return done;
 }
 
 static bool compare(const uint8_t *rgba, const uint8_t *other, uint32_t width, uint32_t height,
-                    const char *folder, struct picture_difference *d)
+                    const struct picture_place *place, struct picture_difference *d)
 {
     const SluicePicturePair pair = {.pA = rgba,
                                     .pB = other,
@@ -121,13 +128,15 @@ static bool compare(const uint8_t *rgba, const uint8_t *other, uint32_t width, u
                                     .format = SLUICE_PIXEL_FORMAT_RGBA8_SRGB};
     if (sluiceComputePsnr8(rgba, other, width, height, 4, &d->psnr) == SLUICE_SUCCESS &&
         sluiceComputeSsim(&pair, NULL, NULL, &d->ssim) == SLUICE_SUCCESS)
-        return compare_flip(&pair, folder, &d->flip);
+        return compare_flip(&pair, place, &d->flip) &&
+               write_numbered(place, "frame", rgba, &pair) &&
+               write_numbered(place, "truth", other, &pair);
     fprintf(stderr, "out of memory\n");
     return false;
 }
 
 bool picture_compare(const struct picture *picture, double exposure, const char *path,
-                     const char *folder, struct picture_difference *difference)
+                     const struct picture_place *place, struct picture_difference *difference)
 {
     uint32_t width, height;
     uint8_t *other = png_file_read(path, &width, &height);
@@ -138,7 +147,7 @@ bool picture_compare(const struct picture *picture, double exposure, const char 
         fprintf(stderr, "%s: is %ux%u, not %ux%u\n", path, width, height, picture->width,
                 picture->height);
     uint8_t *rgba = fits ? develop_new(picture, exposure) : NULL;
-    bool done = rgba && compare(rgba, other, width, height, folder, difference);
+    bool done = rgba && compare(rgba, other, width, height, place, difference);
     free(rgba);
     free(other);
     return done;

@@ -31,9 +31,15 @@ struct picture_difference {
     double flip; ///< 0: equal
 };
 
-/** Of the picture and a PNG file of the same size; where they differ goes to FOLDER/flip.png. Says
- * on stderr why it failed. */
+/** FOLDER/KIND-NUMBER.png, the number of four digits. */
+struct picture_place {
+    const char *folder;
+    uint32_t number;
+};
+
+/** Of the picture and a PNG file of the same size. Both and where they differ are written as
+ * "frame", "truth" and "flip". Says on stderr why it failed. */
 bool picture_compare(const struct picture *picture, double exposure, const char *path,
-                     const char *folder, struct picture_difference *difference);
+                     const struct picture_place *place, struct picture_difference *difference);
 
 #endif /* TRACER_PICTURE_H */

@@ -113,7 +113,9 @@ check preloaded loaded_per_needed 'v + 0 > 2'
 is_like_first preloaded 60
 check preloaded ssim_mean 'v + 0 > 0.9999 && v + 0 <= 1'
 check preloaded flip_mean 'v + 0 >= 0 && v + 0 < 0.0001'
-[ -s "$folder/preloaded/flip.png" ] || { echo "flip.png was not written" >&2; failed=1; }
+for kind in frame truth flip; do # two launches
+    [ -s "$folder/preloaded/$kind-0002.png" ] || { echo "$kind-0002.png was not written" >&2; failed=1; }
+done
 
 # The same scene without a ray-tracing pipeline; edges may fall to the other side of a pixel.
 trace compute $validation --path compute --compare "$folder/first/picture.png"

@@ -81,10 +81,11 @@ void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames)
     SluiceVulkanStreamerStatistics now;
     sluiceGetVulkanStreamerStatistics(streamer, &now);
     printf(
-        "%s, frame %u: %u of %u tiles mapped, %.1f MB of texels read, %.1f MB of device memory\n",
+        "%s, frame %u: %u of %u tiles mapped, %u loaded so far, %.1f MB of texels read, %.1f MB of "
+        "device memory\n",
         modes[sluiceGetVulkanResidencyMode(streamer)], frames, now.manager.mappedTileCount,
-        (unsigned)now.manager.tileCount, (double)now.bytesRead * 1e-6,
-        (double)now.deviceMemorySize * 1e-6);
+        (unsigned)now.manager.tileCount, (unsigned)now.manager.mappedTotal,
+        (double)now.bytesRead * 1e-6, (double)now.deviceMemorySize * 1e-6);
     fflush(stdout);
 }
 

@@ -30,7 +30,7 @@ float eye_in_frame(const struct settings *settings, uint32_t frame);
 /** A source of texels for a texture: waves, painted where and when a tile of them is loaded. */
 SluiceResult create_source(uint32_t texture, SluiceImageSource **source);
 
-/** A line: residency mode, frames so far, tiles, bytes. */
+/** A line: residency mode, frames so far, tiles there are, are resident and were loaded, bytes. */
 void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames);
 /** Returns false if the file cannot be written, having said why. `texels`: [height][width] RGBA. */
 bool write_picture(const struct settings *settings, const uint8_t *texels);

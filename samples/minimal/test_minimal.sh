@@ -33,7 +33,7 @@ for mode in sparse paged dense auto; do
     esac
     grep -q -E "^($used), frame 120: " "$folder/$mode.txt" || failed=1
     python3 "$psnr" "$folder/whole.png" "$folder/$mode.png" 45 || failed=1
-    awk 'END { exit !($4 > 0 && $4 < $6 / 2) }' "$folder/$mode.txt" || failed=1
+    awk 'END { exit !($4 > 0 && $4 < $6 / 2 && $9 >= $4) }' "$folder/$mode.txt" || failed=1
 done
 [ "$ran" -gt 0 ] || exit 77
 exit "$failed"
