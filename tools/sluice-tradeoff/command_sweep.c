@@ -7,8 +7,8 @@
 
 #include "../../samples/common/files.h"
 #include "../../samples/common/text.h"
-#include "foresight.h"
 #include "folders.h"
+#include "foresight.h"
 #include "page.h"
 #include "recommend.h"
 #include "results.h"
