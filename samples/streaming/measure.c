@@ -177,6 +177,8 @@ static uint32_t wait_figures(const struct measure *measure, struct figure *figur
          "from the first that needs a finer level in a region to the first that shows it"},
         {"frames_until_sharp_p99", wait ? needs_wait_quantile(wait, 0.99) : NAN, "frames",
          "99 of 100 are there so soon; one that is in vain counts as long as it was needed"},
+        {"frames_until_sharp_mean", wait ? needs_wait_mean(wait) : NAN, "frames",
+         "of all waits, with those of no frame at all"},
         {"details_needed", wait ? (double)wait->count : NAN, "details",
          "times that a region needed a finer level than in the frame before"},
         {"details_unmet", wait ? (double)wait->unmet : NAN, "details",

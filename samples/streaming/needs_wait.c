@@ -109,3 +109,11 @@ double needs_wait_quantile(const struct needs_wait *wait, double share)
     }
     return NAN;
 }
+
+double needs_wait_mean(const struct needs_wait *wait)
+{
+    double frames = 0;
+    for (size_t length = 0; length < wait->length_capacity; length++)
+        frames += (double)length * (double)wait->lengths[length];
+    return wait->count > 0 ? frames / (double)wait->count : NAN;
+}

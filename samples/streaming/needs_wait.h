@@ -46,5 +46,7 @@ bool needs_wait_end(struct needs_wait *wait);
 
 /** The frames that `share` of the waits do not exceed; NaN if there were none. */
 double needs_wait_quantile(const struct needs_wait *wait, double share);
+/** Frames per wait; NaN if there were none. */
+double needs_wait_mean(const struct needs_wait *wait);
 
 #endif /* SAMPLES_STREAMING_NEEDS_WAIT_H */

@@ -87,7 +87,7 @@ static void a_coarser_need_is_no_wait(void **state)
     check("23232", "22222", 3, 0, 0, 0);
 }
 
-static void quantiles_are_those_of_all_waits(void **state)
+static void quantiles_and_the_mean_are_those_of_all_waits(void **state)
 {
     (void)state;
     /* A region per wait: 0 waits 0 frames, 1 waits 1, ..., 9 waits 9. */
@@ -106,6 +106,7 @@ static void quantiles_are_those_of_all_waits(void **state)
     assert_true(needs_wait_quantile(&wait, 0.5) == 4);
     assert_true(needs_wait_quantile(&wait, 0.51) == 5);
     assert_true(needs_wait_quantile(&wait, 0.99) == 9);
+    assert_true(needs_wait_mean(&wait) == 4.5);
     needs_wait_finish(&wait);
 }
 
@@ -115,6 +116,7 @@ static void a_run_that_needs_nothing_has_no_quantiles(void **state)
     struct needs_wait wait = run("....", "0123");
     assert_int_equal(wait.count, 0);
     assert_true(isnan(needs_wait_quantile(&wait, 0.5)));
+    assert_true(isnan(needs_wait_mean(&wait)));
     needs_wait_finish(&wait);
 }
 
@@ -127,7 +129,7 @@ int main(void)
         cmocka_unit_test(a_wait_that_nobody_needs_any_more_counts_as_long_as_it_was),
         cmocka_unit_test(a_finer_need_is_a_wait_of_its_own_beside_the_coarser),
         cmocka_unit_test(a_coarser_need_is_no_wait),
-        cmocka_unit_test(quantiles_are_those_of_all_waits),
+        cmocka_unit_test(quantiles_and_the_mean_are_those_of_all_waits),
         cmocka_unit_test(a_run_that_needs_nothing_has_no_quantiles),
     };
     return RUN_TESTS(tests);
