@@ -10,9 +10,12 @@
 #                                              OpenEXR, DDS, KTX2 files and tile stores
 #
 # Each frame is drawn a second time with everything resident, to compare, unless there is a --budget.
+# Then the gallery, smaller, is walked through with other settings, one at a time, to show what each
+# costs in memory, time and picture: some two minutes, and a page to read.
 #
 #   --output DIR   where pictures and report go      (default: build/demo-out)
 #   --cache DIR    where generated images and baked pictures are kept (default: build/demo-cache)
+#   --no-tradeoff  end with the gallery; measure no other settings
 #   --no-install   install nothing; say what is missing
 #   --help
 #
@@ -29,11 +32,12 @@ for part in common packages mesa build; do
     . "$here/lib/$part.sh"
 done
 
-install=yes output=$SLUICE_BUILD/demo-out cache=$SLUICE_BUILD/demo-cache
+install=yes tradeoff=yes output=$SLUICE_BUILD/demo-out cache=$SLUICE_BUILD/demo-cache
 while [ $# -gt 0 ]; do
     case $1 in
     --output) output=${2:?--output needs a folder}; shift ;;
     --cache) cache=${2:?--cache needs a folder}; shift ;;
+    --no-tradeoff) tradeoff=no ;;
     --no-install) install=no ;;
     --help) usage_of "$0"; exit 0 ;;
     --) shift; break ;;
@@ -82,6 +86,27 @@ mkdir -p "$output" "$cache"
 figure() { sed -n "s/.*\"name\": \"$1\", \"value\": \([0-9]*\).*/\1/p" "$output/summary.txt"; }
 megabytes() { awk -v bytes="$(figure "$1")" 'BEGIN { printf "%.0f MB", bytes / 1e6 }'; }
 
+# The same pictures on the same device; what else was asked of the gallery is no base to compare with.
+pictures=()
+while [ $# -gt 0 ]; do
+    case $1 in
+    --images | --device | --format)
+        pictures+=("$1")
+        while [ $# -gt 1 ] && [ "${2#--}" = "$2" ]; do
+            pictures+=("$2")
+            shift
+        done
+        ;;
+    esac
+    shift
+done
+if [ "$tradeoff" = yes ]; then
+    title "Measuring what settings cost"
+    mkdir -p "$output/tradeoff"
+    "$folder/tools/sluice-tradeoff/sluice-tradeoff" gallery --quick --results "$output/tradeoff" -- \
+        --cache "$cache" "${pictures[@]}" | tee "$output/tradeoff/table.txt" || die "the measurements did not end well"
+fi
+
 title "Done"
 say "$(figure pictures) pictures hang; their textures are $(megabytes virtual_bytes). In memory were \
 $(megabytes resident_bytes) at the end, $(megabytes resident_bytes_peak) at most, in heaps of \
@@ -89,4 +114,5 @@ $(megabytes device_memory_peak)."
 say "The report, with pictures and figures: $output/report.html"
 say "Pictures${comparing:+, and the same with everything resident}: $output/frame-*.png${comparing:+, truth-*.png}"
 say "Figures: $output/frames.csv (by frame), $output/summary.txt"
+[ "$tradeoff" = no ] || say "What settings cost, with plots and pictures: $output/tradeoff/page.html"
 say "Next: your own pictures by '-- --images FOLDER --budget 64'; all that can be set by '-- --help'."
