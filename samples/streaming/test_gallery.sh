@@ -255,4 +255,8 @@ check slow tiles_failed 'v == 0'
 check slow psnr_final_db 'v >= 60'
 check slow frames_to_60db 'v >= 1'
 
+# Heaps of 64 GiB: where the device has no memory for the truth, that is said, and not waited for.
+walk poor --frames 2 --rest-frames 1 --residency dense --compare --compare-with paged --heap-tiles 1048576
+[ "$status" -eq 0 ] || said poor 'the device has no memory for more than'
+
 exit $failed
