@@ -313,8 +313,9 @@ SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer
 
 /**
  * The buffers that shaders need, as storage buffers; the same for the streamer's whole life. All
- * but the page table may be copied from, between sluiceBeginStreamingFrame and submission: what the
- * streamer wrote there in this frame are transfers.
+ * but the page table may be copied from, between sluiceBeginStreamingFrame and submission, behind a
+ * barrier: what the former wrote there are transfers; sluiceEndStreamingFrame also writes feedback,
+ * in compute shaders.
  */
 typedef struct SluiceVulkanBuffers {
     VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read

@@ -337,13 +337,25 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
     return count;
 }
 
-static bool has_page(const SluiceVulkanStreamer *s, uint32_t texture)
+/* For further loads of the texture's format; UINT32_MAX: nobody knows of an end. Counted once a
+ * frame. */
+static uint32_t pages_left(SluiceVulkanStreamer *s, uint32_t texture)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
-    uint32_t room = interface->page_room ? interface->page_room(s->residency, texture) : UINT32_MAX;
-    if (room == 0 || room == UINT32_MAX)
-        return room > 0;
-    return room > count_loads(s, s->textures[texture].info.format);
+    SluiceFormat format = s->textures[texture].info.format;
+    uint32_t *left = &s->pages_left[format];
+    if (*left == SLC_NONE && interface->page_room) {
+        uint32_t room = interface->page_room(s->residency, texture);
+        uint32_t loads = room == UINT32_MAX ? 0 : count_loads(s, format);
+        *left = room == UINT32_MAX ? SLC_NONE : room > loads ? room - loads : 0;
+    }
+    return *left;
+}
+
+static void forget_pages_left(SluiceVulkanStreamer *s)
+{
+    for (uint32_t i = 0; i < SLC_PAGE_FORMATS; i++)
+        s->pages_left[i] = SLC_NONE;
 }
 
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
@@ -358,8 +370,11 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     }
     if (interface->reserve && !interface->reserve(s->residency, texture, tile))
         return refuse_tile(s, texture, tile);
-    if (!has_page(s, texture))
+    uint32_t left = pages_left(s, texture);
+    if (left == 0)
         return park_tile(s, texture, tile);
+    if (left != SLC_NONE)
+        s->pages_left[s->textures[texture].info.format]--;
     uint32_t unit = unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
@@ -374,7 +389,7 @@ static SluiceResult start_parked(SluiceVulkanStreamer *s)
     for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->parked.count > 0 && level-- > 0;)
         for (uint32_t i = 0; i < s->parked.count && s->free_unit_count > 0 && result >= 0;) {
             struct slc_parked_tile parked = s->parked.tiles[i];
-            if (parked.tile.mipLevel != level || !has_page(s, parked.texture)) {
+            if (parked.tile.mipLevel != level || pages_left(s, parked.texture) == 0) {
                 i++;
                 continue;
             }
@@ -446,6 +461,7 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
 {
     bool waits;
     SluiceResult result = start_packed_queue(s, &waits);
+    forget_pages_left(s);
     if (result >= 0 && !waits)
         result = start_parked(s);
     uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);

@@ -9,6 +9,7 @@
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
+#include "vulkan/page_cache.h"
 #include "vulkan/page_views.h"
 #include "vulkan/parked_tiles.h"
 #include "vulkan/readback_ring.h"
@@ -132,6 +133,8 @@ struct SluiceVulkanStreamer {
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
     struct slc_parked_tiles parked;
+    uint32_t
+        pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
     struct slc_buffer staging;
     uint32_t *frame_units;     ///< owned; tilesPerFrame
     VkBufferImageCopy *copies; ///< owned

@@ -1,8 +1,12 @@
 #include "gallery.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 
 #include "../common/progress.h"
+
+/* Long after a device that had no memory for pages was asked again. */
+#define FRAMES_IN_VAIN 240
 
 static bool open_surroundings(struct gallery *gallery)
 {
@@ -46,6 +50,7 @@ bool gallery_fill(struct view *view, const struct room *room)
 {
     struct camera camera = walk_camera(room, 0.0f);
     uint64_t tile_count = view_tile_count(view);
+    uint32_t count = 0, in_vain = 0;
     struct progress progress;
     struct view_frame frame = {0};
     progress_begin(&progress, "loading everything to compare with", "tiles", tile_count);
@@ -57,6 +62,14 @@ bool gallery_fill(struct view *view, const struct room *room)
         if (frame.statistics.manager.givenUpTileCount > 0) {
             fprintf(stderr, "%u tiles cannot be loaded\n",
                     frame.statistics.manager.givenUpTileCount);
+            return false;
+        }
+        /* Tiles without memory are not given up: they wait, for as long as there is none. */
+        in_vain = frame.statistics.manager.mappedTileCount > count ? 0 : in_vain + 1;
+        count = frame.statistics.manager.mappedTileCount;
+        if (in_vain > FRAMES_IN_VAIN) {
+            fprintf(stderr, "the device has no memory for more than %u of %" PRIu64 " tiles\n",
+                    count, tile_count);
             return false;
         }
     } while (frame.statistics.manager.mappedTileCount < tile_count);

@@ -32,6 +32,7 @@ struct walk {
     struct comparison comparison;
     struct needs needs; ///< of the frames collected, where they are found out
     struct needs_trace trace;
+    uint64_t tiles_mapped; ///< when it was last looked which tiles are there
 };
 
 /** The way, the moment when the camera stops and what follows it, the end. */
@@ -131,8 +132,9 @@ static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
     struct view_frame drawn, truth;
     if (!view_draw(&gallery->streamed, &camera, time_stamp, &drawn))
         return false;
-    if (gallery->streamed.request.needs)
+    if (gallery->streamed.request.needs && drawn.statistics.tilesMapped != walk->tiles_mapped)
         needs_add_loaded(&walk->needs, sluiceGetVulkanStreamerManager(gallery->streamed.streamer));
+    walk->tiles_mapped = drawn.statistics.tilesMapped;
     walk->measure->frames[frame].host_seconds = drawn.host_seconds;
     walk->measure->frames[frame].statistics = drawn.statistics;
     return !gallery->settings.compare || view_draw(&gallery->truth, &camera, time_stamp, &truth);
@@ -246,6 +248,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     if (!done)
         fprintf(stderr, "out of memory\n");
     done = done && comparison_begin(gallery, &measure, &walk.comparison);
+    sluiceGetVulkanStreamerStatistics(gallery->streamed.streamer, &measure.start);
     measure.counting = gallery->streamed.request.counting;
     measure.tile_count = view_tile_count(&gallery->streamed);
     measure.picture_count = gallery->pictures.count;

@@ -24,9 +24,10 @@ struct measure {
     const struct settings *settings; ///< borrowed
     struct frame_record *frames;     ///< owned
     uint32_t frame_count;
-    uint32_t rest_frame; ///< the first in which the camera stands still
-    bool counting;       ///< counts are valid
-    uint64_t tile_count; ///< of all textures
+    uint32_t rest_frame;                  ///< the first in which the camera stands still
+    SluiceVulkanStreamerStatistics start; ///< before the first frame: of warming up
+    bool counting;                        ///< counts are valid
+    uint64_t tile_count;                  ///< of all textures
     uint32_t picture_count, refused_count;
     uint32_t texture_count;
     struct view_reads reads;

@@ -142,8 +142,9 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "10^6 bytes of texels per second of the frames' time that all\nreads share; 0: no limit",
          0, 1e9},
         {OPTION_UINT, "warm-up", "N", &s->warm_up,
-         "so many frames from the entrance go before the walk, and wait for\nwhat they load, as "
-         "behind a loading screen; in no figure of time",
+         "so many frames from the entrance go before the walk, and wait for\n"
+         "what they load, as behind a loading screen; no figure of time and\n"
+         "no line of frames.csv has them, the sums of what was loaded do",
          0, 1000},
         {OPTION_REAL, "predict", "SECONDS", &s->predict,
          "also ask for what the camera will see so much later, if it\nmoves on as it did in the "
@@ -184,8 +185,8 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_CHOICE, "check-residency", "auto|on|off", &s->check_residency,
          "count samples of texels that are not there; auto: with\n--compare, where the device can"},
         {OPTION_CHOICE, "needs", "auto|on|off", &s->needs,
-         "find out which tiles each frame needs, and how long they take\nto show; auto: with "
-         "--compare. Time stamps leave that pass out"},
+         "find out which tiles each frame needs, and how long they take to\n"
+         "show; auto: with --compare and --reference. Time stamps leave\nthat pass out"},
         {OPTION_TEXT, "needs-trace", "FILE", &s->needs_trace,
          "write what each frame needs as an SLTRACE1 trace, for\nsluice-replay; --needs on"},
         {OPTION_FLAG, "validation", NULL, &s->validation,

@@ -140,6 +140,10 @@ walk unforeseen --frames 110 --rest-frames 10 --fps 30 --deterministic --samples
 walk foreseen --frames 110 --rest-frames 10 --fps 30 --deterministic --samples 1 --write-frames none \
     --warm-up 7 --predict 0.2 --compare
 [ "$status" -eq 0 ] || { cat "$folder/foreseen.log" >&2; failed=1; }
+awk -F, 'NR == 2 { exit !($7 > 0 && $12 < 0.5 * $7) }' "$folder/unforeseen/frames.csv" || {
+    echo "unforeseen: the first frame loaded what the ones before the walk did" >&2
+    failed=1
+}
 compare unforeseen needed_bytes foreseen needed_bytes 'a == b'
 compare unforeseen missing_pixels_percent foreseen missing_pixels_percent 'b < 0.5 * a'
 compare unforeseen details_unmet foreseen details_unmet 'b < 0.6 * a'
@@ -201,6 +205,7 @@ done
 compare needs-on missing_pixels_percent needs-off missing_pixels_percent 'a > 0 && a == b'
 grep -q '"needed_bytes", "value": null' "$folder/needs-off.json" || failed=1
 grep -q 'Only what the scene requires' "$folder/needs-on/report.html" || failed=1
+
 # The truth is drawn once, and again where it is not what the run asks for or damaged.
 refer() { # name, options
     name=$1
@@ -249,5 +254,9 @@ walk slow --frames 40 --rest-frames 30 --deterministic --samples 1 --probability
 check slow tiles_failed 'v == 0'
 check slow psnr_final_db 'v >= 60'
 check slow frames_to_60db 'v >= 1'
+
+# Heaps of 64 GiB: where the device has no memory for the truth, that is said, and not waited for.
+walk poor --frames 2 --rest-frames 1 --residency dense --compare --compare-with paged --heap-tiles 1048576
+[ "$status" -eq 0 ] || said poor 'the device has no memory for more than'
 
 exit $failed
