@@ -9,8 +9,6 @@
 
 #include "statistics.h"
 
-#define RUNS_WITHOUT_THE_FIRST 5
-
 static bool is_measured(const struct runs *runs, const char *name)
 {
     for (uint32_t i = 0; i < runs->count; i++)
@@ -45,24 +43,25 @@ static void get_values(const struct runs *runs, uint32_t point, const char *name
     uint32_t repeats = runs->sweep->repeats;
     for (uint32_t r = 0; r < repeats; r++)
         values[r] = figures_value(&runs->items[r * runs->sweep->point_count + point].figures, name);
-    if (metric && metric->is_time && repeats >= RUNS_WITHOUT_THE_FIRST)
+    if (metric && metric->is_time && repeats > 1)
         values[0] = NAN;
 }
 
 static void estimate_point(const struct runs *runs, struct sweep *sweep, uint32_t index)
 {
     struct sweep_point *point = &sweep->points[index];
-    double *values = memory_take(sweep->repeats, sizeof *values);
     double *base = memory_take(sweep->repeats, sizeof *base);
     point->estimates = memory_take(sweep->metric_count, sizeof *point->estimates);
     point->deltas = memory_take(sweep->metric_count, sizeof *point->deltas);
+    point->measured =
+        memory_take((size_t)sweep->metric_count * sweep->repeats, sizeof *point->measured);
     for (uint32_t m = 0; m < sweep->metric_count; m++) {
+        double *values = point->measured + (size_t)m * sweep->repeats;
         get_values(runs, index, sweep->metrics[m].name, values);
         get_values(runs, sweep->base, sweep->metrics[m].name, base);
         point->estimates[m] = statistics_estimate(values, sweep->repeats);
         point->deltas[m] = statistics_paired(values, base, sweep->repeats);
     }
-    free(values);
     free(base);
 }
 

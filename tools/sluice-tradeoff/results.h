@@ -6,7 +6,7 @@
 
 /**
  * Fills the metrics that some run has, and states, estimates, folders and command lines of all
- * points. Times of first runs, which also write pictures, do not count where there are five.
+ * points. Times of first runs, which also write and count, do not count where there are others.
  */
 void results_collect(const struct runs *runs, struct sweep *sweep);
 

@@ -74,6 +74,7 @@ static void finish_point(const struct sweep *sweep, struct sweep_point *point)
     free(point->reason);
     free(point->estimates);
     free(point->deltas);
+    free(point->measured);
 }
 
 /* The session made them and lends them as constant. */
