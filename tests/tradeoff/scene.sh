@@ -15,6 +15,7 @@ scene [OPTION ...]
   --name TEXT                 of no importance [x]
   --output DIR                where everything is written
   --write-frames some|none    pictures to write [some]
+  --needs auto|on|off         find out what frames need
   --record TRACE              of the manager
   --needs-trace TRACE         of what frames need
   --json                      figures as JSON lines on stdout
@@ -32,7 +33,7 @@ while [ $# -gt 0 ]; do
     --output) output=$2; shift ;;
     --record) [ -z "${SCENE_RECORDING-}" ] || cp "$SCENE_RECORDING" "$2"; shift ;;
     --needs-trace) [ -z "${SCENE_NEEDS-}" ] || cp "$SCENE_NEEDS" "$2"; shift ;;
-    --name | --write-frames | --generate-scale | --size | --samples | --frames | --rest-frames | --fps) shift ;;
+    --name | --write-frames | --needs | --generate-scale | --size | --samples | --frames | --rest-frames | --fps) shift ;;
     --json) ;;
     *) echo "scene: there is no option $1" >&2; exit 2 ;;
     esac

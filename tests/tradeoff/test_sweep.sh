@@ -75,8 +75,9 @@ sed -n '1,12s/.*--seed \([0-9]*\).*/\1/p' log | tr -d '\n' | grep -q '^111122223
 report repeats_take_turns $?
 
 sed -i '13,$d' log
-[ "$(grep -c -- '--write-frames some' log)" = 4 ]
-report first_runs_alone_write_pictures $?
+[ "$(grep -c -- '--write-frames some' log)" = 4 ] && [ "$(grep -c -- '--needs-trace' log)" = 4 ] &&
+    [ "$(grep -c -- '--write-frames some --needs on' log)" = 4 ] && [ "$(grep -c -- '--needs off' log)" = 8 ]
+report first_runs_alone_write_pictures_and_find_out_needs $?
 
 status 0 sweep --results a --sweep budget=8,16 --sweep probability=1/4 --repeats 3 --json &&
     [ "$(wc -l <log)" = 12 ] && grep -q '"runs_kept", "value": 12' out &&
