@@ -209,9 +209,40 @@ wait $pid
     [ -z "$(find h/runs -mindepth 1)" ] && ! pgrep -f "^sleep $nap" >/dev/null
 report an_interruption_ends_what_was_started_and_keeps_the_rest $?
 
-status 0 sweep --results i --sweep name='a b,it'\''s' --repeats 1 --jobs 2 -- --budget 9 &&
+status 0 sweep --results i --sweep name='a b,it'\''s' --repeats 1 --jobs 2 -- --generate-scale 9 &&
     grep -q "^1,name a b,done" i/points.csv && [ "$(wc -l <i/runs.csv)" = 4 ]
 report several_jobs_measure_the_same $?
+
+status 1 sweep --results i --sweep name=a --repeats 1 -- --budget 9 &&
+    grep -q -- '--budget is a setting: --base budget=VALUE' err
+report a_setting_given_to_the_program_is_refused $?
+
+# The name holds a blank, a quote and what a shell would run.
+odd="it's \$(touch pwned) <b>"
+: >log
+status 0 sweep --results "$odd" --repeats 1 -- --size 64x32 --name "$odd" &&
+    grep -q -- '--generate-scale 4 --samples 1 --frames 60 .*--size 64x32' log &&
+    [ "$(grep -o -- '--size' log | wc -l)" = "$(wc -l <log)" ]
+report what_the_command_line_says_of_the_scene_is_said_once $?
+
+page_text() { # results folder, path in the page's JSON
+    python3 -c 'import json, re, sys
+text = open(sys.argv[1] + "/page.html", encoding="utf-8").read()
+sweep = json.loads(re.search(r"""<script[^>]*id="sweep-data"[^>]*>(.*?)</script>""", text, re.S).group(1))
+print(eval("sweep" + sys.argv[2]))' "$1" "$2"
+}
+
+: >log
+before=$(cat "$odd"/runs/base*/figures.jsonl "$odd"/runs/base*/frames.csv | cksum)
+mkdir "$odd/again" && page_text "$odd" '["points"][0]["command_line"]' >pasted && status 0 sh pasted &&
+    grep -q 'resident_bytes_peak' out && [ "$(wc -l <log)" = 1 ] && [ ! -e pwned ] &&
+    [ "$(cat "$odd"/runs/base*/figures.jsonl "$odd"/runs/base*/frames.csv | cksum)" = "$before" ]
+report a_pasted_command_line_repeats_a_run_beside_the_results $?
+
+page_text "$odd" '["machine"]' | grep -q '^a "fast" one; [0-9]* processors, ' &&
+    echo 'another one' >"$odd/machine.txt" && cp -r "$odd" copied && status 0 "$tool" page copied &&
+    [ "$(page_text copied '["machine"]')" = 'another one' ] && ! grep -q 'not yet run' out
+report a_copied_folder_says_where_it_was_measured $?
 
 # One texture of 64 + 16 + 4 + 1 tiles and a packed one, all of it wanted in each of 20 frames.
 python3 - <<'END' 2>>err

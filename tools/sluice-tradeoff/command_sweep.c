@@ -90,7 +90,9 @@ static bool prepare_folder(const struct options *o)
 static int make_runs(struct session *s, const char *own_path)
 {
     switch (runs_make(&s->runs)) {
-    case RUNS_DONE: foresight_add(&s->runs, own_path, false); return show_results(s);
+    case RUNS_DONE:
+        foresight_add(&s->runs, own_path, false);
+        return results_remember_machine(&s->runs) ? show_results(s) : TRADEOFF_FAILED;
     case RUNS_INTERRUPTED:
         text_say("sluice-tradeoff: interrupted; the same command goes on from here");
         return TRADEOFF_INTERRUPTED;

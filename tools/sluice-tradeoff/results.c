@@ -1,5 +1,6 @@
 #include "results.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "../../samples/common/text.h"
+#include "../sluice-replay/file.h"
 #include "statistics.h"
 
 static bool is_measured(const struct runs *runs, const char *name)
@@ -81,8 +84,11 @@ static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t i
     }
     if (done == sweep->repeats)
         point->state = SWEEP_DONE;
-    runs_add_arguments(runs, first, first->folder, &arguments);
+    /* To be pasted into a shell, it must not write over what was measured. */
+    char *again = memory_text("%s/again", runs->results);
+    runs_add_arguments(runs, first, again, &arguments);
     point->command_line = text_list_join(&arguments);
+    free(again);
     point->folder = memory_copy_text(first->folder);
     text_list_finish(&arguments);
 }
@@ -98,8 +104,8 @@ static const char *find_text(const struct runs *runs, const char *name)
     return NULL;
 }
 
-/* What drew it, if some run says so, and what else tells one machine from another. */
-static char *describe_machine(const struct runs *runs)
+/* What drew it, if some run says so, and what else tells this machine from another. */
+static char *describe_this_machine(const struct runs *runs)
 {
     struct utsname system = {0};
     const char *device = find_text(runs, "device"), *driver = find_text(runs, "driver");
@@ -110,6 +116,33 @@ static char *describe_machine(const struct runs *runs)
                        system.release, system.machine);
 }
 
+/* Where it was measured, not where it is looked at. */
+static char *recall_machine(const struct runs *runs)
+{
+    size_t size;
+    char *line = NULL, *path = memory_text("%s/machine.txt", runs->results);
+    read_file(path, &line, &size);
+    free(path);
+    if (line)
+        line[strcspn(line, "\n")] = '\0';
+    return line;
+}
+
+bool results_remember_machine(const struct runs *runs)
+{
+    char *path = memory_text("%s/machine.txt", runs->results);
+    char *line = describe_this_machine(runs);
+    FILE *file = fopen(path, "w");
+    bool written = file && fprintf(file, "%s\n", line) > 0;
+    if (file)
+        written = (fclose(file) == 0) & written;
+    if (!written)
+        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+    free(line);
+    free(path);
+    return written;
+}
+
 void results_collect(const struct runs *runs, struct sweep *sweep)
 {
     collect_metrics(runs, sweep);
@@ -117,7 +150,9 @@ void results_collect(const struct runs *runs, struct sweep *sweep)
         judge_point(runs, sweep, i);
         estimate_point(runs, sweep, i);
     }
-    sweep->machine = describe_machine(runs);
+    sweep->machine = recall_machine(runs);
+    if (!sweep->machine)
+        sweep->machine = describe_this_machine(runs);
 }
 
 int results_pick(const struct sweep *sweep, const char *const *names)

@@ -17,10 +17,8 @@ static void add_deciding_arguments(const struct runs *runs, const struct run *ru
                                    struct text_list *arguments)
 {
     const struct options *o = runs->options;
-    const char *scene = o->full ? o->scene->full_arguments : o->scene->quick_arguments;
     text_list_add_all(arguments, &runs->program->arguments);
-    if (*scene)
-        text_list_add_parts(arguments, scene, ' ');
+    options_add_scene(o, arguments);
     o->scene->add_repeat_arguments(runs->program, run->repeat, arguments);
     text_list_add_all(arguments, &o->scene_arguments);
     plan_add_arguments(runs->sweep, &runs->sweep->points[run->point], runs->program, arguments);

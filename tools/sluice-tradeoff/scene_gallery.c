@@ -143,8 +143,8 @@ static void add_repeat_arguments(const struct program *program, uint32_t repeat,
     text_list_add(arguments, "--json");
 }
 
-/* The first run writes what is looked at later, and finds out what frames need, for which the device
- * has more to draw; the others only measure. */
+/* The first run writes what is looked at later, and finds out what frames need, for which the
+ * device has more to draw; the others only measure. */
 static void add_run_arguments(const struct program *program, const struct scene_run *run,
                               struct text_list *arguments)
 {
