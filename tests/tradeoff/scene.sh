@@ -10,6 +10,7 @@ scene [OPTION ...]
 
   --probability P             that a pixel quad writes feedback [0.0625]
   --budget MIB                MiB at most [0]
+  --heap-tiles N              tiles per heap [256]
   --seed N                    of all choices [1]
   --mode MODE                 what becomes of it [good]
   --name TEXT                 of no importance [x]
@@ -33,7 +34,7 @@ while [ $# -gt 0 ]; do
     --output) output=$2; shift ;;
     --record) [ -z "${SCENE_RECORDING-}" ] || cp "$SCENE_RECORDING" "$2"; shift ;;
     --needs-trace) [ -z "${SCENE_NEEDS-}" ] || cp "$SCENE_NEEDS" "$2"; shift ;;
-    --name | --write-frames | --needs | --generate-scale | --size | --samples | --frames | --rest-frames | --fps) shift ;;
+    --name | --write-frames | --needs | --generate-scale | --size | --samples | --frames | --rest-frames | --fps | --heap-tiles) shift ;;
     --json) ;;
     *) echo "scene: there is no option $1" >&2; exit 2 ;;
     esac

@@ -267,6 +267,12 @@ awk -v a="$(cell j/points.csv 1,budget clairvoyant_levels_too_coarse)" \
     [ "$(find j/clairvoyant -type f | wc -l)" = 3 ]
 report a_policy_that_knows_the_trace_is_asked_once_per_budget $?
 
+# The later loads arrive the more frames lack them.
+status 0 "$tool" trace needs.trace --results m --sweep latency=8 --repeats 1 &&
+    awk -v a="$(cell m/points.csv 0,base clairvoyant_levels_too_coarse)" \
+        -v b="$(cell m/points.csv 1,latency clairvoyant_levels_too_coarse)" 'BEGIN { exit !(a > 0 && b > a) }'
+report the_policy_waits_for_loads_as_long_as_the_point $?
+
 export SCENE_RECORDING=$recording SCENE_NEEDS=$folder/needs.trace
 status 0 sweep --results l --sweep budget=16 --sweep probability=1/4 --repeats 2 &&
     [ "$(cell l/points.csv 0,base clairvoyant_tiles)" = 86 ] &&
@@ -274,6 +280,11 @@ status 0 sweep --results l --sweep budget=16 --sweep probability=1/4 --repeats 2
     awk -v v="$(cell l/points.csv 0,base core_us_per_frame)" 'BEGIN { exit !(v > 0) }' &&
     status 0 "$tool" page l --json && grep -q '"clairvoyant_tiles", "value": 86, .*"point": "budget 16"' out
 report recordings_of_first_runs_are_played $?
+
+# Of the 48 tiles of 3 MiB heaps of 32 make use of 32.
+status 0 sweep --results n --sweep budget=3,24 --repeats 1 -- --heap-tiles 32 &&
+    [ "$(cell n/points.csv 1,budget clairvoyant_tiles)" = 32 ] && [ "$(cell n/points.csv 2,budget clairvoyant_tiles)" = 86 ]
+report the_policy_has_heaps_of_the_same_size $?
 
 echo "1..$n"
 exit $failed

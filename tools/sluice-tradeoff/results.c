@@ -62,8 +62,11 @@ static void estimate_point(const struct runs *runs, struct sweep *sweep, uint32_
         double *values = point->measured + (size_t)m * sweep->repeats;
         get_values(runs, index, sweep->metrics[m].name, values);
         get_values(runs, sweep->base, sweep->metrics[m].name, base);
-        point->estimates[m] = statistics_estimate(values, sweep->repeats);
-        point->deltas[m] = statistics_paired(values, base, sweep->repeats);
+        bool decibels = strcmp(sweep->metrics[m].unit, "dB") == 0;
+        point->estimates[m] = decibels ? statistics_decibels(values, sweep->repeats)
+                                       : statistics_estimate(values, sweep->repeats);
+        point->deltas[m] = decibels ? statistics_paired_decibels(values, base, sweep->repeats)
+                                    : statistics_paired(values, base, sweep->repeats);
     }
     free(base);
 }
