@@ -4,8 +4,9 @@
 
 /**
  * Plays a recording several times and returns the microseconds per frame of the fastest, decoding
- * and hashing included. A frame is what asks once which tiles to map. NaN if there is no file, no
- * frame in it, or it cannot be played to its end.
+ * and hashing included. Frames are as many as there are calls that say which are over, or
+ * that ask which tiles to map: a frame whose loads are all under way asks nothing. NaN if there is
+ * no file, no frame in it, or it cannot be played to its end.
  */
 double core_time_per_frame(const char *trace_path);
 
