@@ -97,6 +97,17 @@ mv a moved
 status 0 "$tool" page moved && [ "$(wc -l <log)" = 15 ] && grep -q '^budget 32 ' out
 report results_are_shown_again_without_a_run $?
 
+# Another build of the tool gives runs other names.
+cp -r moved renamed
+echo 0123456789abcdef >renamed/program-build.txt
+status 0 "$tool" page renamed && ! grep -q 'not yet run' out && [ "$(wc -l <renamed/runs.csv)" = 16 ] &&
+    grep -q '^1,budget 8,1,done' renamed/runs.csv
+report results_of_another_build_are_found_by_their_names $?
+
+sed -i 's|^\([0-9]\) [^ ]* \(budget 8\)$|\1 ../../renamed \2|' renamed/sweep.runs
+status 1 "$tool" page renamed && grep -q '^budget 8 *not yet run' out
+report names_do_not_lead_out_of_the_folder $?
+
 status 1 "$tool" page nowhere && grep -q nowhere err
 report folder_without_a_sweep_has_no_page $?
 

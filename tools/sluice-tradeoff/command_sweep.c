@@ -12,6 +12,7 @@
 #include "page.h"
 #include "recommend.h"
 #include "results.h"
+#include "run_names.h"
 #include "session.h"
 #include "table.h"
 
@@ -124,7 +125,8 @@ int command_sweep(int argc, char **argv)
         status = outcome == SWEEP_OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
     } else if (prepare_folder(&s.options)) {
         s.sweep.command_line = join_words(argc, argv);
-        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv))
+        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv) &&
+            run_names_write(&s.runs))
             status = make_runs(&s, own_path);
     }
     session_close(&s);

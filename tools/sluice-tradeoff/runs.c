@@ -9,6 +9,7 @@
 #include "folders.h"
 #include "frames.h"
 #include "plan.h"
+#include "run_names.h"
 
 #define LONGEST_PREFIX 48
 
@@ -96,8 +97,9 @@ void runs_look(struct run *run)
     }
 }
 
-void runs_init(struct runs *runs)
+void runs_init(struct runs *runs, bool recall)
 {
+    char *names = recall ? run_names_read(runs->results) : NULL;
     uint32_t point_count = runs->sweep->point_count;
     runs->count = point_count * runs->sweep->repeats;
     runs->items = memory_take(runs->count, sizeof *runs->items);
@@ -105,11 +107,14 @@ void runs_init(struct runs *runs)
         struct run *run = &runs->items[i];
         run->point = i % point_count;
         run->repeat = i / point_count;
-        run->key = make_key(runs, run);
+        run->key = run_names_find(names, runs->sweep->points[run->point].label, run->repeat);
+        if (!run->key)
+            run->key = make_key(runs, run);
         run->folder = memory_text("%s/runs/%s", runs->results, run->key);
         runs_look(run);
         run->was_there = run->state == SWEEP_DONE;
     }
+    free(names);
 }
 
 void runs_finish(struct runs *runs)

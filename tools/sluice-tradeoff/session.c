@@ -61,7 +61,7 @@ bool session_open(struct session *s, const char *own_path, bool recall)
         return false;
     s->runs = (struct runs){
         .options = o, .program = &s->program, .sweep = &s->sweep, .results = o->results};
-    runs_init(&s->runs);
+    runs_init(&s->runs, recall);
     return true;
 }
 
