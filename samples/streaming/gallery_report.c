@@ -89,7 +89,6 @@ static void add_plot(struct report *report, const struct measure *measure, const
                      const char *unit, double maximum, const struct plot_line *lines,
                      size_t line_count)
 {
-    static const struct frame_record none;
     struct report_series series[2];
     double *values = calloc(2 * (size_t)measure->frame_count, sizeof *values);
     if (!values)
@@ -98,7 +97,8 @@ static void add_plot(struct report *report, const struct measure *measure, const
         double *line = values + s * measure->frame_count;
         series[s] = (struct report_series){lines[s].name, line};
         for (uint32_t i = 0; i < measure->frame_count; i++)
-            line[i] = lines[s].value(&measure->frames[i], i > 0 ? &measure->frames[i - 1] : &none);
+            line[i] = lines[s].value(&measure->frames[i],
+                                     i > 0 ? &measure->frames[i - 1] : &measure->before);
     }
     report_plot(report, &(struct report_plot){.title = title,
                                               .unit = unit,

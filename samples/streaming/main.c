@@ -258,6 +258,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
         measure.truth_bytes = gallery->reference.device_memory;
     }
     measure.texture_count = gallery->streamed.texture_count;
+    sluiceGetVulkanStreamerStatistics(gallery->streamed.streamer, &measure.before.statistics);
     done = done && begin_needs(&walk) && walk_through(&walk) && needs_wait_end(&walk.needs.wait);
     measure.reads = view_reads(&gallery->streamed);
     done = needs_trace_end(&walk.trace) && done &&

@@ -269,9 +269,8 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
 
 static void write_csv_line(FILE *file, const struct measure *measure, uint32_t index)
 {
-    static const struct frame_record none;
     const struct frame_record *record = &measure->frames[index];
-    const struct frame_record *before = index > 0 ? &measure->frames[index - 1] : &none;
+    const struct frame_record *before = index > 0 ? &measure->frames[index - 1] : &measure->before;
     const SluiceVulkanStreamerStatistics *now = &record->statistics;
     const SluiceVulkanStreamerStatistics *then = &before->statistics;
     fprintf(file, "%u,%d,%.3f,%.3f,%.3f,", index, index >= measure->rest_frame,
@@ -338,7 +337,7 @@ void measure_print_json(const struct figure *figures, uint32_t count)
     char buffer[32];
     for (uint32_t i = 0; i < count; i++)
         printf("{\"name\": \"%s\", \"value\": %s, \"unit\": \"%s\"}\n", figures[i].name,
-               isnan(figures[i].value) ? "null" : measure_format(figures[i].value, buffer),
+               isfinite(figures[i].value) ? measure_format(figures[i].value, buffer) : "null",
                figures[i].unit);
 }
 

@@ -88,15 +88,21 @@ static bool prepare_folder(const struct options *o)
     return ready;
 }
 
+static int interrupted(void)
+{
+    text_say("sluice-tradeoff: interrupted; the same command goes on from here");
+    return TRADEOFF_INTERRUPTED;
+}
+
 static int make_runs(struct session *s, const char *own_path)
 {
     switch (runs_make(&s->runs)) {
     case RUNS_DONE:
         foresight_add(&s->runs, own_path, false);
+        if (child_is_interrupted())
+            return interrupted();
         return results_remember_machine(&s->runs) ? show_results(s) : TRADEOFF_FAILED;
-    case RUNS_INTERRUPTED:
-        text_say("sluice-tradeoff: interrupted; the same command goes on from here");
-        return TRADEOFF_INTERRUPTED;
+    case RUNS_INTERRUPTED: return interrupted();
     case RUNS_NO_DEVICE: return TRADEOFF_NO_DEVICE;
     case RUNS_UNWRITABLE: return TRADEOFF_FAILED;
     }

@@ -16,7 +16,7 @@ static const struct scene_setting settings[] = {
      "64",
      NULL,
      "8,16,32,128"},
-    {{"timeout", "tiles not wanted for so long are let go", "s"}, "1", "0.1", "0.1,0.25,0.5,2,4"},
+    {{"timeout", "tiles not wanted for so long are let go", "s"}, "1", NULL, "0.1,0.25,0.5,2,4"},
     {{"standby", "tiles kept although unwanted", "tiles"}, "1024", "0", "0,128,256,4096"},
     {{"budget", "memory for tiles at most; 0: no cap", "MiB"}, "0", "8,16", "32,48,64,96,128,256"},
     {{"residency", "what makes texels resident", ""}, "auto", "paged", "sparse,paged,dense"},
