@@ -23,7 +23,7 @@ struct frame_record {
 struct measure {
     const struct settings *settings; ///< borrowed
     struct frame_record *frames;     ///< owned
-    struct frame_record before; ///< the walk: its statistics
+    struct frame_record before;      ///< the walk: its statistics
     uint32_t frame_count;
     uint32_t rest_frame; ///< the first in which the camera stands still
     bool counting;       ///< counts are valid
