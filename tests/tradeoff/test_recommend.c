@@ -208,6 +208,20 @@ static void repeats_that_do_not_count_are_passed_over(void **state)
     expect(&rig, 1, 1, 1);
 }
 
+/* One time that is 5 % less is no reason, a third less is. */
+static void what_was_measured_once_counts_where_it_is_far_off(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 100, 9.5}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 2);
+    for (uint32_t i = 0; i < 2; i++)
+        rig.measured[i][TIME][0] = rig.measured[i][TIME][1] = NAN;
+    expect(&rig, 0, 0, 0);
+    rig.measured[1][TIME][2] = 6.6;
+    expect(&rig, 1, 1, 1);
+}
+
 static uint32_t next_random(uint32_t *seed)
 {
     *seed = *seed * 1664525u + 1013904223u;
@@ -282,6 +296,7 @@ int main(void)
         cmocka_unit_test(a_slower_point_is_not_balanced_however_noisy_times_are),
         cmocka_unit_test(what_all_repeats_share_hides_no_difference),
         cmocka_unit_test(repeats_that_do_not_count_are_passed_over),
+        cmocka_unit_test(what_was_measured_once_counts_where_it_is_far_off),
         cmocka_unit_test(decibels_are_compared_as_errors),
         cmocka_unit_test(without_a_picture_metric_nothing_is_recommended),
         cmocka_unit_test(what_is_recommended_is_never_dominated),

@@ -7,7 +7,8 @@
 #include "memory.h"
 #include "statistics.h"
 
-#define LEAST_DIFFERENCE 0.01 ///< of the mean
+#define LEAST_DIFFERENCE 0.01      ///< of the mean
+#define LEAST_LONE_DIFFERENCE 0.10 ///< where there is no second repeat to doubt it
 
 /** What a point must keep to: a metric at most `factor` times that of the base. */
 struct bound {
@@ -80,14 +81,15 @@ static double relative_difference(double a, double b)
     return sum == 0.0 ? 0.0 : 2.0 * (a - b) / sum;
 }
 
-/* By more than 1 %, and by more than the differences of the repeats let one doubt. */
+/* By more than 1 %, and by more than the differences of the repeats let one doubt; 10 % for one. */
 static bool surely_less(const struct chooser *c, uint32_t a, uint32_t b, int metric)
 {
     for (uint32_t i = 0; i < c->sweep->repeats; i++)
         c->scratch[i] = relative_difference(cost(c, a, metric, i), cost(c, b, metric, i));
     struct sweep_estimate difference = statistics_estimate(c->scratch, c->sweep->repeats);
-    double half = isnan(difference.half_width) ? 0.0 : difference.half_width;
-    return difference.mean < -LEAST_DIFFERENCE && difference.mean + half < 0.0;
+    if (difference.count < 2)
+        return difference.mean < -LEAST_LONE_DIFFERENCE;
+    return difference.mean < -LEAST_DIFFERENCE && difference.mean + difference.half_width < 0.0;
 }
 
 static bool is_measured(const struct chooser *c, uint32_t point)
