@@ -59,4 +59,4 @@ figure resident_bytes_peak $((1048576 * (budget > 0 ? budget : 100))) bytes
 figure gpu_ms_median $((10 + repeat)) ms
 figure psnr_mean_db "$([ "$probability" = 1/4 ] && echo 40 || echo 30)" dB
 figure frames 2 frames
-echo '{"name": "device", "value": "a \"fast\" one", "unit": "name"}'
+echo '{"name": "device", "value": "'"${SCENE_DEVICE-a \\\"fast\\\" one}"'", "unit": "name"}'

@@ -255,6 +255,11 @@ page_text "$odd" '["machine"]' | grep -q '^a "fast" one; [0-9]* processors, ' &&
     [ "$(page_text copied '["machine"]')" = 'another one' ] && ! grep -q 'not yet run' out
 report a_copied_folder_says_where_it_was_measured $?
 
+status 0 sweep --results o --sweep budget=8 --repeats 1 && ! grep -q 'several devices' err &&
+    SCENE_DEVICE=another status 0 sweep --results o --sweep budget=8,16 --repeats 1 &&
+    grep -q 'several devices' err && page_text o '["machine"]' | grep -q '^a "fast" one and others; '
+report runs_of_several_devices_are_not_taken_for_those_of_one $?
+
 # One texture of 64 + 16 + 4 + 1 tiles and a packed one, all of it wanted in each of 20 frames.
 python3 - <<'END' 2>>err
 from struct import pack

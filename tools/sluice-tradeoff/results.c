@@ -107,14 +107,28 @@ static const char *find_text(const struct runs *runs, const char *name)
     return NULL;
 }
 
+/* Runs are kept whatever drew them, so that some may be of another device. */
+static bool is_of_one(const struct runs *runs, const char *name)
+{
+    const char *first = find_text(runs, name);
+    for (uint32_t i = 0; i < runs->count && first; i++) {
+        const struct figure *figure = figures_find(&runs->items[i].figures, name);
+        if (figure && figure->text && strcmp(figure->text, first) != 0)
+            return false;
+    }
+    return true;
+}
+
 /* What drew it, if some run says so, and what else tells this machine from another. */
 static char *describe_this_machine(const struct runs *runs)
 {
     struct utsname system = {0};
     const char *device = find_text(runs, "device"), *driver = find_text(runs, "driver");
+    const char *others =
+        is_of_one(runs, "device") && is_of_one(runs, "driver") ? "" : " and others";
     uname(&system);
-    return memory_text("%s%s%s%s%s%ld processors, %s %s %s", device ? device : "",
-                       driver ? " (" : "", driver ? driver : "", driver ? ")" : "",
+    return memory_text("%s%s%s%s%s%s%ld processors, %s %s %s", device ? device : "",
+                       driver ? " (" : "", driver ? driver : "", driver ? ")" : "", others,
                        device || driver ? "; " : "", sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
                        system.release, system.machine);
 }
@@ -135,6 +149,10 @@ bool results_remember_machine(const struct runs *runs)
 {
     char *path = memory_text("%s/machine.txt", runs->results);
     char *line = describe_this_machine(runs);
+    if (!is_of_one(runs, "device") || !is_of_one(runs, "driver"))
+        text_say(
+            "sluice-tradeoff: these runs are of several devices or drivers: --fresh makes them "
+            "anew");
     FILE *file = fopen(path, "w");
     bool written = file && fprintf(file, "%s\n", line) > 0;
     if (file)
