@@ -40,21 +40,27 @@ static bool play(const SluiceReplayInfo *info, double *seconds)
     return true;
 }
 
+double core_time_count_frames(const char *data, size_t size)
+{
+    struct calls calls = {0};
+    double seconds = NAN;
+    const SluiceReplayInfo info = {
+        .pData = data, .size = size, .pUserData = &calls, .pfnLine = count_call};
+    return play(&info, &seconds) ? fmax(calls.retire, calls.map) : 0.0;
+}
+
 double core_time_per_frame(const char *trace_path)
 {
     char *data;
     size_t size;
-    double start = clock_seconds(), best = NAN, counting = NAN;
-    struct calls calls = {0};
+    double start = clock_seconds(), best = NAN;
     if (!read_file(trace_path, &data, &size))
         return NAN;
-    SluiceReplayInfo info = {
-        .pData = data, .size = size, .pUserData = &calls, .pfnLine = count_call};
-    bool played = play(&info, &counting);
-    info.pfnLine = NULL;
+    const SluiceReplayInfo info = {.pData = data, .size = size};
+    double frame_count = core_time_count_frames(data, size);
+    bool played = frame_count > 0.0;
     for (int i = 0; i < PLAYS && played && clock_seconds() - start < LONG_ENOUGH; i++)
         played = play(&info, &best);
     free(data);
-    double frame_count = fmax(calls.retire, calls.map);
-    return played && frame_count > 0.0 ? 1e6 * best / frame_count : NAN;
+    return played ? 1e6 * best / frame_count : NAN;
 }
