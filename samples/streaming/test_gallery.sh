@@ -148,6 +148,10 @@ compare unforeseen needed_bytes foreseen needed_bytes 'a == b'
 compare unforeseen missing_pixels_percent foreseen missing_pixels_percent 'b < 0.5 * a'
 compare unforeseen details_unmet foreseen details_unmet 'b < 0.6 * a'
 compare unforeseen frames_until_sharp_p99 foreseen frames_until_sharp_p99 'b <= a'
+# What the frames before the walk have loaded is not the first frame's.
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "tiles_mapped") column = i }
+    NR == 2 { first = $column } NR > 1 { sum += $column }
+    END { exit !(column && sum > 0 && first < 0.2 * sum) }' "$folder/foreseen/frames.csv" || failed=1
 check foreseen loaded_per_needed 'v <= 1.3'
 check foreseen psnr_final_db 'v >= 45'
 "$replay" "$folder/foreseen.trace" >/dev/null || failed=1

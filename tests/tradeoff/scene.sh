@@ -10,11 +10,13 @@ scene [OPTION ...]
 
   --probability P             that a pixel quad writes feedback [0.0625]
   --budget MIB                MiB at most [0]
+  --heap-tiles N              tiles per heap [256]
   --seed N                    of all choices [1]
   --mode MODE                 what becomes of it [good]
   --name TEXT                 of no importance [x]
   --output DIR                where everything is written
   --write-frames some|none    pictures to write [some]
+  --needs auto|on|off         find out what frames need
   --record TRACE              of the manager
   --needs-trace TRACE         of what frames need
   --json                      figures as JSON lines on stdout
@@ -32,7 +34,7 @@ while [ $# -gt 0 ]; do
     --output) output=$2; shift ;;
     --record) [ -z "${SCENE_RECORDING-}" ] || cp "$SCENE_RECORDING" "$2"; shift ;;
     --needs-trace) [ -z "${SCENE_NEEDS-}" ] || cp "$SCENE_NEEDS" "$2"; shift ;;
-    --name | --write-frames | --generate-scale | --size | --samples | --frames | --rest-frames | --fps) shift ;;
+    --name | --write-frames | --needs | --generate-scale | --size | --samples | --frames | --rest-frames | --fps | --heap-tiles) shift ;;
     --json) ;;
     *) echo "scene: there is no option $1" >&2; exit 2 ;;
     esac
@@ -57,4 +59,4 @@ figure resident_bytes_peak $((1048576 * (budget > 0 ? budget : 100))) bytes
 figure gpu_ms_median $((10 + repeat)) ms
 figure psnr_mean_db "$([ "$probability" = 1/4 ] && echo 40 || echo 30)" dB
 figure frames 2 frames
-echo '{"name": "device", "value": "a \"fast\" one", "unit": "name"}'
+echo '{"name": "device", "value": "'"${SCENE_DEVICE-a \\\"fast\\\" one}"'", "unit": "name"}'

@@ -8,6 +8,7 @@
 #include "recommend.h"
 
 #define MOST_POINTS 40
+#define REPEATS 3
 
 enum { QUALITY, MEMORY, TIME, METRIC_COUNT };
 
@@ -21,23 +22,26 @@ static const struct recommend_metrics roles = {QUALITY, MEMORY, TIME};
 struct rig {
     struct sweep sweep;
     struct sweep_point points[MOST_POINTS];
-    struct sweep_estimate estimates[MOST_POINTS][METRIC_COUNT];
+    double measured[MOST_POINTS][METRIC_COUNT][REPEATS];
     struct sweep_recommendation recommendations[RECOMMEND_COUNT];
 };
 
+/* Repeats lie so far from the mean, and at each point in another order. */
 static void set_point(struct rig *rig, uint32_t index, const double means[METRIC_COUNT],
-                      double half_share)
+                      double spread)
 {
     rig->points[index] = (struct sweep_point){.state = SWEEP_DONE};
-    rig->points[index].estimates = rig->estimates[index];
+    rig->points[index].measured = &rig->measured[index][0][0];
     for (int m = 0; m < METRIC_COUNT; m++)
-        rig->estimates[index][m] =
-            (struct sweep_estimate){means[m], half_share * means[m], means[m], means[m], 3};
+        for (uint32_t r = 0; r < REPEATS; r++)
+            rig->measured[index][m][r] =
+                means[m] * (1.0 + spread * ((index + (index < 3 ? r : 2 * r)) % 3 - 1.0));
 }
 
 static void init(struct rig *rig, const double (*means)[METRIC_COUNT], uint32_t count)
 {
-    *rig = (struct rig){.sweep = {.metrics = metrics, .metric_count = METRIC_COUNT}};
+    *rig = (struct rig){
+        .sweep = {.metrics = metrics, .metric_count = METRIC_COUNT, .repeats = REPEATS}};
     rig->sweep.points = rig->points;
     rig->sweep.point_count = count;
     for (uint32_t i = 0; i < count; i++)
@@ -87,7 +91,8 @@ static void failed_and_unmeasured_points_are_not_recommended(void **state)
     (void)state;
     init(&rig, means, 4);
     rig.points[1].state = SWEEP_FAILED;
-    rig.estimates[2][TIME].mean = NAN;
+    for (int r = 0; r < REPEATS; r++)
+        rig.measured[2][TIME][r] = NAN;
     expect(&rig, 3, 3, 3);
     rig.points[0].state = SWEEP_FAILED; /* without the base there are no bounds */
     expect(&rig, -1, -1, -1);
@@ -104,7 +109,7 @@ static void of_equals_the_cheaper_is_taken(void **state)
     recommend(&rig.sweep, &roles, rig.recommendations);
     assert_int_equal(rig.recommendations[0].point, 2);
     recommend_finish(rig.recommendations);
-    /* With intervals of 2 % all three are equal, and the memory of the last two is, too. */
+    /* With repeats 2 % apart all three are equal, and the memory of the last two is, too. */
     for (uint32_t i = 0; i < 4; i++)
         set_point(&rig, i, means[i], 0.02);
     recommend(&rig.sweep, &roles, rig.recommendations);
@@ -141,8 +146,8 @@ static void decibels_are_compared_as_errors(void **state)
     /* A factor of 1.1 is 0.83 dB, of 2 it is 6.02 dB: 24.2 is within, 23.8 is not. */
     expect(&rig, 1, 2, 3);
     recommend(&rig.sweep, &roles, rig.recommendations);
-    assert_non_null(strstr(rig.recommendations[0].rule, "greatest psnr_mean_db"));
-    assert_non_null(strstr(rig.recommendations[2].rule, "6 dB below the base's"));
+    assert_non_null(strstr(rig.recommendations[0].rule, "least picture error (psnr_mean_db)"));
+    assert_non_null(strstr(rig.recommendations[2].rule, "6 dB above the base's"));
     recommend_finish(rig.recommendations);
 }
 
@@ -161,6 +166,60 @@ static void without_a_picture_metric_nothing_is_recommended(void **state)
     assert_int_equal(rig.recommendations[2].point, 1);
     assert_null(strstr(rig.recommendations[2].rule, "gpu_ms"));
     recommend_finish(rig.recommendations);
+}
+
+/* Half as slow again, in an hour when nothing is sure: doubt does not recommend it. */
+static void a_slower_point_is_not_balanced_however_noisy_times_are(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 50, 15.2}, {0.1, 80, 11}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        for (int r = 0; r < REPEATS; r++)
+            rig.measured[i][TIME][r] *= r == 0 ? 0.5 : r == 1 ? 1.0 : 4.0;
+    recommend(&rig.sweep, &roles, rig.recommendations);
+    assert_int_equal(rig.recommendations[1].point, 2);
+    recommend_finish(rig.recommendations);
+}
+
+/* Seeds and slow hours move both alike: what is less in each repeat is less. */
+static void what_all_repeats_share_hides_no_difference(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.100, 100, 10}, {0.080, 100, 10}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 2);
+    for (uint32_t i = 0; i < 2; i++)
+        for (int r = 0; r < REPEATS; r++)
+            rig.measured[i][QUALITY][r] *= 1.0 + r;
+    recommend(&rig.sweep, &roles, rig.recommendations);
+    assert_int_equal(rig.recommendations[0].point, 1);
+    recommend_finish(rig.recommendations);
+}
+
+static void repeats_that_do_not_count_are_passed_over(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 50, 10}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 2);
+    rig.measured[0][TIME][0] = rig.measured[1][TIME][0] = NAN;
+    expect(&rig, 1, 1, 1);
+}
+
+/* One time that is 5 % less is no reason, a third less is. */
+static void what_was_measured_once_counts_where_it_is_far_off(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 100, 9.5}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 2);
+    for (uint32_t i = 0; i < 2; i++)
+        rig.measured[i][TIME][0] = rig.measured[i][TIME][1] = NAN;
+    expect(&rig, 0, 0, 0);
+    rig.measured[1][TIME][2] = 6.6;
+    expect(&rig, 1, 1, 1);
 }
 
 static uint32_t next_random(uint32_t *seed)
@@ -206,7 +265,7 @@ static void what_is_recommended_is_never_dominated(void **state)
     }
 }
 
-/* Measured anew, each mean somewhere else in its interval of 3 %. */
+/* Measured anew, each repeat within 3 % of the truth. */
 static void noise_within_the_intervals_does_not_change_them(void **state)
 {
     static const double truth[][METRIC_COUNT] = {
@@ -217,10 +276,10 @@ static void noise_within_the_intervals_does_not_change_them(void **state)
         struct rig rig;
         init(&rig, truth, 5);
         for (uint32_t i = 0; i < 5; i++) {
-            double means[METRIC_COUNT];
             for (int m = 0; m < METRIC_COUNT; m++)
-                means[m] = truth[i][m] * (1.0 + 0.03 * (next_random(&seed) % 2001 / 1000.0 - 1.0));
-            set_point(&rig, i, means, 0.03);
+                for (int r = 0; r < REPEATS; r++)
+                    rig.measured[i][m][r] =
+                        truth[i][m] * (1.0 + 0.03 * (next_random(&seed) % 2001 / 1000.0 - 1.0));
         }
         expect(&rig, 1, 3, 4);
     }
@@ -234,6 +293,10 @@ int main(void)
         cmocka_unit_test(failed_and_unmeasured_points_are_not_recommended),
         cmocka_unit_test(of_equals_the_cheaper_is_taken),
         cmocka_unit_test(the_base_stays_where_nothing_is_surely_better),
+        cmocka_unit_test(a_slower_point_is_not_balanced_however_noisy_times_are),
+        cmocka_unit_test(what_all_repeats_share_hides_no_difference),
+        cmocka_unit_test(repeats_that_do_not_count_are_passed_over),
+        cmocka_unit_test(what_was_measured_once_counts_where_it_is_far_off),
         cmocka_unit_test(decibels_are_compared_as_errors),
         cmocka_unit_test(without_a_picture_metric_nothing_is_recommended),
         cmocka_unit_test(what_is_recommended_is_never_dominated),

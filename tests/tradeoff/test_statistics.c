@@ -114,6 +114,31 @@ static void differences_do_not_show_what_both_share(void **state)
     assert_true(e.mean == 1.0 && e.half_width == 0.0);
 }
 
+/* Errors of 1e-4, 1e-4 and none: two thirds of 1e-4, and 999 is far from all of them. */
+static void pictures_without_error_do_not_lift_a_mean_of_decibels(void **state)
+{
+    const double values[] = {40.0, 999.0, 40.0, NAN}, equal[] = {999.0, 999.0}, far[] = {30, 40};
+    (void)state;
+    struct sweep_estimate e = statistics_decibels(values, 4);
+    assert_int_equal(e.count, 3);
+    assert_true(fabs(e.mean - 41.7609125906) < 1e-9);
+    assert_true(e.least == 40.0 && e.most == 999.0);
+    /* 4.30265 standard errors of 1e-4 / 3, of a mean of 2e-4 / 3 */
+    assert_true(fabs(e.half_width - 4.34294481903 * 4.30265272991 / 2.0) < 1e-6);
+    assert_true(statistics_decibels(equal, 2).mean == 999.0);
+    assert_true(statistics_decibels(equal, 2).half_width == 0.0);
+    assert_true(statistics_decibels(far, 2).mean == 35.0);
+}
+
+static void no_decibels_lie_between_some_error_and_none(void **state)
+{
+    const double base[] = {30.0, 999.0, 999.0, 40.0}, values[] = {999.0, 50.0, 999.0, 41.0};
+    (void)state;
+    struct sweep_estimate e = statistics_paired_decibels(values, base, 4);
+    assert_int_equal(e.count, 2);
+    assert_true(e.least == 0.0 && e.most == 1.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -125,6 +150,8 @@ int main(void)
         cmocka_unit_test(one_value_has_a_mean_and_no_known_interval),
         cmocka_unit_test(repeats_without_the_figure_do_not_count),
         cmocka_unit_test(differences_do_not_show_what_both_share),
+        cmocka_unit_test(pictures_without_error_do_not_lift_a_mean_of_decibels),
+        cmocka_unit_test(no_decibels_lie_between_some_error_and_none),
     };
     return RUN_TESTS(tests);
 }

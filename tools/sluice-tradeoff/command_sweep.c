@@ -12,6 +12,7 @@
 #include "page.h"
 #include "recommend.h"
 #include "results.h"
+#include "run_names.h"
 #include "session.h"
 #include "table.h"
 
@@ -87,13 +88,21 @@ static bool prepare_folder(const struct options *o)
     return ready;
 }
 
+static int interrupted(void)
+{
+    text_say("sluice-tradeoff: interrupted; the same command goes on from here");
+    return TRADEOFF_INTERRUPTED;
+}
+
 static int make_runs(struct session *s, const char *own_path)
 {
     switch (runs_make(&s->runs)) {
-    case RUNS_DONE: foresight_add(&s->runs, own_path, false); return show_results(s);
-    case RUNS_INTERRUPTED:
-        text_say("sluice-tradeoff: interrupted; the same command goes on from here");
-        return TRADEOFF_INTERRUPTED;
+    case RUNS_DONE:
+        foresight_add(&s->runs, own_path, false);
+        if (child_is_interrupted())
+            return interrupted();
+        return results_remember_machine(&s->runs) ? show_results(s) : TRADEOFF_FAILED;
+    case RUNS_INTERRUPTED: return interrupted();
     case RUNS_NO_DEVICE: return TRADEOFF_NO_DEVICE;
     case RUNS_UNWRITABLE: return TRADEOFF_FAILED;
     }
@@ -122,7 +131,8 @@ int command_sweep(int argc, char **argv)
         status = outcome == SWEEP_OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
     } else if (prepare_folder(&s.options)) {
         s.sweep.command_line = join_words(argc, argv);
-        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv))
+        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv) &&
+            run_names_write(&s.runs))
             status = make_runs(&s, own_path);
     }
     session_close(&s);

@@ -13,13 +13,21 @@
 #define PLAYS 5
 #define LONG_ENOUGH 1.0 ///< seconds; no further play begins after them
 
+/** Calls that a frame makes once; it need not make each of them. */
+struct calls {
+    double retire, map;
+};
+
 /* "17 get-tiles-to-map ..." */
-static void count_frame(void *user, const char *line)
+static void count_call(void *user, const char *line)
 {
-    static const char call[] = " get-tiles-to-map";
+    static const char retire[] = " complete-retire", map[] = " get-tiles-to-map";
+    struct calls *calls = user;
     const char *word = strchr(line, ' ');
-    if (word && strncmp(word, call, sizeof call - 1) == 0)
-        ++*(double *)user;
+    if (word && strncmp(word, retire, sizeof retire - 1) == 0)
+        calls->retire++;
+    if (word && strncmp(word, map, sizeof map - 1) == 0)
+        calls->map++;
 }
 
 static bool play(const SluiceReplayInfo *info, double *seconds)
@@ -32,19 +40,27 @@ static bool play(const SluiceReplayInfo *info, double *seconds)
     return true;
 }
 
+double core_time_count_frames(const char *data, size_t size)
+{
+    struct calls calls = {0};
+    double seconds = NAN;
+    const SluiceReplayInfo info = {
+        .pData = data, .size = size, .pUserData = &calls, .pfnLine = count_call};
+    return play(&info, &seconds) ? fmax(calls.retire, calls.map) : 0.0;
+}
+
 double core_time_per_frame(const char *trace_path)
 {
     char *data;
     size_t size;
-    double start = clock_seconds(), best = NAN, counting = NAN, frame_count = 0.0;
+    double start = clock_seconds(), best = NAN;
     if (!read_file(trace_path, &data, &size))
         return NAN;
-    SluiceReplayInfo info = {
-        .pData = data, .size = size, .pUserData = &frame_count, .pfnLine = count_frame};
-    bool played = play(&info, &counting);
-    info.pfnLine = NULL;
+    const SluiceReplayInfo info = {.pData = data, .size = size};
+    double frame_count = core_time_count_frames(data, size);
+    bool played = frame_count > 0.0;
     for (int i = 0; i < PLAYS && played && clock_seconds() - start < LONG_ENOUGH; i++)
         played = play(&info, &best);
     free(data);
-    return played && frame_count > 0.0 ? 1e6 * best / frame_count : NAN;
+    return played ? 1e6 * best / frame_count : NAN;
 }

@@ -10,27 +10,53 @@
 #include "../../samples/common/files.h"
 #include "../../samples/common/text.h"
 #include "../sluice-replay/file.h"
+#include "help_text.h"
 
 #define ROUNDS "100" ///< of the search; more hardly change what it finds
 
 /** One question: a trace and the settings that bound the policy. */
 struct question {
     const char *own_path;
-    char *trace, *answer;                 ///< paths; owned
-    const char *budget, *tiles_per_frame; ///< values of the point, NULL: not a setting
+    char *trace, *answer;    ///< paths; owned
+    struct text_list bounds; ///< options of `play`
 };
 
-static const char *find_value(const struct sweep *sweep, uint32_t point, const char *name)
+/* What the point has, or else what the program was told, or has of its own; NULL: nothing. */
+static char *find_value(const struct runs *runs, uint32_t point, const char *name)
 {
+    const struct sweep *sweep = runs->sweep;
+    const struct text_list *told = &runs->options->scene_arguments;
+    struct help_entry entry;
+    char *value = NULL;
     for (uint32_t i = 0; i < sweep->setting_count; i++)
-        if (strcmp(sweep->settings[i].name, name) == 0 && *sweep->points[point].values[i])
-            return sweep->points[point].values[i];
-    return NULL;
+        if (strcmp(sweep->settings[i].name, name) == 0)
+            return *sweep->points[point].values[i]
+                       ? memory_copy_text(sweep->points[point].values[i])
+                       : NULL;
+    for (size_t i = 0; i + 1 < told->count; i++)
+        if (strncmp(told->items[i], "--", 2) == 0 && strcmp(told->items[i] + 2, name) == 0)
+            return memory_copy_text(told->items[i + 1]);
+    if (help_text_find(runs->program->help, name, &entry) && *entry.default_value)
+        value = memory_copy_text(entry.default_value);
+    help_entry_finish(&entry);
+    return value;
 }
 
-static uint64_t hash_text(uint64_t hash, const char *text)
+/* Memory in heaps of the same size, and as much time for loads. */
+static void add_bounds(const struct runs *runs, uint32_t point, struct text_list *bounds)
 {
-    return text ? program_hash(hash, text, strlen(text) + 1) : hash;
+    static const char *const names[] = {"heap-tiles", "max-heaps", "budget", "tiles-per-frame",
+                                        "latency"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char *value = find_value(runs, point, names[i]);
+        char *option = memory_text("--%s", names[i]);
+        if (value) {
+            text_list_add(bounds, option);
+            text_list_add(bounds, value);
+        }
+        free(option);
+        free(value);
+    }
 }
 
 /* False if there is no such trace. */
@@ -41,23 +67,15 @@ static bool make_question(const struct runs *runs, uint32_t point, struct questi
     size_t size;
     question->trace = own_trace ? memory_copy_text(own_trace)
                                 : memory_text("%s/needs.trace", runs->items[point].folder);
-    question->budget = find_value(runs->sweep, point, "budget");
-    question->tiles_per_frame = find_value(runs->sweep, point, "tiles-per-frame");
+    add_bounds(runs, point, &question->bounds);
     if (!read_file(question->trace, &data, &size))
         return false;
     uint64_t hash = program_hash(PROGRAM_HASH_START, data, size);
     free(data);
-    hash = hash_text(hash_text(hash, question->budget), question->tiles_per_frame);
+    for (size_t i = 0; i < question->bounds.count; i++)
+        hash = program_hash(hash, question->bounds.items[i], strlen(question->bounds.items[i]) + 1);
     question->answer = memory_text("%s/clairvoyant/%016" PRIx64 ".jsonl", runs->results, hash);
     return true;
-}
-
-static void add_option(struct text_list *arguments, const char *option, const char *value)
-{
-    if (!value)
-        return;
-    text_list_add(arguments, option);
-    text_list_add(arguments, value);
 }
 
 /* The answer gets its name when it is complete. */
@@ -72,8 +90,7 @@ static void ask(const struct question *question, double limit)
     text_list_add(&arguments, "play");
     text_list_add(&arguments, question->trace);
     text_list_add_parts(&arguments, "--clairvoyant --json --rounds " ROUNDS, ' ');
-    add_option(&arguments, "--budget", question->budget);
-    add_option(&arguments, "--tiles-per-frame", question->tiles_per_frame);
+    text_list_add_all(&arguments, &question->bounds);
     const struct child_info info = {arguments.items, partial, error, limit, NULL};
     if (!child_begin(&info, &child)) {
         text_say("sluice-tradeoff: %s: %s", partial, strerror(errno));
@@ -117,6 +134,7 @@ void foresight_add(struct runs *runs, const char *own_path, bool recall)
                 ask(&question, runs->options->run_limit);
             add_answer(runs, point, question.answer);
         }
+        text_list_finish(&question.bounds);
         free(question.trace);
         free(question.answer);
     }

@@ -7,8 +7,9 @@
 /**
  * Adds clairvoyant_tiles and clairvoyant_levels_too_coarse to all complete runs of points whose
  * first run wrote what each frame needs, or whose scene is a trace. Each trace is played once per
- * budget, by this tool's own `play`, and the answers are kept in RESULTS/clairvoyant; with `recall`
- * only what is kept is added. What cannot be played is said on stderr and has no such figures.
+ * budget and latency, by this tool's own `play`, and the answers are kept in RESULTS/clairvoyant;
+ * with `recall` only what is kept is added. What cannot be played is said on stderr and has no such
+ * figures.
  */
 void foresight_add(struct runs *runs, const char *own_path, bool recall);
 

@@ -181,6 +181,30 @@ enum options_outcome options_parse_sweep(int argc, char *const *argv, struct opt
     return good && is_complete(o) ? SWEEP_OPTIONS_RUN : SWEEP_OPTIONS_ERROR;
 }
 
+static bool has_word(const struct text_list *list, const char *word)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (strcmp(list->items[i], word) == 0)
+            return true;
+    return false;
+}
+
+/* All of them are options with one value. */
+void options_add_scene(const struct options *o, struct text_list *arguments)
+{
+    const char *scene = o->full ? o->scene->full_arguments : o->scene->quick_arguments;
+    struct text_list words = {0};
+    if (*scene)
+        text_list_add_parts(&words, scene, ' ');
+    for (size_t i = 0; i + 1 < words.count; i += 2) {
+        if (has_word(&o->scene_arguments, words.items[i]))
+            continue;
+        text_list_add(arguments, words.items[i]);
+        text_list_add(arguments, words.items[i + 1]);
+    }
+    text_list_finish(&words);
+}
+
 void options_finish(struct options *o)
 {
     text_list_finish(&o->sweeps);

@@ -25,6 +25,8 @@ struct options {
 
 /** Says on stderr what is wrong; prints the help text for --help. `argv[0]` is passed over. */
 enum options_outcome options_parse_sweep(int argc, char *const *argv, struct options *options);
+/** What the plan says of the scene, but for what the command line says otherwise. */
+void options_add_scene(const struct options *options, struct text_list *arguments);
 void options_finish(struct options *options);
 
 #endif /* SLUICE_TRADEOFF_OPTIONS_H */

@@ -243,6 +243,21 @@ static void add_settings(struct planner *planner, const struct options *options)
     }
 }
 
+/* Each point sets all settings, so that what the program is told besides would be without effect.
+ */
+static void refuse_settings(struct planner *planner, const struct text_list *arguments)
+{
+    for (size_t i = 0; i < arguments->count; i++) {
+        const char *word = arguments->items[i];
+        if (strncmp(word, "--", 2) != 0 ||
+            find_setting(planner->sweep, word + 2, strcspn(word + 2, "=")) < 0)
+            continue;
+        text_say("sluice-tradeoff: %s is a setting: --base %.*s=VALUE instead", word,
+                 (int)strcspn(word + 2, "="), word + 2);
+        planner->failed = true;
+    }
+}
+
 /* Of what the scene has to offer, that which the program has. */
 static void add_built_in(struct planner *planner, bool full)
 {
@@ -279,6 +294,7 @@ bool plan_build(const struct options *options, const struct scene *scene,
     sweep->point_count = 1;
     sweep->points[0].label = memory_copy_text("base");
     add_settings(&planner, options);
+    refuse_settings(&planner, &options->scene_arguments);
     if (!planner.failed && options->sweeps.count > 0)
         add_axes(&planner, &options->sweeps, options->grid);
     else if (!planner.failed)

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "memory.h"
+#include "statistics.h"
 
-#define LEAST_DIFFERENCE 0.01 ///< of the mean
+#define LEAST_DIFFERENCE 0.01      ///< of the mean
+#define LEAST_LONE_DIFFERENCE 0.10 ///< where there is no second repeat to doubt it
 
 /** What a point must keep to: a metric at most `factor` times that of the base. */
 struct bound {
@@ -18,6 +20,7 @@ struct chooser {
     const struct sweep *sweep;
     const struct recommend_metrics *metrics;
     bool *candidates; ///< per point
+    double *scratch;  ///< per repeat
 };
 
 /* So that less is better: decibels become the root of the squared error. */
@@ -31,29 +34,62 @@ static double cost_of(const struct sweep *sweep, int metric, double value)
     return value;
 }
 
-/* The range in which a point's cost lies. */
-static void get_range(const struct sweep *sweep, uint32_t point, int metric, double *low,
-                      double *high)
+static double cost(const struct chooser *c, uint32_t point, int metric, uint32_t repeat)
 {
-    const struct sweep_estimate *e = &sweep->points[point].estimates[metric];
-    double half = isnan(e->half_width) ? 0.0 : e->half_width;
-    double a = cost_of(sweep, metric, e->mean - half), b = cost_of(sweep, metric, e->mean + half);
-    double slack = 0.5 * LEAST_DIFFERENCE * fabs(cost_of(sweep, metric, e->mean));
-    *low = fmin(a, b) - slack;
-    *high = fmax(a, b) + slack;
+    const struct sweep *sweep = c->sweep;
+    const double *measured = sweep->points[point].measured + (size_t)metric * sweep->repeats;
+    return cost_of(sweep, metric, measured[repeat]);
 }
 
-static double cost(const struct chooser *c, uint32_t point, int metric)
+static int compare_doubles(const void *a, const void *b)
 {
-    return cost_of(c->sweep, metric, c->sweep->points[point].estimates[metric].mean);
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 
+/* Of what is known; NaN if nothing is. The order changes. */
+static double median(double *values, uint32_t count)
+{
+    uint32_t known = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (!isnan(values[i]))
+            values[known++] = values[i];
+    qsort(values, known, sizeof *values, compare_doubles);
+    return known == 0 ? NAN : 0.5 * (values[(known - 1) / 2] + values[known / 2]);
+}
+
+/* How much more a point costs than `factor` times another, repeat by repeat: the median. */
+static double excess(const struct chooser *c, uint32_t point, uint32_t other, int metric,
+                     double factor)
+{
+    for (uint32_t i = 0; i < c->sweep->repeats; i++)
+        c->scratch[i] = cost(c, point, metric, i) - factor * cost(c, other, metric, i);
+    return median(c->scratch, c->sweep->repeats);
+}
+
+static double typical_cost(const struct chooser *c, uint32_t point, int metric)
+{
+    for (uint32_t i = 0; i < c->sweep->repeats; i++)
+        c->scratch[i] = cost(c, point, metric, i);
+    return median(c->scratch, c->sweep->repeats);
+}
+
+/* Of both together, so that it is known beside nothing, too. */
+static double relative_difference(double a, double b)
+{
+    double sum = fabs(a) + fabs(b);
+    return sum == 0.0 ? 0.0 : 2.0 * (a - b) / sum;
+}
+
+/* By more than 1 %, and by more than the differences of the repeats let one doubt; 10 % for one. */
 static bool surely_less(const struct chooser *c, uint32_t a, uint32_t b, int metric)
 {
-    double low_a, high_a, low_b, high_b;
-    get_range(c->sweep, a, metric, &low_a, &high_a);
-    get_range(c->sweep, b, metric, &low_b, &high_b);
-    return high_a < low_b;
+    for (uint32_t i = 0; i < c->sweep->repeats; i++)
+        c->scratch[i] = relative_difference(cost(c, a, metric, i), cost(c, b, metric, i));
+    struct sweep_estimate difference = statistics_estimate(c->scratch, c->sweep->repeats);
+    if (difference.count < 2)
+        return difference.mean < -LEAST_LONE_DIFFERENCE;
+    return difference.mean < -LEAST_DIFFERENCE && difference.mean + difference.half_width < 0.0;
 }
 
 static bool is_measured(const struct chooser *c, uint32_t point)
@@ -62,7 +98,7 @@ static bool is_measured(const struct chooser *c, uint32_t point)
     if (c->sweep->points[point].state != SWEEP_DONE)
         return false;
     for (int i = 0; i < 3; i++)
-        if (metrics[i] >= 0 && isnan(c->sweep->points[point].estimates[metrics[i]].mean))
+        if (metrics[i] >= 0 && isnan(typical_cost(c, point, metrics[i])))
             return false;
     return true;
 }
@@ -75,7 +111,7 @@ static bool beats(const struct chooser *c, uint32_t other, uint32_t point)
     for (int i = 0; i < 3; i++) {
         if (metrics[i] < 0)
             continue;
-        if (cost(c, other, metrics[i]) > cost(c, point, metrics[i]))
+        if (excess(c, other, point, metrics[i], 1.0) > 0.0)
             return false;
         better = better || surely_less(c, other, point, metrics[i]);
     }
@@ -90,22 +126,20 @@ static bool is_beaten(const struct chooser *c, uint32_t point)
     return false;
 }
 
-/* A point is out only if it surely exceeds a bound. */
+/* What is measured decides, however well it is known: doubt is no reason to recommend. */
 static bool keeps_to(const struct chooser *c, uint32_t point, const struct bound *bound)
 {
-    if (bound->metric < 0)
-        return true;
-    double low, high, limit = bound->factor * cost(c, c->sweep->base, bound->metric);
-    get_range(c->sweep, point, bound->metric, &low, &high);
-    return low <= limit;
+    return bound->metric < 0 || point == c->sweep->base ||
+           excess(c, point, c->sweep->base, bound->metric, bound->factor) <= 0.0;
 }
 
-/* Leaves the candidates that are not surely worse than the one with the least mean. */
+/* Leaves the candidates that are not surely worse than the one with the least. */
 static void keep_least(struct chooser *c, int metric)
 {
     int64_t best = -1;
     for (uint32_t i = 0; i < c->sweep->point_count && metric >= 0; i++)
-        if (c->candidates[i] && (best < 0 || cost(c, i, metric) < cost(c, (uint32_t)best, metric)))
+        if (c->candidates[i] &&
+            (best < 0 || typical_cost(c, i, metric) < typical_cost(c, (uint32_t)best, metric)))
             best = i;
     for (uint32_t i = 0; i < c->sweep->point_count && best >= 0; i++)
         c->candidates[i] = c->candidates[i] && !surely_less(c, (uint32_t)best, i, metric);
@@ -128,30 +162,40 @@ static int64_t choose(struct chooser *c, const struct bound bounds[2], const int
     return -1;
 }
 
-/* ", with gpu_ms_median up to 1.25 times the base's"; "" for what is not measured. */
-static char *write_bound(const struct sweep *sweep, const struct bound *bound, const char *before)
+/* "time (gpu_ms_median)" */
+static char *write_name(const struct chooser *c, int metric)
+{
+    const struct sweep_metric *m = &c->sweep->metrics[metric];
+    const char *word = metric == c->metrics->quality  ? "picture error"
+                       : metric == c->metrics->memory ? "memory"
+                       : strcmp(m->unit, "bytes") == 0 || strcmp(m->unit, "B") == 0 ? "loading"
+                                                                                    : "time";
+    return memory_text("%s (%s)", word, m->name);
+}
+
+/* ", with a time (gpu_ms_median) up to 1.25 times the base's"; "" for what is not measured. */
+static char *write_bound(const struct chooser *c, const struct bound *bound, const char *before)
 {
     if (bound->metric < 0)
         return memory_copy_text("");
-    const struct sweep_metric *metric = &sweep->metrics[bound->metric];
-    if (strcmp(metric->unit, "dB") == 0)
-        return memory_text("%s%s at most %.0f dB below the base's", before, metric->name,
+    char *name = write_name(c, bound->metric), *text;
+    if (strcmp(c->sweep->metrics[bound->metric].unit, "dB") == 0)
+        text = memory_text("%s%s up to %.2g dB above the base's", before, name,
                            20.0 * log10(bound->factor));
-    return memory_text("%s%s up to %g times the base's", before, metric->name, bound->factor);
+    else
+        text = memory_text("%s%s up to %g times the base's", before, name, bound->factor);
+    free(name);
+    return text;
 }
 
-static const char *goal_word(const struct sweep_metric *metric)
+static char *write_rule(const struct chooser *c, int goal, int then, const struct bound bounds[2])
 {
-    return metric->better == SWEEP_MORE_IS_BETTER ? "greatest" : "least";
-}
-
-static char *write_rule(const struct sweep *sweep, int goal, int then, const struct bound bounds[2])
-{
-    const struct sweep_metric *first = &sweep->metrics[goal], *second = &sweep->metrics[then];
-    char *one = write_bound(sweep, &bounds[0], ", with ");
-    char *two = write_bound(sweep, &bounds[1], *one ? " and " : ", with ");
-    char *rule = memory_text("%s %s%s%s; of equals the %s %s", goal_word(first), first->name, one,
-                             two, goal_word(second), second->name);
+    char *first = write_name(c, goal), *second = write_name(c, then);
+    char *one = write_bound(c, &bounds[0], ", with ");
+    char *two = write_bound(c, &bounds[1], *one ? " and " : ", with ");
+    char *rule = memory_text("least %s%s%s; of equals the least %s", first, one, two, second);
+    free(first);
+    free(second);
     free(one);
     free(two);
     return rule;
@@ -163,19 +207,21 @@ void recommend(const struct sweep *sweep, const struct recommend_metrics *metric
     static const char *const names[] = {"quality", "balanced", "small memory"};
     const int q = metrics->quality, m = metrics->memory, t = metrics->time;
     const struct bound bounds[RECOMMEND_COUNT][2] = {
-        {{m, 2.0}, {t, 2.0}}, {{q, 1.1}, {t, 1.1}}, {{q, 2.0}, {t, 1.5}}};
+        {{m, 2.0}, {t, 2.0}}, {{q, 1.1}, {t, 1.25}}, {{q, 2.0}, {t, 1.5}}};
     const int orders[RECOMMEND_COUNT][3] = {{q, m, t}, {m, q, t}, {m, q, t}};
-    struct chooser chooser = {sweep, metrics, memory_take(sweep->point_count, sizeof(bool))};
+    struct chooser chooser = {sweep, metrics, memory_take(sweep->point_count, sizeof(bool)),
+                              memory_take(sweep->repeats, sizeof(double))};
     bool possible = q >= 0 && m >= 0 && is_measured(&chooser, sweep->base);
     for (int i = 0; i < RECOMMEND_COUNT; i++) {
         recommendations[i] = (struct sweep_recommendation){names[i], NULL, -1};
         recommendations[i].rule =
-            possible ? write_rule(sweep, orders[i][0], orders[i][1], bounds[i])
+            possible ? write_rule(&chooser, orders[i][0], orders[i][1], bounds[i])
                      : memory_copy_text("picture and memory of the base were not measured");
         if (possible)
             recommendations[i].point = choose(&chooser, bounds[i], orders[i]);
     }
     free(chooser.candidates);
+    free(chooser.scratch);
 }
 
 void recommend_finish(struct sweep_recommendation recommendations[RECOMMEND_COUNT])

@@ -1,5 +1,6 @@
 #include "results.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,9 +8,9 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "../../samples/common/text.h"
+#include "../sluice-replay/file.h"
 #include "statistics.h"
-
-#define RUNS_WITHOUT_THE_FIRST 5
 
 static bool is_measured(const struct runs *runs, const char *name)
 {
@@ -45,24 +46,28 @@ static void get_values(const struct runs *runs, uint32_t point, const char *name
     uint32_t repeats = runs->sweep->repeats;
     for (uint32_t r = 0; r < repeats; r++)
         values[r] = figures_value(&runs->items[r * runs->sweep->point_count + point].figures, name);
-    if (metric && metric->is_time && repeats >= RUNS_WITHOUT_THE_FIRST)
+    if (metric && metric->is_time && repeats > 1)
         values[0] = NAN;
 }
 
 static void estimate_point(const struct runs *runs, struct sweep *sweep, uint32_t index)
 {
     struct sweep_point *point = &sweep->points[index];
-    double *values = memory_take(sweep->repeats, sizeof *values);
     double *base = memory_take(sweep->repeats, sizeof *base);
     point->estimates = memory_take(sweep->metric_count, sizeof *point->estimates);
     point->deltas = memory_take(sweep->metric_count, sizeof *point->deltas);
+    point->measured =
+        memory_take((size_t)sweep->metric_count * sweep->repeats, sizeof *point->measured);
     for (uint32_t m = 0; m < sweep->metric_count; m++) {
+        double *values = point->measured + (size_t)m * sweep->repeats;
         get_values(runs, index, sweep->metrics[m].name, values);
         get_values(runs, sweep->base, sweep->metrics[m].name, base);
-        point->estimates[m] = statistics_estimate(values, sweep->repeats);
-        point->deltas[m] = statistics_paired(values, base, sweep->repeats);
+        bool decibels = strcmp(sweep->metrics[m].unit, "dB") == 0;
+        point->estimates[m] = decibels ? statistics_decibels(values, sweep->repeats)
+                                       : statistics_estimate(values, sweep->repeats);
+        point->deltas[m] = decibels ? statistics_paired_decibels(values, base, sweep->repeats)
+                                    : statistics_paired(values, base, sweep->repeats);
     }
-    free(values);
     free(base);
 }
 
@@ -82,8 +87,11 @@ static void judge_point(const struct runs *runs, struct sweep *sweep, uint32_t i
     }
     if (done == sweep->repeats)
         point->state = SWEEP_DONE;
-    runs_add_arguments(runs, first, first->folder, &arguments);
+    /* To be pasted into a shell, it must not write over what was measured. */
+    char *again = memory_text("%s/again", runs->results);
+    runs_add_arguments(runs, first, again, &arguments);
     point->command_line = text_list_join(&arguments);
+    free(again);
     point->folder = memory_copy_text(first->folder);
     text_list_finish(&arguments);
 }
@@ -99,16 +107,61 @@ static const char *find_text(const struct runs *runs, const char *name)
     return NULL;
 }
 
-/* What drew it, if some run says so, and what else tells one machine from another. */
-static char *describe_machine(const struct runs *runs)
+/* Runs are kept whatever drew them, so that some may be of another device. */
+static bool is_of_one(const struct runs *runs, const char *name)
+{
+    const char *first = find_text(runs, name);
+    for (uint32_t i = 0; i < runs->count && first; i++) {
+        const struct figure *figure = figures_find(&runs->items[i].figures, name);
+        if (figure && figure->text && strcmp(figure->text, first) != 0)
+            return false;
+    }
+    return true;
+}
+
+/* What drew it, if some run says so, and what else tells this machine from another. */
+static char *describe_this_machine(const struct runs *runs)
 {
     struct utsname system = {0};
     const char *device = find_text(runs, "device"), *driver = find_text(runs, "driver");
+    const char *others =
+        is_of_one(runs, "device") && is_of_one(runs, "driver") ? "" : " and others";
     uname(&system);
-    return memory_text("%s%s%s%s%s%ld processors, %s %s %s", device ? device : "",
-                       driver ? " (" : "", driver ? driver : "", driver ? ")" : "",
+    return memory_text("%s%s%s%s%s%s%ld processors, %s %s %s", device ? device : "",
+                       driver ? " (" : "", driver ? driver : "", driver ? ")" : "", others,
                        device || driver ? "; " : "", sysconf(_SC_NPROCESSORS_ONLN), system.sysname,
                        system.release, system.machine);
+}
+
+/* Where it was measured, not where it is looked at. */
+static char *recall_machine(const struct runs *runs)
+{
+    size_t size;
+    char *line = NULL, *path = memory_text("%s/machine.txt", runs->results);
+    read_file(path, &line, &size);
+    free(path);
+    if (line)
+        line[strcspn(line, "\n")] = '\0';
+    return line;
+}
+
+bool results_remember_machine(const struct runs *runs)
+{
+    char *path = memory_text("%s/machine.txt", runs->results);
+    char *line = describe_this_machine(runs);
+    if (!is_of_one(runs, "device") || !is_of_one(runs, "driver"))
+        text_say(
+            "sluice-tradeoff: these runs are of several devices or drivers: --fresh makes them "
+            "anew");
+    FILE *file = fopen(path, "w");
+    bool written = file && fprintf(file, "%s\n", line) > 0;
+    if (file)
+        written = (fclose(file) == 0) & written;
+    if (!written)
+        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+    free(line);
+    free(path);
+    return written;
 }
 
 void results_collect(const struct runs *runs, struct sweep *sweep)
@@ -118,7 +171,9 @@ void results_collect(const struct runs *runs, struct sweep *sweep)
         judge_point(runs, sweep, i);
         estimate_point(runs, sweep, i);
     }
-    sweep->machine = describe_machine(runs);
+    sweep->machine = recall_machine(runs);
+    if (!sweep->machine)
+        sweep->machine = describe_this_machine(runs);
 }
 
 int results_pick(const struct sweep *sweep, const char *const *names)

@@ -5,10 +5,14 @@
 #include "runs.h"
 
 /**
- * Fills the metrics that some run has, and states, estimates, folders and command lines of all
- * points. Times of first runs, which also write pictures, do not count where there are five.
+ * Fills the metrics that some run has, states, estimates, folders and command lines of all points,
+ * and the machine. Times of first runs, which also write and count, do not count where there are
+ * others.
  */
 void results_collect(const struct runs *runs, struct sweep *sweep);
+
+/** Keeps in RESULTS/machine.txt what runs were made on. False and a line on stderr if not. */
+bool results_remember_machine(const struct runs *runs);
 
 /** The first of `names`, which NULL ends, that was measured at the base; -1: none. */
 int results_pick(const struct sweep *sweep, const char *const *names);

@@ -9,6 +9,7 @@
 #include "folders.h"
 #include "frames.h"
 #include "plan.h"
+#include "run_names.h"
 
 #define LONGEST_PREFIX 48
 
@@ -17,10 +18,8 @@ static void add_deciding_arguments(const struct runs *runs, const struct run *ru
                                    struct text_list *arguments)
 {
     const struct options *o = runs->options;
-    const char *scene = o->full ? o->scene->full_arguments : o->scene->quick_arguments;
     text_list_add_all(arguments, &runs->program->arguments);
-    if (*scene)
-        text_list_add_parts(arguments, scene, ' ');
+    options_add_scene(o, arguments);
     o->scene->add_repeat_arguments(runs->program, run->repeat, arguments);
     text_list_add_all(arguments, &o->scene_arguments);
     plan_add_arguments(runs->sweep, &runs->sweep->points[run->point], runs->program, arguments);
@@ -98,8 +97,9 @@ void runs_look(struct run *run)
     }
 }
 
-void runs_init(struct runs *runs)
+void runs_init(struct runs *runs, bool recall)
 {
+    char *names = recall ? run_names_read(runs->results) : NULL;
     uint32_t point_count = runs->sweep->point_count;
     runs->count = point_count * runs->sweep->repeats;
     runs->items = memory_take(runs->count, sizeof *runs->items);
@@ -107,11 +107,14 @@ void runs_init(struct runs *runs)
         struct run *run = &runs->items[i];
         run->point = i % point_count;
         run->repeat = i / point_count;
-        run->key = make_key(runs, run);
+        run->key = run_names_find(names, runs->sweep->points[run->point].label, run->repeat);
+        if (!run->key)
+            run->key = make_key(runs, run);
         run->folder = memory_text("%s/runs/%s", runs->results, run->key);
         runs_look(run);
         run->was_there = run->state == SWEEP_DONE;
     }
+    free(names);
 }
 
 void runs_finish(struct runs *runs)

@@ -26,8 +26,11 @@ struct runs {
     uint32_t count;
 };
 
-/** Names all runs and finds out which are complete, and why others failed. */
-void runs_init(struct runs *runs);
+/**
+ * Names all runs and finds out which are complete, and why others failed. With `recall` names are
+ * those that the results folder remembers, where it does.
+ */
+void runs_init(struct runs *runs, bool recall);
 void runs_finish(struct runs *runs);
 
 /** Finds out anew whether a run is complete, or why it failed. */

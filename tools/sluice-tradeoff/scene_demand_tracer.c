@@ -76,6 +76,10 @@ static void add_run_arguments(const struct program *program, const struct scene_
         text_list_add(arguments, "--compare");
         text_list_add(arguments, truth);
     }
+    if (program_has_option(program, "needs")) { /* takes time in each launch */
+        text_list_add(arguments, "--needs");
+        text_list_add(arguments, run->repeat == 0 ? "on" : "off");
+    }
     text_list_add(arguments, "--output");
     text_list_add(arguments, run->folder);
     free(truth);

@@ -16,7 +16,7 @@ static const struct scene_setting settings[] = {
      "64",
      NULL,
      "8,16,32,128"},
-    {{"timeout", "tiles not wanted for so long are let go", "s"}, "1", "0.1", "0.1,0.25,0.5,2,4"},
+    {{"timeout", "tiles not wanted for so long are let go", "s"}, "1", NULL, "0.1,0.25,0.5,2,4"},
     {{"standby", "tiles kept although unwanted", "tiles"}, "1024", "0", "0,128,256,4096"},
     {{"budget", "memory for tiles at most; 0: no cap", "MiB"}, "0", "8,16", "32,48,64,96,128,256"},
     {{"residency", "what makes texels resident", ""}, "auto", "paged", "sparse,paged,dense"},
@@ -95,11 +95,11 @@ static const struct scene_metric metrics[] = {
     {{"core_us_per_frame", "us", "of the tile manager alone, played from a recording",
       SWEEP_LESS_IS_BETTER},
      false},
-    {{"clairvoyant_tiles", "tiles", "that a policy which knows the future would load",
+    {{"clairvoyant_tiles", "tiles", "that a policy which knows the future would load, from nothing",
       SWEEP_NEITHER},
      false},
-    {{"clairvoyant_levels_too_coarse", "levels", "that such a policy would miss at this cap",
-      SWEEP_NEITHER},
+    {{"clairvoyant_levels_too_coarse", "levels",
+      "that such a policy would miss at this cap, first frames included", SWEEP_NEITHER},
      false},
     {{"run_seconds", "s", "that the program took", SWEEP_NEITHER}, true},
 };
@@ -119,13 +119,15 @@ static void add_path(const struct program *program, const char *option, const ch
     free(path);
 }
 
-/* One truth for all points, the best that the program can draw, so that filters are compared too.
- */
+/* One truth for all points, the best that the program can draw, so that filters are compared too,
+ * and in one residency, so that it is drawn once. */
 static void add_repeat_arguments(const struct program *program, uint32_t repeat,
                                  struct text_list *arguments)
 {
     if (program_has_option(program, "reference")) {
         text_list_add_parts(arguments, "--reference-anisotropy 16 --reference-lod-bias 0", ' ');
+        if (program_has_option(program, "compare-with"))
+            text_list_add_parts(arguments, "--compare-with dense", ' ');
     } else if (program_has_option(program, "compare")) {
         text_list_add(arguments, "--compare");
     }
@@ -141,7 +143,8 @@ static void add_repeat_arguments(const struct program *program, uint32_t repeat,
     text_list_add(arguments, "--json");
 }
 
-/* The first run writes what is looked at later; the others only measure. */
+/* The first run writes what is looked at later, and finds out what frames need, for which the
+ * device has more to draw; the others only measure. */
 static void add_run_arguments(const struct program *program, const struct scene_run *run,
                               struct text_list *arguments)
 {
@@ -149,6 +152,10 @@ static void add_run_arguments(const struct program *program, const struct scene_
     if (program_has_option(program, "write-frames")) {
         text_list_add(arguments, "--write-frames");
         text_list_add(arguments, run->repeat == 0 ? "some" : "none");
+    }
+    if (program_has_option(program, "needs")) {
+        text_list_add(arguments, "--needs");
+        text_list_add(arguments, run->repeat == 0 ? "on" : "off");
     }
     if (run->repeat == 0) {
         add_path(program, "--record", run->folder, "manager.trace", arguments);

@@ -38,11 +38,13 @@ static bool find_program(struct session *s, const char *own_path, bool recall)
 
 static char *describe_scene(const struct options *o)
 {
-    char *words = text_list_join(&o->scene_arguments);
-    char *line = memory_text("%s%s%s%s%s", o->trace ? o->trace : "",
-                             o->full ? o->scene->full_arguments : o->scene->quick_arguments,
-                             *words ? " " : "", words, "");
-    free(words);
+    struct text_list words = {0};
+    if (o->trace)
+        text_list_add(&words, o->trace);
+    options_add_scene(o, &words);
+    text_list_add_all(&words, &o->scene_arguments);
+    char *line = text_list_join(&words);
+    text_list_finish(&words);
     return line;
 }
 
@@ -59,7 +61,7 @@ bool session_open(struct session *s, const char *own_path, bool recall)
         return false;
     s->runs = (struct runs){
         .options = o, .program = &s->program, .sweep = &s->sweep, .results = o->results};
-    runs_init(&s->runs);
+    runs_init(&s->runs, recall);
     return true;
 }
 
@@ -74,6 +76,7 @@ static void finish_point(const struct sweep *sweep, struct sweep_point *point)
     free(point->reason);
     free(point->estimates);
     free(point->deltas);
+    free(point->measured);
 }
 
 /* The session made them and lends them as constant. */

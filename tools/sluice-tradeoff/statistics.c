@@ -7,6 +7,8 @@
 
 #define HALF_PI 1.57079632679489661923
 #define CONFIDENCE 0.95
+#define EQUAL_DB 999.0
+#define DB_PER_RATIO 4.34294481903251827651 /* 10 / ln 10 */
 
 /* The chance that |t| is at most sqrt(degrees) * tan(angle). */
 static double student_chance(uint32_t degrees, double angle)
@@ -65,6 +67,33 @@ struct sweep_estimate statistics_paired(const double *values, const double *base
     double *differences = memory_take(count, sizeof *differences);
     for (uint32_t i = 0; i < count; i++)
         differences[i] = values[i] - base[i];
+    struct sweep_estimate estimate = statistics_estimate(differences, count);
+    free(differences);
+    return estimate;
+}
+
+struct sweep_estimate statistics_decibels(const double *values, uint32_t count)
+{
+    struct sweep_estimate plain = statistics_estimate(values, count);
+    if (plain.count == 0 || plain.most < EQUAL_DB || plain.least >= EQUAL_DB)
+        return plain;
+    double *errors = memory_take(count, sizeof *errors);
+    for (uint32_t i = 0; i < count; i++)
+        errors[i] = values[i] >= EQUAL_DB ? 0.0 : pow(10.0, -0.1 * values[i]);
+    struct sweep_estimate error = statistics_estimate(errors, count);
+    free(errors);
+    plain.mean = -10.0 * log10(error.mean);
+    plain.half_width = DB_PER_RATIO * error.half_width / error.mean;
+    return plain;
+}
+
+struct sweep_estimate statistics_paired_decibels(const double *values, const double *base,
+                                                 uint32_t count)
+{
+    double *differences = memory_take(count, sizeof *differences);
+    for (uint32_t i = 0; i < count; i++)
+        differences[i] =
+            (values[i] >= EQUAL_DB) == (base[i] >= EQUAL_DB) ? values[i] - base[i] : NAN;
     struct sweep_estimate estimate = statistics_estimate(differences, count);
     free(differences);
     return estimate;

@@ -20,4 +20,13 @@ struct sweep_estimate statistics_estimate(const double *values, uint32_t count);
  */
 struct sweep_estimate statistics_paired(const double *values, const double *base, uint32_t count);
 
+/**
+ * The same of decibels, where 999 stands for no error at all: it has no part in a mean of decibels,
+ * so that beside others the mean is that of the squared errors, and a difference to it is not
+ * known.
+ */
+struct sweep_estimate statistics_decibels(const double *values, uint32_t count);
+struct sweep_estimate statistics_paired_decibels(const double *values, const double *base,
+                                                 uint32_t count);
+
 #endif /* SLUICE_TRADEOFF_STATISTICS_H */

@@ -46,6 +46,7 @@ struct sweep_point {
     char *reason;                     ///< why it failed, else NULL
     struct sweep_estimate *estimates; ///< per metric
     struct sweep_estimate *deltas;    ///< per metric: to the base, repeat by repeat
+    double *measured;                 ///< [metric][repeat]; NaN: not, or does not count
 };
 
 struct sweep {
