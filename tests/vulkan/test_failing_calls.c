@@ -241,7 +241,8 @@ static void frames_survive_every_failing_call(void **state)
     mode = SLUICE_RESIDENCY_MODE_SPARSE;
     frames_survive(1, 1); /* a heap that the device refuses is only a smaller budget */
     mode = SLUICE_RESIDENCY_MODE_PAGED;
-    /* Packed levels fill two tiles; a chunk that is refused is tried again with half of the pages. */
+    /* Packed levels fill two tiles; a chunk that is refused is tried again with half of the pages.
+     */
     frames_survive(2, 4);
     mode = SLUICE_RESIDENCY_MODE_DENSE;
     frames_survive(2, 0);

@@ -174,8 +174,9 @@ const struct scene scene_gallery = {
     .metrics = metrics,
     .setting_count = sizeof settings / sizeof *settings,
     .metric_count = sizeof metrics / sizeof *metrics,
-    .quick_arguments = "--generate-scale 4 --size 320x180 --samples 1 --frames 100 --rest-frames 25 "
-                       "--fps 60",
+    .quick_arguments =
+        "--generate-scale 4 --size 320x180 --samples 1 --frames 100 --rest-frames 25 "
+        "--fps 60",
     .full_arguments = "--size 640x360 --frames 330 --rest-frames 90 --fps 60",
     .full_grid = "probability=1/4,1/16,1/64 budget=0,48,96 textures-per-frame=1,10",
     .roles = {quality, memory, times},
