@@ -232,7 +232,7 @@ report a_setting_given_to_the_program_is_refused $?
 odd="it's \$(touch pwned) <b>"
 : >log
 status 0 sweep --results "$odd" --repeats 1 -- --size 64x32 --name "$odd" &&
-    grep -q -- '--generate-scale 4 --samples 1 --frames 60 .*--size 64x32' log &&
+    grep -q -- '--generate-scale 4 --samples 1 --frames 100 .*--size 64x32' log &&
     [ "$(grep -o -- '--size' log | wc -l)" = "$(wc -l <log)" ]
 report what_the_command_line_says_of_the_scene_is_said_once $?
 
