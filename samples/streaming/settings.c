@@ -59,7 +59,7 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         .seed = 1,
         .probability = 1.0 / 16.0,
         .textures_per_frame = 10,
-        .tiles_per_frame = 64,
+        .tiles_per_frame = 256,
         .timeout = 1.0,
         .standby = 1024,
         .heap_tiles = 256,

@@ -29,8 +29,7 @@ uint sluiceHash(uvec3 v)
 bool sluiceSelectRandom(uvec2 place, uint frameSeed, float probability)
 {
     uint draw = sluiceMix(uvec3(place, frameSeed)) >> 9u;
-    precise float drawn = uintBitsToFloat(draw | 0x3F800000u) - 1.0; /* the 1 is not to change sides */
-    return drawn < probability;
+    return uintBitsToFloat(draw | 0x3F800000u) - 1.0 < probability;
 }
 
 /**
