@@ -209,7 +209,7 @@ static void repeats_that_do_not_count_are_passed_over(void **state)
 }
 
 /* One time that is 5 % less is no reason, a third less is. */
-static void what_was_measured_once_counts_where_it_is_far_off(void **state)
+static void a_figure_of_one_run_counts_where_it_is_far_off_but_a_time_never(void **state)
 {
     static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.1, 100, 9.5}};
     struct rig rig;
@@ -219,7 +219,31 @@ static void what_was_measured_once_counts_where_it_is_far_off(void **state)
         rig.measured[i][TIME][0] = rig.measured[i][TIME][1] = NAN;
     expect(&rig, 0, 0, 0);
     rig.measured[1][TIME][2] = 6.6;
+    expect(&rig, 0, 0, 0);
+    for (uint32_t i = 0; i < 2; i++)
+        rig.measured[i][MEMORY][0] = rig.measured[i][MEMORY][1] = NAN;
+    rig.measured[1][MEMORY][2] = 95;
+    expect(&rig, 0, 0, 0);
+    rig.measured[1][MEMORY][2] = 60;
     expect(&rig, 1, 1, 1);
+}
+
+static void what_nobody_chooses_is_not_recommended(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}, {0.05, 50, 5}, {0.09, 90, 9}};
+    static const struct sweep_setting settings[] = {{"source-latency", "", "ms", true},
+                                                    {"budget", "", "MiB", false}};
+    char zero[] = "0", more[] = "20";
+    char *base[] = {zero, zero}, *slow_disk[] = {more, zero}, *small[] = {zero, more};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 3);
+    rig.sweep.settings = settings;
+    rig.sweep.setting_count = 2;
+    rig.points[0].values = base;
+    rig.points[1].values = slow_disk;
+    rig.points[2].values = small;
+    expect(&rig, 2, 2, 2);
 }
 
 static uint32_t next_random(uint32_t *seed)
@@ -296,7 +320,8 @@ int main(void)
         cmocka_unit_test(a_slower_point_is_not_balanced_however_noisy_times_are),
         cmocka_unit_test(what_all_repeats_share_hides_no_difference),
         cmocka_unit_test(repeats_that_do_not_count_are_passed_over),
-        cmocka_unit_test(what_was_measured_once_counts_where_it_is_far_off),
+        cmocka_unit_test(a_figure_of_one_run_counts_where_it_is_far_off_but_a_time_never),
+        cmocka_unit_test(what_nobody_chooses_is_not_recommended),
         cmocka_unit_test(decibels_are_compared_as_errors),
         cmocka_unit_test(without_a_picture_metric_nothing_is_recommended),
         cmocka_unit_test(what_is_recommended_is_never_dominated),

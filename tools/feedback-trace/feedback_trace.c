@@ -135,6 +135,12 @@ static bool read_textures(struct feedback_trace *t)
 
 static bool read_header(struct feedback_trace *t)
 {
+    if (t->size >= 8 && memcmp(t->data, "SLUICERT", 8) == 0) {
+        fail(t, 0,
+             "it is a recording of a manager, for sluice-replay; feedback is in needs.trace, "
+             "which streaming --needs-trace writes");
+        return true;
+    }
     if (t->size < HEADER_SIZE || memcmp(t->data, "SLTRACE1", 8) != 0) {
         fail(t, 0, "it is no SLTRACE1 trace");
         return true;

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -144,6 +145,18 @@ static bool take_word(struct options *o, const char *word)
     return false;
 }
 
+/* Better said once, before anything is run. */
+static bool is_readable(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+        return false;
+    }
+    fclose(file);
+    return true;
+}
+
 static bool is_complete(struct options *o)
 {
     if (!o->scene)
@@ -151,6 +164,8 @@ static bool is_complete(struct options *o)
                  "says more");
     else if (o->scene == &scene_trace && !o->trace)
         text_say("sluice-tradeoff: trace needs a file");
+    else if (o->trace && !is_readable(o->trace))
+        return false;
     else if (o->grid && o->sweeps.count == 0)
         text_say("sluice-tradeoff: --grid needs --sweep");
     else

@@ -9,6 +9,7 @@
 
 #define LEAST_DIFFERENCE 0.01      ///< of the mean
 #define LEAST_LONE_DIFFERENCE 0.10 ///< where there is no second repeat to doubt it
+#define LEAST_TIMES 3              ///< with fewer repeats no time is surely less
 
 /** What a point must keep to: a metric at most `factor` times that of the base. */
 struct bound {
@@ -81,21 +82,34 @@ static double relative_difference(double a, double b)
     return sum == 0.0 ? 0.0 : 2.0 * (a - b) / sum;
 }
 
-/* By more than 1 %, and by more than the differences of the repeats let one doubt; 10 % for one. */
+/* By more than 1 %, and by more than the differences of the repeats let one doubt; 10 % for one,
+ * which is not enough for times. */
 static bool surely_less(const struct chooser *c, uint32_t a, uint32_t b, int metric)
 {
     for (uint32_t i = 0; i < c->sweep->repeats; i++)
         c->scratch[i] = relative_difference(cost(c, a, metric, i), cost(c, b, metric, i));
     struct sweep_estimate difference = statistics_estimate(c->scratch, c->sweep->repeats);
+    if (metric == c->metrics->time && difference.count < LEAST_TIMES)
+        return false;
     if (difference.count < 2)
         return difference.mean < -LEAST_LONE_DIFFERENCE;
     return difference.mean < -LEAST_DIFFERENCE && difference.mean + difference.half_width < 0.0;
 }
 
+/* Nobody chooses how slow a disk is. */
+static bool is_choice(const struct sweep *sweep, uint32_t point)
+{
+    for (uint32_t i = 0; i < sweep->setting_count; i++)
+        if (sweep->settings[i].condition &&
+            strcmp(sweep->points[point].values[i], sweep->points[sweep->base].values[i]) != 0)
+            return false;
+    return true;
+}
+
 static bool is_measured(const struct chooser *c, uint32_t point)
 {
     const int metrics[] = {c->metrics->quality, c->metrics->memory, c->metrics->time};
-    if (c->sweep->points[point].state != SWEEP_DONE)
+    if (c->sweep->points[point].state != SWEEP_DONE || !is_choice(c->sweep, point))
         return false;
     for (int i = 0; i < 3; i++)
         if (metrics[i] >= 0 && isnan(typical_cost(c, point, metrics[i])))

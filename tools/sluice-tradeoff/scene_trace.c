@@ -14,7 +14,7 @@ static const struct scene_setting settings[] = {
      "4",
      "2,4,6"},
     {{"tiles-per-frame", "loads answered per frame at most", "tiles"}, NULL, "32", "8,32,64,1024"},
-    {{"latency", "from handed out to answered", "frames"}, NULL, "8", "0,1,4,8,16"},
+    {{"latency", "from handed out to answered", "frames", true}, NULL, "8", "0,1,4,8,16"},
     {{"loads-in-flight", "loads at a time; 0: as many as the latency takes", "tiles"},
      NULL,
      NULL,

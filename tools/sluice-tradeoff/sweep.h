@@ -14,6 +14,7 @@ struct sweep_setting {
     const char *name;    ///< as on its command line, without the dashes
     const char *meaning; ///< one line
     const char *unit;    ///< "" if none
+    bool condition;      ///< of the world, not a choice: other values than the base's are no advice
 };
 
 enum sweep_better { SWEEP_LESS_IS_BETTER, SWEEP_MORE_IS_BETTER, SWEEP_NEITHER };
