@@ -131,7 +131,9 @@ function compare(index, metric) {
   const ratio = mine.mean / usual.mean;
   const text = !relative ? sign + (unit === '%' ? withUnit(digits(size, 2), 'points') : formatValue(size, unit, 2))
     : ratio >= 3 ? `\u00d7\u2009${digits(ratio, 2)}` : sign + withUnit(digits(100 * size / Math.abs(usual.mean), 2), '%');
-  return {text, kind: better === 'neither' ? '' : (change < 0) === (better === 'less') ? 'better' : 'worse'};
+  /* What a few times say may be the machine's mood. */
+  const doubtful = ['s', 'ms', 'us', 'ns'].includes(unit) && Math.min(mine.count, usual.count) < 3;
+  return {text, kind: better === 'neither' || doubtful ? '' : (change < 0) === (better === 'less') ? 'better' : 'worse'};
 }
 
 const titles = {psnr: 'PSNR', flip: 'FLIP', ssim: 'SSIM', gpu: 'GPU', p50: 'p50', p95: 'p95', p99: 'p99'};
