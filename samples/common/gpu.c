@@ -367,3 +367,12 @@ VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, s
     gpu_check(vkCreateShaderModule(gpu->device, &info, NULL, &module), "vkCreateShaderModule");
     return module;
 }
+
+void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
+                 VkPipelineStageFlags to, VkAccessFlags to_access)
+{
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = from_access,
+                              .dstAccessMask = to_access};
+    vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
+}

@@ -86,4 +86,8 @@ void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image);
 
 VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, size_t size);
 
+/** Of all memory. */
+void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
+                 VkPipelineStageFlags to, VkAccessFlags to_access);
+
 #endif /* SAMPLES_COMMON_GPU_H */

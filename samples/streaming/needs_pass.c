@@ -55,15 +55,6 @@ void needs_slot_destroy(const struct needs_pass *pass, struct needs_slot *slot)
     *slot = (struct needs_slot){0};
 }
 
-static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
-                    VkPipelineStageFlags to, VkAccessFlags to_access)
-{
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask = from_access,
-                              .dstAccessMask = to_access};
-    vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
-}
-
 static void record_copies(const struct needs_pass *pass, const struct needs_slot *slot,
                           VkCommandBuffer commands)
 {
@@ -86,26 +77,26 @@ void needs_pass_record(const struct needs_pass *pass, const struct target *targe
     static const float black[4] = {0, 0, 0, 0};
     slot->word_count = pass->word_count;
     /* The frame before has copied what is cleared now. */
-    barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_TRANSFER_BIT,
-            VK_ACCESS_TRANSFER_WRITE_BIT);
+    gpu_barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                VK_ACCESS_TRANSFER_WRITE_BIT);
     vkCmdFillBuffer(commands, pass->feedback.buffer, 0,
                     (VkDeviceSize)slot->word_count * sizeof(uint32_t), SLUICE_MIP_UNTOUCHED);
     vkCmdFillBuffer(commands, pass->counts.buffer, 0, VK_WHOLE_SIZE, 0);
-    barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-            VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    gpu_barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(target, commands, black);
     renderer_draw(pass->renderer, commands, slot->frame_set, surfaces, RENDERER_NEEDS);
     target_end(target, commands);
     /* The streamer has copied to its buffers. */
-    barrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-            VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-            VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+    gpu_barrier(commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
     record_copies(pass, slot, commands);
     /* All that follows waits, so that the next frame's time begins when this pass is over. */
-    barrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-            VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
-            VK_ACCESS_HOST_READ_BIT);
+    gpu_barrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT,
+                VK_ACCESS_HOST_READ_BIT);
 }
 
 /* Once the table is known, only what textures use of the buffers is copied. */

@@ -323,30 +323,21 @@ static void record_prediction(const struct view *view, VkCommandBuffer commands)
                    view->surfaces);
 }
 
-static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
-                    VkPipelineStageFlags to, VkAccessFlags to_access)
-{
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask = from_access,
-                              .dstAccessMask = to_access};
-    vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, NULL, 0, NULL);
-}
-
 /** The room once more, only to count what its samples would read. */
 static void record_counting(const struct view *view, const struct view_slot *slot)
 {
     const struct view_request *request = &view->request;
     static const float black[4] = {0, 0, 0, 0};
     vkCmdFillBuffer(slot->commands, slot->counts.buffer, 0, VK_WHOLE_SIZE, 0);
-    barrier(slot->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-            VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    gpu_barrier(slot->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     target_begin(request->target, slot->commands, black);
     renderer_draw(request->renderer, slot->commands, slot->frame_set, view->surfaces,
                   RENDERER_COUNT);
     target_end(request->target, slot->commands);
-    barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    gpu_barrier(slot->commands, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
 /* One frame of an application that streams; what is behind the last time stamp is no part of it. */
