@@ -6,7 +6,7 @@
 #
 #   scripts/demo.sh -- --generate-scale 4      smaller pictures, sooner
 #   scripts/demo.sh -- --images FOLDER --budget 64
-#                                              a museum of your own pictures in 64 MB: photographs,
+#                                              a museum of your own pictures in 64 MiB: photographs,
 #                                              OpenEXR, DDS, KTX2 files and tile stores
 #
 # Each frame is drawn a second time with everything resident, to compare, unless there is a --budget.
@@ -41,7 +41,7 @@ while [ $# -gt 0 ]; do
     --no-install) install=no ;;
     --help) usage_of "$0"; exit 0 ;;
     --) shift; break ;;
-    *) die "unknown option $1 (see --help)" ;;
+    *) die "unknown option $1 (see --help); options of the gallery stand after --" ;;
     esac
     shift
 done
@@ -79,9 +79,9 @@ done
 title "Streaming the gallery"
 mkdir -p "$output" "$cache"
 # Pictures of an earlier run, which may have had other frames.
-[ ! -e "$output/report.html" ] || rm -f "$output"/{frame,truth}-[0-9][0-9][0-9][0-9].png
-"$folder/samples/streaming/streaming" --output "$output" --cache "$cache" "${comparing[@]}" --json "$@" |
-    tee "$output/summary.txt" || die "the demo did not end well"
+[ ! -e "$output/report.html" ] || rm -f "$output"/{frame,truth,flip}-[0-9][0-9][0-9][0-9].png
+"$folder/samples/streaming/streaming" --output "$output" --cache "$cache" "${comparing[@]}" --json "$@" \
+    >"$output/summary.txt" || die "the demo did not end well"
 
 figure() { sed -n "s/.*\"name\": \"$1\", \"value\": \([0-9]*\).*/\1/p" "$output/summary.txt"; }
 megabytes() { awk -v bytes="$(figure "$1")" 'BEGIN { printf "%.0f MB", bytes / 1e6 }'; }
@@ -112,7 +112,8 @@ say "$(figure pictures) pictures hang; their textures are $(megabytes virtual_by
 $(megabytes resident_bytes) at the end, $(megabytes resident_bytes_peak) at most, in heaps of \
 $(megabytes device_memory_peak)."
 say "The report, with pictures and figures: $output/report.html"
-say "Pictures${comparing:+, and the same with everything resident}: $output/frame-*.png${comparing:+, truth-*.png}"
+say "Pictures: $output/frame-*.png"
+[ ${#comparing[@]} -eq 0 ] || say "The same with everything resident, and the visible difference: truth-*.png, flip-*.png there"
 say "Figures: $output/frames.csv (by frame), $output/summary.txt"
 [ "$tradeoff" = no ] || say "What settings cost, with plots and pictures: $output/tradeoff/page.html"
 say "Next: your own pictures by '-- --images FOLDER --budget 64'; all that can be set by '-- --help'."

@@ -1,4 +1,4 @@
-/* What textures cost that nobody samples: time to create them, and device memory. */
+/* Measures textures that no shader samples: the time to create them, and device memory. */
 #include "rig.h"
 
 #include "../../samples/common/clock.h"

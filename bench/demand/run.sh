@@ -43,6 +43,7 @@ create.seconds|creating 100 000 textures, s|30 for 2 500|at most 2
 create.opened|... images opened|0|0
 create.page_memory|device memory for 64 Mi virtual pages, MiB|64|at most 64
 fill.rate|cold fill, source free, tiles/s|11 000 to 14 000|at least 120 000
+fill.defaults.rate|... while staging memory grows, as by default, tiles/s||
 fill.again.rate|... again, into memory that is there, tiles/s||
 sampling.plain.rate|resident sampling, textureGrad, Gsamples/s||
 sampling.untracked.rate|... demand loaded, without tracking for eviction|16.3|at least 16

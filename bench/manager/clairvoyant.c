@@ -20,6 +20,7 @@
  * for, keeps it for good and never guesses. It knows of a tile when it is too late for the first
  * map; "appears", "enters" and "finer" say what was new: the set, the region or the level.
  */
+#include "../../samples/common/output_file.h"
 #include "clairvoyant.h"
 
 #include <stdlib.h>
@@ -135,14 +136,10 @@ static bool write_plan(const struct options *o, const struct workload *w,
 {
     if (!o->plan)
         return true;
-    FILE *file = fopen(o->plan, "w");
+    struct output_file *file = output_file_begin(o->plan);
     if (file)
-        clv_schedule(w, limits, prices, file);
-    bool good = file && !ferror(file);
-    good &= file && fclose(file) == 0;
-    if (!good)
-        fprintf(stderr, "cannot write %s\n", o->plan);
-    return good;
+        clv_schedule(w, limits, prices, output_file_stream(file));
+    return output_file_end(file, true);
 }
 
 static bool play(const struct options *o, const struct workload *w)
@@ -185,7 +182,7 @@ int main(int argc, char **argv)
         return 2;
     }
     struct feedback_trace trace;
-    if (!feedback_trace_open(&trace, options.trace))
+    if (!output_add_input(options.trace) || !feedback_trace_open(&trace, options.trace))
         return 1;
     bool good = clv_workload_read(&workload, &trace, options.latency);
     feedback_trace_close(&trace);

@@ -18,7 +18,7 @@ static const struct part {
 } parts[] = {
     {"copy", bench_copy},   {"feedback", bench_feedback}, {"follow", bench_follow},
     {"idle", bench_idle},   {"add", bench_add},           {"memory", bench_memory},
-    {"heaps", bench_heaps},
+    {"heaps", bench_heaps}, {"growth", bench_growth},
 #ifdef WITH_HARNESS
     {"cut", bench_cut},
 #endif

@@ -8,6 +8,8 @@ void bench_idle(void);
 void bench_add(void);
 void bench_memory(void);
 void bench_heaps(void);
+/** Times with n and with 2n: a ratio of 4 is a square. */
+void bench_growth(void);
 void bench_copy(void);
 
 /* With the harness's sltrace.h only. */

@@ -12,8 +12,8 @@
 #                   beside the checkout); without it only single calls are timed
 #   --work DIR      keep what is built and generated there (default: a scratch folder, removed)
 #   --only NAME     one of t100 t1000 t10000 t1000_fast_cap4 t10000_cap16, or a part of the micro
-#                   program: copy feedback follow idle add memory heaps cut floor, or clairvoyant, the
-#                   second table (default: all)
+#                   program: copy feedback follow idle add memory heaps growth cut floor, or
+#                   clairvoyant, the second table (default: all)
 #   --help
 #
 # The library is built with gcc -O2, static and without asserts, installed into the work folder and
@@ -32,7 +32,7 @@ unset SLUICE_PREFETCH_LEVELS # of the adapter: set here where it is meant
 
 json=no quick=no work='' only='' harness=${SLUICE_HARNESS:-$root/../shared/replay}
 trace_runs='t100 t1000 t10000 t1000_fast_cap4 t10000_cap16'
-micro_parts='copy feedback follow idle add memory heaps cut floor'
+micro_parts='copy feedback follow idle add memory heaps growth cut floor'
 
 say() { printf '%s\n' "$*" >&2; }
 die() {
@@ -100,7 +100,7 @@ compile() {
 
 build_programs() {
     say "building the programs"
-    local sources=("$here"/{micro,micro_feedback,micro_heaps,micro_memory,micro_scale,figures,rig}.c)
+    local sources=("$here"/{micro,micro_feedback,micro_growth,micro_heaps,micro_memory,micro_scale,figures,rig}.c)
     if [ "$have_harness" = no ]; then
         compile micro "${sources[@]}"
         return
@@ -108,8 +108,8 @@ build_programs() {
     compile micro -DWITH_HARNESS -I"$harness" "${sources[@]}" "$here/micro_trace.c"
     compile replay -I"$harness" "$harness/replay.c" "$here/backend_sluice.c"
     compile generate -I"$harness" "$harness/sltrace_gen.c"
-    compile clairvoyant -I"$root"/tools/{clairvoyant,feedback-trace} "$here/clairvoyant.c" \
-        "$root"/tools/{clairvoyant,feedback-trace}/*.c -lm
+    compile clairvoyant -I"$root"/lib -I"$root"/tools/{clairvoyant,feedback-trace} "$here/clairvoyant.c" \
+        "$root"/tools/{clairvoyant,feedback-trace}/*.c "$root"/samples/common/{input,output_file,text}.c -lm
 }
 
 find_harness() {
@@ -319,6 +319,16 @@ map a tile, 256 heaps | 0.66 | - | heaps.256.map.median |
 map a tile, 1024 heaps | 3.0 | - | heaps.1024.map.median |
 map a tile, 4096 heaps | 19 | 0.1 | heaps.4096.map.median |
 map, answer, unmap a tile, 4096 heaps | - | - | heaps.4096.map_answer_unmap.median |
+defragment, 16 moves, 4096 heaps | - | - | growth.defragment.4096 |
+the same, as many times that of 2048 | - | 3 | growth.defragment.ratio |
+20000 failures before 20000 due later | - | - | growth.failures.20000 |
+the same, as many times that of 10000 | - | 3 | growth.failures.ratio |
+remove 20000 followers, newest first | - | - | growth.followers.20000 |
+the same, as many times that of 10000 | - | 3 | growth.followers.ratio |
+remove 20000 with given-up tiles | - | - | growth.reports.20000 |
+the same, as many times that of 10000 | - | 3 | growth.reports.ratio |
+ask for 20000 heaps, give them back | - | - | growth.heaps.20000 |
+the same, as many times that of 10000 | - | 3 | growth.heaps.ratio |
 memory per virtual tile | 40 | 8 | memory.virtual_tile.rss |
 the same, every texture seen once | 40 | 8 | memory.virtual_tile_seen.rss |
 memory per resident tile in addition | 78 | 64 | memory.resident_tile.rss |

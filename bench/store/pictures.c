@@ -76,7 +76,8 @@ static SluiceImageSource *open_ppm(const char *path)
 
 SluiceImageSource *open_exr(const char *path, SluiceFormat format)
 {
-    SluiceExrImageSourceCreateInfo create = {.pPath = path, .format = format, .log = log_to_stderr};
+    SluiceExrImageSourceCreateInfo create = {
+        .pPath = path, .format = format, .log = log_to_stderr, .maxMemorySize = UINT64_MAX};
     SluiceImageSource *source = NULL;
     return sluiceCreateExrImageSource(&create, &source) == SLUICE_SUCCESS ? source : NULL;
 }

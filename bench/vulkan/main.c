@@ -14,7 +14,7 @@ static const struct {
 } measurements[] = {
     {"sampling", measure_sampling}, {"feedback", measure_feedback}, {"fill", measure_fill},
     {"budget", measure_budget},     {"resolve", measure_resolve},   {"host", measure_host},
-    {"sharp", measure_sharp},
+    {"sharp", measure_sharp},       {"unseen", measure_unseen},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
 
@@ -164,7 +164,7 @@ int main(int argc, char **argv)
         {OPTION_CHOICE, "residency", "all|sparse|paged|dense", &a.residency, "mode to measure", 0,
          0},
         {OPTION_TEXT, "only", "NAMES", &a.only,
-         "some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)", 0, 0},
+         "some of sampling,feedback,fill,budget,resolve,host,sharp,unseen (default: all)", 0, 0},
         {OPTION_SIZE, "size", "WxH", &a.size,
          "of pictures in pixels; 0x0: 1920x1080, on software devices\n640x360, with --quick 160x90",
          0, 8192},

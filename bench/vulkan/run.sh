@@ -6,7 +6,7 @@
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
 #   --residency MODE  sparse, paged, dense or all (default: all that the device has)
-#   --only NAMES      some of sampling,feedback,fill,budget,resolve,host,sharp (default: all)
+#   --only NAMES      some of sampling,feedback,fill,budget,resolve,host,sharp,unseen (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           small pictures, few and small textures: to see that everything works
 #   --size WxH        of pictures in pixels (default: 1920x1080, on software devices 640x360, with
@@ -100,6 +100,7 @@ feedback.fragment.floor.quads_64.added|feedback, p = 1/64, fragment, floor|at mo
 feedback.fragment.floor.lattice_64.added|feedback, lattice, fragment, floor|
 fill.rate|cold fill, source free|paged 120 000, sparse 60 000 at least
 fill.256_per_frame.rate|... with the default of 256 tiles per frame|
+fill.growing.rate|... while staging memory grows, as by default|
 fill.floor.copy|the driver's copies alone|
 fill.floor.bind|the driver's binds alone, tile by tile|
 fill.floor.bind_runs_of_16|the driver's binds alone, runs of 16|
@@ -124,6 +125,16 @@ host_share_10.still.driver|... driver calls|
 host_share_10.still.allocations|... allocations per frame|0
 sharp.all.frames|first visible to sharp, p = 1|at most 4
 sharp.quads_16.frames_99|first visible to sharp, p = 1/16, 99 % of regions|at most 8
+unseen.always.tile_memory|1 000 unseen textures of 4096 x 4096, packed levels always there: heaps, pages, images|
+unseen.always.device_memory|all device memory that is not mapped|
+unseen.always.host_visible|mapped memory|
+unseen.always.read|texels read|
+unseen.always.first_sight|frames of fallback color at first sight|
+unseen.on_demand.tile_memory|1 000 unseen textures of 4096 x 4096, packed levels on demand: heaps, pages, images|
+unseen.on_demand.device_memory|all device memory that is not mapped|
+unseen.on_demand.host_visible|mapped memory|
+unseen.on_demand.read|texels read|
+unseen.on_demand.first_sight|frames of fallback color at first sight|
 END
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# check.sh PROGRAM SOURCE EXPECTED README: the example prints what is promised, and the README shows
-# its main function as it is. Prints TAP.
-program=$1 source=$2 expected=$3 readme=$4
+# check.sh PROGRAM SOURCE EXPECTED PAGE: the example prints what is promised, and the page shows its
+# main function as it is. Prints TAP.
+program=$1 source=$2 expected=$3 page=$4
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 status=0
@@ -15,12 +15,12 @@ else
     status=1
 fi
 
-awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$readme" >"$folder/shown"
+awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$page" >"$folder/shown"
 sed -n '/^int main/,$p' "$source" >"$folder/source"
 if diff -u "$folder/source" "$folder/shown" >"$folder/diff"; then
-    echo "ok 2 - the README shows it as it is"
+    echo "ok 2 - the page shows it as it is"
 else
-    echo "not ok 2 - the README shows it as it is"
+    echo "not ok 2 - the page shows it as it is"
     sed 's/^/# /' "$folder/diff"
     status=1
 fi

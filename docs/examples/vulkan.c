@@ -125,7 +125,8 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
                                            .queueFamilyIndex = app->family,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .log = log_callback,
-                                           .feedbackTimeout = 20}; /* frames: see draw_frame */
+                                           .timeStampsPerSecond = 60, /* frames: see draw_frame */
+                                           .feedbackTimeout = 20};
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
     SluiceVulkanTextureCreateInfo texture = {.source = source};
     SLUICE(sluiceAddVulkanTexture(app->streamer, &texture, &app->texture));

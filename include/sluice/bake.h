@@ -1,13 +1,13 @@
 /**
- * Turns pictures into tile stores (store.h): any file that libvips or OpenEXR reads, larger than
- * memory too, with mip levels as they should be. Link `sluice-bake`.
+ * Bakes pictures into tile stores (store.h). Link `sluice-bake`.
  *
- * A picture is read once from top to bottom. Each level keeps the rows of a tile or two and those
- * that the filter reaches over, so memory grows with the picture's width alone.
+ * Reads any file that libvips or OpenEXR reads, including files larger than memory, and filters the
+ * mip levels. A picture is read once, from top to bottom. Each level keeps the rows of one or two
+ * tiles and the rows that the filter reaches, so memory grows only with the picture's width.
  *
- * Levels are filtered where numbers add up as light does: sRGB decoded, colours weighted by alpha,
- * normals as vectors. Each texel is made from the level above at full precision; sizes are rounded
- * down, and where that is not half, weights follow the area that a texel covers.
+ * Levels are filtered in linear light: sRGB is decoded, colors are weighted by alpha, normals are
+ * filtered as vectors. Each level is made from the next finer one at full precision. Sizes are
+ * rounded down; where a size does not halve evenly, weights follow the area that a texel covers.
  */
 #ifndef SLUICE_BAKE_H
 #define SLUICE_BAKE_H
@@ -18,147 +18,190 @@
 extern "C" {
 #endif
 
-/** zstd's level where none is given. */
+/** Default compression level of zstd. */
 #define SLUICE_BAKE_DEFAULT_COMPRESSION 10u
 
-/** How much of the level above makes a texel. */
+/** Filter that makes a texel from the next finer level. */
 typedef enum SluiceBakeFilter {
-    SLUICE_BAKE_FILTER_BOX = 0,   ///< the mean of the area that it covers
-    SLUICE_BAKE_FILTER_KAISER = 1 ///< sharper: a sinc 6 texels wide, windowed (alpha 4); may ring
+    SLUICE_BAKE_FILTER_BOX = 0,   ///< Mean of the area that the texel covers.
+    SLUICE_BAKE_FILTER_KAISER = 1 ///< Sharper: Kaiser-windowed sinc, 6 texels, alpha 4. May ring.
 } SluiceBakeFilter;
 
-/** What lies beyond an edge, for filters that reach there; a box does not. */
+/** Texels beyond an edge, for filters that reach there. The box filter does not. */
 typedef enum SluiceBakeWrap {
     SLUICE_BAKE_WRAP_CLAMP = 0,
     SLUICE_BAKE_WRAP_REPEAT = 1,
     SLUICE_BAKE_WRAP_MIRROR = 2
 } SluiceBakeWrap;
 
-/** What the numbers of R, G and B in the picture mean. */
+/** Transfer function of R, G and B in the picture. */
 typedef enum SluiceBakeTransfer {
-    /** sRGB for integers of two channels or more, unless it is a normal map; else LINEAR. */
+    /** SRGB for integer pictures with two or more channels that are not normal maps; else LINEAR.
+     */
     SLUICE_BAKE_TRANSFER_AUTO = 0,
     SLUICE_BAKE_TRANSFER_SRGB = 1,
     SLUICE_BAKE_TRANSFER_LINEAR = 2
 } SluiceBakeTransfer;
 
-/** What the picture's alpha means; what is stored means the same. */
+/** Meaning of the picture's alpha. The store keeps the same meaning. */
 typedef enum SluiceBakeAlpha {
-    SLUICE_BAKE_ALPHA_AUTO = 0, ///< PREMULTIPLIED for OpenEXR files and sources, else STRAIGHT
+    SLUICE_BAKE_ALPHA_AUTO = 0, ///< PREMULTIPLIED for OpenEXR files and sources, else STRAIGHT.
     /**
-     * Coverage, clamped to [0, 1], that colours are weighted by. Where it is 0 colours count a
-     * little (2^-24), so that a texel that nothing covers is the mean of its colours. Filters with
-     * negative lobes let colours fade to black instead where less than 1/1024 is left of alpha.
+     * Coverage, clamped to [0, 1], that colors are weighted by. Alpha 0 counts a little (2^-24), so
+     * an uncovered texel is the mean of its colors. Filters with negative lobes fade colors to
+     * black instead where the resulting alpha is below 1/1024.
      */
     SLUICE_BAKE_ALPHA_STRAIGHT = 1,
-    /** Colours hold it already, or it is no coverage at all: channels are filtered one by one. */
+    /** Colors are premultiplied, or alpha is not coverage. Channels are filtered independently. */
     SLUICE_BAKE_ALPHA_PREMULTIPLIED = 2
 } SluiceBakeAlpha;
 
-/** What is made of a picture. Zero in any field asks for the default written beside it. */
+/** Settings of one picture. A field of zero selects its default. */
 typedef struct SluiceBakeSettings {
     /**
-     * Any format but BC2, BC6H, BC7 and the signed BC4 and BC5. Of those with an sRGB twin the twin
-     * is taken that the transfer asks for, whichever is named; formats without one hold linear
-     * light. UNDEFINED: what fits the picture. Bytes of one channel R8, of two that are no grey and
-     * alpha R8G8, else R8G8B8A8; 16-bit integers R32 for one channel, half RGBA for more; floats
-     * of 16 or 32 bits as they are, one channel or four.
-     * For normal maps of bytes R8G8B8A8 UNORM.
+     * Format of the store: any but BC2, BC6H, BC7 and the signed BC4 and BC5. Of a format and its
+     * sRGB twin, `transfer` selects one, whichever you name. Formats without a twin hold linear
+     * light.
+     *
+     * Default (UNDEFINED): the format that fits the picture.
+     * - 8-bit integers: R8 for one channel; R8G8 for two that are not gray and alpha; else
+     *   R8G8B8A8. Normal maps: R8G8B8A8 UNORM.
+     * - 16-bit integers: R32 for one channel, half RGBA for more.
+     * - 16- and 32-bit floats: same type, one or four channels.
      */
     SluiceFormat format;
-    SluiceBakeTransfer transfer; ///< AUTO
-    SluiceBakeAlpha alpha;       ///< AUTO
-    SluiceBakeFilter filter;     ///< BOX
-    SluiceBakeWrap wrapX, wrapY; ///< CLAMP; also recorded as the address modes
-    /** R, G and B are unit vectors, integers holding (n + 1) / 2: every level's length is 1 again.
-     *  Where vectors cancel each other, (0, 0, 1). Pictures of two channels: z >= 0 is found. */
+    SluiceBakeTransfer transfer; ///< Default: AUTO.
+    SluiceBakeAlpha alpha;       ///< Default: AUTO.
+    SluiceBakeFilter filter;     ///< Default: BOX.
+    SluiceBakeWrap wrapX, wrapY; ///< Recorded as address modes. Default: CLAMP.
+    /**
+     * R, G and B are unit vectors; integers hold (n + 1) / 2. Vectors of every level are
+     * normalized. Vectors that cancel out become (0, 0, 1). For pictures of two channels z >= 0 is
+     * computed.
+     */
     bool normalMap;
-    /** 0, or an alpha above 0 and at most 1: a cut-out's. Each level's alpha is scaled so that as
-     *  many of its texels reach it as in the picture itself. Reads the picture twice. */
+    /**
+     * Alpha threshold of a cut-out, above 0 and at most 1. Alpha of each level is scaled so that
+     * the same share of texels reaches it as in the picture. The picture is read twice. Default: 0,
+     * off.
+     */
     float cutout;
-    uint32_t compressionLevel; ///< zstd's, 1 to 22; 0: SLUICE_BAKE_DEFAULT_COMPRESSION
+    uint32_t
+        compressionLevel; ///< Level of zstd, 1 to 22. Default: SLUICE_BAKE_DEFAULT_COMPRESSION.
     bool uncompressed;
+    /**
+     * Keep R, G and B of OpenEXR files as stored, ignoring `chromaticities`. The store's color
+     * space is then UNDEFINED. Otherwise colors are converted to the primaries of Rec. 709, as
+     * exr.h says, unless normalMap is set.
+     */
+    bool keepPrimaries;
 } SluiceBakeSettings;
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a baker. A field of zero selects its default. */
 typedef struct SluiceBakerCreateInfo {
-    uint32_t threadCount; ///< that make tiles, callers among them; 0: one per processor
+    uint32_t
+        threadCount; ///< Threads that make tiles, including callers. Default: one per processor.
     /**
-     * Bytes for all pictures that are baked at a time; 0: 2^30. A picture waits until others have
-     * given back enough. What the reading of a file takes is estimated, because libvips has memory
-     * of its own.
+     * Most bytes for all pictures baked at the same time. Default: 2^30. A picture waits until
+     * others have released enough. The memory for reading a file is an estimate, because libvips
+     * allocates its own. Formats that libvips unpacks as a whole (interlaced PNG, progressive JPEG,
+     * WebP, GIF, HEIF, JPEG XL) count at their full size.
      */
     uint64_t maxMemory;
-    /** NULL: malloc and free. From all threads. What libvips, OpenEXRCore and libsquish need is
-     *  from malloc. */
+    /**
+     * Default: malloc and free. Called from all threads. libvips, OpenEXRCore and libsquish always
+     * use malloc.
+     */
     const SluiceAllocationCallbacks *pAllocator;
-    SluiceLogCallback log; ///< what is wrong with a file; names it
+    SluiceLogCallback log; ///< Problems of a file, with its name.
 } SluiceBakerCreateInfo;
 
-/** Threads and memory that bakes share. */
+/** Threads and memory limit that bakes share. */
 typedef struct SluiceBaker SluiceBaker;
 
 /**
- * Starts the threads. Initialises libvips for the process and turns its cache of operations off.
- * Errors: NULL_POINTER; UNSUPPORTED if libvips does not start; OUT_OF_HOST_MEMORY, also for
- * threads. Thread safety: any thread.
+ * Creates a baker and starts its threads. Initializes libvips for the process and disables the
+ * operation cache of libvips.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if libvips does not start;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker **pBaker);
 
-/** NULL is allowed. No call may be under way. */
+/**
+ * Destroys a baker. No call on it may be in progress. NULL is allowed.
+ * Thread safety: external on `baker`.
+ */
 SLUICE_API void sluiceDestroyBaker(SluiceBaker *baker);
 
-/** Zero in any field asks for the default written beside it. */
+/** Input and output of one bake. A field of zero selects its default. */
 typedef struct SluiceBakeInfo {
-    /** The picture; or NULL, and it is `source`. */
+    /** Path of the picture. NULL: bake `source`. */
     const char *pInputPath;
-    /** Level 0 is read, or all levels if they are block-compressed, as they are. Not owned. */
+    /** Source to bake if pInputPath is NULL: level 0, or all levels unchanged if they are
+     *  block-compressed. Not owned. */
     SluiceImageSource *source;
-    const char *pOutputPath; ///< required
+    const char *pOutputPath; ///< Required.
     SluiceBakeSettings settings;
-    /** Bake although a file is there that was made from this input with these settings. */
+    /** Bake even if the output was made from this input with these settings. */
     bool force;
     void *pUserData;
-    /** NULL, or called now and then on the caller's thread; false stops: CANCELLED. */
+    /** Reports progress on the caller's thread. Return false to stop with
+     *  SLUICE_ERROR_CANCELLED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
 } SluiceBakeInfo;
 
-/** What became of a picture. */
+/** Result of one bake. */
 typedef struct SluiceBakeReport {
-    bool skipped; ///< the file was there: size, time and settings hash of its input are the same
+    bool skipped; ///< Output was up to date: same size, time and settings hash of the input.
     uint32_t width, height, mipLevelCount, arrayLayerCount;
     SluiceFormat format;
-    uint64_t inputSize, outputSize; ///< bytes of the files; 0 for a source
-    uint64_t replacedTexelCount;    ///< of the picture, that held a NaN, infinity or too much
-    uint64_t resumedTileCount;      ///< found from an interrupted bake
-    uint64_t memorySize;            ///< bytes that were set aside
+    uint64_t inputSize, outputSize; ///< Bytes of the files. 0 for a source.
+    uint64_t replacedTexelCount;    ///< Texels in one or more of the last three counts.
+    uint64_t resumedTileCount;      ///< Tiles reused from an interrupted bake.
+    uint64_t memorySize;            ///< Bytes reserved for this picture.
+    uint64_t nanTexelCount;         ///< Texels with a NaN, which became 0.
+    uint64_t infiniteTexelCount;    ///< Texels with an infinity, which became finite.
+    uint64_t clampedTexelCount;     ///< Texels with a finite value out of range.
 } SluiceBakeReport;
 
 /**
  * Bakes one picture into one store.
  *
- * Numbers that are none: NaN becomes 0; infinities, and what lies beyond, become +-65504, or
- * +-2^120 where 32-bit floats are stored. Level 0 is stored byte for byte where the format holds
- * the picture's samples. Pictures whose data are block-compressed (DDS, KTX2) keep all their
- * levels and need the full chain; of the settings, a transfer renames their format to its sRGB twin
- * or back, and normalMap, wraps and compression apply.
- * ICC profiles and orientation tags are not applied; CMYK, Lab and the like become sRGB.
+ * NaN becomes 0. Infinities become +-65504, or +-2^120 in stores of 32-bit floats, so that filters
+ * in shaders stay finite. In stores of 32-bit floats finite values are kept and averaged without
+ * overflow; in other stores they are clamped to +-65504.
  *
- * The file is complete under its name or not there. What an interrupted bake leaves behind, beside
- * it with ".part" added, the next one goes on with.
+ * Level 0 is stored byte for byte if the format holds the picture's samples. Block-compressed
+ * pictures (DDS, KTX2) keep all their levels and must have the full chain. Of the settings, only
+ * these apply to them: transfer (selects the sRGB twin of the format or the reverse), normalMap,
+ * wraps, compression. ICC profiles and orientation tags are not applied. CMYK, Lab and similar
+ * become sRGB.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for values outside their ranges, and if the output is the
- *         input; FILE_NOT_FOUND, IO;
- *         CORRUPT_DATA for files that no reader can make sense of, or that are cut off;
- *         UNSUPPORTED for pictures of more than four channels or of complex numbers, formats that
- *         cannot be encoded here; LIMIT_EXCEEDED if maxMemory does not do for the picture's width;
- *         CANCELLED; OUT_OF_HOST_MEMORY. `pReport` may be NULL.
- * Thread safety: any thread, several at once, but not to the same output.
+ * The output is complete or absent. An interrupted bake leaves the output path + ".sluice-part";
+ * the next bake resumes it. `pReport` may be NULL.
+ *
+ * Returns SLUICE_NOT_READY, with nothing written, while the process has too few file descriptors
+ * for the input. Sluice leaves the last 16 below the soft limit to others. Close files and bake
+ * again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range,
+ *         including the source's info, and if the output or its .sluice-part file is the input,
+ * also through links; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO; SLUICE_ERROR_BUSY if another
+ *         writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated files and files that
+ *         no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels, complex
+ *         numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if maxMemory
+ *         is too small for the picture; SLUICE_ERROR_CANCELLED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread, several calls at the same time, but only one per output.
  */
 SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
                                        SluiceBakeReport *pReport);
 
-/** What decides what the texels are, as stores record it. Any thread. */
+/**
+ * Returns a hash of all settings that determine the texels, as recorded in stores. 0 for NULL.
+ * Thread safety: any thread.
+ */
 SLUICE_API uint64_t sluiceHashBakeSettings(const SluiceBakeSettings *pSettings);
 
 #ifdef __cplusplus

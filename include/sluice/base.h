@@ -1,8 +1,8 @@
 /**
- * What every Sluice header shares: results, memory and log callbacks, the export macro.
+ * Types that every Sluice header shares: results, memory and log callbacks, the export macro.
  *
- * Threading, for the whole library: an object is externally synchronised unless its header says
- * otherwise; calls that take a const handle may overlap each other. There are no mutable globals.
+ * Thread safety of the whole library: external on each object, unless its header says otherwise.
+ * Calls that take a const handle may run at the same time. There are no mutable globals.
  */
 #ifndef SLUICE_BASE_H
 #define SLUICE_BASE_H
@@ -22,82 +22,93 @@ extern "C" {
 #endif
 
 /**
- * What a call answers. As in VkResult: 0 is success, positive is news, negative is failure.
- * After a failure nothing has changed, unless the call says otherwise.
+ * Result of a call. Signs are those of VkResult: 0 is success, positive values are not errors,
+ * negative values are errors. A call that returns an error has changed nothing, unless its comment
+ * says otherwise.
  */
 typedef enum SluiceResult {
     SLUICE_SUCCESS = 0,
-    /** There was more than the caller had room for. */
+    /** More results exist than the caller's array holds. */
     SLUICE_INCOMPLETE = 1,
-    /** The answer is not there yet; ask again. */
+    /** The result is not available yet. Call again. */
     SLUICE_NOT_READY = 2,
-    /** Requests are left that no heap has room for; they stay queued. */
+    /** Some requests found no free slot in any heap. They stay queued. */
     SLUICE_BUDGET_REACHED = 3,
 
     SLUICE_ERROR_OUT_OF_HOST_MEMORY = -1,
     SLUICE_ERROR_OUT_OF_DEVICE_MEMORY = -2,
-    /** A pointer that must not be NULL was. */
+    /** A required pointer is NULL. */
     SLUICE_ERROR_NULL_POINTER = -3,
-    /** A value is outside the range its documentation gives. */
+    /** A value is outside its documented range. */
     SLUICE_ERROR_INVALID_ARGUMENT = -4,
-    /** A heap of zero tiles, or a tile of zero bytes. */
+    /** A heap has zero tiles, or a tile has zero bytes. */
     SLUICE_ERROR_ZERO_HEAP_CAPACITY = -5,
-    /** A texture without any tile, or a tile, level or texture without any texel. */
+    /** A texture has no tile; or a tile, level or texture has no texel. */
     SLUICE_ERROR_ZERO_TILES = -6,
-    /** Packed level and packed tile counts contradict each other or the level count. */
+    /** The counts of packed levels and packed tiles contradict each other or the level count. */
     SLUICE_ERROR_INVALID_PACKED_MIPS = -7,
     /** No texture ever had this id. */
     SLUICE_ERROR_UNKNOWN_TEXTURE = -8,
-    /** The texture of this id was removed. */
+    /** The texture with this id was removed. */
     SLUICE_ERROR_STALE_TEXTURE = -9,
-    /** A tile index beyond the texture's tiles. */
+    /** The tile index is not below the texture's tile count. */
     SLUICE_ERROR_UNKNOWN_TILE = -10,
-    /** The tile is not in a state in which this may be said of it. */
+    /** The tile's state does not allow this call. */
     SLUICE_ERROR_INVALID_TILE_STATE = -11,
-    /** A time stamp or retire value lies before an earlier one. */
+    /** A time stamp or retire value is below an earlier one. */
     SLUICE_ERROR_TIME_BACKWARDS = -12,
-    /** A map or buffer has another size than the texture asks for. */
+    /** A map or buffer does not have the size that the texture requires. */
     SLUICE_ERROR_SIZE_MISMATCH = -13,
     SLUICE_ERROR_UNKNOWN_HEAP = -14,
     /** The heap still holds tiles. */
     SLUICE_ERROR_HEAP_IN_USE = -15,
-    /** The texture has more tiles, or the manager more textures, than an index can count. */
+    /** A count is beyond what an index or a documented limit allows, such as tiles per texture. */
     SLUICE_ERROR_LIMIT_EXCEEDED = -16,
-    /** A file contradicts its own format; the log callback says where. */
+    /** A file contradicts its own format. The log callback says where. */
     SLUICE_ERROR_CORRUPT_DATA = -17,
-    /** Well-formed, but of a kind that Sluice does not handle; the log callback says which. */
+    /** The input is well-formed, but Sluice does not handle its kind. The log callback says why. */
     SLUICE_ERROR_UNSUPPORTED = -18,
     SLUICE_ERROR_FILE_NOT_FOUND = -19,
-    /** The operating system could not read or write. */
+    /** The operating system failed to read or write. */
     SLUICE_ERROR_IO = -20,
     SLUICE_ERROR_CANCELLED = -21,
-    /** A Vulkan call failed; the log callback says which and with what VkResult. */
+    /** A Vulkan call failed. The log callback names the call and its VkResult. */
     SLUICE_ERROR_VULKAN = -22,
-    SLUICE_ERROR_DEVICE_LOST = -23
+    SLUICE_ERROR_DEVICE_LOST = -23,
+    /** Another writer has the file open. Nothing has changed. */
+    SLUICE_ERROR_BUSY = -24
 } SluiceResult;
 
-/** The enumerator's name, "SLUICE_RESULT_UNKNOWN" for others. Never NULL. Any thread. */
+/**
+ * Returns the enumerator's name, or "SLUICE_RESULT_UNKNOWN" for other values. Never NULL.
+ * Thread safety: any thread.
+ */
 SLUICE_API const char *sluiceResultString(SluiceResult result);
 
 /**
- * Host memory. Both functions may be called from any thread that the owning object is used on or
- * that it started. Where a create-info takes a pointer to this, NULL asks for malloc and free.
+ * Functions that allocate and free host memory. Sluice calls them on the threads that use the
+ * owning object and on the threads that the object started. Wherever a create-info takes a pointer
+ * to this struct, NULL means malloc and free.
  */
 typedef struct SluiceAllocationCallbacks {
     void *pUserData;
-    /** `size` > 0 bytes at a multiple of `alignment` (a power of two), or NULL. */
+    /** Returns `size` > 0 bytes at a multiple of `alignment` (a power of two), or NULL. */
     void *(*pfnAllocate)(void *pUserData, size_t size, size_t alignment);
-    /** `size` is what was asked for. `pMemory` is never NULL. */
+    /** Frees `pMemory`, which is never NULL. `size` is the size that was requested. */
     void (*pfnFree)(void *pUserData, void *pMemory, size_t size);
 } SluiceAllocationCallbacks;
 
+/** Severity of a log message. */
 typedef enum SluiceLogSeverity {
     SLUICE_LOG_INFO = 0,
     SLUICE_LOG_WARNING = 1,
     SLUICE_LOG_ERROR = 2
 } SluiceLogSeverity;
 
-/** Off when `pfnLog` is NULL. Called on the thread where it happened; may be several at once. */
+/**
+ * Receives log messages. Off if `pfnLog` is NULL. Called on the thread that reports the message;
+ * several threads may call at the same time.
+ */
 typedef struct SluiceLogCallback {
     void *pUserData;
     /** `pMessage` is one line without a newline, valid during the call. */

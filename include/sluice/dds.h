@@ -1,5 +1,5 @@
 /**
- * DDS files as image sources: what is in the file is what is delivered. Link `sluice-container`.
+ * DDS files as image sources. Texels are returned as stored. Link `sluice-container`.
  */
 #ifndef SLUICE_DDS_H
 #define SLUICE_DDS_H
@@ -10,23 +10,23 @@
 extern "C" {
 #endif
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceDdsImageSourceCreateInfo {
-    const char *pPath; ///< required; copied
+    const char *pPath; ///< Required. Copied.
     /**
-     * UNDEFINED: the file's. Otherwise another name for the same bytes: UNORM for SRGB and the
-     * reverse, since only files with a DX10 header tell them apart, or BC1_RGB for BC1_RGBA.
+     * Format to return. Default: the file's. Another value must name the same bytes: UNORM for SRGB
+     * or the reverse (only DX10 headers distinguish them), or BC1_RGB for BC1_RGBA.
      */
     SluiceFormat format;
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
-    SluiceLogCallback log;                       ///< what is wrong with a file, and where
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;                       ///< Problems of a file, with their position.
 } SluiceDdsImageSourceCreateInfo;
 
 /**
- * Names a file. It is opened at the first sluiceGetImageInfo or sluiceReadImageRegion and stays
- * open: a source that nobody asks costs no descriptor and no read.
+ * Creates a source for a file, without opening it. The first sluiceGetImageInfo or
+ * sluiceReadImageRegion opens the file; it stays open. An unused source costs no file descriptor.
  *
- * | in the file                                                      | delivered              |
+ * | in the file                                                      | returned               |
  * |------------------------------------------------------------------|------------------------|
  * | DXT1                                                             | BC1_RGBA_UNORM         |
  * | DXT2, DXT3; DXT4, DXT5 (2 and 4: premultiplied, and left so)     | BC2_UNORM; BC3_UNORM   |
@@ -37,20 +37,25 @@ typedef struct SluiceDdsImageSourceCreateInfo {
  * | DX10 header with DXGI's name of any SluiceFormat                 | that                   |
  * | the same with B8G8R8A8 or B8G8R8X8                               | R8G8B8A8               |
  *
- * BGRA is turned into RGBA as it is read, unused bits are an alpha of 1; all else is delivered as
- * it is. The pitch in the header is not looked at: rows are packed, as every writer has them.
- * Arrays come as layers, cube maps as six of them, in the order +X, -X, +Y, -Y, +Z, -Z. At most
- * 2^20 texels in a direction, 2^16 layers.
+ * BGRA is converted to RGBA when read, and unused bits become an alpha of 1. Everything else is
+ * returned as stored. The pitch in the header is ignored: rows are packed, as every writer does.
+ * Arrays become layers. Cube maps become six layers, in the order +X, -X, +Y, -Y, +Z, -Z. At most
+ * 2^20 texels in width and height, and 2^16 layers.
  *
- * The chain must be full, down to one texel, because coarse levels are what streaming falls back
- * to. A file that ends earlier is UNSUPPORTED: write it again with all levels (texconv -m 0,
+ * The mip chain must be full, down to one texel, because streaming falls back to coarse levels. A
+ * file with fewer levels is SLUICE_ERROR_UNSUPPORTED: write it again with all levels (texconv -m 0,
  * nvcompress without -nomips).
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for unknown formats; OUT_OF_HOST_MEMORY.
- *         From the first query or read on: FILE_NOT_FOUND, IO; CORRUPT_DATA for headers that
- *         contradict themselves and files shorter than they say; UNSUPPORTED for other formats, a
- *         `format` of other bytes, incomplete chains and cube maps, volumes, 1D textures. Each is
- *         logged with the file's name and what to do; the next call tries again.
+ * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
+ * the file. Sluice leaves the last 16 below the soft limit to others.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
+ *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers and truncated files;
+ *         SLUICE_ERROR_UNSUPPORTED for other formats, a `format` of different bytes, incomplete mip
+ *         chains and cube maps, volumes, 1D textures. Each error is logged once, at most 16 per
+ *         file, with the file's name and a remedy. The next call tries again.
  * Thread safety: any thread.
  * Source: Microsoft, "Programming Guide for DDS".
  */

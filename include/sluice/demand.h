@@ -1,10 +1,10 @@
 /**
- * Demand loading for ray tracers and everything else that launches, learns what is missing, loads
- * it, and launches again until nothing is. Part of `sluice-vulkan`.
+ * Demand loading for ray tracers and other programs that launch, learn what is missing, load it,
+ * and launch again until nothing is missing. Part of `sluice-vulkan`.
  *
- * Textures are opened when they are first sampled and loaded tile by tile; resources are pages that
- * a callback of the application fills. Shaders (shaders/include/sluice/demand.glsl) look a page up,
- * or record that they miss it. A launch:
+ * Textures are opened when first sampled, and loaded tile by tile. Resources are pages that a
+ * callback of the application fills. Shaders (shaders/include/sluice/demand.glsl) look up a page,
+ * or record a request for it. A launch:
  *
  *     do {
  *         sluicePrepareDemandLaunch(loader, commandBuffer, &launch);
@@ -15,12 +15,12 @@
  *         sluiceWaitDemandTicket(loader, ticket, UINT64_MAX, NULL);
  *     } while (requests.missingCount > 0);
  *
- * Interactive renderers launch on without waiting for the ticket, and take what is there.
- * docs/demand.md goes through it step by step.
+ * Interactive renderers do not wait for the ticket; they show what is resident. docs/demand.md
+ * explains each step.
  *
- * Thread safety: external on the loader, but for sluiceGetDemandTicketStatus,
- * sluiceWaitDemandTicket, sluiceCancelDemandTicket and sluiceAbortDemandLoader: any thread.
- * Ids are never reused for another thing: those of what was destroyed are refused.
+ * Ids are never reused. The id of a destroyed object is refused.
+ *
+ * Thread safety, unless a function says otherwise: external on the loader.
  */
 #ifndef SLUICE_DEMAND_H
 #define SLUICE_DEMAND_H
@@ -33,125 +33,197 @@ extern "C" {
 
 typedef struct SluiceDemandLoader SluiceDemandLoader;
 
-/** The low 32 bits are the index that shaders take; 0 is no texture's. */
+/** Id of a texture. Never 0. The low 32 bits are the index for shaders. */
 typedef uint64_t SluiceDemandTextureId;
 typedef uint64_t SluiceDemandResourceId;
-/** Of the work that one call caused; 0 is none and always complete. */
+/** Ticket of the work that one call started. 0: no work, always complete. */
 typedef uint64_t SluiceDemandTicket;
 
 #define SLUICE_NO_DEMAND_TEXTURE ((SluiceDemandTextureId)0)
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a demand loader. A field of zero selects its default. */
 typedef struct SluiceDemandLoaderCreateInfo {
-    VkInstance instance; ///< required, as all handles
-    VkPhysicalDevice physicalDevice;
-    VkDevice device; ///< Vulkan 1.2, with what sluiceRequireVulkanFeatures asks for PAGED
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
-    uint32_t queueFamilyIndex; ///< of the queue that launches are submitted to: it must compute
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
+    VkInstance instance;             ///< Required. Vulkan 1.2.
+    VkPhysicalDevice physicalDevice; ///< Required.
+    VkDevice device; ///< Required. Vulkan 1.2, features of sluiceRequireVulkanFeatures for PAGED.
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< Required.
+    uint32_t queueFamilyIndex; ///< Family of the queue for launches. Must support compute.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;
-    uint32_t launchesInFlight; ///< at most 16; 0: 2
-    uint32_t maxTextureCount;  ///< variants and grids count, too; at most 2^24; 0: 2^17
-    uint64_t pageCapacity;     ///< virtual pages, at most 2^31, rounded up to 1024; 0: 2^26
-    /** Pages that a scan lists and one call serves; the others wait for the next. At most 2^20;
-     *  0: 8192. Pages of resources that are refused, or not ready, are listed whenever they are
-     *  missed: it should be larger than their number. */
+    uint32_t launchesInFlight; ///< 1 to 16. Default: 2.
+    uint32_t maxTextureCount;  ///< Including variants and grids. At most 2^24. Default: 2^17.
+    uint64_t pageCapacity;     ///< Virtual pages, at most 2^31. Rounded up to 1024s. Default: 2^26.
+    /**
+     * Most pages that one scan lists and one call serves. Other pages wait for the next scan. At
+     * most 2^20. Default: 8192. Choose more than the number of resource pages that are refused or
+     * not ready: these are listed each time they are missed.
+     */
     uint32_t maxRequestsPerLaunch;
-    /** Device memory for tiles, bytes; a hard cap. At most 128 MiB for each of maxPageChunkCount
-     * are used. 0: half of the device's. */
+    /**
+     * Bytes of device memory for tiles. Hard limit. At most the tiles that maxPageChunkCount images
+     * hold are used: 7.4 GiB for 64 images of one format. Default: half of the device's memory.
+     */
     uint64_t memoryBudget;
-    /** Reads under way and texels not yet copied, in tiles of 64 KiB; at most 2^16; 0: 1024. Beside
-     *  them as many openings and fills, those that wait for another attempt included. */
+    /**
+     * Most tiles of 64 KiB being read or waiting to be copied. At most 2^16. Default: 1024. The
+     * same number of openings and fills is allowed in addition, including those that wait for a
+     * retry.
+     */
     uint32_t maxTilesInFlight;
-    uint32_t loaderThreadCount;      ///< 0: as sluiceCreateTileLoader
-    SluiceTileRetryPolicy readRetry; ///< also of resources that say NOT_READY
-    /** At once; all openings together count as one source, and so do the fills of a resource. 0: as
-     *  sluiceCreateTileLoader. */
+    uint32_t loaderThreadCount;      ///< Default: as in SluiceTileLoaderCreateInfo.
+    SluiceTileRetryPolicy readRetry; ///< Also for resources that return SLUICE_NOT_READY.
+    /**
+     * Most concurrent reads per source. All openings together count as one source, and so do the
+     * fills of one resource. Default: as in SluiceTileLoaderCreateInfo.
+     */
     uint32_t maxReadsPerSource;
-    uint32_t maxPageChunkCount; ///< as in SluiceVulkanStreamerCreateInfo; 0: 64
-    /** Nothing is ever evicted, and shaders do not say what they use: a little faster. */
+    uint32_t
+        maxPageChunkCount; ///< As in SluiceVulkanStreamerCreateInfo. At most 2^10. Default: 64.
+    /** Never evict, and do not track which pages shaders use. Slightly faster. */
     bool noEviction;
-    /** With a working set larger than the budget some tiles stay away, and samples there take
-     *  coarser ones, instead of all of them becoming a little blurrier. */
+    /**
+     * Do not blur textures when the working set exceeds the budget. Some tiles then stay missing,
+     * and samples there use coarser ones. Default: a LOD bias for all textures.
+     */
     bool noLodBias;
-    SluiceTileReadFailureCallback failure; ///< told of every read that fails, see loader.h
+    SluiceTileReadFailureCallback failure; ///< Receives every failed read. See loader.h.
+    /**
+     * Nanoseconds until failed work may be tried again: textures that could not be opened, and four
+     * tiles of a texture or pages of a resource; the others as soon as one of the four loads. They
+     * are loaded when shaders next request them. Default: 30 s. UINT64_MAX: never.
+     */
+    uint64_t failureRetryDelay;
+    /**
+     * Bytes of staging memory made at creation and kept. At least 4 MiB, at most 64 KiB times
+     * maxTilesInFlight. Reads that need more get it in blocks of 4 MiB, which are freed after 120
+     * idle launches. Making blocks costs the first fill a third of its rate on an H200
+     * (bench/demand, fill.defaults.rate). UINT64_MAX makes all staging memory at creation. Default:
+     * 4 MiB.
+     */
+    uint64_t minStagingSize;
 } SluiceDemandLoaderCreateInfo;
 
 /**
- * Errors: NULL_POINTER; INVALID_ARGUMENT for values beyond their limits, a budget below 4 MiB, or a
- * queue family that does not compute;
- * UNSUPPORTED if the device cannot page; LIMIT_EXCEEDED if pageCapacity or maxTextureCount need a
- * storage buffer beyond the device's maxStorageBufferRange, or there are fewer pages than textures;
- * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Creates a demand loader. Errors are logged to `log`.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, a
+ *         budget below 4 MiB, or a queue family that does not exist or does not support compute;
+ *         SLUICE_ERROR_UNSUPPORTED if the device does not support paged mode, or if instance or
+ *         device were created for less than Vulkan 1.2; SLUICE_ERROR_LIMIT_EXCEEDED if pageCapacity
+ *         or maxTextureCount require a storage buffer above the device's maxStorageBufferRange, or
+ *         if there are fewer pages than textures; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
                                                  SluiceDemandLoader **pLoader);
 
-/** Cancels what has not begun, waits for reads under way and for the device, closes every image.
- *  NULL is allowed. */
+/**
+ * Destroys a loader: cancels work that has not begun, waits for reads in progress and for the
+ * device, and closes every image. NULL is allowed.
+ * Thread safety: external on `loader` and on all queues of the device.
+ */
 SLUICE_API void sluiceDestroyDemandLoader(SluiceDemandLoader *loader);
 
+/** Filter between texels or between mip levels. */
 typedef enum SluiceDemandFilter {
     SLUICE_DEMAND_FILTER_LINEAR = 0,
     SLUICE_DEMAND_FILTER_NEAREST = 1
 } SluiceDemandFilter;
 
-/** How a texture is sampled. Zero is a trilinear sampler that repeats. */
+/** How a texture is sampled. All zero: trilinear, with the source's address modes. */
 typedef struct SluiceDemandSampler {
+    /**
+     * Default (0, VK_SAMPLER_ADDRESS_MODE_REPEAT): the modes that the source records, or REPEAT.
+     * Modes that differ from the source's are used, and logged once per loader.
+     */
     VkSamplerAddressMode addressModeU, addressModeV;
     SluiceDemandFilter filter, mipmapFilter;
-    float maxAnisotropy; ///< at most 64; 0 and 1: none
-    float lodBias;       ///< -16 to 16
+    float maxAnisotropy; ///< At most 64. 0 and 1: no anisotropy.
+    float lodBias;       ///< -16 to 16.
     float borderColor[4];
+    bool explicitAddressModes; ///< Use the address modes above even if they are 0.
 } SluiceDemandSampler;
 
-/** Where the texels come from: an image that is there, or one that is opened when it is needed. */
+/** Image of a texture: an existing source, or functions that open one when it is first sampled. */
 typedef struct SluiceDemandImage {
-    /** Not NULL: asked for its info when first sampled; must outlive the texture. It is never
-     *  closed. Calls that take it away wait for its reads that are under way. */
+    /**
+     * Existing source; never closed. Its info is queried when it is first sampled. Must outlive the
+     * texture. Calls that remove it wait for its reads in progress. NULL: use pfnOpen.
+     */
     SluiceImageSource *source;
-    /** Of pfnOpen and pfnClose. Must stay as long as the texture, and where that is destroyed while
-     *  it is being opened until pfnClose, at the latest until the loader is destroyed. */
+    /**
+     * User data of pfnOpen and pfnClose. Must outlive the texture. If the texture is destroyed
+     * while opening, keep it until pfnClose or loader destruction.
+     */
     void *pUserData;
-    /** Where `source` is NULL. On a worker thread, at most once at a time; again after NOT_READY,
-     *  IO, OUT_OF_HOST_MEMORY and, once, CORRUPT_DATA, see readRetry. `*pSource` has one array
-     *  layer. */
+    /**
+     * Opens the image. Called on a worker thread, never twice at the same time. Retried after
+     * SLUICE_NOT_READY, SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and, once,
+     * SLUICE_ERROR_CORRUPT_DATA (readRetry); after any failure, when failureRetryDelay has passed.
+     * `*pSource` must have one array layer. Ignored if `source` is set.
+     */
     SluiceResult (*pfnOpen)(void *pUserData, SluiceImageSource **pSource);
-    /** Once for each image that pfnOpen opened; no read of it is under way. NULL:
-     *  sluiceDestroyImageSource. On any thread that uses the loader. */
+    /**
+     * Closes an image that pfnOpen opened. Called once per image, when no read of it is in
+     * progress, on any thread that uses the loader. Default: sluiceDestroyImageSource.
+     */
     void (*pfnClose)(void *pUserData, SluiceImageSource *source);
+    /**
+     * Name for messages, such as a path. Must live as long as pUserData. Default: the name in the
+     * image's info, once it is open.
+     */
+    const char *pName;
 } SluiceDemandImage;
 
+/** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceDemandTextureCreateInfo {
     SluiceDemandImage image;
     SluiceDemandSampler sampler;
-    /** What a texture looks like that cannot be opened or has no such tile; opaque magenta is a
-     *  good choice where errors are to be seen. */
+    /**
+     * Color of samples if the texture cannot be opened or a tile cannot be read. Opaque magenta
+     * makes errors visible.
+     */
     float failureColor[4];
 } SluiceDemandTextureCreateInfo;
 
 /**
- * Nothing is opened. The format may be any that the device samples and filters, sizes up to 2^20.
- * Errors: NULL_POINTER; INVALID_ARGUMENT for unknown modes, an anisotropy or a bias beyond its
- * range; LIMIT_EXCEEDED beyond maxTextureCount; OUT_OF_HOST_MEMORY.
+ * Creates a texture without opening its image.
+ *
+ * Any format that the device can sample and filter is allowed. An image that has several layers, or
+ * whose info is out of range (image.h), shows its failureColor once it was opened.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown modes, or an
+ *         anisotropy or LOD bias out of range; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
                                                   const SluiceDemandTextureCreateInfo *pCreateInfo,
                                                   SluiceDemandTextureId *pTextureId);
 
-/** The same image and tiles with another sampler. It goes with its base, or before.
- *  Errors: also UNKNOWN_TEXTURE, STALE_TEXTURE; INVALID_ARGUMENT if `baseId` is a grid. */
+/**
+ * Creates a texture that shares image and tiles of `baseId` and has another sampler. Destroyed with
+ * its base texture, or earlier.
+ *
+ * Errors: as sluiceCreateDemandTexture; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT if `baseId` is a grid.
+ */
 SLUICE_API SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
                                                          SluiceDemandTextureId baseId,
                                                          const SluiceDemandSampler *pSampler,
                                                          SluiceDemandTextureId *pTextureId);
 
 /**
- * A grid of textures that is sampled as one: column floor(u), row floor(v), `columns` x `rows`,
- * row by row from v = 0. Beyond it, and where an id is SLUICE_NO_DEMAND_TEXTURE, samples are
- * `missingColor`. Filters do not reach from one texture into the next. Errors: NULL_POINTER;
- * UNKNOWN_TEXTURE, STALE_TEXTURE; INVALID_ARGUMENT for an empty grid, or grids in it;
- * LIMIT_EXCEEDED; OUT_OF_HOST_MEMORY.
+ * Creates a grid of `columns` x `rows` textures that is sampled as one texture: column floor(u),
+ * row floor(v).
+ *
+ * `pTextureIds` lists them row by row from v = 0. Samples outside the grid, and where an id is
+ * SLUICE_NO_DEMAND_TEXTURE, return `missingColor`. Filters do not reach from one texture into the
+ * next.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for an empty grid or grids within it;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
                                                const SluiceDemandTextureId *pTextureIds,
@@ -159,126 +231,232 @@ SLUICE_API SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
                                                const float missingColor[4],
                                                SluiceDemandTextureId *pTextureId);
 
-/** Shaders that still name it get its failureColor, grids their missingColor. Its pages and index
- *  are used again when the launches prepared so far are processed. Variants go with their base.
- *  Errors: NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE. */
+/**
+ * Destroys a texture and its variants.
+ *
+ * Shaders that still use it get its failureColor; in grids, the grid's missingColor. Its pages and
+ * index are reused after the launches prepared so far are processed.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
+ */
 SLUICE_API SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader,
                                                    SluiceDemandTextureId textureId);
 
-/** Another image in a texture's place, from the next launch on; the old one is closed when its
- *  reads are over. Nothing of the new one is opened before it is sampled. Errors: as above;
- *  INVALID_ARGUMENT for grids and variants. */
+/**
+ * Replaces the image of a texture from the next launch on.
+ *
+ * The old image is closed when its reads have ended. The new image is opened when it is first
+ * sampled.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for grids and variants.
+ */
 SLUICE_API SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader,
                                                  SluiceDemandTextureId textureId,
                                                  const SluiceDemandImage *pImage);
 
-/** The texels of the image have changed, not its size or format: its tiles are forgotten, and read
- *  anew when they are next sampled. One that could not be opened is tried again. Errors:
- *  NULL_POINTER, UNKNOWN_TEXTURE, STALE_TEXTURE; INVALID_ARGUMENT for grids. */
+/**
+ * Drops all tiles of a texture, because the texels of its image have changed. They are read again
+ * when next sampled. Size and format must be unchanged. A texture that could not be opened is tried
+ * again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for grids.
+ */
 SLUICE_API SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
                                                       SluiceDemandTextureId textureId);
 
 /**
- * Loads the levels from `finestLevel` on, coarse ones first; opens the image before. What finds no
- * room in memory is left out: nothing is evicted for it. Launches copy what came and begin what did
- * not fit into maxTilesInFlight, so until remainingCount is 0: wait for the ticket, launch.
- * `pTicket` may be NULL. Errors: as above; OUT_OF_HOST_MEMORY.
+ * Allows failed work of a texture to be tried again at once: its opening, or tiles that could not
+ * be read. Call it when you learn that its file can be read again.
+ *
+ * SLUICE_NO_DEMAND_TEXTURE means all textures and resources. Resident tiles stay. Shaders request
+ * the others in the next launches.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for grids.
+ */
+SLUICE_API SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader,
+                                                 SluiceDemandTextureId textureId);
+
+/**
+ * Opens a texture and loads its levels from `finestLevel` on, coarse levels first.
+ *
+ * Nothing is evicted for it: tiles for which memory has no room are skipped. Launches copy loaded
+ * tiles, and start those that did not fit into maxTilesInFlight. So repeat "wait for the ticket,
+ * launch" until remainingCount is 0. `pTicket` may be NULL.
+ *
+ * Errors: as sluiceInvalidateDemandTexture; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
                                                    SluiceDemandTextureId textureId,
                                                    uint32_t finestLevel,
                                                    SluiceDemandTicket *pTicket);
 
-/** Pages of the application's own: vertex data, acceleration structures, materials. */
+/**
+ * Resource: pages with data of the application, such as vertices, acceleration structures,
+ * materials.
+ */
 typedef struct SluiceDemandResourceCreateInfo {
-    uint32_t pageCount; ///< at least 1
-    uint32_t rank;      ///< 0 to 15: lower ones are served first
-    /** Resident at once at most; those not used for longest are evicted. 0: all. */
+    uint32_t pageCount; ///< At least 1.
+    uint32_t rank;      ///< Priority, 0 to 15. Lower ranks are served first.
+    /** Most resident pages. The least recently used ones are evicted. Default: all pages. */
     uint32_t maxResidentPageCount;
     void *pUserData;
-    /** Finds what shaders get for the page, 0 to pageCount - 1. NOT_READY: ask again later, see
-     *  readRetry, and then when a shader next misses it. On a worker thread, several at once. */
+    /**
+     * Computes the value that shaders get for a page, 0 to pageCount - 1. Called on worker threads,
+     * several at the same time. SLUICE_NOT_READY: called again (readRetry), and later when a shader
+     * next misses the page. After other failures: called again when failureRetryDelay has passed.
+     */
     SluiceResult (*pfnFill)(void *pUserData, uint32_t page, uint64_t *pValue);
-    /** No launch reads the value any more. May be NULL. On any thread that uses the loader. */
+    /**
+     * Releases a value that no launch reads any more. May be NULL. Called on any thread that uses
+     * the loader.
+     */
     void (*pfnEvict)(void *pUserData, uint32_t page, uint64_t value);
 } SluiceDemandResourceCreateInfo;
 
-/** `*pFirstPage` is what shaders add to. Errors: NULL_POINTER, INVALID_ARGUMENT, LIMIT_EXCEEDED
- *  beyond pageCapacity or 254 resources with a limit of their own, OUT_OF_HOST_MEMORY. */
+/**
+ * Creates a resource. Shaders address its pages as `*pFirstPage` + page.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_LIMIT_EXCEEDED
+ *         above pageCapacity, or for more than 254 resources with maxResidentPageCount;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ */
 SLUICE_API SluiceResult sluiceCreateDemandResource(
     SluiceDemandLoader *loader, const SluiceDemandResourceCreateInfo *pCreateInfo,
     SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage);
-/** Waits for fills that are under way. Its values are evicted when the launches prepared so far are
- *  processed, at the latest when the loader is destroyed; until then pUserData must stay. */
+/**
+ * Destroys a resource. Waits for its fills in progress.
+ *
+ * Its values are evicted when the launches prepared so far are processed, at the latest when the
+ * loader is destroyed. Keep pUserData until then.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
+ *         an unknown or destroyed resource.
+ */
 SLUICE_API SluiceResult sluiceDestroyDemandResource(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId);
-/** Forgets what `count` pages from `firstPage` (of the resource) are; they are filled anew when
- *  missed. Errors: INVALID_ARGUMENT beyond pageCount. */
+/**
+ * Drops the values of `count` pages of a resource, from `firstPage` on. They are filled again when
+ * next missed.
+ *
+ * Errors: as sluiceDestroyDemandResource; SLUICE_ERROR_INVALID_ARGUMENT beyond pageCount.
+ */
 SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId,
                                                     uint32_t firstPage, uint32_t count);
 
-/** Storage buffers for shaders, the same for the loader's whole life. */
+/** Storage buffers for shaders. The handles never change during the loader's life. */
 typedef struct SluiceDemandBuffers {
-    VkBuffer textures;  ///< SluiceDemandTexture[], read
-    VkBuffer levels;    ///< uint[], read
-    VkBuffer directory; ///< uint[], read
-    VkBuffer blocks;    ///< uint[], read
-    VkBuffer masks;     ///< SluiceDemandBlockMasks[], read and written
-    VkBuffer requests;  ///< uint[], read and written
-    VkBuffer sections;  ///< uint[], read and written
+    VkBuffer textures;  ///< SluiceDemandTexture[], read.
+    VkBuffer levels;    ///< uint[], read.
+    VkBuffer directory; ///< uint[], read.
+    VkBuffer blocks;    ///< uint[], read.
+    VkBuffer masks;     ///< SluiceDemandBlockMasks[], read and written.
+    VkBuffer requests;  ///< uint[], read and written.
+    VkBuffer sections;  ///< uint[], read and written.
 } SluiceDemandBuffers;
 
-SLUICE_API void sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
-                                       SluiceDemandBuffers *pBuffers);
-/** The array of combined image samplers that tiles are layers of, as sluiceGetVulkanPages. What a
- *  launch samples is there after sluicePrepareDemandLaunch; other calls may add to it. */
-SLUICE_API void sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages);
+/**
+ * Gets the buffers that shaders read and write.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
+                                               SluiceDemandBuffers *pBuffers);
+/**
+ * Gets the array of combined image samplers whose layers are tiles, as sluiceGetVulkanPages does.
+ *
+ * After sluicePrepareDemandLaunch it holds everything that the launch samples. Other calls may add
+ * to it.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader,
+                                             SluiceVulkanPages *pPages);
 
+/** Launch that was prepared. */
 typedef struct SluiceDemandLaunch {
-    uint64_t launchIndex;  ///< from 1 on
-    VkSemaphore semaphore; ///< timeline; the submission of the command buffer must
-    uint64_t signalValue;  ///< signal it with this value
-    uint32_t tileCount;    ///< tiles that this launch sees for the first time
+    uint64_t launchIndex;  ///< Counts from 1.
+    VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
+    uint64_t signalValue;  ///< Value to signal.
+    uint32_t tileCount;    ///< Tiles that become resident with this launch.
 } SluiceDemandLaunch;
 
 /**
- * Records, outside a render pass, copies of what was loaded and the page table that shows it.
- * Everything between this call and sluiceEndDemandLaunch sees that; barriers are recorded here for
- * all stages. NOT_READY, with nothing recorded, while launchesInFlight are not processed. It must
- * be submitted, and in the order of the calls, but after an error, when nothing was recorded that
- * counts. Errors: NULL_POINTER; INVALID_ARGUMENT if the last launch was not ended;
- * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST; CANCELLED after
- * sluiceAbortDemandLoader.
+ * Begins a launch: records copies of loaded tiles and updates of the page table.
+ *
+ * Call outside a render pass. All commands between this call and sluiceEndDemandLaunch see the new
+ * tiles; barriers for all stages are recorded. Submit the command buffers in the order of the
+ * calls. If you cannot submit, call sluiceAbandonDemandLaunch. After an error, recorded commands
+ * have no effect.
+ *
+ * Returns SLUICE_NOT_READY, with nothing recorded, while launchesInFlight launches are not
+ * processed.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the last
+ *         launch was neither ended nor abandoned; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST;
+ *         SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
  */
 SLUICE_API SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader,
                                                   VkCommandBuffer commandBuffer,
                                                   SluiceDemandLaunch *pLaunch);
 
-/** Records the scan of the requests. Binds a compute pipeline and its descriptor set 0.
- *  Errors: NULL_POINTER; INVALID_ARGUMENT if no launch was prepared. */
+/**
+ * Ends a launch: records the scan of the requests. Binds a compute pipeline and its descriptor set
+ * 0.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if no launch was prepared.
+ */
 SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
                                               VkCommandBuffer commandBuffer);
 
-/** What a launch missed. Pages, each counted once, whatever how many samples missed it. */
+/**
+ * Abandons a launch that will never be submitted, and all launches prepared after it. Allowed after
+ * sluicePrepareDemandLaunch and after sluiceEndDemandLaunch.
+ *
+ * Do not submit the command buffers. Do not process the launches. Do not wait for their signalValue
+ * before the next launch is submitted: the next launch reuses the launchIndex of the first
+ * abandoned one.
+ *
+ * The next launch records again whatever the abandoned launches recorded and is still valid.
+ * Nothing is lost, and nothing is read from disk again. After an error the launch is not abandoned.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the
+ *         launch is complete, was abandoned or never prepared; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST.
+ */
+SLUICE_API SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
+                                                  const SluiceDemandLaunch *pLaunch);
+
+/** Requests of a launch, in pages. A page counts once, however many samples missed it. */
 typedef struct SluiceDemandRequests {
-    /** All that shaders asked for, listed or not, but for pages of resources that are refused: 0
-     *  means that every sample was resident, or is as sharp as memory allows. */
+    /**
+     * All requested pages, listed or not, except refused pages of resources. 0: every sample was
+     * resident, or is as sharp as memory allows.
+     */
     uint32_t missingCount;
-    uint32_t servedCount;    ///< reads and fills that begin now
-    uint32_t pendingCount;   ///< under way already
-    uint32_t restoredCount;  ///< evicted, but not yet overwritten: back without a read
-    uint32_t postponedCount; ///< did not fit into the list, or too much is in flight
-    uint32_t refusedCount;   ///< no memory, or unreadable: coarser levels from now on
-    float lodBias;           ///< of the next launch, see noLodBias
+    uint32_t servedCount;    ///< Reads and fills that begin now.
+    uint32_t pendingCount;   ///< Reads and fills already in progress.
+    uint32_t restoredCount;  ///< Evicted pages restored without a read.
+    uint32_t postponedCount; ///< Did not fit into the list, or too much is in flight.
+    uint32_t refusedCount;   ///< No memory, or unreadable. Coarser levels are used for now.
+    float lodBias;           ///< LOD bias of the next launch; see noLodBias.
 } SluiceDemandRequests;
 
 /**
- * Waits, up to `timeout` ns, until the launch is over, and begins to load what it missed, coarse
- * pages first. Each launch is processed once, in order; a later one processes those before, too.
- * NOT_READY, with nothing changed, if it was not over in time. `pTicket` may be NULL.
- * Errors: NULL_POINTER; INVALID_ARGUMENT for a launch that was not ended or was processed;
- * OUT_OF_HOST_MEMORY, VULKAN, DEVICE_LOST, CANCELLED.
+ * Waits until a launch is complete, and starts to load the pages that it missed, coarse pages
+ * first.
+ *
+ * Process each launch once, in order. Processing a launch also processes the launches before it.
+ * Returns SLUICE_NOT_READY, with nothing changed, if the launch is not complete after `timeout` ns.
+ * `pTicket` may be NULL.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a launch that was not ended
+ *         or was processed before; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_VULKAN;
+ *         SLUICE_ERROR_DEVICE_LOST; SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
  */
 SLUICE_API SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
                                                     const SluiceDemandLaunch *pLaunch,
@@ -286,45 +464,81 @@ SLUICE_API SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
                                                     SluiceDemandRequests *pRequests,
                                                     SluiceDemandTicket *pTicket);
 
+/** State of a ticket, in tasks: all, not yet ended, failed. */
 typedef struct SluiceDemandTicketStatus {
     uint32_t taskCount, remainingCount, failedCount;
 } SluiceDemandTicketStatus;
 
-/** Zeros for tickets that were over before the last thousand. Errors: NULL_POINTER;
- *  INVALID_ARGUMENT for tickets that were never given. Any thread. */
+/**
+ * Gets the state of a ticket. Zeros for tickets that completed before the last thousand.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for tickets that never existed.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader,
                                                     SluiceDemandTicket ticket,
                                                     SluiceDemandTicketStatus *pStatus);
-/** Until all its tasks that have begun are over, successfully or not: all that there are, but for
- *  preloads. NOT_READY after `timeout` ns. `pStatus` may be NULL. CANCELLED once the loader is
- *  aborted. Any thread. */
+/**
+ * Waits until all tasks of a ticket that have begun have ended, successfully or not. Except for
+ * preloads these are all tasks. `pStatus` may be NULL.
+ *
+ * Returns SLUICE_NOT_READY after `timeout` ns.
+ *
+ * Errors: as sluiceGetDemandTicketStatus; SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader,
                                                SluiceDemandTicket ticket, uint64_t timeout,
                                                SluiceDemandTicketStatus *pStatus);
-/** Tasks that have not begun are dropped; shaders may ask again. Any thread. */
+/**
+ * Cancels the tasks of a ticket that have not begun. Shaders may request them again.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader,
                                                  SluiceDemandTicket ticket);
-/** Drops all that has not begun and wakes all who wait; from then on launches answer CANCELLED, and
- *  the loader can only be destroyed. Any thread. */
+/**
+ * Cancels all tasks that have not begun, and wakes all waiting threads. From then on launches
+ * return SLUICE_ERROR_CANCELLED. The loader can only be destroyed.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader);
 
+/**
+ * Statistics of a demand loader. Counts are totals since creation, unless they describe a present
+ * state.
+ */
 typedef struct SluiceDemandStatistics {
     uint64_t launchCount;
     uint64_t requestCount, pendingCount, servedCount, restoredCount, refusedCount, postponedCount;
     uint64_t evictedCount, failedCount, cancelledCount;
     uint64_t texturesCreated, texturesOpened, texturesFailed;
     uint64_t bytesRead, bytesUploaded;
-    uint64_t virtualPageCount;  ///< that have an id
-    uint64_t residentTileCount; ///< tails are tiles, too
+    uint64_t virtualPageCount;  ///< Virtual pages that have an id.
+    uint64_t residentTileCount; ///< Mip tails count as tiles.
     uint64_t residentResourcePageCount;
-    uint64_t tileMemorySize;   ///< bytes of device memory that hold tiles: within the budget
-    uint64_t deviceMemorySize; ///< all of it, with buffers, but those in the host's memory
+    uint64_t tileMemorySize;   ///< Bytes of device memory for tiles. At most the budget.
+    uint64_t deviceMemorySize; ///< Bytes of all device memory that is not host-mapped.
     float lodBias;
-    /** Reads and fills by the time from request to end: bucket i counts those of less than 2^i us,
-     *  the last one all others. */
+    /**
+     * Reads and fills by time from request to end. Bucket i counts those of less than 2^i us that
+     * bucket i - 1 does not; the last bucket counts all others.
+     */
     uint64_t latencyHistogram[24];
+    uint64_t retriedCount; ///< Failed pages and openings that may be requested again.
+    /**
+     * Bytes of all mapped memory: staging, tables that the host writes, readback. Grows with the
+     * tiles in flight and shrinks again.
+     */
+    uint64_t hostVisibleMemorySize;
+    uint32_t pageChunkCount;     ///< As in SluiceVulkanStreamerStatistics.
+    uint64_t pageChunkShortages; ///< As in SluiceVulkanStreamerStatistics.
 } SluiceDemandStatistics;
 
+/**
+ * Gets the statistics of a loader.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
 SLUICE_API SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
                                                   SluiceDemandStatistics *pStatistics);
 

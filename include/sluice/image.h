@@ -1,10 +1,12 @@
 /**
- * Where texels come from: one interface, many implementations (OpenEXR in exr.h, DDS in dds.h, KTX2
- * in ktx2.h, procedural and wrapping ones here, the application's own).
+ * Image sources: the interface through which Sluice reads texels.
  *
- * A source is a mip chain of one texel format that can be read rectangle by rectangle, from any
- * thread, several at once. It knows nothing of tiles: the reader asks for the rectangle that a tile
- * covers.
+ * Implementations: OpenEXR (exr.h), DDS (dds.h), KTX2 (ktx2.h), tile stores (store.h), procedural
+ * images, memory and arrays (this header). Applications can add their own.
+ *
+ * A source is a mip chain of one texel format. Any thread can read any rectangle of it, and several
+ * threads can read at the same time. A source knows nothing of tiles: the reader asks for the
+ * rectangle that a tile covers.
  */
 #ifndef SLUICE_IMAGE_H
 #define SLUICE_IMAGE_H
@@ -16,9 +18,12 @@ extern "C" {
 #endif
 
 /**
- * Texel formats, named as Vulkan's. Without a suffix, channels in memory order; PACK32 ones are
- * little words of 32 bits, the last channel named in the lowest bits. sRGB ones hold encoded colour
- * and linear alpha. BLOCK ones are compressed: 4x4 texels in 8 bytes (BC1, BC4) or 16 (others).
+ * Texel formats, named as in Vulkan.
+ *
+ * - No suffix: channels in memory order.
+ * - PACK32: little-endian words of 32 bits. The channel named last is in the lowest bits.
+ * - SRGB: sRGB-encoded color and linear alpha.
+ * - BLOCK: compressed blocks of 4x4 texels, 8 bytes (BC1, BC4) or 16 bytes (the others).
  */
 typedef enum SluiceFormat {
     SLUICE_FORMAT_UNDEFINED = 0,
@@ -33,11 +38,11 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_R32G32B32A32_SFLOAT = 9,
     SLUICE_FORMAT_R8G8_UNORM = 10,
     SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32 = 11,
-    SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32 = 12, ///< no sign; 6, 6 and 5 bits of mantissa
-    SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32 = 13,  ///< no sign; one exponent for three channels
+    SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32 = 12, ///< Unsigned; mantissas of 6, 6 and 5 bits.
+    SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32 = 13,  ///< Unsigned; three channels share one exponent.
     SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK = 14,
     SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK = 15,
-    SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK = 16, ///< alpha 0 or 1
+    SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK = 16, ///< Alpha is 0 or 1.
     SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK = 17,
     SLUICE_FORMAT_BC2_UNORM_BLOCK = 18,
     SLUICE_FORMAT_BC2_SRGB_BLOCK = 19,
@@ -53,42 +58,83 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_BC7_SRGB_BLOCK = 29
 } SluiceFormat;
 
-/** The number of enumerators: formats are below it. */
+/** Number of enumerators. Every format is below it. */
 #define SLUICE_FORMAT_COUNT 30
 
-/** How texels lie in memory: in blocks, of one texel each where the format is not compressed. */
+/** Memory layout of a format: blocks of texels. Blocks of uncompressed formats are 1x1. */
 typedef struct SluiceFormatInfo {
-    uint32_t blockSize;               ///< bytes
-    uint32_t blockWidth, blockHeight; ///< texels
-    uint32_t channelCount;            ///< 1 to 4; missing G and B read as 0, missing A as 1
+    uint32_t blockSize;               ///< Bytes.
+    uint32_t blockWidth, blockHeight; ///< Texels.
+    uint32_t channelCount;            ///< 1 to 4. Missing G and B read as 0, missing A as 1.
 } SluiceFormatInfo;
 
-/** Errors: NULL_POINTER; UNSUPPORTED for UNDEFINED and unknown values. Any thread. */
+/**
+ * Gets the block size and channel count of a format.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if the format is UNDEFINED or
+ * unknown. Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo);
-/** Bytes per texel; 0 for UNDEFINED, unknown values and compressed formats. Any thread. */
+/**
+ * Returns the bytes per texel. 0 for compressed formats, UNDEFINED and unknown values.
+ * Thread safety: any thread.
+ */
 SLUICE_API uint32_t sluiceFormatTexelSize(SluiceFormat format);
-/** Bytes of `width` x `height` texels, cut blocks counting as whole ones, rows tightly packed;
- *  UINT64_MAX beyond 64 bits, 0 for UNDEFINED and unknown values. With a height of 1: a row. Any
- *  thread. */
+/**
+ * Returns the bytes of `width` x `height` texels with tightly packed rows. Partial blocks count as
+ * whole blocks. A height of 1 gives the size of one row.
+ *
+ * UINT64_MAX if the size exceeds 64 bits. 0 for UNDEFINED and unknown values.
+ * Thread safety: any thread.
+ */
 SLUICE_API uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height);
-/** "R8_UNORM" and so on, "UNDEFINED" for others. Any thread. */
+/**
+ * Returns the name without prefix, such as "R8_UNORM". "UNDEFINED" for UNDEFINED and unknown
+ * values. Thread safety: any thread.
+ */
 SLUICE_API const char *sluiceFormatString(SluiceFormat format);
-/** Width and height in texels of the standard 64 KiB tile. Errors: UNSUPPORTED. Any thread. */
+/**
+ * Gets width and height, in texels, of the standard 64 KiB tile.
+ *
+ * Errors: SLUICE_ERROR_UNSUPPORTED if the format is UNDEFINED or unknown.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceGetStandardTileShape(SluiceFormat format, uint32_t *pWidth,
                                                    uint32_t *pHeight);
 
+/** Address mode: VkSamplerAddressMode + 1, or 0 if unknown. */
+typedef enum SluiceImageAddressMode {
+    SLUICE_IMAGE_ADDRESS_MODE_UNKNOWN = 0, ///< Not recorded.
+    SLUICE_IMAGE_ADDRESS_MODE_REPEAT = 1,
+    SLUICE_IMAGE_ADDRESS_MODE_MIRRORED_REPEAT = 2,
+    SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE = 3,
+    SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_BORDER = 4,
+    SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE = 5
+} SluiceImageAddressMode;
+
+/**
+ * Description of an image source. A source must always return the same one.
+ *
+ * Arrays, streamer, demand loader and baker check every field and refuse values out of range.
+ */
 typedef struct SluiceImageInfo {
-    uint32_t width, height; ///< texels of level 0; level l has max(1, size >> l)
-    uint32_t mipLevelCount; ///< the full chain: floor(log2(max(width, height))) + 1
-    SluiceFormat format;
-    const char *pName;        ///< for messages; lives as long as the source
-    uint32_t arrayLayerCount; ///< images of the same size and format in one; 0: 1
+    uint32_t width, height; ///< Texels of level 0, 1 to 2^20. Level l has max(1, size >> l).
+    /** Full chain: floor(log2(max(width, height))) + 1. Arrays and the baker also accept 1 (only
+     *  level 0). */
+    uint32_t mipLevelCount;
+    SluiceFormat format;      ///< Not UNDEFINED.
+    const char *pName;        ///< For messages. May be NULL. Lives as long as the source.
+    uint32_t arrayLayerCount; ///< At most 2^16. Default: 1.
+    /** Address modes that the mip levels were filtered with. Sample with the same modes. Tile
+     * stores record them. */
+    SluiceImageAddressMode addressModeU, addressModeV;
 } SluiceImageInfo;
 
 /**
- * Texels of one level; inside it and not empty. In compressed formats it consists of whole blocks:
- * x and y are multiples of the block's extent, and so are width and height, unless the region
- * reaches the right or lower edge of the level, where the last block may be cut.
+ * Rectangle of texels of one level and layer. It is not empty and does not leave the level.
+ *
+ * In compressed formats, x, y, width and height are multiples of the block size. Exception: width
+ * and height of a region that ends at the right or lower edge of the level.
  */
 typedef struct SluiceImageRegion {
     uint32_t mipLevel;
@@ -98,84 +144,116 @@ typedef struct SluiceImageRegion {
 
 typedef struct SluiceImageSource SluiceImageSource;
 
-/** The offset of what has none, or where nobody knows it. */
+/** File offset of a failure whose position is unknown, or of data that is not in a file. */
 #define SLUICE_UNKNOWN_OFFSET UINT64_MAX
 
-/** Where a read failed. */
+/** Position of a failed read. */
 typedef struct SluiceImageFault {
-    const char *pName; ///< the source's, of an array the layer's; "" if it did not even tell that
-    uint64_t offset;   ///< bytes from the beginning of that file; or SLUICE_UNKNOWN_OFFSET
+    const char *pName; ///< Name of the source, or of the array's layer. "" if unknown.
+    uint64_t offset;   ///< Bytes from the start of the file, or SLUICE_UNKNOWN_OFFSET.
 } SluiceImageFault;
 
-/** What an implementation offers. Of the two ways to read one is enough; all else is required. */
+/**
+ * Functions of an implementation. pfnGetInfo and pfnDestroy are required, and one of
+ * pfnReadRegion and pfnReadRegionLocated.
+ */
 typedef struct SluiceImageSourceInterface {
-    /** Opens the image if need be. Any thread. */
+    /** Describes the image, and opens it first if necessary. Thread safety: any thread. */
     SluiceResult (*pfnGetInfo)(SluiceImageSource *source, SluiceImageInfo *pInfo);
     /**
-     * Fills `pTexels`: region.height rows of region.width texels, `rowPitch` bytes apart; in
-     * compressed formats rows of blocks, cut ones given whole. The region has been checked. May
-     * answer SLUICE_NOT_READY or any error; then the contents of `pTexels` are undefined. Any
-     * thread, several at once.
+     * Fills `pTexels` with the rows of a region, `rowPitch` bytes apart. Rows of compressed formats
+     * are rows of whole blocks, including blocks that the level's edge cuts. Sluice has checked
+     * the region.
+     *
+     * May return SLUICE_NOT_READY or any error; `pTexels` is undefined then.
+     * Thread safety: any thread, several calls at the same time.
      */
     SluiceResult (*pfnReadRegion)(SluiceImageSource *source, const SluiceImageRegion *pRegion,
                                   void *pTexels, size_t rowPitch);
-    /** No call is under way. */
+    /** Destroys the source. No other call on it is in progress. */
     void (*pfnDestroy)(SluiceImageSource *source);
     /**
-     * NULL, or takes the place of pfnReadRegion: after an error `*pFault` is where. Before, it is
-     * the name that pfnGetInfo tells, and SLUICE_UNKNOWN_OFFSET.
+     * Like pfnReadRegion, and sets `*pFault` if it fails. May be NULL. If set, Sluice calls it
+     * instead of pfnReadRegion. On entry `*pFault` holds the name from pfnGetInfo and
+     * SLUICE_UNKNOWN_OFFSET.
      */
     SluiceResult (*pfnReadRegionLocated)(SluiceImageSource *source,
                                          const SluiceImageRegion *pRegion, void *pTexels,
                                          size_t rowPitch, SluiceImageFault *pFault);
 } SluiceImageSourceInterface;
 
-/** The first member of every implementation's own struct. */
+/** Base of every source: the first member of the implementation's struct. */
 struct SluiceImageSource {
     const SluiceImageSourceInterface *pInterface;
 };
 
-/** Errors: NULL_POINTER, and what the implementation says. Any thread. */
+/**
+ * Gets the description of a source. The values are returned unchecked.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, also for a source without an interface; errors of the source.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo);
 
 /**
- * Reads a rectangle. `rowPitch`: bytes from one row of texels to the next, in compressed formats
- * from one row of blocks. Errors: NULL_POINTER; INVALID_ARGUMENT if the region leaves its level, is
- * empty or cuts a block, or rowPitch is below a row's size; and what the implementation says. Any
- * thread.
+ * Reads a rectangle of texels into `pTexels`.
+ *
+ * `rowPitch` is the distance in bytes between rows of texels; in compressed formats, between rows
+ * of blocks. `pTexels` is undefined after an error.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the region is empty, leaves
+ *         its level or cuts a block, or if `rowPitch` is smaller than a row; errors of the source.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceReadImageRegion(SluiceImageSource *source,
                                               const SluiceImageRegion *pRegion, void *pTexels,
                                               size_t rowPitch);
 
 /**
- * The same, and after an error `*pFault` is where: tile stores, DDS and KTX2 files know the offset.
- * A source that wraps others passes them `pFault`. Its name lives as long as the source.
+ * Reads a rectangle like sluiceReadImageRegion, and writes the position of a failure to `*pFault`.
+ *
+ * Tile stores, DDS and KTX2 files report the offset. A source that wraps other sources passes
+ * `pFault` on to them. `pFault->pName` lives as long as the source.
+ *
+ * Errors, thread safety: as sluiceReadImageRegion.
  */
 SLUICE_API SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
                                                      const SluiceImageRegion *pRegion,
                                                      void *pTexels, size_t rowPitch,
                                                      SluiceImageFault *pFault);
 
-/** NULL is allowed. No call may be under way. */
+/**
+ * Destroys a source. NULL is allowed. No call on the source may be in progress.
+ * Thread safety: external on `source`.
+ */
 SLUICE_API void sluiceDestroyImageSource(SluiceImageSource *source);
 
-/** Colours of a procedural image; linear RGBA. Called from any thread, several at once. */
+/**
+ * Function that computes the texels of a procedural image. Called on any thread, several at the
+ * same time.
+ */
 typedef struct SluiceProceduralImage {
     void *pUserData;
-    /** Writes the colour of the texel (x, y) of `mipLevel`, whose size is width x height. */
+    /** Writes the linear RGBA color of texel (x, y) of `mipLevel`, which has width x height texels.
+     */
     void (*pfnTexel)(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
                      uint32_t height, float rgba[4]);
 } SluiceProceduralImage;
 
 /**
- * An image that is computed where it is read. `pInfo->pName` is copied, mipLevelCount may be 0 for
- * the full chain. Colours are converted as exr.h says of files: half saturates, 8 and 10 bits clamp
- * and round, sRGB encodes, NaN becomes 0 but in 32-bit float formats. Formats without a sign round
- * to the nearest value that they have, ties to even (E5B9G9R9: up, as its specification says),
- * saturate, and make 0 of what is negative. Errors: NULL_POINTER, INVALID_ARGUMENT; UNSUPPORTED for
- * compressed formats, which come from dds.h, ktx2.h or an own source, and for arrays;
- * OUT_OF_HOST_MEMORY. Any thread.
+ * Creates a source whose texels are computed when they are read.
+ *
+ * `pInfo->pName` is copied. A mipLevelCount of 0 means the full chain. Colors are converted to the
+ * format like those of OpenEXR files (exr.h):
+ * - Half floats saturate. 8 and 10 bit formats clamp and round. sRGB formats encode.
+ * - NaN becomes 0, except in 32-bit float formats.
+ * - Unsigned float formats round to nearest, ties to even, and saturate. E5B9G9R9 rounds ties up,
+ *   as its specification says. Negative values become 0.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_UNSUPPORTED for
+ *         arrays and compressed formats (use dds.h, ktx2.h or your own source);
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
  * Source of E5B9G9R9: Vulkan specification, "RGB to Shared Exponent Conversion".
  */
 SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
@@ -183,10 +261,15 @@ SLUICE_API SluiceResult sluiceCreateProceduralImageSource(
     const SluiceAllocationCallbacks *pAllocator, SluiceImageSource **pSource);
 
 /**
- * Texels in memory, level 0 given, the other levels made by a box filter once (in linear light for
- * sRGB), each texel the mean of the area it covers in the level above, NaN counting as 0. `pTexels`
- * is [height][width] of pInfo->format, tightly packed, and is copied. Errors: NULL_POINTER,
- * INVALID_ARGUMENT; UNSUPPORTED for compressed formats and arrays; OUT_OF_HOST_MEMORY. Any thread.
+ * Creates a source from texels in memory, and builds its coarser levels once, by a box filter.
+ *
+ * `pTexels` is level 0: [height][width] of pInfo->format, tightly packed. It is copied. Each texel
+ * of a coarser level is the mean of the area that it covers in the next finer level. sRGB formats
+ * are filtered in linear light. NaN counts as 0.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_UNSUPPORTED for
+ *         compressed formats and arrays; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       const SluiceImageInfo *pInfo,
@@ -194,9 +277,14 @@ SLUICE_API SluiceResult sluiceCreateMemoryImageSource(const void *pTexels,
                                                       SluiceImageSource **pSource);
 
 /**
- * An array whose layers are `layerCount` sources of one size and format. They must outlive it and
- * have one layer each. Errors: NULL_POINTER; INVALID_ARGUMENT for no layers or layers that differ;
- * what the sources say; OUT_OF_HOST_MEMORY. Any thread.
+ * Creates an array source from `layerCount` sources of the same size, format and level count.
+ *
+ * The layers must outlive the array. Each layer has one array layer itself.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for 0 or more than 2^16 layers,
+ *         layers that differ, or infos out of range; errors of the layers;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers,
                                                      uint32_t layerCount,

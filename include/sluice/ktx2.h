@@ -1,5 +1,5 @@
 /**
- * KTX2 files as image sources: what is in the file is what is delivered. Link `sluice-container`.
+ * KTX2 files as image sources. Texels are returned as stored. Link `sluice-container`.
  */
 #ifndef SLUICE_KTX2_H
 #define SLUICE_KTX2_H
@@ -10,46 +10,52 @@
 extern "C" {
 #endif
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceKtx2ImageSourceCreateInfo {
-    const char *pPath; ///< required; copied
-    /** UNDEFINED: the file's. Otherwise another name for the same bytes: UNORM for SRGB and the
-     *  reverse, BC1_RGB for BC1_RGBA and the reverse. */
+    const char *pPath; ///< Required. Copied.
+    /**
+     * Format to return. Default: the file's. Another value must name the same bytes: UNORM for
+     * SRGB, BC1_RGB for BC1_RGBA, or the reverse.
+     */
     SluiceFormat format;
-    /** NULL: malloc and free. What Zstandard needs itself is always from malloc. */
+    /** Default: malloc and free. Zstandard always uses malloc for its own memory. */
     const SluiceAllocationCallbacks *pAllocator;
-    SluiceLogCallback log; ///< what is wrong with a file, and where
-    /** Bytes of decompressed levels that are kept, of files compressed as a whole; 0: 2^29. */
+    SluiceLogCallback log; ///< Problems of a file, with their position.
+    /** Most bytes of decompressed levels kept in memory. For Zstandard files. Default: 2^29. */
     uint64_t maxCacheSize;
 } SluiceKtx2ImageSourceCreateInfo;
 
 /**
- * Names a file. It is opened at the first sluiceGetImageInfo or sluiceReadImageRegion and stays
- * open: a source that nobody asks costs no descriptor and no read.
+ * Creates a source for a file, without opening it. The first sluiceGetImageInfo or
+ * sluiceReadImageRegion opens the file; it stays open. An unused source costs no file descriptor.
  *
- * vkFormat is any SluiceFormat, or B8G8R8A8_UNORM or _SRGB, which becomes R8G8B8A8 as it is read.
- * Array layers come as layers, the faces of cube maps as six for each of them. Rows are in the
- * file's order; KTXorientation and KTXswizzle are not looked at. At most 2^20 texels in a
- * direction, 2^16 layers.
+ * vkFormat: any SluiceFormat, or B8G8R8A8_UNORM or _SRGB, which is converted to R8G8B8A8 when read.
+ * Array layers become layers; cube maps have six layers each. Rows are in the file's order.
+ * KTXorientation and KTXswizzle are ignored. At most 2^20 texels in width and height, and 2^16
+ * layers.
  *
- * Supercompression: none, where a read touches its own bytes alone, or Zstandard, where a level is
- * compressed as a whole. Such a level is decompressed at the first read in it, with other readers
- * of that level waiting, and kept; levels that were read longest ago give way when more than
- * maxCacheSize would be kept. While a level is decompressed its compressed bytes are in memory,
- * too. For streaming, files without supercompression are the better choice: `ktx create` without
- * --zstd.
+ * Supercompression: none or Zstandard. Without it, a read touches only its own bytes. Zstandard
+ * compresses each level as a whole: the first read of a level decompresses it, while other readers
+ * of that level wait. The level is kept; the least recently read levels are dropped to stay within
+ * maxCacheSize. During decompression the compressed bytes are in memory as well. For streaming,
+ * prefer files without supercompression (`ktx create` without --zstd).
  *
- * The chain must be full, down to one texel, because coarse levels are what streaming falls back
- * to. A file that ends earlier is UNSUPPORTED: write it again with all levels (ktx create
+ * The mip chain must be full, down to one texel, because streaming falls back to coarse levels. A
+ * file with fewer levels is SLUICE_ERROR_UNSUPPORTED: write it again with all levels (ktx create
  * --generate-mipmap).
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for unknown formats; OUT_OF_HOST_MEMORY.
- *         From the first query or read on: FILE_NOT_FOUND, IO; CORRUPT_DATA for headers that
- *         contradict themselves, files shorter than they say and levels that do not decompress to
- *         what they should; UNSUPPORTED for Basis Universal (ETC1S, UASTC) and ZLIB, other formats,
- *         a `format` of other bytes, incomplete chains, volumes, 1D textures, a level larger than
- *         maxCacheSize, and Zstandard in a build without it; OUT_OF_HOST_MEMORY. Each is logged
- *         with the file's name and what to do; the next call tries again.
+ * Queries and reads return SLUICE_NOT_READY while the process has too few file descriptors to open
+ * the file. Sluice leaves the last 16 below the soft limit to others.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for unknown formats;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors of queries and reads: SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO;
+ *         SLUICE_ERROR_CORRUPT_DATA for contradictory headers, truncated files and levels that
+ *         decompress to a wrong size or fail to decompress; SLUICE_ERROR_UNSUPPORTED for Basis
+ *         Universal (ETC1S, UASTC), ZLIB, other formats, a `format` of different bytes, incomplete
+ *         mip chains, volumes, 1D textures, a level larger than maxCacheSize, and Zstandard in a
+ *         build without it; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Each error is logged once, at most 16
+ *         per file, with the file's name and a remedy. The next call tries again.
  * Thread safety: any thread.
  * Source: Khronos, "KTX File Format Specification", version 2.0.
  */

@@ -1,7 +1,8 @@
 /**
- * Reads regions of image sources on worker threads: urgent ones first, cancellable, never waiting
- * on the caller's thread. What fails for now is tried again, and a source that answers slowly or
- * not at all keeps only its share of the threads.
+ * Reads regions of image sources on worker threads, urgent ones first.
+ *
+ * Reads can be cancelled. No call blocks the caller on a file. Temporary failures are retried. A
+ * source that is slow or does not answer occupies only its share of the threads.
  */
 #ifndef SLUICE_LOADER_H
 #define SLUICE_LOADER_H
@@ -15,34 +16,38 @@ extern "C" {
 typedef struct SluiceTileLoader SluiceTileLoader;
 
 /**
- * When a read is tried again. IO, OUT_OF_HOST_MEMORY and NOT_READY pass, so up to maxAttempts are
- * made; CORRUPT_DATA is tried once more, because what is written while it is read looks damaged;
- * all other errors stay what they are. Regions that were delivered are not read again.
+ * How often and when a failed read is tried again.
+ *
+ * SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and SLUICE_NOT_READY are temporary: up to
+ * maxAttempts are made. SLUICE_ERROR_CORRUPT_DATA is retried once, because a file that is being
+ * written looks damaged. Other errors are final. A retry skips regions that were already read.
  */
 typedef struct SluiceTileRetryPolicy {
-    uint32_t maxAttempts; ///< 0: 4; 1: nothing is tried again
-    uint64_t firstDelay;  ///< ns between the first attempt and the second, then doubled; 0: 10^7
-    uint64_t maxDelay;    ///< ns, where doubling ends; 0: 10^9
+    uint32_t maxAttempts; ///< Default: 4. 1: no retry.
+    uint64_t firstDelay;  ///< Ns from attempt 1 to 2; doubled each time. Default: 10^7.
+    uint64_t maxDelay;    ///< Largest delay, in ns. Default: 10^9.
 } SluiceTileRetryPolicy;
 
-/** An attempt at a read that failed. Pointers are valid during the call. */
+/** Failed attempt to read. Pointers are valid during the call. */
 typedef struct SluiceTileReadFailure {
     SluiceImageSource *source;
-    const char *pName; ///< the source's, of an array the layer's; "" if it did not even tell that
-    SluiceImageRegion region; ///< that failed
+    const char *pName;        ///< Name of the source, or of the array's layer. "" if unknown.
+    SluiceImageRegion region; ///< Region that failed.
     SluiceResult result;
-    uint32_t attempt; ///< from 1
-    bool willRetry;   ///< after retryDelay; else the read ends with this result
-    uint64_t retryDelay;
-    uint64_t userValue; ///< the read's
-    /** Where in the file, in bytes; SLUICE_UNKNOWN_OFFSET if the source does not say. */
+    uint32_t attempt;    ///< Counts from 1.
+    bool willRetry;      ///< False: the read ends with `result`.
+    uint64_t retryDelay; ///< Ns until the next attempt.
+    uint64_t userValue;  ///< SluiceTileRead.userValue.
+    /** Byte offset in the file, or SLUICE_UNKNOWN_OFFSET. */
     uint64_t offset;
 } SluiceTileReadFailure;
 
 /**
- * Told of every failure but CANCELLED, and of NOT_READY only where that is the end. Off when
- * `pfnFailed` is NULL. Called on worker threads, several at once; the source and the loader's
- * functions may be used, but for sluiceDestroyTileLoader and sluiceWaitTileLoaderIdle.
+ * Receives failed attempts. Off if `pfnFailed` is NULL.
+ *
+ * SLUICE_ERROR_CANCELLED is not reported. SLUICE_NOT_READY is reported only if it ends the read.
+ * Called on worker threads, several at the same time. The callback may use the source and the
+ * loader, except sluiceDestroyTileLoader and sluiceWaitTileLoaderIdle.
  */
 typedef struct SluiceTileReadFailureCallback {
     void *pUserData;
@@ -50,136 +55,171 @@ typedef struct SluiceTileReadFailureCallback {
 } SluiceTileReadFailureCallback;
 
 /**
- * Told of every read that has ended, with whatever result, and can be collected: for those who wait
- * instead of asking. Off when `pfnEnded` is NULL. Called on the thread that ended it, also in
- * sluiceCancelTileRead and sluiceDestroyTileLoader, with the loader locked: functions of the loader
- * may not be used, and other reads wait until it returns.
+ * Receives each read that has ended, with any result, and can be collected. For callers that wait
+ * rather than poll. Off if `pfnEnded` is NULL.
+ *
+ * Called on the thread that ends the read; this includes callers of sluiceCancelTileRead and
+ * sluiceDestroyTileLoader. The loader is locked: the callback must not call the loader, and other
+ * reads wait until the callback returns.
  */
 typedef struct SluiceTileReadEndCallback {
     void *pUserData;
     void (*pfnEnded)(void *pUserData, uint64_t userValue, SluiceResult result);
 } SluiceTileReadEndCallback;
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a loader. A field of zero selects its default. */
 typedef struct SluiceTileLoaderCreateInfo {
-    uint32_t threadCount;     ///< 0: one less than there are processors, at least 2
-    uint32_t requestCapacity; ///< reads not yet collected, at most, up to 2^29; 0: 1024
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
+    uint32_t threadCount;     ///< Default: processors - 1, at least 2.
+    uint32_t requestCapacity; ///< Most uncollected reads. At most 2^29. Default: 1024.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceTileRetryPolicy retry;
-    /** Reads of one source that are under way at once: a source that stalls holds so many threads
-     *  and no more. 0: threadCount - 1, at least 1. */
+    /** Most concurrent reads of one source, and so most threads that a stalled source occupies.
+     *  Default: threadCount - 1, at least 1. */
     uint32_t maxReadsPerSource;
-    /** Bytes of texels of reads that are under way at once; a larger read waits until it is alone.
-     *  0: 2^28. */
+    /** Most bytes of texels being read at the same time. A single larger read waits until no other
+     *  is running. Default: 2^28. */
     uint64_t maxBytesInFlight;
     SluiceTileReadFailureCallback failure;
-    /** Sources whose statistics are kept, about 700 bytes each; beyond it those longest without
-     *  reads are forgotten. At most 2^29; at least requestCapacity; 0: that. */
+    /** Sources whose statistics are kept, about 700 bytes each. The loader drops the statistics of
+     *  the source that was least recently read. At most 2^29. Values below requestCapacity are
+     *  raised to it. Default: requestCapacity. */
     uint32_t maxSourceCount;
     SluiceTileReadEndCallback end;
 } SluiceTileLoaderCreateInfo;
 
-/** One or more regions that are read as one: the packed levels of a texture, or one tile. */
+/** One or more regions that are read together: one tile, or the mip tail of a texture. */
 typedef struct SluiceTileRead {
-    SluiceImageSource *source;         ///< must live until the read is collected
-    uint32_t regionCount;              ///< 1 to SLUICE_MAX_READ_REGIONS
-    const SluiceImageRegion *pRegions; ///< copied
-    /** Where each region goes, tightly packed rows; must stay writable until collected. */
+    SluiceImageSource *source;         ///< Must live until the read is collected.
+    uint32_t regionCount;              ///< 1 to SLUICE_MAX_READ_REGIONS.
+    const SluiceImageRegion *pRegions; ///< Copied.
+    /** Destination of each region, rows tightly packed. Must stay writable until collected. */
     void *const *ppTexels;
-    uint32_t priority;  ///< larger is read first; equal ones in the order of submission
-    uint64_t userValue; ///< comes back with the result
+    uint32_t priority;  ///< Larger values are read first; equal ones in order of submission.
+    uint64_t userValue; ///< Returned with the result.
 } SluiceTileRead;
 
 #define SLUICE_MAX_READ_REGIONS 24
 
+/** Result of a read. */
 typedef struct SluiceTileReadResult {
     uint64_t ticket;
     uint64_t userValue;
-    /** The source's to the last attempt, NOT_READY among them; CANCELLED if it was dropped before
-     *  its last region or before another attempt. */
+    /** Result of the last attempt; may be SLUICE_NOT_READY. SLUICE_ERROR_CANCELLED if the read was
+     *  cancelled before its last region, or while waiting for a retry. */
     SluiceResult result;
-    uint64_t size; ///< bytes of texels delivered; 0 unless the result is SUCCESS
+    uint64_t size; ///< Bytes of texels read. 0 unless `result` is SLUICE_SUCCESS.
 } SluiceTileReadResult;
 
-/** Starts the threads. Errors: NULL_POINTER; INVALID_ARGUMENT for counts beyond their limits;
- *  OUT_OF_HOST_MEMORY, also for want of threads. */
+/**
+ * Creates a loader and starts its threads.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if a count is above its limit;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, also if a thread cannot be started.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInfo,
                                                SluiceTileLoader **pLoader);
 
-/** Cancels what has not begun or waits for another attempt, waits for regions that are being read.
- *  NULL is allowed. */
+/**
+ * Destroys a loader. Cancels reads that have not begun or wait for a retry, and waits for regions
+ * that are being read. NULL is allowed.
+ * Thread safety: external on `loader`.
+ */
 SLUICE_API void sluiceDestroyTileLoader(SluiceTileLoader *loader);
 
 /**
- * Queues a read. `*pTicket` is never 0 and never comes again. Returns SLUICE_NOT_READY, and queues
- * nothing, while requestCapacity reads are uncollected. Regions are checked when they are read.
- * Errors: NULL_POINTER, INVALID_ARGUMENT. Thread safety: any thread.
+ * Queues one read. `*pTicket` is never 0 and never reused.
+ *
+ * Returns SLUICE_NOT_READY, with nothing queued, while requestCapacity reads are uncollected.
+ * Regions are checked later, when they are read.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_INVALID_ARGUMENT.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead *pRead,
                                              uint64_t *pTicket);
 
 /**
- * The same for `count` reads, all of them or, with NOT_READY or an error, none. Many reads are
- * queued so without the threads, which begin when they all are, getting in the way.
+ * Queues `count` reads under one lock. Workers start after the last read is queued.
+ *
+ * After SLUICE_NOT_READY or an error none of them is queued. Results and thread safety: as
+ * sluiceSubmitTileRead.
  */
 SLUICE_API SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t count,
                                               const SluiceTileRead *pReads, uint64_t *pTickets);
 
 /**
- * Asks for a read to be dropped. It is collected all the same: as CANCELLED if it had not begun,
- * had regions left or was to be tried again, otherwise as if nothing had been said. Unknown and
- * collected tickets are ignored. Thread safety: any thread.
+ * Asks for a read to be cancelled. The read must still be collected.
+ *
+ * Its result is SLUICE_ERROR_CANCELLED if it had not begun, had regions left or waited for a retry;
+ * otherwise the cancel has no effect. Unknown and collected tickets are ignored.
+ * Thread safety: any thread.
  */
 SLUICE_API void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket);
 
 /**
- * Collects finished reads in the order in which they finished; never waits. `*pResultCount` is the
- * room on entry, the number written on return; SLUICE_INCOMPLETE if more had finished.
- * Errors: NULL_POINTER. Thread safety: any thread.
+ * Collects finished reads in the order in which they finished. Never waits.
+ *
+ * `*pResultCount` is the capacity of `pResults` on entry and the number written on return. Returns
+ * SLUICE_INCOMPLETE if more reads have finished.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_t *pResultCount,
                                                SluiceTileReadResult *pResults);
 
-/** Waits until nothing is queued, being read or to be tried again. For tests and shutdown. Any
- *  thread. */
+/**
+ * Waits until no read is queued, running or waiting for a retry. For tests and shutdown.
+ * Thread safety: any thread.
+ */
 SLUICE_API void sluiceWaitTileLoaderIdle(SluiceTileLoader *loader);
 
 /**
- * What became of the reads of a source, or of all. An attempt is one try at all regions of a read
- * that are left; a latency the ns that one took, failed ones included. Percentiles are upper
- * bounds, less than twice too large, up to 2^47 ns.
+ * Statistics of the reads of one source, or of all reads.
+ *
+ * An attempt is one try at all remaining regions of a read. Latencies are nanoseconds per attempt,
+ * failed attempts included. Percentiles are upper bounds, less than twice the true value, up to
+ * 2^47 ns.
  */
 typedef struct SluiceTileLoaderStatistics {
-    uint64_t readCount;      ///< submitted; those not counted as ended below are under way
-    uint64_t succeededCount; ///< ended with SUCCESS
-    uint64_t givenUpCount;   ///< ended with an error or NOT_READY
-    uint64_t cancelledCount; ///< ended with CANCELLED
-    uint64_t byteCount;      ///< texels of those that succeeded
+    uint64_t readCount; ///< Submitted. Reads that none of the next three counts are still open.
+    uint64_t succeededCount; ///< Ended with SLUICE_SUCCESS.
+    uint64_t givenUpCount;   ///< Ended with an error or SLUICE_NOT_READY.
+    uint64_t cancelledCount; ///< Ended with SLUICE_ERROR_CANCELLED.
+    uint64_t byteCount;      ///< Bytes of texels of reads that succeeded.
     uint64_t attemptCount;
-    uint64_t failedCount;   ///< attempts that ended with an error but CANCELLED
-    uint64_t notReadyCount; ///< attempts that ended with NOT_READY
-    uint64_t retriedCount;  ///< attempts after which another was to be made
-    uint64_t delayedCount;  ///< reads that wait for one now
+    uint64_t failedCount;   ///< Attempts that failed, except by SLUICE_ERROR_CANCELLED.
+    uint64_t notReadyCount; ///< Attempts that returned SLUICE_NOT_READY.
+    uint64_t retriedCount;  ///< Attempts that were followed by a retry.
+    uint64_t delayedCount;  ///< Reads that wait for a retry now.
     uint64_t meanLatency, medianLatency, latency99, maxLatency;
-    /** Of the latest attempt that failedCount counts: its result, and where in the file it failed,
-     *  or SLUICE_UNKNOWN_OFFSET; SUCCESS and 0 while there is none. */
+    /** Result and byte offset (or SLUICE_UNKNOWN_OFFSET) of the latest attempt in failedCount.
+     *  SLUICE_SUCCESS and 0 while there is none. */
     SluiceResult lastFailure;
     uint64_t lastFailureOffset;
 } SluiceTileLoaderStatistics;
 
 /**
- * `source` NULL: of all reads. Zeros for a source of which nothing was submitted, or that is
- * forgotten. Errors: NULL_POINTER. Thread safety: any thread.
+ * Gets the statistics of `source`, or of all reads if `source` is NULL.
+ *
+ * Zeros if no read of the source was submitted, or if its statistics were dropped.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
                                                       const SluiceImageSource *source,
                                                       SluiceTileLoaderStatistics *pStatistics);
 
 /**
- * Drops what the loader knows of a source. Useful where the source is destroyed: another one at the
- * same address would otherwise go on with its statistics. Returns
- * SLUICE_NOT_READY, with nothing changed, while reads of it are not collected. The statistics of
- * all reads stay. Errors: NULL_POINTER. Thread safety: any thread.
+ * Drops the statistics of a source. Call it when the source is destroyed; otherwise a new source at
+ * the same address continues them. Statistics of all reads are kept.
+ *
+ * Returns SLUICE_NOT_READY, with nothing changed, while reads of the source are uncollected.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceForgetTileLoaderSource(SluiceTileLoader *loader,
                                                      const SluiceImageSource *source);

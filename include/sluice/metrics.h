@@ -1,4 +1,4 @@
-/** How far two pictures are apart. */
+/** Metrics of the difference between two pictures: PSNR, SSIM, FLIP. */
 #ifndef SLUICE_METRICS_H
 #define SLUICE_METRICS_H
 
@@ -9,59 +9,68 @@ extern "C" {
 #endif
 
 /**
- * Peak signal-to-noise ratio in dB of two 8-bit pictures, over all `channelCount` channels, peak
- * 255; +infinity if they are equal. Both are [height][width][channelCount], tightly packed. Sums
- * are exact integers, so the order of summation does not matter.
+ * Computes the peak signal-to-noise ratio of two 8-bit pictures, in dB, over all channels. Peak:
+ * 255. +infinity if the pictures are equal.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT if a size is 0 or channelCount is above 4. Any thread.
+ * Both pictures are [height][width][channelCount], tightly packed. Sums are exact integers, so the
+ * result does not depend on the order of summation.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if a size is 0 or `channelCount`
+ *         is above 4.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceComputePsnr8(const uint8_t *pA, const uint8_t *pB, uint32_t width,
                                            uint32_t height, uint32_t channelCount, double *pPsnr);
 
-/** What a pixel is in memory. Alpha is not looked at; floats need no alignment. */
+/** Pixel formats in memory. Alpha is ignored. Floats need no alignment. */
 typedef enum SluicePixelFormat {
-    SLUICE_PIXEL_FORMAT_RGBA8_SRGB = 0,   ///< four bytes, R, G and B encoded as sRGB
-    SLUICE_PIXEL_FORMAT_RGBA32_FLOAT = 1, ///< four floats, linear light of sRGB's primaries
-    SLUICE_PIXEL_FORMAT_R32_FLOAT = 2     ///< a float, a linear grey
+    SLUICE_PIXEL_FORMAT_RGBA8_SRGB = 0,   ///< Four bytes; R, G and B encoded as sRGB.
+    SLUICE_PIXEL_FORMAT_RGBA32_FLOAT = 1, ///< Four floats; linear light, sRGB primaries.
+    SLUICE_PIXEL_FORMAT_R32_FLOAT = 2     ///< One float; linear gray.
 } SluicePixelFormat;
 
 /**
- * Two pictures [height][width] of one format, and the two are read alone.
+ * Two pictures to compare: [height][width] of one format. They are only read.
  *
- * Floats are clamped to [0, peak], so infinities are the peak or 0 and a NaN is 0: what a display
- * whose white is `peak` would show. Whoever wants a NaN to stand out looks for it beforehand.
+ * Floats are clamped to [0, peak], as on a display whose white is `peak`: infinities become the
+ * peak or 0, and NaN becomes 0. If NaN matters, check for it beforehand.
  */
 typedef struct SluicePicturePair {
     const void *pA, *pB;
-    size_t rowPitchA, rowPitchB; ///< bytes from row to row; 0: tightly packed
-    uint32_t width, height;      ///< pixels, at least 1
+    size_t rowPitchA, rowPitchB; ///< Bytes between rows. Default: tightly packed.
+    uint32_t width, height;      ///< Pixels, at least 1.
     SluicePixelFormat format;
-    float peak; ///< of float formats, finite and above 0; in others it is not looked at
+    float peak; ///< Finite and above 0. Ignored for RGBA8_SRGB.
 } SluicePicturePair;
 
-/** Where a value per pixel goes: [height][width], as large as the pictures. */
+/** Destination of one value per pixel: [height][width], the size of the pictures. */
 typedef struct SluiceMetricMap {
     float *pValues;
-    size_t rowPitch; ///< bytes from row to row, a multiple of 4; 0: tightly packed
+    size_t rowPitch; ///< Bytes between rows, a multiple of 4. Default: tightly packed.
 } SluiceMetricMap;
 
 /**
- * Structural similarity: mean in [-1, 1], 1 if the pictures are equal; symmetric.
+ * Computes the structural similarity (SSIM): mean in [-1, 1], 1 if the pictures are equal.
+ * Symmetric.
  *
- * It is that of one channel: luma of BT.709's weights, of the encoded values in RGBA8_SRGB (peak
- * 255), of the values themselves in RGBA32_FLOAT, and the values in R32_FLOAT. Windows are
- * Gaussian, 11x11, sigma 1.5, weights summing to 1; K1 = 0.01, K2 = 0.03; variances are weighted
- * means, not corrected for bias. The mean is over all pixels whose window lies in the picture;
- * where an axis is shorter than 11 no window does, and all positions of that axis count. A window
- * that reaches beyond the border is cut and the rest of its weights made to sum to 1 again: so it
- * is in the map, which has a value for every pixel, and in small pictures. `pMap` may be NULL.
+ * It compares one channel. RGBA8_SRGB: luma with the weights of BT.709, of encoded values, peak
+ * 255. RGBA32_FLOAT: luma of the values. R32_FLOAT: the values. Windows are Gaussian, 11x11, sigma
+ * 1.5, weights summing to 1; K1 = 0.01, K2 = 0.03. Variances are weighted means without bias
+ * correction.
  *
- * Takes about 500 bytes of memory per column, whatever the height, from `pAllocator` (NULL: malloc
- * and free). Errors: NULL_POINTER; INVALID_ARGUMENT for a size of 0, an unknown format, a peak
- * outside its range, a pitch below a row's size or a picture beyond the address space;
- * OUT_OF_HOST_MEMORY. After an error `*pMean` and the map are as before. Any thread. Source: Wang,
- * Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
- * Similarity", 2004.
+ * The mean covers all pixels whose window lies inside the picture. Along an axis shorter than 11,
+ * where no window fits, it covers all positions. A window that crosses the border is cut and its
+ * weights are normalized again. `pMap` gets a value for every pixel. `pMap` may be NULL.
+ *
+ * Memory: about 500 bytes per column, whatever the height. A NULL `pAllocator` means malloc and
+ * free. After an error `*pMean` and the map are unchanged.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a size of 0, an unknown
+ *         format, a peak out of range, a pitch below the size of a row, or a picture larger than
+ *         the address space; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Thread safety: any thread.
+ * Source: Wang, Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to
+ * Structural Similarity", 2004.
  */
 SLUICE_API SluiceResult sluiceComputeSsim(const SluicePicturePair *pPair,
                                           const SluiceMetricMap *pMap,
@@ -69,19 +78,25 @@ SLUICE_API SluiceResult sluiceComputeSsim(const SluicePicturePair *pPair,
                                           double *pMean);
 
 /**
- * LDR-FLIP, what one sees of the difference when the pictures alternate in place: mean in [0, 1], 0
- * if they are equal; symmetric. Black against white is 0.967, blue against green is 1.
+ * Computes LDR-FLIP, the difference seen when the pictures alternate in place: mean in [0, 1], 0 if
+ * the pictures are equal. Symmetric. Black and white differ by 0.967, blue and green by 1.
  *
- * `pixelsPerDegree`, of visual angle, in [1, 4096]: distance * pixels / width * pi / 180, with the
- * distance to the display and its width in metres; 0 asks for the paper's 67.02 (a display of 0.7 m
- * and 3840 pixels seen from 0.7 m). Floats are divided by the peak; HDR-FLIP, which looks at
- * several exposures, is not here. Beyond the border the pixels of the border go on. `pMap`, which
- * may be NULL, gets the error of each pixel; `*pMean` is their mean.
+ * `pixelsPerDegree` of visual angle is distance * pixels / width * pi / 180, with the viewing
+ * distance and the display's width in meters. Range: 1 to 4096. Default for 0: the paper's 67.02 (a
+ * display 0.7 m wide with 3840 pixels, seen from 0.7 m).
  *
- * Takes about 120 bytes per column for each row of its filters (21 at 67.02) from `pAllocator`
- * (NULL: malloc and free). Errors and state after one as sluiceComputeSsim, and INVALID_ARGUMENT
- * for pixelsPerDegree outside its range. Any thread. Source: Andersson, Nilsson, Akenine-Moeller,
- * Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for Alternating Images", 2020.
+ * Floats are divided by the peak. HDR-FLIP, which compares several exposures, is not provided.
+ * Beyond the border the border's pixels are repeated. `pMap` gets the error of each pixel and may
+ * be NULL. `*pMean` is the mean of those errors.
+ *
+ * Memory: about 120 bytes per column for each row of the filters (21 rows at 67.02). A NULL
+ * `pAllocator` means malloc and free.
+ *
+ * Errors, state after an error: as sluiceComputeSsim; SLUICE_ERROR_INVALID_ARGUMENT also if
+ *         `pixelsPerDegree` is out of range.
+ * Thread safety: any thread.
+ * Source: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference
+ * Evaluator for Alternating Images", 2020.
  */
 SLUICE_API SluiceResult sluiceComputeFlip(const SluicePicturePair *pPair, float pixelsPerDegree,
                                           const SluiceMetricMap *pMap,
@@ -89,9 +104,13 @@ SLUICE_API SluiceResult sluiceComputeFlip(const SluicePicturePair *pPair, float 
                                           double *pMean);
 
 /**
- * Colours for values in [0, 1], black through purple and orange to pale yellow: nine samples of the
- * map "magma" and straight lines between them. Values are clamped, NaN is 0. `pColours` is
- * [count][4], RGBA8 sRGB, alpha 255. Errors: NULL_POINTER, unless count is 0. Any thread.
+ * Converts values in [0, 1] to colors from black through purple and orange to pale yellow.
+ *
+ * The colors interpolate linearly between nine samples of the color map "magma". Values are
+ * clamped; NaN counts as 0. `pColours` is [count][4], RGBA8 sRGB, alpha 255.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, unless `count` is 0.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceColourMagma(const float *pValues, size_t count, uint8_t *pColours);
 

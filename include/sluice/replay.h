@@ -1,6 +1,6 @@
 /**
- * Records everything that enters a manager and plays it back: same input, same decisions, on every
- * machine. The format is in docs/replay.md.
+ * Records all input of a manager and replays it. The same input gives the same decisions on every
+ * machine. docs/replay.md specifies the format.
  */
 #ifndef SLUICE_REPLAY_H
 #define SLUICE_REPLAY_H
@@ -14,8 +14,8 @@ extern "C" {
 typedef struct SluiceRecorder SluiceRecorder;
 
 /**
- * Where the bytes of a recording go. Returning anything but SLUICE_SUCCESS ends the recording; the
- * manager goes on, and sluiceEndRecording returns that result.
+ * Destination of a recording. Any result but SLUICE_SUCCESS ends the recording. The manager
+ * continues, and sluiceEndRecording returns that result.
  */
 typedef struct SluiceRecordWriter {
     void *pUserData;
@@ -23,75 +23,107 @@ typedef struct SluiceRecordWriter {
 } SluiceRecordWriter;
 
 /**
- * Starts to record a manager that has no textures and no heaps yet; it may be configured. The
- * recorder must be ended before the manager is destroyed.
+ * Starts to record a manager. The manager may be configured but must have no textures and no heaps.
+ * End the recording before you destroy the manager.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT if the manager was used already or is being recorded;
- *         OUT_OF_HOST_MEMORY, and what the writer says.
- * Thread safety: a recorder works on the threads that call its manager; external on the manager.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the manager was used before
+ *         or is being recorded; SLUICE_ERROR_OUT_OF_HOST_MEMORY; errors of the writer.
+ * Thread safety: external on `manager`. The recorder runs on the threads that call the manager.
  */
 SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
                                              const SluiceRecordWriter *pWriter,
                                              const SluiceAllocationCallbacks *pAllocator,
                                              SluiceRecorder **pRecorder);
 
+/** Settings of a recording into a file. A field of zero selects its default. */
+typedef struct SluiceFileRecordingInfo {
+    const char *pPath;                           ///< Required.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    /** Names a file that cannot be written, and why. Called until sluiceEndRecording returns. */
+    SluiceLogCallback log;
+} SluiceFileRecordingInfo;
+
 /**
- * The same into a file, which is written as `pPath` with ".partial" appended and gets its name when
- * the recording ends: `pPath` is complete or, after an error, as it was before. A device or a pipe
- * is written to as it stands. Errors: also IO.
+ * Starts to record a manager into a file.
+ *
+ * Writes `pPath` + ".sluice-part" and renames it when the recording ends: `pPath` is complete or,
+ * after an error, unchanged. Two recordings cannot use the same path at the same time, even in
+ * different processes. A .sluice-part file left by a killed process is overwritten.
+ *
+ * A pipe or character device is written directly. A folder, block device, read-only file or
+ * symbolic link to a file at `pPath` is refused and kept.
+ *
+ * Returns SLUICE_NOT_READY, with nothing recorded, if no file descriptor is free. Close files and
+ * call again.
+ *
+ * Errors: as sluiceBeginRecording; SLUICE_ERROR_BUSY if another writer has the file open;
+ *         SLUICE_ERROR_IO.
+ * Thread safety: external on `manager`.
  */
+SLUICE_API SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
+                                                 const SluiceFileRecordingInfo *pInfo,
+                                                 SluiceRecorder **pRecorder);
+
+/** Calls sluiceBeginFileRecording without a log. */
 SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager,
                                                    const char *pPath,
                                                    const SluiceAllocationCallbacks *pAllocator,
                                                    SluiceRecorder **pRecorder);
 
 /**
- * Writes the end mark with the hash over all decisions and releases the recorder. NULL is allowed.
- * Returns the first thing that went wrong since the recording began: OUT_OF_HOST_MEMORY, IO, or
- * what the writer said.
+ * Ends a recording: writes the end mark with the hash of all decisions, and releases the recorder.
+ * NULL is allowed.
+ *
+ * Returns the first error since the recording began: SLUICE_ERROR_OUT_OF_HOST_MEMORY,
+ * SLUICE_ERROR_IO, or the result of the writer.
+ * Thread safety: external on the manager.
  */
 SLUICE_API SluiceResult sluiceEndRecording(SluiceRecorder *recorder);
 
-/** How to play a trace. Zero in any field asks for the default written beside it. */
+/** Settings of a replay. A field of zero selects its default. */
 typedef struct SluiceReplayInfo {
-    const void *pData; ///< the whole trace: "SLUICERT" recordings, or "SLTRACE1" feedback traces
-    size_t size;
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
-    SluiceLogCallback log; ///< what is wrong with a trace, with the byte offset
+    const void *pData; ///< Whole trace: a "SLUICERT" recording or "SLTRACE1" feedback trace.
+    size_t size;       ///< Bytes of the trace.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
+    SluiceLogCallback log;                       ///< Problems of the trace, with the byte offset.
     void *pUserData;
-    /** NULL, or called with each line of the text dump, without a newline. */
+    /** Receives each line of the text dump, without a newline. May be NULL. */
     void (*pfnLine)(void *pUserData, const char *pLine);
     /* For SLTRACE1 only, which has feedback but no frame loop: */
-    uint32_t heapTileCapacity; ///< 0: 1024
-    uint32_t maxHeapCount;     ///< 0: no cap
-    uint32_t standbyTileCount; ///< numExtraStandbyTiles
-    uint32_t tilesPerFrame;    ///< answered per frame at most; 0: 256
-    uint32_t latency;          ///< frames from handed out to answered; 0: answered at once
-    uint64_t timeoutMicros;    ///< 0: 1 000 000
-    /* For both: */
-    /** NULL, or a file to record what is played into, as sluiceBeginRecordingToFile does. */
+    uint32_t heapTileCapacity; ///< Slots per heap. Default: 1024.
+    uint32_t maxHeapCount;     ///< Default: no limit.
+    uint32_t standbyTileCount; ///< numExtraStandbyTiles of the manager.
+    uint32_t tilesPerFrame;    ///< Most tiles answered per frame. Default: 256.
+    uint32_t latency;          ///< Frames from hand-out to answer. 0: at once.
+    uint64_t timeoutMicros;    ///< Microseconds. Default: 1 000 000.
+    /* For both formats: */
+    /** File to record the replay into, like sluiceBeginFileRecording. May be NULL. */
     const char *pRecordPath;
 } SluiceReplayInfo;
 
+/** Result of a replay. */
 typedef struct SluiceReplayResult {
-    uint64_t decisionHash; ///< over every output of every call, in order
-    uint64_t recordedHash; ///< from the end mark; 0 if there is none
+    uint64_t decisionHash; ///< Hash of every output of every call, in order.
+    uint64_t recordedHash; ///< From the end mark. 0 if there is none.
     uint64_t eventCount;
-    uint64_t errorOffset; ///< byte offset of what is wrong, after CORRUPT_DATA
-    SluiceStreamedTextureStatistics statistics; ///< at the end
-    /** The first call, counted from 1, that was decided otherwise than recorded; 0: none. */
+    uint64_t errorOffset; ///< Byte offset of the defect, after SLUICE_ERROR_CORRUPT_DATA.
+    SluiceStreamedTextureStatistics statistics; ///< At the end of the replay.
+    /** First call, counted from 1, whose decisions differ from the recording. 0: none. */
     uint64_t divergedEvent;
-    uint64_t divergedOffset; ///< byte offset of that call in the trace
+    uint64_t divergedOffset; ///< Byte offset of that call in the trace.
 } SluiceReplayResult;
 
 /**
- * Plays a trace against a manager of its own. A trace whose decisions come out otherwise than they
- * were recorded is no error: see decisionHash, recordedHash and divergedEvent.
+ * Replays a trace with a manager of its own.
  *
- * Errors: NULL_POINTER, INVALID_ARGUMENT if only one of pAllocator's functions is set,
- *         OUT_OF_HOST_MEMORY, UNSUPPORTED for a newer version, IO for pRecordPath; CORRUPT_DATA for
- *         a truncated or damaged trace: errorOffset says where. The decisions made before an error
- *         are in `*pResult`. A hostile trace can ask for a lot of memory: bound it in pAllocator.
+ * Decisions that differ from the recording are not an error: compare decisionHash with
+ * recordedHash, and see divergedEvent. After an error `*pResult` holds the decisions made before
+ * it. A malicious trace can request much memory: limit it in pAllocator.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if only one of pAllocator's
+ *         functions is set; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_UNSUPPORTED for a newer
+ *         version; SLUICE_ERROR_IO and SLUICE_ERROR_BUSY for pRecordPath; SLUICE_ERROR_CORRUPT_DATA
+ *         for a truncated or damaged trace (errorOffset says where).
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pResult);

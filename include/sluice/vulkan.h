@@ -1,9 +1,10 @@
 /**
- * Streams textures on a Vulkan device. Link `sluice-vulkan`; the only header that includes Vulkan.
+ * Streams textures on a Vulkan device. Link `sluice-vulkan`. Only this header and demand.h include
+ * Vulkan.
  *
  * The application owns instance, device, queues and command buffers, and draws. A streamer owns the
- * streamed images, the feedback, MinMip and texture table buffers, a manager (manager.h) and a tile
- * loader (loader.h). Shaders use the functions of shaders/include/sluice.
+ * streamed images, the buffers for feedback, MinMip maps and the texture table, a manager
+ * (manager.h) and a tile loader (loader.h). Shaders use the functions of shaders/include/sluice.
  *
  * A frame:
  *
@@ -12,12 +13,14 @@
  *     sluiceEndStreamingFrame(streamer, commandBuffer);
  *     vkQueueSubmit: signal frame.semaphore with frame.signalValue
  *
- * The barriers for what the streamer owns are recorded here; the application's need not name it.
- * docs/frame-loop.md goes through it step by step, docs/examples/vulkan.c is a whole program.
+ * Abandon a frame that you cannot submit with sluiceAbandonStreamingFrame. The streamer records the
+ * barriers for its own images and buffers; you need none for them. docs/frame-loop.md explains each
+ * step, docs/examples/vulkan.c is a whole program.
  *
- * Nothing here waits for the GPU, but for sluiceDestroyVulkanStreamer and
- * sluiceWaitVulkanStreamerIdle. Thread safety: external on the streamer and, during
- * sluiceBeginStreamingFrame, on the sparse queue.
+ * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU.
+ *
+ * Thread safety, unless a function says otherwise: external on the streamer; during
+ * sluiceBeginStreamingFrame also on the sparse queue.
  */
 #ifndef SLUICE_VULKAN_H
 #define SLUICE_VULKAN_H
@@ -35,101 +38,143 @@ extern "C" {
 
 typedef struct SluiceVulkanStreamer SluiceVulkanStreamer;
 
+/** How a texture occupies device memory. */
 typedef enum SluiceResidencyMode {
-    SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< sparse where the device has it, else paged
-    SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< sparse residency images
-    /** A page table that shaders read and tiles as layers of array images: see SluiceVulkanPages.
-     *  A texture may be larger than images of the device. */
+    SLUICE_RESIDENCY_MODE_AUTO = 0,   ///< See sluiceChooseVulkanResidencyMode.
+    SLUICE_RESIDENCY_MODE_SPARSE = 1, ///< Sparse residency images.
+    /**
+     * Layers of array images hold tiles; shaders find them in a page table (SluiceVulkanPages). A
+     * texture may exceed the device's image size limit.
+     */
     SLUICE_RESIDENCY_MODE_PAGED = 2,
-    /** Ordinary images that have all their memory from the start: what streams is the texels. */
+    /** Ordinary images with all their memory from the start. Only texels are streamed. */
     SLUICE_RESIDENCY_MODE_DENSE = 3
 } SluiceResidencyMode;
 
-/** What shaders write for each feedback region; their SLUICE_FEEDBACK_ENCODING must be the same. */
+/** Encoding of feedback. Shaders must define SLUICE_FEEDBACK_ENCODING accordingly. */
 typedef enum SluiceFeedbackEncoding {
-    SLUICE_FEEDBACK_ENCODING_LEVELS = 0, ///< a word with the finest level
-    SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< half a word with a bit per level; half the memory
+    SLUICE_FEEDBACK_ENCODING_LEVELS = 0, ///< A word per region: the finest level.
+    SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< Half a word per region: a bit per level.
 } SluiceFeedbackEncoding;
 
-/** What a device can do for Sluice, and what is known to be odd about it. */
+/** Capabilities of a device, and its known quirks. */
 typedef struct SluiceVulkanDeviceCapabilities {
-    bool sparse;                     ///< sparse residency 2D images and a queue that binds them
-    bool shaderResourceResidency;    ///< residency codes exist
-    bool shaderResourceMinLod;       ///< samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl
-    bool residencyNonResidentStrict; ///< reads of unbound texels are 0
-    bool nonUniformIndexing;         ///< of arrays of images; else shaders define SLUICE_PAGE_LOOP
-    /** The best that binds: without graphics if possible, perhaps useless for anything else. */
+    bool sparse;                     ///< Sparse residency 2D images, and a queue that binds them.
+    bool shaderResourceResidency;    ///< Residency codes exist.
+    bool shaderResourceMinLod;       ///< Samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl.
+    bool residencyNonResidentStrict; ///< Reads of unbound texels return 0.
+    bool nonUniformIndexing; ///< Of image arrays. If false, shaders define SLUICE_PAGE_LOOP.
+    /**
+     * Best queue family with SPARSE_BINDING, preferably without graphics. It may support nothing
+     * else.
+     */
     uint32_t sparseQueueFamilyIndex;
-    uint64_t sparseAddressSpaceSize; ///< bytes; also the limit per image
+    uint64_t sparseAddressSpaceSize; ///< Bytes. Also the limit per image.
     char deviceName[256];
     char driverName[256], driverInfo[256];
     VkPhysicalDeviceType deviceType;
-    uint32_t apiVersion;           ///< as VK_MAKE_API_VERSION
-    bool timelineSemaphore;        ///< required
-    bool fragmentStoresAndAtomics; ///< required
-    bool textureCompressionBC;     ///< BC formats can be streamed
+    uint32_t apiVersion;           ///< As VK_MAKE_API_VERSION.
+    bool timelineSemaphore;        ///< Required.
+    bool fragmentStoresAndAtomics; ///< Required.
+    bool textureCompressionBC;     ///< BC formats can be streamed.
     bool samplerAnisotropy;
-    bool sparseResidencyAliased; ///< a page may lie at several places
-    bool standardTiles;          ///< sparse tiles have the shapes of sluiceGetStandardTileShape
-    /** Residency codes exist and can be believed: not on software devices, whose codes are wrong
-     *  for filters between levels. Sluice itself samples by MinMip maps alone. */
+    bool sparseResidencyAliased; ///< A page may be bound at several places.
+    bool standardTiles;          ///< Sparse tiles have the shapes of sluiceGetStandardTileShape.
+    /**
+     * Residency codes exist and are correct. Software devices return wrong codes for filters
+     * between levels. Sluice itself uses only MinMip maps.
+     */
     bool residencyCodesExact;
-    bool dedicatedSparseQueue; ///< of a family that neither draws nor computes
-    uint32_t sparseQueueCount; ///< of sparseQueueFamilyIndex
-    /** Different tiles that a process may bind in the life of their images; 0: as many as it likes.
-     *  Software devices keep a memory map for each. */
+    bool dedicatedSparseQueue; ///< Its family has neither graphics nor compute.
+    uint32_t sparseQueueCount; ///< Queues of sparseQueueFamilyIndex.
+    /**
+     * Most distinct tiles ever bound in existing images, per process. 0: no limit. Software devices
+     * keep a memory map for each until the image is destroyed.
+     */
     uint32_t maxTouchedTiles;
     uint32_t maxImageExtent, maxImageArrayLayers;
-    uint32_t maxStorageBufferRange; ///< bytes
+    uint32_t maxStorageBufferRange; ///< Bytes.
     float maxSamplerAnisotropy;
-    float timestampPeriod;          ///< nanoseconds per tick; 0: no time stamps
-    uint64_t deviceLocalMemorySize; ///< bytes of the largest such heap
+    float timestampPeriod;          ///< Nanoseconds per tick. 0: no time stamps.
+    uint64_t deviceLocalMemorySize; ///< Bytes of the largest device-local heap.
 } SluiceVulkanDeviceCapabilities;
 
-/** Errors: NULL_POINTER, UNSUPPORTED if pfnGetInstanceProcAddr lacks a function. */
+/**
+ * Gets the capabilities of a device.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if pfnGetInstanceProcAddr lacks a
+ *         function.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult
 sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
                                   PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                   SluiceVulkanDeviceCapabilities *pCapabilities);
 
-/** What a device makes of one format, as a 2D image that is sampled and copied to. */
+/**
+ * Returns the mode that AUTO resolves to for a streamer of `maxTextureCount` textures (0: 1024).
+ * Returns other modes unchanged, and AUTO if `pCapabilities` is NULL.
+ *
+ * AUTO is sparse mode if the device supports it, else paged mode. Exception: software devices limit
+ * the number of tiles (maxTouchedTiles), and a texture uses 8 of them before anything is sampled.
+ * There AUTO is paged mode if maxTextureCount is above maxTouchedTiles / 16: above 3071 with the
+ * Linux default of 65530 memory maps.
+ *
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResidencyMode
+sluiceChooseVulkanResidencyMode(const SluiceVulkanDeviceCapabilities *pCapabilities,
+                                SluiceResidencyMode mode, uint32_t maxTextureCount);
+
+/** Support of a device for one format, as a 2D image that is sampled and copied to. */
 typedef struct SluiceVulkanFormatCapabilities {
-    bool sampled;      ///< at all
-    bool linearFilter; ///< by samplers that interpolate
-    bool sparse;       ///< as a sparse residency image of 64 KiB tiles: what can be streamed
-    /** Texels as the driver says it; 0 if it is not sparse at all. */
+    bool sampled;      ///< Can be sampled.
+    bool linearFilter; ///< Can be sampled with linear filters.
+    bool sparse;       ///< Supports sparse residency images of 64 KiB tiles.
+    /** Sparse granularity as reported by the driver. 0 without sparse support. */
     uint32_t granularityWidth, granularityHeight;
-    uint32_t tileWidth, tileHeight; ///< texels of a tile, where the driver counts blocks corrected
-    /** Of sparse images, or of others where it is not sparse. */
+    uint32_t tileWidth, tileHeight; ///< Texels of a tile. Corrected if the driver reports blocks.
+    /** Limits of sparse images; without sparse support, of ordinary images. */
     uint32_t maxWidth, maxHeight, maxMipLevelCount, maxArrayLayerCount;
-    uint64_t maxImageSize; ///< bytes
+    uint64_t maxImageSize; ///< Bytes.
 } SluiceVulkanFormatCapabilities;
 
-/** Errors: NULL_POINTER; UNSUPPORTED for unknown formats or if a function is missing. */
+/**
+ * Gets the support of a device for a format.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED for unknown formats or if a function
+ *         is missing.
+ * Thread safety: any thread.
+ */
 SLUICE_API SluiceResult sluiceGetVulkanFormatCapabilities(
     VkInstance instance, VkPhysicalDevice physicalDevice,
     PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr, SluiceFormat format,
     SluiceVulkanFormatCapabilities *pCapabilities);
 
-/** How a device lays out one sparse image; found out by making it. */
+/** Layout of a sparse image on a device. Determined by creating the image. */
 typedef struct SluiceVulkanSparseImageLayout {
     uint32_t mipLevelCount;
-    uint32_t tileWidth, tileHeight; ///< texels
-    uint32_t regularMipCount;       ///< levels whose tiles come and go one by one
-    uint32_t packedTileCount;       ///< pages of the others, together
-    bool driverTail;                ///< the driver packs those; else each is a tile of its own
-    uint64_t tailSize;              ///< bytes, 0 without driverTail
-    uint64_t metadataSize;          ///< bytes, bound apart; 0: none
-    uint64_t imageSize;             ///< bytes of address space
-    uint64_t alignment;             ///< bytes
+    uint32_t tileWidth, tileHeight; ///< Texels.
+    uint32_t regularMipCount;       ///< Levels whose tiles are bound one by one.
+    uint32_t packedTileCount;       ///< Pages of all other (packed) levels.
+    bool driverTail;       ///< The driver packs those levels; else each is a tile of its own.
+    uint64_t tailSize;     ///< Bytes. 0 without driverTail.
+    uint64_t metadataSize; ///< Bytes, bound separately. 0: none.
+    uint64_t imageSize;    ///< Bytes of address space.
+    uint64_t alignment;    ///< Bytes.
     uint32_t memoryTypeBits;
 } SluiceVulkanSparseImageLayout;
 
 /**
- * `device` was created with the features of sluiceRequireVulkanFeatures. Of `pImage` size and
- * format matter, mipLevelCount may be 0. Errors: NULL_POINTER; UNSUPPORTED, with a message to
- * `pLog` (may be NULL), if the image cannot be streamed; INVALID_ARGUMENT for a size of 0;
- * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ * Gets how a device lays out a sparse image of the size and format of `pImage`.
+ *
+ * Create `device` with the features of sluiceRequireVulkanFeatures. Other fields of `pImage` are
+ * ignored; mipLevelCount may be 0. `pLog` may be NULL.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED, with a message to `pLog`, if the
+ *         image cannot be streamed; SLUICE_ERROR_INVALID_ARGUMENT for a size of 0;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY, SLUICE_ERROR_OUT_OF_DEVICE_MEMORY.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
     VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
@@ -137,17 +182,23 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
     const SluiceImageInfo *pImage, SluiceVulkanSparseImageLayout *pLayout);
 
 /**
- * Sets in `*pFeatures`, `*pVulkan12` what a streamer of that mode needs of the device: pass both to
- * vkCreateDevice (VkPhysicalDeviceFeatures2 chain). The caller has zeroed both, but for the sType
- * and for what else he needs, which stays set. No extension is needed. textureCompressionBC is set
- * where the device has it, for the BC formats. `pLog` may be NULL.
+ * Enables in `*pFeatures` and `*pVulkan12` the features that a streamer of this mode requires. Pass
+ * both to vkCreateDevice (VkPhysicalDeviceFeatures2 chain). No extension is required.
  *
- * All modes need timelineSemaphore and fragmentStoresAndAtomics; sparse also sparseBinding,
- * sparseResidencyImage2D and a queue family with SPARSE_BINDING; paged also
- * shaderSampledImageArrayDynamicIndexing, and it takes shaderSampledImageArrayNonUniformIndexing
- * where that is there. AUTO needs what the mode needs that it stands for.
- * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown mode; UNSUPPORTED if the device lacks a
- *         feature; the log callback says which.
+ * Set sType and zero the rest. Features you already set are kept. textureCompressionBC is enabled
+ * if the device has it. `pLog` may be NULL.
+ *
+ * Features per mode:
+ * - All modes: timelineSemaphore, fragmentStoresAndAtomics.
+ * - Sparse: also sparseBinding, sparseResidencyImage2D and a queue family with SPARSE_BINDING.
+ * - Paged: also shaderSampledImageArrayDynamicIndexing. shaderSampledImageArrayNonUniformIndexing
+ *   is enabled if available.
+ * - AUTO: requires the features of the mode it resolves to. It also enables the features of paged
+ *   mode if available, because AUTO selects paged mode for many textures.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown mode;
+ *         SLUICE_ERROR_UNSUPPORTED if the device lacks a feature (the log names it).
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
     VkInstance instance, VkPhysicalDevice physicalDevice,
@@ -155,262 +206,444 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
     const SluiceLogCallback *pLog, VkPhysicalDeviceFeatures *pFeatures,
     VkPhysicalDeviceVulkan12Features *pVulkan12);
 
-/** Zero in any field asks for the default written beside it. */
+/** Settings of a streamer. A field of zero selects its default. */
 typedef struct SluiceVulkanStreamerCreateInfo {
-    VkInstance instance; ///< required, as all handles down to device; of Vulkan 1.2
-    VkPhysicalDevice physicalDevice;
-    VkDevice device; ///< Vulkan 1.2, with the features of sluiceRequireVulkanFeatures
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< required
-    VkQueue sparseQueue; ///< of a family with SPARSE_BINDING; may be the drawing queue; required in
-                         ///< sparse mode alone
-    uint32_t sparseQueueFamilyIndex;
-    uint32_t queueFamilyIndex; ///< of the queue that frames are submitted to: it must compute
-    SluiceResidencyMode residencyMode;
-    const SluiceAllocationCallbacks *pAllocator; ///< NULL: malloc and free
+    VkInstance instance;             ///< Required. Vulkan 1.2.
+    VkPhysicalDevice physicalDevice; ///< Required.
+    VkDevice device; ///< Required. Vulkan 1.2, with the features of sluiceRequireVulkanFeatures.
+    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< Required.
+    /** Queue of a family with SPARSE_BINDING; may be the drawing queue. Required in sparse mode,
+     *  else ignored. */
+    VkQueue sparseQueue;
+    uint32_t sparseQueueFamilyIndex; ///< Family of sparseQueue. Ignored in other modes than sparse.
+    uint32_t queueFamilyIndex;       ///< Family of the queue for frames. Must support compute.
+    SluiceResidencyMode residencyMode;           ///< Default: AUTO.
+    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;
-    uint32_t framesInFlight;       ///< at most 16; 0: 3
-    uint32_t maxTextureCount;      ///< at most 2^20; 0: 1024
-    uint32_t texturesPerFrame;     ///< feedback maps read back per frame; 0: 10
-    uint32_t tilesPerFrame;        ///< mapped and uploaded per frame at most, to 2^14; 0: 256
-    uint32_t maxLoadsInFlight;     ///< at most 2^16; 0: 4 * tilesPerFrame, at least 64
-    uint32_t loaderThreadCount;    ///< 0: as sluiceCreateTileLoader
-    uint32_t heapTileCapacity;     ///< 0: 256
-    uint32_t maxHeapCount;         ///< 0: as many as the device has memory for
-    uint32_t numExtraStandbyTiles; ///< kept although unwanted
+    uint32_t framesInFlight;   ///< 1 to 16. Default: 3.
+    uint32_t maxTextureCount;  ///< 1 to 2^20. Default: 1024.
+    uint32_t texturesPerFrame; ///< Feedback maps read back per frame. Default: 10.
+    uint32_t tilesPerFrame; ///< Most tiles mapped and uploaded per frame, 1 to 2^14. Default: 256.
+    uint32_t maxLoadsInFlight;  ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
+    uint32_t loaderThreadCount; ///< Default: as in SluiceTileLoaderCreateInfo.
+    uint32_t heapTileCapacity;  ///< Tiles per heap, 1 to 2^20. Default: 256.
+    uint32_t maxHeapCount;      ///< Default: as many as fit into device memory.
     /**
-     * In the unit of the time stamps: a region that no map asked for that long is no longer wanted.
-     * 0: only a texture's newest map counts, which no stochastic feedback should be used with.
+     * Tiles that stay resident after they are no longer requested. They are evicted first when
+     * memory is short. Default: 1024 (64 MiB). For none, set noStandbyTiles.
+     */
+    uint32_t numExtraStandbyTiles;
+    /**
+     * Time a region stays requested after a map last requested it. In time stamps
+     * (timeStampsPerSecond). Default: 1 s. UINT64_MAX: forever. For no time, set
+     * newestFeedbackMapOnly.
      */
     uint64_t feedbackTimeout;
-    uint64_t retryDelay;     ///< in the same unit, see manager.h
-    bool mapEverything;      ///< every tile is wanted always: the fully resident truth
-    uint32_t maxRegionCount; ///< feedback regions (tiles of level 0), at most 2^28; 0: 2^20
     /**
-     * Bytes of resolved feedback that a frame can bring to the host: 4 per region that changed
-     * since its texture's turn before, at most 1 per region of a texture. Textures for which there
-     * is no room keep their marks and come first in a later frame. Must hold the map of any one
-     * texture. 0: maxRegionCount, with which there always is room, at most 2^22.
+     * Time from a tile's first failed load to the second try, in time stamps. Doubles each time
+     * (manager.h). Default: 0.25 s. 1: as soon as possible.
+     */
+    uint64_t retryDelay;
+    bool mapEverything;      ///< Every tile is always wanted. For reference pictures.
+    uint32_t maxRegionCount; ///< Feedback regions (tiles of level 0), 4 to 2^28. Default: 2^20.
+    /**
+     * Bytes of resolved feedback read back per frame. A texture takes 4 bytes per region that
+     * changed since its last turn, at most 1 byte per region of the texture. Textures that do not
+     * fit keep their marks and come first in a later frame. Must hold the map of any one texture.
+     * Default: maxRegionCount, at most 2^22; with maxRegionCount everything fits.
      */
     uint32_t feedbackReadbackSize;
-    /** Bring all of each map to the host instead of what changed. The decisions are the same; to
-     *  measure and to test with. */
+    /**
+     * Read back whole maps rather than changes. Decisions are the same. For tests and measurements.
+     */
     bool wholeFeedbackMaps;
     SluiceFeedbackEncoding feedbackEncoding;
     /**
-     * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for the textures that are
-     * resolved at the end of the same frame: for the others that is one load and no arithmetic.
-     * What it costs: with N textures not in a set a texture collects marks in one frame of
-     * N / texturesPerFrame, not in all, so what few pixels see is noticed that many times later,
-     * and feedbackTimeout must be as much longer. Best where every visible pixel writes. Where
-     * N / texturesPerFrame is even, some corners of sluiceWriteQuadFeedback and some pixels of the
-     * lattice never have their turn (docs/trade-offs.md).
+     * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for textures that are
+     * resolved in the same frame. For other textures feedback costs one load and no arithmetic.
+     *
+     * The cost is latency. With N textures that are not in a set, a texture collects marks in one
+     * frame of N / texturesPerFrame. Details that few pixels see are noticed later by that factor,
+     * and feedbackTimeout must be longer by it. Best if every visible pixel writes. Avoid an even N
+     * / texturesPerFrame: some corners of sluiceWriteQuadFeedback and some pixels of the lattice
+     * then never have a turn (docs/trade-offs.md).
      */
     bool feedbackInTurns;
-    /** Different tiles bound in the life of their images, see SluiceVulkanDeviceCapabilities; the
-     *  streamers of a process share what the device bears. Finer tiles beyond it are not loaded.
-     *  0: maxTouchedTiles of the device. */
+    /**
+     * Most distinct tiles ever bound in existing images (SluiceVulkanDeviceCapabilities). Finer
+     * tiles beyond it are not loaded. All streamers of a process share the device's limit. Default:
+     * maxTouchedTiles of the device.
+     */
     uint32_t maxTouchedTiles;
-    /** Paged: array images that hold pages, at most 2^10, of up to 2048 tiles (128 MiB) and one
-     *  texel format each; 0: 64. Also SluiceVulkanPages.viewCount: mind the device's limits on
-     *  samplers and sampled images per stage. */
+    /**
+     * Paged mode: most array images for pages. Each holds pages of one texel format. At most 2^10.
+     * Default: 64. When all are in use, finer tiles find no page (pageChunkShortages in the
+     * statistics). This is also SluiceVulkanPages.viewCount: mind the device's per-stage limits on
+     * samplers and sampled images.
+     *
+     * Sizes: the images of a format have 64, 64, 128, 256, 512, 1024, then 2048 tiles each (4 to
+     * 128 MiB). They are smaller if the device lacks memory or supports fewer layers. 64 images
+     * hold 120 832 tiles (7.4 GiB) of one format, or 49 152 tiles (3 GiB) of eight formats: the
+     * first 2048 tiles of a format take six images.
+     */
     uint32_t maxPageChunkCount;
     /**
-     * In the unit of the time stamps, at most 2^40: how long a region takes to become one level
-     * sharper once finer tiles are there, in steps of 1/256 level, so that nothing pops. 0: at
-     * once. A tenth of a second is hardly noticed. Coarser regions always become so at once: their
-     * tiles are gone, which nobody looked at unless there is too little memory.
+     * Time in which a region becomes one level sharper after finer tiles became resident. Avoids
+     * popping; steps are 1/256 level. In time stamps, at most 2^40. Default: 0, at once. A tenth of
+     * a second is hardly noticeable. Regions become coarser at once, because their tiles are
+     * evicted; unless memory is short, such tiles were not in view.
      */
     uint64_t residencyFadeTime;
-    /** How reads that fail are tried again at once, see loader.h; what they give up the manager
-     * asks for again after retryDelay. */
+    /**
+     * Immediate retries of failed reads (loader.h). After they are used up, the manager requests
+     * the tile again after retryDelay.
+     */
     SluiceTileRetryPolicy readRetry;
-    uint32_t maxReadsPerSource; ///< at once; 0: as sluiceCreateTileLoader
+    uint32_t maxReadsPerSource; ///< Default: as in SluiceTileLoaderCreateInfo.
+    /**
+     * Unit of time stamps and of all times in this struct. At most 10^12. Default: 10^9
+     * (nanoseconds). If your time stamps count frames, set the frames per second; otherwise each
+     * default time is millions of frames long (a warning is logged after 256 frames).
+     */
+    uint64_t timeStampsPerSecond;
+    /**
+     * Only a texture's newest map counts, so stochastic feedback evicts tiles that one map misses.
+     * Requires feedbackTimeout 0.
+     */
+    bool newestFeedbackMapOnly;
+    bool noStandbyTiles; ///< Evict unwanted tiles at once. Requires numExtraStandbyTiles 0.
+    /**
+     * Time until given-up tiles of a texture are tried again: a few first, and all when one loads
+     * (manager.h). In time stamps. Default: 30 s. UINT64_MAX: never. If you know that a source
+     * works again, call sluiceRetryVulkanSource.
+     */
+    uint64_t givenUpRetryDelay;
+    /**
+     * Load packed levels when a map first requests their texture, and evict them like tiles when
+     * nothing of it is wanted. Default: false, load them when the texture is added and keep them.
+     *
+     * Saves memory and reads for textures that are never seen: heaps in sparse mode, reads in all
+     * modes (docs/frame-loop.md has figures). The cost: when a texture is first seen it shows its
+     * fallback color for some frames (SLUICE_MIP_UNTOUCHED), as it does just after it was added.
+     */
+    bool packedLevelsOnDemand;
+    /**
+     * Bytes of staging memory made at creation and kept. At least 4 MiB, at most 64 KiB times
+     * maxLoadsInFlight. Reads that need more get it in blocks of 4 MiB, which are freed after 120
+     * idle frames. Making blocks halves the rate of the first fill on an H200
+     * (bench/vulkan, fill.growing.rate). UINT64_MAX makes all staging memory at creation. Default:
+     * 4 MiB.
+     */
+    uint64_t minStagingSize;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
- * Errors: NULL_POINTER; INVALID_ARGUMENT, also for a value beyond framesInFlight 16,
- *         maxTextureCount 2^20, tilesPerFrame 2^14, maxLoadsInFlight 2^16, heapTileCapacity 2^20,
- *         maxRegionCount 2^28, maxPageChunkCount 2^10 or residencyFadeTime 2^40; UNSUPPORTED if the
- * device has no mode that was asked for; LIMIT_EXCEEDED if maxTextureCount, maxRegionCount,
- * texturesPerFrame or feedbackReadbackSize need a storage buffer beyond the device's
- * maxStorageBufferRange; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Creates a streamer.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, and for
+ *         a setting together with the one that turns it off; SLUICE_ERROR_UNSUPPORTED if the device
+ *         does not support the requested mode; SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
+ *         maxRegionCount, texturesPerFrame or feedbackReadbackSize require a storage buffer above
+ *         the device's maxStorageBufferRange; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
 
 /**
- * Waits for the device (vkDeviceWaitIdle) and for the reads under way, then releases everything.
- * NULL is allowed. Thread safety: external on the streamer and on all queues of the device.
+ * Waits for the device (vkDeviceWaitIdle) and for reads in progress, then destroys the streamer and
+ * everything it owns. NULL is allowed.
+ * Thread safety: external on `streamer` and on all queues of the device.
  */
 SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
 
 /**
- * Waits until no read is under way and every binding submitted so far is over; frames are not
- * waited for. For tests, offline rendering and shutdown: the next frame then sees all that was
- * asked for.
+ * Waits until no read is in progress and all submitted bindings are complete. Does not wait for
+ * frames.
  *
- * Errors: NULL_POINTER, OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST.
+ * For tests, offline rendering and shutdown: the next frame then maps everything that was
+ * requested.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_OUT_OF_HOST_MEMORY,
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN, SLUICE_ERROR_DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
+/** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceVulkanTextureCreateInfo {
-    /** Required; must outlive the texture and, when that is removed, the reads of it that are still
-     *  under way: sluiceWaitVulkanStreamerIdle or sluiceDestroyVulkanStreamer end them. */
+    /**
+     * Required. Must outlive the texture, and reads that are in progress when the texture is
+     * removed. sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer end those reads.
+     */
     SluiceImageSource *source;
-    SluiceTextureId primaryId; ///< SLUICE_NO_TEXTURE, or the texture whose feedback drives this one
-    /** Of the samplers that it is sampled with; zero is VK_SAMPLER_ADDRESS_MODE_REPEAT. */
+    SluiceTextureId primaryId; ///< Texture whose feedback this one follows, or SLUICE_NO_TEXTURE.
+    /**
+     * Address modes of the samplers used with this texture; SluiceVulkanTexture returns them.
+     * Default (0, VK_SAMPLER_ADDRESS_MODE_REPEAT): the modes that the source records, or REPEAT.
+     * Modes that differ from the source's are used, and logged once per streamer.
+     */
     VkSamplerAddressMode addressModeU, addressModeV;
+    bool explicitAddressModes; ///< Use the address modes above even if they are 0.
 } SluiceVulkanTextureCreateInfo;
 
+/** Texture as the application draws with it. */
 typedef struct SluiceVulkanTexture {
     SluiceTextureId textureId;
-    /** In VK_IMAGE_LAYOUT_GENERAL once a frame was begun after adding it, and for good: one part is
-     *  copied to while another is sampled. Validation layers may call that slow. */
-    VkImage image; ///< paged: of the packed levels alone, so textureSize() is not the texture's
-    VkImageView imageView; ///< 2D, all levels of the image
+    /**
+     * Image, in VK_IMAGE_LAYOUT_GENERAL from the next frame on: some parts are copied to while
+     * others are sampled. Validation layers may warn that this is slow. In paged mode it holds only
+     * the packed levels, so textureSize() is not the texture's size.
+     */
+    VkImage image;
+    VkImageView imageView; ///< 2D, all levels of `image`, layer `arrayLayer` only.
     VkFormat format;
     uint32_t width, height, mipLevelCount;
-    uint32_t tableIndex;   ///< place in the texture table, for the shader functions
-    uint32_t arrayLayer;   ///< of `image`; `imageView` shows this layer alone
-    VkImageView arrayView; ///< 2D_ARRAY, all layers and levels; VK_NULL_HANDLE if not of an array
+    uint32_t tableIndex;   ///< Index in the texture table, for the shader functions.
+    uint32_t arrayLayer;   ///< Layer of `image`.
+    VkImageView arrayView; ///< 2D_ARRAY, all layers and levels. VK_NULL_HANDLE if not an array.
+    VkSamplerAddressMode addressModeU, addressModeV; ///< Modes of its sampler.
 } SluiceVulkanTexture;
 
 /**
  * Creates the image of a source and starts to stream it. The format is the source's.
  *
- * Errors: NULL_POINTER; INVALID_ARGUMENT for an unknown address mode or a primary that follows
- *         another one; UNKNOWN_TEXTURE and STALE_TEXTURE for the primary; UNSUPPORTED if the device
- * cannot stream that format or size; LIMIT_EXCEEDED beyond maxTextureCount, maxRegionCount or
- * feedbackReadbackSize; what the source says; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown address mode, a
+ *         primary that follows another texture, or a source whose info is out of range (image.h),
+ *         for example without its full mip chain; SLUICE_ERROR_UNKNOWN_TEXTURE and
+ *         SLUICE_ERROR_STALE_TEXTURE for the primary; SLUICE_ERROR_UNSUPPORTED if the device cannot
+ *         stream the format or size; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount,
+ *         maxRegionCount or feedbackReadbackSize; errors of the source;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
 
 /**
- * As sluiceAddVulkanTexture, of a source with `layerCount` array layers. Each is a streamed texture
- * of its own, with its own id, feedback and MinMip map; their places in the texture table follow
- * each other, and all are layers of one image. They are removed together, with any of their ids.
+ * Adds a source with `layerCount` array layers. `pLayers` receives one texture per layer.
  *
- * In paged mode the image, and so arrayView, has the packed levels of all layers; every layer's
- * tiles are pages of its own. shaders/include/sluice/sample_array.glsl samples arrayView.
+ * Each layer is a streamed texture with its own id, feedback and MinMip map. Their table indices
+ * are consecutive, and all are layers of one image. Removing one of them removes all.
  *
- * Errors: also INVALID_ARGUMENT if the source has another number of layers, UNSUPPORTED if the
- * device has no arrays of so many layers, or, in sparse mode, if it binds all layers of so small an
- * array as one.
+ * shaders/include/sluice/sample_array.glsl samples arrayView. In paged mode the image and arrayView
+ * hold only the packed levels of all layers; the tiles of each layer are pages of its own.
+ *
+ * Errors: as sluiceAddVulkanTexture; SLUICE_ERROR_INVALID_ARGUMENT if the source has another number
+ *         of layers; SLUICE_ERROR_UNSUPPORTED if the device does not support arrays of so many
+ *         layers or, in sparse mode, binds all layers of such a small array at once.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
     SluiceVulkanStreamer *streamer, const SluiceVulkanTextureCreateInfo *pCreateInfo,
     uint32_t layerCount, SluiceVulkanTexture *pLayers);
 
 /**
- * The image is destroyed when the frames begun so far have completed; do not draw with it again.
- * Until then its place counts towards maxTextureCount. Errors: NULL_POINTER, UNKNOWN_TEXTURE,
- * STALE_TEXTURE.
+ * Removes a texture. Do not draw with it again. The image is destroyed when the frames begun so far
+ * have completed; until then it counts towards maxTextureCount.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
  */
 SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
                                                   SluiceTextureId textureId);
 
 /**
- * The buffers that shaders need, as storage buffers; the same for the streamer's whole life. All
- * but the page table may be copied from, between sluiceBeginStreamingFrame and submission, behind a
- * barrier: what the former wrote there are transfers; sluiceEndStreamingFrame also writes feedback,
- * in compute shaders.
+ * Storage buffers for shaders. The handles never change during the streamer's life.
+ *
+ * You may copy from all but the page table, between sluiceBeginStreamingFrame and the submission.
+ * Record a barrier first: sluiceBeginStreamingFrame writes the buffers by transfers, and
+ * sluiceEndStreamingFrame writes feedback in compute shaders.
  */
 typedef struct SluiceVulkanBuffers {
-    VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read
-    VkBuffer feedback;      ///< uint[], read and written
-    VkBuffer minMip;        ///< uint[], two texels each, read
-    VkBuffer feedbackTurns; ///< uint[], read; all bits are set without feedbackInTurns
-    VkBuffer pageTable;     ///< uint[], read in paged mode alone; in others any valid buffer
+    VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read.
+    VkBuffer feedback;      ///< uint[], read and written.
+    VkBuffer minMip;        ///< uint[], two texels each, read.
+    VkBuffer feedbackTurns; ///< uint[], read. All bits are set without feedbackInTurns.
+    VkBuffer pageTable;     ///< uint[], read only in paged mode; else any valid buffer.
 } SluiceVulkanBuffers;
 
-SLUICE_API void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
-                                       SluiceVulkanBuffers *pBuffers);
+/**
+ * Gets the buffers that shaders read and write.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
+                                               SluiceVulkanBuffers *pBuffers);
 
 /**
- * Where shaders find pages: an array of combined image samplers, all with the same sampler, of
- * sampler2DArray in GLSL. Only paged mode samples them, but the views are valid in every mode, so
- * one pipeline layout and one shader source do for all (SLUICE_PAGED in buffers.glsl).
+ * Array of combined image samplers (sampler2DArray in GLSL) in which shaders find pages. All use
+ * one sampler.
  *
- * The array changes inside sluiceBeginStreamingFrame alone, and seldom: `generation` tells. Keep a
- * descriptor set per frame in flight, and where it holds another generation write it anew after
- * that call, before it is bound: no frame uses it any more then. A view that left the array lives
- * until the frames begun before are over.
+ * Only paged mode samples the views, but they are valid in every mode: one pipeline layout and one
+ * shader source serve all modes (SLUICE_PAGED in buffers.glsl).
+ *
+ * The array changes only inside sluiceBeginStreamingFrame, and rarely; `generation` then grows.
+ * Keep one descriptor set per frame in flight. After sluiceBeginStreamingFrame, rewrite the frame's
+ * set if it holds another generation: no earlier frame uses it any more. A view that left the array
+ * lives until all frames begun before are complete.
  */
 typedef struct SluiceVulkanPages {
-    VkSampler sampler;         ///< the same for the streamer's whole life
-    uint32_t viewCount;        ///< maxPageChunkCount; the same, too
-    const VkImageView *pViews; ///< 2D array, VK_IMAGE_LAYOUT_GENERAL; until the next begin
-    uint64_t generation;       ///< from 1 on
+    VkSampler sampler;         ///< Never changes.
+    uint32_t viewCount;        ///< maxPageChunkCount. Never changes.
+    const VkImageView *pViews; ///< 2D arrays, VK_IMAGE_LAYOUT_GENERAL. Valid until the next begin.
+    uint64_t generation;       ///< Counts from 1.
 } SluiceVulkanPages;
 
-SLUICE_API void sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer,
-                                     SluiceVulkanPages *pPages);
+/**
+ * Gets the array of pages.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer,
+                                             SluiceVulkanPages *pPages);
 
+/** Frame that was begun. */
 typedef struct SluiceStreamingFrame {
-    uint64_t frameIndex;   ///< from 1 on
-    VkSemaphore semaphore; ///< timeline; the submission of the command buffer must
-    uint64_t signalValue;  ///< signal it with this value
+    uint64_t frameIndex;   ///< Counts from 1.
+    VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
+    uint64_t signalValue;  ///< Value to signal.
 } SluiceStreamingFrame;
 
 /**
- * Polls what has completed, feeds the manager, submits bindings, and records into `commandBuffer`,
- * outside a render pass: uploads of texels that arrived, and then the MinMip maps that show them.
+ * Begins a frame: collects finished work, submits sparse binds, and records uploads and MinMip
+ * maps.
  *
- * The command buffer must be submitted, before that of the next frame, to the same queue of
- * queueFamilyIndex. Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames
- * are not complete: wait for `semaphore` to reach `signalValue` of an earlier frame.
+ * Call once per frame, outside a render pass, before the first draw that samples streamed textures.
+ * Submit `commandBuffer` to one queue of queueFamilyIndex, before the command buffer of the next
+ * frame, and signal `pFrame->semaphore` with `pFrame->signalValue`. If you cannot submit, call
+ * sluiceAbandonStreamingFrame. End or abandon every frame before you begin the next one.
  *
- * Errors: NULL_POINTER; TIME_BACKWARDS if `timeStamp` is below the last frame's; then nothing has
- *         changed. OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN, DEVICE_LOST: the streamer can
- *         only be destroyed.
+ * Returns SLUICE_NOT_READY, with nothing recorded, while framesInFlight frames are incomplete. Wait
+ * until `semaphore` reaches the signalValue of an earlier frame, and call again.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the last
+ *         frame was neither ended nor abandoned; SLUICE_ERROR_TIME_BACKWARDS if `timeStamp` is
+ *         below the last frame's. Nothing has changed after these. SLUICE_ERROR_OUT_OF_HOST_MEMORY,
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, SLUICE_ERROR_VULKAN, SLUICE_ERROR_DEVICE_LOST: destroy
+ *         the streamer.
+ * Thread safety: external on `streamer` and on the sparse queue.
  */
 SLUICE_API SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                                   VkCommandBuffer commandBuffer, uint64_t timeStamp,
                                                   SluiceStreamingFrame *pFrame);
 
 /**
- * Records the resolve and readback of this frame's share of the feedback maps, outside a pass.
- * Binds a compute pipeline and its descriptor set 0. Errors: NULL_POINTER; INVALID_ARGUMENT if no
- * frame was begun since the last call.
+ * Ends a frame: records the resolve and readback of the feedback maps whose turn it is.
+ *
+ * Call outside a render pass. Binds a compute pipeline and its descriptor set 0.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if no frame was begun since the
+ *         last call, or if it was abandoned.
  */
 SLUICE_API SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer,
                                                 VkCommandBuffer commandBuffer);
 
-typedef struct SluiceVulkanStreamerStatistics {
-    SluiceStreamedTextureStatistics manager;
-    uint64_t bytesRead;     ///< texels delivered by sources
-    uint64_t bytesUploaded; ///< texels copied to images
-    uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
-    uint64_t bindCalls, bindRuns;
-    uint64_t unbinds;       ///< tiles whose page was taken away
-    uint64_t unbindsSaved;  ///< unmapped tiles that were bound again, or gone, before that
-    uint64_t feedbackMaps;  ///< resolved and given to the manager
-    uint32_t loadsInFlight; ///< reads not collected, and uploads not recorded
-    /** Bytes of heaps; dense: of images; paged: of pages, packed levels and the page table. */
-    uint64_t deviceMemorySize;
-    uint64_t feedbackWords;     ///< 4 bytes each, that resolves brought to the host
-    uint64_t feedbackPostponed; ///< maps that had to wait, see feedbackReadbackSize
-    uint32_t fadingTextures;    ///< that still get sharper, see residencyFadeTime
-    uint64_t tilesRevived;      ///< mapped again without being read: their texels were still there
-} SluiceVulkanStreamerStatistics;
-
-SLUICE_API void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
-                                                  SluiceVulkanStreamerStatistics *pStatistics);
+/**
+ * Abandons a frame that will never be submitted, and all frames begun after it. Allowed after
+ * sluiceBeginStreamingFrame and after sluiceEndStreamingFrame.
+ *
+ * Use it after an error while recording, or if the swapchain is out of date. Do not submit the
+ * command buffers. Do not wait for the signalValue of an abandoned frame: the semaphore skips it.
+ * Abandoned frames do not count towards framesInFlight.
+ *
+ * The next frame records again what the abandoned frames recorded, as far as it is still valid:
+ * texels, MinMip maps, page table, texture table, image layouts. Nothing is lost, and nothing is
+ * read from disk again.
+ *
+ * After an error nothing has changed.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the frame is complete, was
+ *         abandoned or never begun; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST.
+ * Thread safety: external on `streamer`.
+ */
+SLUICE_API SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
+                                                    const SluiceStreamingFrame *pFrame);
 
 /**
- * What became of the reads of a source, or of all (NULL), see loader.h. A source is forgotten when
- * its last texture is gone. Errors: NULL_POINTER. Thread safety: any thread.
+ * Statistics of a streamer. Counts are totals since creation, unless they describe a present state.
+ */
+typedef struct SluiceVulkanStreamerStatistics {
+    SluiceStreamedTextureStatistics manager;
+    uint64_t bytesRead;     ///< Bytes of texels read from sources.
+    uint64_t bytesUploaded; ///< Bytes of texels copied to images.
+    uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
+    uint64_t bindCalls, bindRuns;
+    uint64_t unbinds;           ///< Tiles whose memory was unbound.
+    uint64_t unbindsSaved;      ///< Unmapped tiles bound again, or removed, before their unbind.
+    uint64_t feedbackMaps;      ///< Maps resolved and passed to the manager.
+    uint32_t loadsInFlight;     ///< Uncollected reads, and uploads not yet recorded.
+    uint64_t deviceMemorySize;  ///< Bytes of all device memory that is not host-mapped.
+    uint64_t feedbackWords;     ///< Words of 4 bytes of feedback read back.
+    uint64_t feedbackPostponed; ///< Maps that had to wait; see feedbackReadbackSize.
+    uint32_t fadingTextures;    ///< Textures that are fading in; see residencyFadeTime.
+    uint64_t tilesRevived; ///< Tiles mapped again without a read: their texels were still resident.
+    /**
+     * Bytes of deviceMemorySize that hold tiles. Sparse: heaps. Dense: images. Paged: pages, packed
+     * levels and the page table.
+     */
+    uint64_t tileMemorySize;
+    /**
+     * Bytes of all mapped memory: staging and readback. Grows with the loads in flight and shrinks
+     * again. deviceMemorySize + hostVisibleMemorySize is all device memory of the streamer.
+     */
+    uint64_t hostVisibleMemorySize;
+    uint32_t pageChunkCount; ///< Paged: array images that hold pages now; see maxPageChunkCount.
+    /**
+     * Paged: times that tiles found no page because all maxPageChunkCount images were in use;
+     * counted at most once in 60 frames. The first is logged. Such tiles show coarser levels.
+     */
+    uint64_t pageChunkShortages;
+} SluiceVulkanStreamerStatistics;
+
+/**
+ * Gets the statistics of a streamer.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanStreamerStatistics(
+    const SluiceVulkanStreamer *streamer, SluiceVulkanStreamerStatistics *pStatistics);
+
+/**
+ * Gets the read statistics of a source (loader.h), or of all sources if `source` is NULL.
+ * Statistics of a source are dropped when its last texture is destroyed.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *streamer,
                                                       const SluiceImageSource *source,
                                                       SluiceTileLoaderStatistics *pStatistics);
 
-/** What AUTO turned out to be, or the mode that was asked for; AUTO if `streamer` is NULL. */
+/**
+ * Retries at once all failed and given-up tiles of a source, or of all sources if `source` is NULL.
+ * Call it when you learn that the source can be read again: a server answers, a disk was mounted, a
+ * file was replaced.
+ *
+ * Does nothing if no texture uses the source. Without this call given-up tiles are tried again
+ * after givenUpRetryDelay.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: external on `streamer`.
+ */
+SLUICE_API SluiceResult sluiceRetryVulkanSource(SluiceVulkanStreamer *streamer,
+                                                const SluiceImageSource *source);
+
+/** Returns the mode in use: AUTO is resolved. Returns AUTO if `streamer` is NULL. */
 SLUICE_API SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer);
 
-/** The manager, to read from; to record it, begin before the first texture is added. */
+/**
+ * Returns the streamer's manager, or NULL if `streamer` is NULL. The manager is destroyed with the
+ * streamer.
+ *
+ * You may call between any two calls of the streamer, on the thread that uses it:
+ * - functions that take a const manager
+ * - sluiceGetGivenUpTiles, sluiceRetryFailedTiles
+ * - sluiceSetConfig, sluiceTrimStandbyTiles, sluiceReleaseHeap
+ * - sluiceBeginRecording and sluiceBeginFileRecording, before the first texture is added
+ *
+ * The streamer makes all other calls itself. They return SLUICE_ERROR_INVALID_ARGUMENT and change
+ * nothing, and sluiceDestroyStreamedTextureManager does nothing (manager.h, pLocked).
+ */
 SLUICE_API SluiceStreamedTextureManager *
 sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer);
 

@@ -6,12 +6,13 @@
 #include "bake/settings.h"
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/part_file.h"
+#include "base/same_file.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* What zstd and the store's writer take per thread. */
 #define MEMORY_PER_THREAD ((uint64_t)3 << 20)
@@ -39,9 +40,7 @@ static SluiceResult look_at_input(struct bake *bake)
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(errno));
         return errno == ENOENT || errno == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
     }
-    struct stat output;
-    if (stat(bake->info->pOutputPath, &output) == 0 && output.st_dev == status.st_dev &&
-        output.st_ino == status.st_ino) {
+    if (slc_output_replaces_input(bake->info->pOutputPath, path)) {
         slc_log(&bake->baker->log, SLUICE_LOG_ERROR, "%s: the store would take its place", path);
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
@@ -87,8 +86,12 @@ static SluiceResult open_picture(struct bake *bake)
 {
     const SluiceBakeInfo *info = bake->info;
     const SluiceAllocationCallbacks *cb = &bake->baker->allocator;
+    struct slc_picture_opening opening = {
+        .max_memory = bake->baker->max_memory,
+        .keep_primaries = info->settings.keepPrimaries || info->settings.normalMap,
+    };
     if (info->pInputPath)
-        return slc_picture_open(info->pInputPath, cb, &bake->baker->log, &bake->picture);
+        return slc_picture_open(info->pInputPath, &opening, cb, &bake->baker->log, &bake->picture);
     return slc_picture_of_source(info->source, false, info->pOutputPath, cb, &bake->baker->log,
                                  &bake->picture);
 }
@@ -187,7 +190,10 @@ static SluiceResult filter_levels(struct bake *bake, const SluiceStoreLayout *la
     SluiceResult result = slc_baking_init(&baking, &bake->baker->jobs, layout);
     if (result == SLUICE_SUCCESS)
         result = slc_baking_run(&baking, bake->writer);
-    bake->report.replacedTexelCount = baking.replaced_count;
+    bake->report.replacedTexelCount = baking.replaced.texels;
+    bake->report.nanTexelCount = baking.replaced.nan;
+    bake->report.infiniteTexelCount = baking.replaced.infinite;
+    bake->report.clampedTexelCount = baking.replaced.clamped;
     slc_baking_finish(&baking);
     bake->report.resumedTileCount = baking.tiler.found_tile_count;
     return result;
@@ -208,16 +214,15 @@ static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layo
     return result;
 }
 
-/* What a broken picture leaves is no use to the next bake. */
+/* What a broken picture leaves is no use to the next bake. Another writer may have it by now. */
 static void remove_part_file(struct bake *bake)
 {
-    size_t size = strlen(bake->store.pPath) + sizeof ".part";
-    char *path = slc_alloc(&bake->baker->allocator, size, 1);
-    if (!path)
-        return;
-    snprintf(path, size, "%s.part", bake->store.pPath);
-    unlink(path);
-    slc_free(&bake->baker->allocator, path, size, 1);
+    static const SluiceLogCallback silent;
+    struct slc_part_file part;
+    if (slc_part_file_open(&part, bake->store.pPath, SLC_PART_FILE_RESUME, &bake->baker->allocator,
+                           &silent) == SLUICE_SUCCESS)
+        slc_part_file_remove(&part);
+    slc_part_file_close(&part);
 }
 
 static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layout)
@@ -240,12 +245,15 @@ static SluiceResult bake_with_memory(struct bake *bake, const SluiceStoreLayout 
     size += bake->picture->blocks ? slc_copy_memory(layout, baker->jobs.thread_count)
                                   : slc_baking_memory(bake->picture, &bake->plan, layout);
     bake->report.memorySize = size;
+    bool is_whole = bake->picture->unpacked_size > 0;
     SluiceResult result = slc_baker_reserve(baker, size);
     if (result != SLUICE_SUCCESS) {
         slc_log(&baker->log, SLUICE_LOG_ERROR,
-                "%s: a picture this wide takes %llu KiB of memory; the limit is %llu KiB",
+                "%s: baking it takes %llu KiB of memory%s; maxMemory is %llu KiB; raise it%s",
                 bake->picture->name, (unsigned long long)(size >> 10),
-                (unsigned long long)(baker->max_memory >> 10));
+                is_whole ? ", because its file is unpacked as a whole" : "",
+                (unsigned long long)(baker->max_memory >> 10),
+                is_whole ? ", or write the picture as a plain PNG or TIFF file" : "");
         return result;
     }
     result = write_store(bake, layout);

@@ -45,7 +45,7 @@ SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker *
     float *decoded16 = slc_alloc(&cb, 65536, sizeof *decoded16);
     result = baker && decoded16 ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS)
-        result = slc_jobs_init(&baker->jobs, &cb, count_threads(pInfo->threadCount) - 1);
+        result = slc_bake_jobs_init(&baker->jobs, &cb, count_threads(pInfo->threadCount) - 1);
     if (result != SLUICE_SUCCESS) {
         slc_free(&cb, decoded16, 65536, sizeof *decoded16);
         slc_free(&cb, baker, 1, sizeof *baker);
@@ -65,7 +65,7 @@ void sluiceDestroyBaker(SluiceBaker *baker)
     if (!baker)
         return;
     SluiceAllocationCallbacks cb = baker->allocator;
-    slc_jobs_finish(&baker->jobs);
+    slc_bake_jobs_finish(&baker->jobs);
     slc_free(&cb, baker->decoded16, 65536, sizeof *baker->decoded16);
     slc_free(&cb, baker, 1, sizeof *baker);
 }
@@ -85,7 +85,7 @@ static bool fits(void *user)
 /* Others may have come first when the lock is taken again, so it is asked until it fits. */
 static bool take(struct reservation *reservation, SluiceBaker *baker)
 {
-    slc_jobs_lock(&baker->jobs);
+    slc_bake_jobs_lock(&baker->jobs);
     bool has_room = fits(reservation);
     if (has_room)
         baker->used_memory += reservation->size;
@@ -99,14 +99,14 @@ SluiceResult slc_baker_reserve(SluiceBaker *baker, uint64_t size)
     if (size > baker->max_memory)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     do {
-        slc_jobs_help_until(&baker->jobs, fits, &reservation);
+        slc_bake_jobs_help_until(&baker->jobs, fits, &reservation);
     } while (!take(&reservation, baker));
     return SLUICE_SUCCESS;
 }
 
 void slc_baker_give_back(SluiceBaker *baker, uint64_t size)
 {
-    slc_jobs_lock(&baker->jobs);
+    slc_bake_jobs_lock(&baker->jobs);
     baker->used_memory -= size;
-    slc_jobs_unlock_and_wake(&baker->jobs);
+    slc_bake_jobs_unlock_and_wake(&baker->jobs);
 }

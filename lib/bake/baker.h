@@ -11,7 +11,7 @@ struct SluiceBaker {
     SluiceLogCallback log;
     uint64_t max_memory;
     uint64_t used_memory; ///< under the pool's mutex
-    struct slc_jobs jobs;
+    struct slc_bake_jobs jobs;
     float *decoded16; ///< 65536 values of sRGB codes
 };
 

@@ -2,6 +2,8 @@
 
 #include "base/alloc.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* Four floats at once, at any address that a float may have. */
@@ -100,6 +102,39 @@ void slc_columns_apply(struct slc_columns *columns, const float *row, float *bel
     } else {
         weigh(columns, (const texel *)row, (texel *)below);
     }
+}
+
+static float saturate(double value)
+{
+    return (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
+}
+
+void slc_columns_apply_wide(struct slc_columns *columns, const float *row, float *below)
+{
+    const struct slc_axis *axis = &columns->axis;
+    size_t stride = columns->distinct > 1 ? columns->tap_count : 0;
+    const float *weights = columns->weights;
+    if (columns->padded) {
+        pad_row(columns, row);
+        row = columns->padded + 4 * SLC_MAX_REACH;
+    }
+    for (uint32_t i = 0; i < axis->below; i++, weights += stride)
+        for (uint32_t c = 0; c < 4; c++) {
+            const float *in = row + 4 * (ptrdiff_t)slc_axis_first(axis, i) + c;
+            double sum = 0.0;
+            for (uint32_t t = 0; t < columns->tap_count; t++)
+                sum += (double)in[4 * (size_t)t] * (double)weights[t];
+            below[4 * (size_t)i + c] = saturate(sum);
+        }
+}
+
+bool slc_row_is_finite(const float *row, uint32_t count)
+{
+    const texel *in = (const texel *)row;
+    texel sum = {0};
+    for (uint32_t i = 0; i < count; i++)
+        sum += in[i] * 0.0f; /* a NaN, for infinities too */
+    return sum[0] + sum[1] + sum[2] + sum[3] == 0.0f;
 }
 
 void slc_row_set(const float *row, float weight, float *sum, uint32_t count)

@@ -20,6 +20,12 @@ void slc_columns_finish(struct slc_columns *columns, const SluiceAllocationCallb
 /** `row` is [axis.size][4], `below` [axis.below][4]; they do not overlap. */
 void slc_columns_apply(struct slc_columns *columns, const float *row, float *below);
 
+/** The same with sums in double, which saturate at +-FLT_MAX. Slow. */
+void slc_columns_apply_wide(struct slc_columns *columns, const float *row, float *below);
+
+/** Whether none of `count` texels has a NaN or an infinity. */
+bool slc_row_is_finite(const float *row, uint32_t count);
+
 /** sum[i] = weight * row[i], or += where it is not the first; `count` texels of four floats. */
 void slc_row_set(const float *row, float weight, float *sum, uint32_t count);
 void slc_row_add(const float *row, float weight, float *sum, uint32_t count);

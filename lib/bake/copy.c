@@ -57,13 +57,13 @@ static void run_slot(struct slc_job *base)
     struct run *run = slot->run;
     bool found = false;
     SluiceResult result = copy_tile(slot, &found);
-    slc_jobs_lock(run->copy->jobs);
+    slc_bake_jobs_lock(run->copy->jobs);
     if (run->result == SLUICE_SUCCESS)
         run->result = result;
     run->copy->found_tile_count += found;
     run->done++;
     slot->is_busy = false;
-    slc_jobs_unlock_and_wake(run->copy->jobs);
+    slc_bake_jobs_unlock_and_wake(run->copy->jobs);
 }
 
 static bool has_free_slot(void *user)
@@ -88,8 +88,8 @@ static bool all_are_free(void *user)
 static SluiceResult start(struct run *run, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
 {
     struct slc_copy *copy = run->copy;
-    slc_jobs_help_until(copy->jobs, has_free_slot, run);
-    slc_jobs_lock(copy->jobs);
+    slc_bake_jobs_help_until(copy->jobs, has_free_slot, run);
+    slc_bake_jobs_lock(copy->jobs);
     struct slot *slot = run->slots;
     while (slot->is_busy)
         slot++;
@@ -105,7 +105,7 @@ static SluiceResult start(struct run *run, uint32_t layer, uint32_t level, uint3
     slot->level = level;
     slot->x = x;
     slot->y = y;
-    slc_jobs_submit(copy->jobs, &slot->base);
+    slc_bake_jobs_submit(copy->jobs, &slot->base);
     if (x == 0 && copy->progress && !copy->progress(copy->user, done, run->total))
         return SLUICE_ERROR_CANCELLED;
     return SLUICE_SUCCESS;
@@ -118,7 +118,7 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
     bool found = false;
     SluiceResult result =
         sluiceIsStoreTileWritten(copy->writer, layer, layout->tailFirstLevel, 0, 0, &found);
-    slc_jobs_lock(copy->jobs); /* tiles are still being copied */
+    slc_bake_jobs_lock(copy->jobs); /* tiles are still being copied */
     copy->found_tile_count += found;
     pthread_mutex_unlock(&copy->jobs->mutex);
     for (uint32_t l = layout->tailFirstLevel; l < layout->mipLevelCount; l++) {
@@ -161,7 +161,7 @@ SluiceResult slc_copy_run(struct slc_copy *copy)
     for (uint32_t layer = 0; layer < copy->layer_count && result == SLUICE_SUCCESS; layer++)
         result = copy_layer(&run, layer, tail);
     if (run.slots && tail)
-        slc_jobs_help_until(copy->jobs, all_are_free, &run);
+        slc_bake_jobs_help_until(copy->jobs, all_are_free, &run);
     slc_free(cb, run.slots, run.slot_count, sizeof *run.slots);
     slc_free(cb, tail, copy->layout.tailSize, 1);
     return result == SLUICE_SUCCESS ? run.result : result;

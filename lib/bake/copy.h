@@ -8,7 +8,7 @@
 
 struct slc_copy {
     SluiceAllocationCallbacks allocator;
-    struct slc_jobs *jobs;
+    struct slc_bake_jobs *jobs;
     SluiceImageSource *source;
     SluiceStoreWriter *writer;
     SluiceStoreLayout layout;

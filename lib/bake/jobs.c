@@ -4,7 +4,7 @@
 
 #include <assert.h>
 
-static struct slc_job *take(struct slc_jobs *jobs)
+static struct slc_job *take(struct slc_bake_jobs *jobs)
 {
     struct slc_job *job = jobs->first;
     if (job) {
@@ -15,18 +15,17 @@ static struct slc_job *take(struct slc_jobs *jobs)
     return job;
 }
 
-static void run_unlocked(struct slc_jobs *jobs, struct slc_job *job)
+static void run_unlocked(struct slc_bake_jobs *jobs, struct slc_job *job)
 {
     pthread_mutex_unlock(&jobs->mutex);
     job->run(job);
     pthread_mutex_lock(&jobs->mutex);
 }
 
-static void *work(void *user)
+void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user)
 {
-    struct slc_jobs *jobs = user;
     pthread_mutex_lock(&jobs->mutex);
-    while (!jobs->ends) {
+    while (!is_done(user)) {
         struct slc_job *job = take(jobs);
         if (job)
             run_unlocked(jobs, job);
@@ -34,13 +33,24 @@ static void *work(void *user)
             pthread_cond_wait(&jobs->changed, &jobs->mutex);
     }
     pthread_mutex_unlock(&jobs->mutex);
+}
+
+static bool ends(void *user)
+{
+    const struct slc_bake_jobs *jobs = user;
+    return jobs->ends;
+}
+
+static void *work(void *user)
+{
+    slc_bake_jobs_help_until(user, ends, user);
     return NULL;
 }
 
-SluiceResult slc_jobs_init(struct slc_jobs *jobs, const SluiceAllocationCallbacks *cb,
-                           uint32_t thread_count)
+SluiceResult slc_bake_jobs_init(struct slc_bake_jobs *jobs, const SluiceAllocationCallbacks *cb,
+                                uint32_t thread_count)
 {
-    *jobs = (struct slc_jobs){.allocator = *cb};
+    *jobs = (struct slc_bake_jobs){.allocator = *cb};
     pthread_mutex_init(&jobs->mutex, NULL);
     pthread_cond_init(&jobs->changed, NULL);
     if (thread_count == 0)
@@ -53,9 +63,9 @@ SluiceResult slc_jobs_init(struct slc_jobs *jobs, const SluiceAllocationCallback
     }
     if (is_complete)
         return SLUICE_SUCCESS;
-    slc_jobs_lock(jobs);
+    slc_bake_jobs_lock(jobs);
     jobs->ends = true;
-    slc_jobs_unlock_and_wake(jobs);
+    slc_bake_jobs_unlock_and_wake(jobs);
     for (uint32_t i = 0; i < jobs->thread_count; i++)
         pthread_join(jobs->threads[i], NULL);
     slc_free(cb, jobs->threads, thread_count, sizeof *jobs->threads);
@@ -64,12 +74,12 @@ SluiceResult slc_jobs_init(struct slc_jobs *jobs, const SluiceAllocationCallback
     return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
-void slc_jobs_finish(struct slc_jobs *jobs)
+void slc_bake_jobs_finish(struct slc_bake_jobs *jobs)
 {
     assert(!jobs->first);
-    slc_jobs_lock(jobs);
+    slc_bake_jobs_lock(jobs);
     jobs->ends = true;
-    slc_jobs_unlock_and_wake(jobs);
+    slc_bake_jobs_unlock_and_wake(jobs);
     for (uint32_t i = 0; i < jobs->thread_count; i++)
         pthread_join(jobs->threads[i], NULL);
     slc_free(&jobs->allocator, jobs->threads, jobs->thread_count, sizeof *jobs->threads);
@@ -77,38 +87,25 @@ void slc_jobs_finish(struct slc_jobs *jobs)
     pthread_mutex_destroy(&jobs->mutex);
 }
 
-void slc_jobs_submit(struct slc_jobs *jobs, struct slc_job *job)
+void slc_bake_jobs_submit(struct slc_bake_jobs *jobs, struct slc_job *job)
 {
     job->next = NULL;
-    slc_jobs_lock(jobs);
+    slc_bake_jobs_lock(jobs);
     if (jobs->last)
         jobs->last->next = job;
     else
         jobs->first = job;
     jobs->last = job;
-    slc_jobs_unlock_and_wake(jobs);
+    slc_bake_jobs_unlock_and_wake(jobs);
 }
 
-void slc_jobs_lock(struct slc_jobs *jobs)
+void slc_bake_jobs_lock(struct slc_bake_jobs *jobs)
 {
     pthread_mutex_lock(&jobs->mutex);
 }
 
-void slc_jobs_unlock_and_wake(struct slc_jobs *jobs)
+void slc_bake_jobs_unlock_and_wake(struct slc_bake_jobs *jobs)
 {
     pthread_cond_broadcast(&jobs->changed);
-    pthread_mutex_unlock(&jobs->mutex);
-}
-
-void slc_jobs_help_until(struct slc_jobs *jobs, bool (*is_done)(void *user), void *user)
-{
-    pthread_mutex_lock(&jobs->mutex);
-    while (!is_done(user)) {
-        struct slc_job *job = take(jobs);
-        if (job)
-            run_unlocked(jobs, job);
-        else
-            pthread_cond_wait(&jobs->changed, &jobs->mutex);
-    }
     pthread_mutex_unlock(&jobs->mutex);
 }

@@ -12,7 +12,7 @@ struct slc_job {
     void (*run)(struct slc_job *job);
 };
 
-struct slc_jobs {
+struct slc_bake_jobs {
     SluiceAllocationCallbacks allocator;
     pthread_mutex_t mutex;
     pthread_cond_t changed; ///< a job came or ended, or `ends`
@@ -23,18 +23,18 @@ struct slc_jobs {
 };
 
 /** `thread_count` may be 0: then waiters do everything. Errors: OUT_OF_HOST_MEMORY. */
-SluiceResult slc_jobs_init(struct slc_jobs *jobs, const SluiceAllocationCallbacks *cb,
-                           uint32_t thread_count);
+SluiceResult slc_bake_jobs_init(struct slc_bake_jobs *jobs, const SluiceAllocationCallbacks *cb,
+                                uint32_t thread_count);
 /** Nothing is queued. */
-void slc_jobs_finish(struct slc_jobs *jobs);
+void slc_bake_jobs_finish(struct slc_bake_jobs *jobs);
 
-void slc_jobs_submit(struct slc_jobs *jobs, struct slc_job *job);
+void slc_bake_jobs_submit(struct slc_bake_jobs *jobs, struct slc_job *job);
 
 /** Wakes those who wait, after what they wait for has changed under the mutex. */
-void slc_jobs_lock(struct slc_jobs *jobs);
-void slc_jobs_unlock_and_wake(struct slc_jobs *jobs);
+void slc_bake_jobs_lock(struct slc_bake_jobs *jobs);
+void slc_bake_jobs_unlock_and_wake(struct slc_bake_jobs *jobs);
 
 /** Returns when `is_done`, which is called under the mutex; runs jobs until then. */
-void slc_jobs_help_until(struct slc_jobs *jobs, bool (*is_done)(void *user), void *user);
+void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user);
 
 #endif /* SLC_BAKE_JOBS_H */

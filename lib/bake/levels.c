@@ -27,6 +27,7 @@ static struct slc_pyramid_info pyramid_info(const struct slc_picture *picture,
                                      .filter = plan->settings.filter,
                                      .wrap_x = plan->settings.wrapX,
                                      .wrap_y = plan->settings.wrapY,
+                                     .may_overflow = plan->rules.sample == SLC_SAMPLE_F32,
                                      .user = user,
                                      .row = on_row};
 }
@@ -40,7 +41,7 @@ uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_p
     return size + (plan->threshold > 0.0f ? slc_coverage_memory(plan->level_count) : 0);
 }
 
-SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_jobs *jobs,
+SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jobs,
                              const SluiceStoreLayout *layout)
 {
     const SluiceAllocationCallbacks *cb = &baking->allocator;
@@ -88,9 +89,9 @@ static SluiceResult bake_row(struct slc_baking *baking, uint32_t y)
     SluiceResult result = picture->implementation->row(picture, y, &samples);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint32_t replaced = slc_read_texels(rules, samples, baking->row, picture->width);
-    if (!baking->counts)
-        baking->replaced_count += replaced;
+    struct slc_replaced counted_before = {0};
+    slc_read_texels(rules, samples, baking->row, picture->width,
+                    baking->counts ? &counted_before : &baking->replaced);
     if (slc_keeps_samples(rules) && !baking->counts)
         result = write_kept_row(baking, y, samples);
     else

@@ -16,9 +16,9 @@ struct slc_baking {
     struct slc_coverage coverage;
     bool counts; ///< the pass that counts alpha, not the one that writes
     float alpha_scales[SLC_MAX_LEVELS];
-    float *row;              ///< [width][4]
-    uint64_t replaced_count; ///< texels of level 0
-    uint64_t done, total;    ///< texels of level 0, of all passes
+    float *row;                   ///< [width][4]
+    struct slc_replaced replaced; ///< of level 0
+    uint64_t done, total;         ///< texels of level 0, of all passes
     void *user;
     bool (*progress)(void *user, uint64_t done, uint64_t total); ///< NULL: none
 };
@@ -29,7 +29,7 @@ uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_p
 
 /** What is set: allocator, picture, plan, user, progress. Errors: OUT_OF_HOST_MEMORY; finish it
  *  then, too. */
-SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_jobs *jobs,
+SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jobs,
                              const SluiceStoreLayout *layout);
 void slc_baking_finish(struct slc_baking *baking);
 

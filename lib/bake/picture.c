@@ -1,9 +1,10 @@
 #include "bake/picture.h"
 
 #include "base/log.h"
+#include "base/system.h"
+#include "image/input_file.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #ifdef SLC_HAVE_EXR
@@ -16,45 +17,68 @@
 
 enum kind { OTHER, EXR, DDS, KTX2 };
 
-static SluiceResult look_inside(const char *path, const SluiceLogCallback *log, enum kind *kind)
+/* Fewer bytes if the file has no more. A pipe or a device is refused: libvips would wait for it. */
+static SluiceResult read_start(const char *path, const SluiceAllocationCallbacks *cb,
+                               const SluiceLogCallback *log, char *bytes, size_t size)
+{
+    struct slc_input_file file;
+    SluiceResult result = slc_input_file_init(&file, path, cb, log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_input_file_open(&file);
+    if (result == SLUICE_SUCCESS && slc_input_file_read_some(&file, 0, bytes, size) < 0)
+        result =
+            slc_input_fail(&file, slc_system_result(errno), "cannot read: %s", strerror(errno));
+    slc_input_file_finish(&file);
+    return result;
+}
+
+static SluiceResult look_inside(const char *path, const SluiceAllocationCallbacks *cb,
+                                const SluiceLogCallback *log, enum kind *kind)
 {
     static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
     char bytes[12] = {0};
-    FILE *file = fopen(path, "rb");
-    size_t size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
-    bool failed = !file || ferror(file);
-    int error = errno;
-    if (file)
-        fclose(file);
-    if (failed) {
-        slc_log(log, SLUICE_LOG_ERROR, "%s: %s", path, strerror(error));
-        return error == ENOENT || error == ENOTDIR ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
-    }
+    SluiceResult result = read_start(path, cb, log, bytes, sizeof bytes);
     *kind = OTHER;
-    if (size >= 4 && memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
+    if (memcmp(bytes, "\x76\x2F\x31\x01", 4) == 0)
         *kind = EXR;
-    else if (size >= 4 && memcmp(bytes, "DDS ", 4) == 0)
+    else if (memcmp(bytes, "DDS ", 4) == 0)
         *kind = DDS;
-    else if (size == 12 && memcmp(bytes, ktx2, 12) == 0)
+    else if (memcmp(bytes, ktx2, 12) == 0)
         *kind = KTX2;
-    return SLUICE_SUCCESS;
+    return result;
 }
 
 /* Level 0 alone, in strips, whatever its size. */
-static SluiceResult open_exr(const char *path, const SluiceAllocationCallbacks *cb,
-                             const SluiceLogCallback *log, SluiceImageSource **source)
+static SluiceResult open_exr(const char *path, const struct slc_picture_opening *opening,
+                             const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                             SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_EXR
     SluiceExrImageSourceCreateInfo info = {.pPath = path,
                                            .pAllocator = cb,
                                            .log = *log,
                                            .maxImageSize = UINT64_MAX,
-                                           .levelZeroAlone = true};
+                                           .levelZeroAlone = true,
+                                           .maxMemorySize = opening->max_memory,
+                                           .keepPrimaries = opening->keep_primaries};
     return sluiceCreateExrImageSource(&info, source);
 #else
-    (void)cb, (void)source;
+    (void)cb, (void)source, (void)opening;
     slc_log(log, SLUICE_LOG_ERROR, "%s: this build reads no OpenEXR files", path);
     return SLUICE_ERROR_UNSUPPORTED;
+#endif
+}
+
+static void describe_exr(SluiceImageSource *source, struct slc_picture *picture)
+{
+#ifdef SLC_HAVE_EXR
+    SluiceExrInfo info;
+    if (sluiceGetExrInfo(source, &info) != SLUICE_SUCCESS)
+        return;
+    picture->memory += info.readSize;
+    picture->foreign_primaries = info.foreignPrimaries;
+#else
+    (void)source, (void)picture;
 #endif
 }
 
@@ -77,23 +101,26 @@ static SluiceResult open_container(const char *path, enum kind kind,
 #endif
 }
 
-SluiceResult slc_picture_open(const char *path, const SluiceAllocationCallbacks *cb,
-                              const SluiceLogCallback *log, struct slc_picture **picture)
+SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening *opening,
+                              const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                              struct slc_picture **picture)
 {
     SluiceImageSource *source = NULL;
     enum kind kind = OTHER;
-    SluiceResult result = look_inside(path, log, &kind);
+    SluiceResult result = look_inside(path, cb, log, &kind);
     if (result != SLUICE_SUCCESS)
         return result;
     if (kind == OTHER)
         return slc_picture_open_vips(path, cb, log, picture);
     if (kind == EXR)
-        result = open_exr(path, cb, log, &source);
+        result = open_exr(path, opening, cb, log, &source);
     else
         result = open_container(path, kind, cb, log, &source);
     if (result == SLUICE_SUCCESS)
         result = slc_picture_of_source(source, true, path, cb, log, picture);
-    if (result == SLUICE_SUCCESS && kind != EXR)
+    if (result == SLUICE_SUCCESS && kind == EXR)
+        describe_exr(source, *picture);
+    else if (result == SLUICE_SUCCESS)
         (*picture)->premultiplied = false;
     return result;
 }

@@ -22,22 +22,30 @@ struct slc_picture {
     const char *name; ///< for messages; lives as long as the picture
     uint32_t width, height;
     enum slc_sample sample;
-    uint32_t channels;   ///< 1 to 4
-    bool alpha;          ///< the last of 2 or 4 channels is alpha
-    bool premultiplied;  ///< where nobody says otherwise
-    bool srgb;           ///< where nobody says otherwise
-    bool halves_suffice; ///< 32-bit floats that were made from shorter ones
-    uint64_t memory;     ///< bytes that reading takes, roughly
+    uint32_t channels;      ///< 1 to 4
+    bool alpha;             ///< the last of 2 or 4 channels is alpha
+    bool premultiplied;     ///< where nobody says otherwise
+    bool srgb;              ///< where nobody says otherwise
+    bool halves_suffice;    ///< 32-bit floats that were made from shorter ones
+    uint64_t memory;        ///< bytes that reading takes, roughly
+    uint64_t unpacked_size; ///< of these, for a file that is unpacked as a whole
+    bool foreign_primaries; ///< colors are in other primaries than those of Rec. 709
     /** Set for block-compressed data: all levels are read from here and nothing is filtered. */
     SluiceImageSource *blocks;
+};
+
+struct slc_picture_opening {
+    uint64_t max_memory; ///< bytes that reading may take at most
+    bool keep_primaries; ///< of OpenEXR files
 };
 
 /**
  * Opens a file by what it begins with: OpenEXR, DDS and KTX2 where this build reads them, all else
  * with libvips. Errors: as sluiceBakeFile; logged.
  */
-SluiceResult slc_picture_open(const char *path, const SluiceAllocationCallbacks *cb,
-                              const SluiceLogCallback *log, struct slc_picture **picture);
+SluiceResult slc_picture_open(const char *path, const struct slc_picture_opening *opening,
+                              const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log,
+                              struct slc_picture **picture);
 
 /** Level 0 of a source, or all of it if it is block-compressed. `owned`: closing destroys it. */
 SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const char *name,

@@ -4,6 +4,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "image/format.h"
+#include "image/info.h"
 
 /* Rows that are read at once: a row of tiles of the files that are meant for this. */
 #define STRIP 128u
@@ -80,8 +81,12 @@ static SluiceResult describe(struct source_picture *picture, const SluiceImageIn
 {
     struct slc_picture *base = &picture->base;
     SluiceFormatInfo format;
-    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS)
-        return unsupported(picture, "its format is unknown");
+    SluiceResult result = slc_image_info_check(info, SLC_LEVELS_ALL_OR_ONE, &base->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = sluiceGetFormatInfo(info->format, &format);
+    if (result != SLUICE_SUCCESS)
+        return result;
     base->width = info->width;
     base->height = info->height;
     base->channels = format.channelCount;
@@ -90,6 +95,9 @@ static SluiceResult describe(struct source_picture *picture, const SluiceImageIn
     base->srgb = info->format == SLUICE_FORMAT_R8G8B8A8_SRGB;
     picture->format = info->format;
     if (slc_format_is_compressed(&format)) {
+        result = slc_image_info_check(info, SLC_LEVELS_ALL, &base->log);
+        if (result != SLUICE_SUCCESS)
+            return result;
         base->blocks = picture->source;
         base->memory = 1 << 20;
         return SLUICE_SUCCESS;

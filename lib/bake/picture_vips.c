@@ -141,6 +141,39 @@ static void close_picture(struct slc_picture *base)
 
 static const struct slc_picture_interface vips_interface = {row, rewind_picture, close_picture};
 
+static bool has_flag(VipsImage *image, const char *name)
+{
+    int value = 0;
+    return vips_image_get_typeof(image, name) != 0 &&
+           vips_image_get_int(image, name, &value) == 0 && value != 0;
+}
+
+/*
+ * How often the picture fits into what libvips and the libraries behind it take for it at once,
+ * where they cannot read it from top to bottom; 0 where they can. Measured with libvips 8.14,
+ * 12000 x 12000 texels: interlaced PNG 0.9, progressive JPEG 1.0 (up to 2 without subsampling),
+ * WebP 2.6, GIF 1.0.
+ */
+static uint32_t times_unpacked(VipsImage *image)
+{
+    static const struct {
+        const char *loader, *flag;
+        uint32_t times;
+    } loaders[] = {{"pngload", "interlaced", 1}, {"jpegload", "jpeg-multiscan", 2},
+                   {"webpload", NULL, 3},        {"gifload", NULL, 2},
+                   {"heifload", NULL, 3},        {"jxlload", NULL, 5},
+                   {"magickload", NULL, 8}};
+    const char *loader;
+    if (vips_image_get_typeof(image, VIPS_META_LOADER) == 0 ||
+        vips_image_get_string(image, VIPS_META_LOADER, &loader) != 0)
+        return 0;
+    for (size_t i = 0; i < sizeof loaders / sizeof loaders[0]; i++)
+        if (strncmp(loader, loaders[i].loader, strlen(loaders[i].loader)) == 0 &&
+            (!loaders[i].flag || has_flag(image, loaders[i].flag)))
+            return loaders[i].times;
+    return 0;
+}
+
 static void describe(struct vips_picture *picture)
 {
     struct slc_picture *base = &picture->base;
@@ -159,6 +192,9 @@ static void describe(struct vips_picture *picture)
     base->memory =
         (uint64_t)base->width * base->channels * slc_sample_size(base->sample) * (2 * 512 + STRIP) +
         ((uint64_t)16 << 20);
+    base->unpacked_size = times_unpacked(image) * (uint64_t)base->width * base->height *
+                          base->channels * slc_sample_size(base->sample);
+    base->memory += base->unpacked_size;
 }
 
 SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallbacks *cb,

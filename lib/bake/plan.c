@@ -5,10 +5,11 @@
 #include "base/log.h"
 #include "image/format.h"
 
+#include <float.h>
 #include <math.h>
 
 #define HALF_LIMIT 65504.0f
-#define FLOAT_LIMIT 0x1p120f /* sums of a few, weighted, stay finite */
+#define FLOAT_INFINITY 0x1p120f /* a shader's filter may weigh a few of them and stays finite */
 
 /* Formats that differ in whether they hold sRGB. */
 static const SluiceFormat twins[][2] = {
@@ -109,7 +110,8 @@ static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
     rules->normals = settings->normalMap;
     rules->rings = settings->filter != SLUICE_BAKE_FILTER_BOX;
     rules->format = texel_format(plan->format, rules->srgb);
-    rules->limit = is_float32(rules->format) ? FLOAT_LIMIT : HALF_LIMIT;
+    rules->limit = is_float32(rules->format) ? FLT_MAX : HALF_LIMIT;
+    rules->infinity = is_float32(rules->format) ? FLOAT_INFINITY : HALF_LIMIT;
 }
 
 static void find_meaning(const struct slc_picture *picture, struct slc_plan *plan)
@@ -125,7 +127,8 @@ static void find_meaning(const struct slc_picture *picture, struct slc_plan *pla
     else
         plan->meaning = rules->straight ? SLUICE_STORE_MEANING_COLOR_ALPHA
                                         : SLUICE_STORE_MEANING_COLOR_PREMULTIPLIED;
-    if (plan->meaning == SLUICE_STORE_MEANING_NORMAL || plan->meaning == SLUICE_STORE_MEANING_DATA)
+    if (plan->meaning == SLUICE_STORE_MEANING_NORMAL ||
+        plan->meaning == SLUICE_STORE_MEANING_DATA || picture->foreign_primaries)
         plan->color_space = SLUICE_STORE_COLOR_SPACE_UNDEFINED;
     else if (rules->srgb && has_srgb_twin(plan->format))
         plan->color_space = SLUICE_STORE_COLOR_SPACE_SRGB;

@@ -4,6 +4,8 @@
 #include "base/checked.h"
 
 #include <assert.h>
+#include <float.h>
+#include <math.h>
 
 static bool reaches_around(const struct slc_axis *rows)
 {
@@ -136,13 +138,27 @@ static bool is_ready(const struct slc_halving *halving)
     return true;
 }
 
-static void make_row(struct slc_halving *halving)
+/* Sums in double, which saturate at +-FLT_MAX. */
+static void sum_rows_wide(struct slc_halving *halving)
+{
+    const struct slc_taps *taps = &halving->taps;
+    for (size_t i = 0; i < 4 * (size_t)halving->columns.axis.below; i++) {
+        double sum = 0.0;
+        for (uint32_t t = 0; t < taps->count; t++)
+            sum += (double)kept_row(halving, arrival(halving, t))[i] * (double)taps->weights[t];
+        halving->row[i] = (float)fmin(fmax(sum, -(double)FLT_MAX), (double)FLT_MAX);
+    }
+}
+
+static void make_row(struct slc_halving *halving, bool may_overflow)
 {
     uint32_t width = halving->columns.axis.below;
     const struct slc_taps *taps = &halving->taps;
     slc_row_set(kept_row(halving, arrival(halving, 0)), taps->weights[0], halving->row, width);
     for (uint32_t t = 1; t < taps->count; t++)
         slc_row_add(kept_row(halving, arrival(halving, t)), taps->weights[t], halving->row, width);
+    if (may_overflow && !slc_row_is_finite(halving->row, width))
+        sum_rows_wide(halving);
     halving->made++;
     if (halving->made < halving->rows.below)
         find_taps(halving);
@@ -154,12 +170,15 @@ static SluiceResult push(struct slc_pyramid *pyramid, uint32_t level, const floa
     if (level + 1 >= pyramid->level_count)
         return SLUICE_SUCCESS;
     struct slc_halving *halving = &pyramid->halvings[level];
-    slc_columns_apply(&halving->columns, rgba, kept_row(halving, halving->received));
+    float *kept = kept_row(halving, halving->received);
+    slc_columns_apply(&halving->columns, rgba, kept);
+    if (pyramid->info.may_overflow && !slc_row_is_finite(kept, halving->columns.axis.below))
+        slc_columns_apply_wide(&halving->columns, rgba, kept);
     halving->received++;
     SluiceResult result = SLUICE_SUCCESS;
     while (result == SLUICE_SUCCESS && is_ready(halving)) {
         uint32_t y = row_below(halving);
-        make_row(halving);
+        make_row(halving, pyramid->info.may_overflow);
         result = pyramid->info.row(pyramid->info.user, level + 1, y, halving->row);
         if (result == SLUICE_SUCCESS)
             result = push(pyramid, level + 1, halving->row);

@@ -37,6 +37,7 @@ struct slc_pyramid_info {
      * those before it following after the last.
      */
     SluiceResult (*row)(void *user, uint32_t level, uint32_t y, const float *rgba);
+    bool may_overflow; ///< rows hold numbers near FLT_MAX: sums of floats may leave the range
 };
 
 struct slc_pyramid {

@@ -10,6 +10,8 @@
 uint64_t sluiceHashBakeSettings(const SluiceBakeSettings *pSettings)
 {
     uint32_t cutout;
+    if (!pSettings)
+        return 0;
     memcpy(&cutout, &pSettings->cutout, sizeof cutout);
     const uint32_t values[] = {
         SLC_BAKE_REVISION,
@@ -23,6 +25,7 @@ uint64_t sluiceHashBakeSettings(const SluiceBakeSettings *pSettings)
         cutout,
         pSettings->compressionLevel ? pSettings->compressionLevel : SLUICE_BAKE_DEFAULT_COMPRESSION,
         pSettings->uncompressed,
+        pSettings->keepPrimaries,
     };
     uint8_t bytes[sizeof values]; /* the same on every machine */
     for (size_t i = 0; i < sizeof values; i++)

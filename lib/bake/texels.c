@@ -5,6 +5,7 @@
 #include "image/half.h"
 #include "image/srgb.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -55,7 +56,8 @@ static float colour_value(const struct slc_rules *rules, const char *sample)
     float value = sample_value(rules, sample); /* encoded floats, beyond 1 too */
     if (value <= 0.04045f)
         return value / 12.92f;
-    return powf((value + 0.055f) / 1.055f, 2.4f);
+    float decoded = powf((value + 0.055f) / 1.055f, 2.4f);
+    return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
 }
 
 /* Grey stands for R, G and B. */
@@ -81,20 +83,39 @@ static void expand_srgb8(const uint8_t *samples, uint32_t channels, float *rgba,
     }
 }
 
-static uint32_t limit_texels(float limit, float *rgba, uint32_t count)
+/* What is not to be kept. True if one of the channels was changed. */
+static bool replace_texel(const struct slc_rules *rules, float rgba[4],
+                          struct slc_replaced *replaced)
 {
-    uint32_t replaced = 0;
+    bool has_nan = false, has_infinity = false, is_beyond = false;
+    for (uint32_t c = 0; c < 4; c++) {
+        if (isnan(rgba[c])) {
+            rgba[c] = 0.0f;
+            has_nan = true;
+        } else if (isinf(rgba[c])) {
+            rgba[c] = copysignf(rules->infinity, rgba[c]);
+            has_infinity = true;
+        } else if (fabsf(rgba[c]) > rules->limit) {
+            rgba[c] = copysignf(rules->limit, rgba[c]);
+            is_beyond = true;
+        }
+    }
+    replaced->nan += has_nan;
+    replaced->infinite += has_infinity;
+    replaced->clamped += is_beyond;
+    return has_nan || has_infinity || is_beyond;
+}
+
+static void replace_texels(const struct slc_rules *rules, float *rgba, uint32_t count,
+                           struct slc_replaced *replaced)
+{
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
         bool is_fine = true;
-        for (uint32_t c = 0; c < 4; c++) {
-            if (fabsf(rgba[c]) <= limit)
-                continue;
-            rgba[c] = isnan(rgba[c]) ? 0.0f : copysignf(limit, rgba[c]);
-            is_fine = false;
-        }
-        replaced += !is_fine;
+        for (uint32_t c = 0; c < 4; c++)
+            is_fine &= fabsf(rgba[c]) <= rules->limit;
+        if (!is_fine)
+            replaced->texels += replace_texel(rules, rgba, replaced);
     }
-    return replaced;
 }
 
 static void weigh_by_alpha(float *rgba, uint32_t count)
@@ -120,21 +141,19 @@ static void point_normals(const struct slc_rules *rules, float *rgba, uint32_t c
     }
 }
 
-uint32_t slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
-                         uint32_t count)
+void slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
+                     uint32_t count, struct slc_replaced *replaced)
 {
-    uint32_t replaced = 0;
     if (rules->sample == SLC_SAMPLE_U8 && rules->srgb && rules->channels >= 3)
         expand_srgb8(samples, rules->channels, rgba, count);
     else
         expand(rules, samples, rgba, count);
     if (rules->sample == SLC_SAMPLE_F16 || rules->sample == SLC_SAMPLE_F32)
-        replaced = limit_texels(rules->limit, rgba, count);
+        replace_texels(rules, rgba, count, replaced);
     if (rules->normals)
         point_normals(rules, rgba, count);
     if (rules->straight)
         weigh_by_alpha(rgba, count);
-    return replaced;
 }
 
 static void unweigh(const struct slc_rules *rules, float *rgba, uint32_t count)
@@ -153,11 +172,12 @@ static void normalise(const struct slc_rules *rules, float *rgba, uint32_t count
 {
     bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
-        float length = sqrtf(rgba[0] * rgba[0] + rgba[1] * rgba[1] + rgba[2] * rgba[2]);
-        float factor = length > 1e-6f ? 1.0f / length : 0.0f;
+        double x = (double)rgba[0], y = (double)rgba[1], z = (double)rgba[2];
+        double length = sqrt(x * x + y * y + z * z); /* squares of floats overflow no double */
+        double factor = length > 1e-6 ? 1.0 / length : 0.0;
         for (uint32_t c = 0; c < 3; c++)
-            rgba[c] *= factor;
-        if (factor == 0.0f)
+            rgba[c] = (float)((double)rgba[c] * factor);
+        if (factor == 0.0)
             rgba[2] = 1.0f;
         for (uint32_t c = 0; c < 3 && is_encoded; c++)
             rgba[c] = 0.5f * rgba[c] + 0.5f;
@@ -175,6 +195,13 @@ static void scale_alpha(const struct slc_rules *rules, float scale, float *rgba,
     }
 }
 
+/* Dividing by alpha and scaling can leave the range by the last bit. */
+static void stay_finite(float *rgba, uint32_t count)
+{
+    for (uint32_t i = 0; i < 4 * count; i++)
+        rgba[i] = fminf(fmaxf(rgba[i], -FLT_MAX), FLT_MAX);
+}
+
 static void write_chunk(const struct slc_rules *rules, const float *rgba, float alpha_scale,
                         void *texels, uint32_t count)
 {
@@ -188,6 +215,8 @@ static void write_chunk(const struct slc_rules *rules, const float *rgba, float 
             normalise(rules, own, count);
         if (alpha_scale != 1.0f)
             scale_alpha(rules, alpha_scale, own, count);
+        if (rules->sample == SLC_SAMPLE_F32)
+            stay_finite(own, count);
     }
     slc_texels_from_rgba(rules->format, rgba, texels, count);
 }

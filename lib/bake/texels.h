@@ -21,8 +21,17 @@ struct slc_rules {
     bool normals;        ///< R, G and B are a vector; of two channels, B is the rest of its length
     bool rings;          ///< the filter has negative lobes
     SluiceFormat format; ///< of texels: not compressed
-    float limit;         ///< larger magnitudes become this
+    float limit;         ///< larger finite magnitudes become this
+    float infinity;      ///< what infinities become
     const float *decoded16; ///< 65536 values of sRGB codes, for SLC_SAMPLE_U16 with srgb
+};
+
+/** Texels that could not be kept as they are. One may count in several of the last three. */
+struct slc_replaced {
+    uint64_t texels;
+    uint64_t nan;      ///< a NaN became 0
+    uint64_t infinite; ///< an infinity became a number
+    uint64_t clamped;  ///< a finite number was beyond the limit
 };
 
 /** Bytes of a sample. */
@@ -31,12 +40,9 @@ uint32_t slc_sample_size(enum slc_sample sample);
 /** Fills 65536 values for `decoded16`. */
 void slc_decode_srgb16(float *values);
 
-/**
- * `count` texels of `samples`, [count][channels], to [count][4] floats. Answers in how many texels
- * there was a NaN or something beyond the limit.
- */
-uint32_t slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
-                         uint32_t count);
+/** `count` texels of `samples`, [count][channels], to [count][4] floats; adds to `replaced`. */
+void slc_read_texels(const struct slc_rules *rules, const void *samples, float *rgba,
+                     uint32_t count, struct slc_replaced *replaced);
 
 /** `count` filtered texels as they are stored. `alpha_scale` multiplies alpha, up to 1. */
 void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,

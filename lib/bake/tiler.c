@@ -57,7 +57,7 @@ static SluiceResult init_band(struct slc_tiler *tiler, struct slc_band *band, ui
 }
 
 SluiceResult slc_tiler_init(struct slc_tiler *tiler, const SluiceAllocationCallbacks *cb,
-                            struct slc_jobs *jobs, const SluiceStoreLayout *layout,
+                            struct slc_bake_jobs *jobs, const SluiceStoreLayout *layout,
                             SluiceFormat texel_format, bool reaches_around)
 {
     plan(tiler, layout, texel_format, reaches_around);
@@ -85,7 +85,7 @@ void slc_tiler_finish(struct slc_tiler *tiler)
 {
     if (!tiler->jobs)
         return;
-    slc_jobs_help_until(tiler->jobs, all_is_written, tiler);
+    slc_bake_jobs_help_until(tiler->jobs, all_is_written, tiler);
     for (uint32_t l = 0; l < tiler->layout.tailFirstLevel; l++)
         for (uint32_t b = 0; b < tiler->levels[l].band_count; b++) {
             struct slc_band *band = &tiler->levels[l].bands[b];
@@ -136,22 +136,22 @@ static void run_tile_job(struct slc_job *base)
 {
     struct slc_tile_job *job = (struct slc_tile_job *)base;
     struct slc_tiler *tiler = job->band->tiler;
-    struct slc_jobs *jobs = tiler->jobs;
+    struct slc_bake_jobs *jobs = tiler->jobs;
     bool found = false;
     SluiceResult result = slc_tiler_result(tiler);
     if (result == SLUICE_SUCCESS)
         result = write_tile(job, &found);
-    slc_jobs_lock(jobs);
+    slc_bake_jobs_lock(jobs);
     if (tiler->result == SLUICE_SUCCESS)
         tiler->result = result;
     tiler->found_tile_count += found;
     job->band->pending--;
-    slc_jobs_unlock_and_wake(jobs);
+    slc_bake_jobs_unlock_and_wake(jobs);
 }
 
 SluiceResult slc_tiler_result(struct slc_tiler *tiler)
 {
-    slc_jobs_lock(tiler->jobs);
+    slc_bake_jobs_lock(tiler->jobs);
     SluiceResult result = tiler->result;
     pthread_mutex_unlock(&tiler->jobs->mutex);
     return result;
@@ -177,9 +177,9 @@ static bool has_free_band(void *user)
 static struct slc_band *open_band(struct slc_tiler *tiler, struct slc_tiler_level *level,
                                   uint32_t y)
 {
-    slc_jobs_help_until(tiler->jobs, has_free_band, level);
+    slc_bake_jobs_help_until(tiler->jobs, has_free_band, level);
     struct slc_band *band = level->bands;
-    slc_jobs_lock(tiler->jobs);
+    slc_bake_jobs_lock(tiler->jobs);
     while (band->is_open || band->pending)
         band++;
     pthread_mutex_unlock(&tiler->jobs->mutex);
@@ -217,13 +217,13 @@ void slc_tiler_end_row(struct slc_tiler *tiler, uint32_t l, uint32_t y)
     if (band->row_count < slc_min_u32(tile_height, level->height - band->y * tile_height))
         return;
     uint32_t tile_count = tiler->layout.levelWidthInTiles[l];
-    slc_jobs_lock(tiler->jobs);
+    slc_bake_jobs_lock(tiler->jobs);
     band->is_open = false;
     band->pending = tile_count;
     pthread_mutex_unlock(&tiler->jobs->mutex);
     for (uint32_t x = 0; x < tile_count; x++) {
         band->jobs[x] = (struct slc_tile_job){.base.run = run_tile_job, .band = band, .x = x};
-        slc_jobs_submit(tiler->jobs, &band->jobs[x].base);
+        slc_bake_jobs_submit(tiler->jobs, &band->jobs[x].base);
     }
 }
 
@@ -266,7 +266,7 @@ static SluiceResult write_tail(struct slc_tiler *tiler)
 
 SluiceResult slc_tiler_complete(struct slc_tiler *tiler)
 {
-    slc_jobs_help_until(tiler->jobs, all_is_written, tiler);
+    slc_bake_jobs_help_until(tiler->jobs, all_is_written, tiler);
     SluiceResult result = slc_tiler_result(tiler);
     return result == SLUICE_SUCCESS ? write_tail(tiler) : result;
 }

@@ -41,7 +41,7 @@ struct slc_tiler_level {
 
 struct slc_tiler {
     SluiceAllocationCallbacks allocator;
-    struct slc_jobs *jobs;
+    struct slc_bake_jobs *jobs;
     SluiceStoreLayout layout;
     SluiceFormat texel_format; ///< of rows: the layout's, or what blocks are made from
     SluiceStoreWriter *writer;
@@ -59,7 +59,7 @@ uint64_t slc_tiler_memory(const SluiceStoreLayout *layout, SluiceFormat texel_fo
 /** `reaches_around`: the first band of a level may be completed last. Errors: OUT_OF_HOST_MEMORY;
  *  finish it then, too. */
 SluiceResult slc_tiler_init(struct slc_tiler *tiler, const SluiceAllocationCallbacks *cb,
-                            struct slc_jobs *jobs, const SluiceStoreLayout *layout,
+                            struct slc_bake_jobs *jobs, const SluiceStoreLayout *layout,
                             SluiceFormat texel_format, bool reaches_around);
 /** Waits for tiles that are being written. */
 void slc_tiler_finish(struct slc_tiler *tiler);

@@ -31,6 +31,7 @@ const char *sluiceResultString(SluiceResult result)
     case SLUICE_ERROR_CANCELLED: return "SLUICE_ERROR_CANCELLED";
     case SLUICE_ERROR_VULKAN: return "SLUICE_ERROR_VULKAN";
     case SLUICE_ERROR_DEVICE_LOST: return "SLUICE_ERROR_DEVICE_LOST";
+    case SLUICE_ERROR_BUSY: return "SLUICE_ERROR_BUSY";
     }
     return "SLUICE_RESULT_UNKNOWN"; /* a caller may hold a code from a newer library */
 }

@@ -1,8 +1,17 @@
 /* What the application answers to tiles that were handed out. */
-#include "core/internal.h"
-
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "core/clock.h"
+#include "core/given_up_retry.h"
+#include "core/history.h"
+#include "core/lookup.h"
+#include "core/minmip.h"
+#include "core/observer.h"
+#include "core/reports.h"
+#include "core/texture_tiles.h"
+#include "residency/due.h"
+#include "residency/node.h"
+#include "residency/nodes.h"
 
 /** Marks a node while an answer is checked, so that a tile that stands twice is seen. */
 #define NODE_SEEN 128
@@ -16,42 +25,42 @@ static bool is_in_flight(const struct slc_node *n)
 }
 
 /** Marks a tile that was handed out, and was not marked before. */
-static SluiceResult mark_tile(slc_manager *m, const struct slc_texture *t, uint32_t tile)
+static SluiceResult mark_tile(slc_manager *m, const struct slc_managed_texture *t, uint32_t tile)
 {
     if (tile >= t->shape->tile_count)
         return SLUICE_ERROR_UNKNOWN_TILE;
     uint32_t node = slc_find_node(t, tile);
     if (!node)
         return SLUICE_ERROR_INVALID_TILE_STATE;
-    struct slc_node *n = slc_node_at(m, node);
+    struct slc_node *n = slc_node_at(&m->residency, node);
     if (!is_in_flight(n) || n->flags & NODE_SEEN)
         return SLUICE_ERROR_INVALID_TILE_STATE;
     n->flags |= NODE_SEEN;
     return SLUICE_SUCCESS;
 }
 
-static void unmark_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
+static void unmark_tiles(slc_manager *m, const struct slc_managed_texture *t, uint32_t count,
                          const uint32_t *tiles)
 {
     for (uint32_t i = 0; i < count; i++)
-        slc_node_at(m, slc_find_node(t, tiles[i]))->flags &= (uint8_t)~NODE_SEEN;
+        slc_node_at(&m->residency, slc_find_node(t, tiles[i]))->flags &= (uint8_t)~NODE_SEEN;
 }
 
 /**
  * All tiles are handed out and stand in the list once, or nothing happens. Then they are marked,
  * which ends when their states change.
  */
-static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uint32_t count,
+static SluiceResult check_tiles(slc_manager *m, const struct slc_managed_texture *t, uint32_t count,
                                 const uint32_t *tiles)
 {
     bool many = count >= MANY;
     for (uint32_t i = 0; many && i < count; i++)
         if (tiles[i] < t->shape->tile_count)
-            __builtin_prefetch(slc_node_at(m, slc_find_node(t, tiles[i])));
+            __builtin_prefetch(slc_node_at(&m->residency, slc_find_node(t, tiles[i])));
     for (uint32_t i = 0; i < count; i++) {
         SluiceResult result = mark_tile(m, t, tiles[i]);
         if (many && result == SLUICE_SUCCESS)
-            slc_min_mip_prefetch(t, slc_node_at(m, slc_find_node(t, tiles[i])));
+            slc_min_mip_prefetch(t, slc_node_at(&m->residency, slc_find_node(t, tiles[i])));
         if (result == SLUICE_SUCCESS)
             continue;
         unmark_tiles(m, t, i, tiles);
@@ -61,7 +70,7 @@ static SluiceResult check_tiles(slc_manager *m, const struct slc_texture *t, uin
 }
 
 static SluiceResult check_answer(slc_manager *m, SluiceTextureId id, uint32_t count,
-                                 const uint32_t *tiles, struct slc_texture **t)
+                                 const uint32_t *tiles, struct slc_managed_texture **t)
 {
     if (count > 0 && !tiles)
         return SLUICE_ERROR_NULL_POINTER;
@@ -74,14 +83,16 @@ static bool is_wanted(const struct slc_node *n)
     return n->state == SLUICE_TILE_STATE_ALLOCATED || n->flags & SLC_NODE_WANTED;
 }
 
-static void answer_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
+static void answer_mapped(slc_manager *m, struct slc_managed_texture *t, uint32_t node)
 {
-    struct slc_node *n = slc_node_at(m, node);
+    struct slc_node *n = slc_node_at(&m->residency, node);
+    if (t->given_up_first)
+        slc_given_up_note_success(m, t, n->failures > 0);
     n->failures = 0;
     if (n->state == SLUICE_TILE_STATE_ALLOCATED)
-        slc_tile_mapped(m, t, node);
+        slc_node_mapped(&m->residency, node);
     else
-        slc_node_set_state(m, node,
+        slc_node_set_state(&m->residency, node,
                            is_wanted(n) ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY);
     m->mapped_total++;
 }
@@ -89,62 +100,39 @@ static void answer_mapped(slc_manager *m, struct slc_texture *t, uint32_t node)
 static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 {
     m->failed_total++;
-    slc_node_free_slot(m, node);
-    if (!is_wanted(slc_node_at(m, node))) {
-        slc_node_release(m, node);
+    slc_node_free_slot(&m->residency, node);
+    if (!is_wanted(slc_node_at(&m->residency, node))) {
+        slc_node_release(&m->residency, node);
         return;
     }
-    slc_node_fail(m, node, time);
-    const struct slc_node *n = slc_node_at(m, node);
-    uint64_t key = slc_pair_key(n->texture, n->tile);
-    if (n->state != SLUICE_TILE_STATE_GIVEN_UP || slc_map_get(&m->reported, key) != SLC_MAP_NONE)
-        return; /* nobody has asked since it was given up before */
-    slc_map_add(&m->reported, key, 0);
-    m->given_up_reports[m->report_end++] =
-        (struct slc_given_up){slc_texture_id(slc_texture_at(m, n->texture)), n->tile};
+    slc_node_fail(&m->residency, node, time);
+    const struct slc_node *n = slc_node_at(&m->residency, node);
+    if (n->state != SLUICE_TILE_STATE_GIVEN_UP)
+        return;
+    slc_given_up_again(m, slc_texture_at(m, n->owner));
+    slc_reports_add(m, slc_texture_at(m, n->owner), n->tile);
 }
 
 /** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
 static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
-    bool wanted = is_wanted(slc_node_at(m, node));
-    uint32_t tile = slc_node_at(m, node)->tile, level = slc_node_at(m, node)->level;
-    uint32_t failures = slc_node_at(m, node)->failures;
-    struct slc_texture *t = slc_texture_at(m, slc_node_at(m, node)->texture);
-    slc_node_retire(m, node, retire_value);
+    bool wanted = is_wanted(slc_node_at(&m->residency, node));
+    uint32_t tile = slc_node_at(&m->residency, node)->tile,
+             level = slc_node_at(&m->residency, node)->level;
+    uint32_t failures = slc_node_at(&m->residency, node)->failures;
+    struct slc_managed_texture *t = slc_texture_at(m, slc_node_at(&m->residency, node)->owner);
+    slc_node_retire(&m->residency, node, retire_value);
     m->cancelled_total++;
     if (!wanted)
         return;
     slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level);
-    slc_node_at(m, slc_find_node(t, tile))->failures = failures;
-}
-
-/** Room for the reports of `count` tiles that may be given up. */
-static bool reserve_reports(slc_manager *m, uint32_t count)
-{
-    uint32_t waiting = m->report_end - m->report_first;
-    if ((uint64_t)m->report_end + count <= m->report_room)
-        return true;
-    uint64_t room = (uint64_t)waiting + count + waiting / 2 + 16;
-    if (room >= 1u << 30 || slc_map_reserve(&m->reported, &m->cb, (uint32_t)room))
-        return false;
-    struct slc_given_up *reports = slc_alloc(&m->cb, (size_t)room, sizeof *reports);
-    if (!reports)
-        return false;
-    for (uint32_t i = 0; i < waiting; i++)
-        reports[i] = m->given_up_reports[m->report_first + i];
-    slc_free(&m->cb, m->given_up_reports, m->report_room, sizeof *reports);
-    m->given_up_reports = reports;
-    m->report_first = 0;
-    m->report_end = waiting;
-    m->report_room = (uint32_t)room;
-    return true;
+    slc_node_at(&m->residency, slc_find_node(t, tile))->failures = failures;
 }
 
 static SluiceResult update_mapping(slc_manager *m, SluiceTextureId id, uint32_t count,
                                    const uint32_t *tiles)
 {
-    struct slc_texture *t;
+    struct slc_managed_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < count; i++)
         answer_mapped(m, t, slc_find_node(t, tiles[i]));
@@ -154,13 +142,13 @@ static SluiceResult update_mapping(slc_manager *m, SluiceTextureId id, uint32_t 
 static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t count,
                                   const uint32_t *tiles, uint64_t time)
 {
-    struct slc_texture *t;
+    struct slc_managed_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
     if (result != SLUICE_SUCCESS)
         return result;
     if (slc_time_is_backwards(m, time))
         result = SLUICE_ERROR_TIME_BACKWARDS;
-    else if (!reserve_reports(m, count))
+    else if (!slc_reports_reserve(m, count))
         result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result != SLUICE_SUCCESS) {
         unmark_tiles(m, t, count, tiles);
@@ -176,13 +164,13 @@ static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t c
 static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_t count,
                                      const uint32_t *tiles, uint64_t retire_value)
 {
-    struct slc_texture *t;
+    struct slc_managed_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
     if (result != SLUICE_SUCCESS)
         return result;
     if (slc_retire_is_backwards(m, retire_value))
         result = SLUICE_ERROR_TIME_BACKWARDS;
-    else if (!slc_reserve_nodes(m, count))
+    else if (!slc_reserve_nodes(&m->residency, count))
         result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result != SLUICE_SUCCESS) {
         unmark_tiles(m, t, count, tiles);
@@ -202,6 +190,8 @@ SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *manager,
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_call call = {.kind = SLC_CALL_UPDATE_MAPPING,
                             .texture_id = textureId,
                             .count = tileCount,
@@ -217,6 +207,8 @@ SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_call call = {
         .kind = SLC_CALL_REPORT_FAILED,
         .texture_id = textureId,
@@ -234,6 +226,8 @@ SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_call call = {
         .kind = SLC_CALL_REPORT_CANCELLED,
         .texture_id = textureId,
@@ -245,16 +239,21 @@ SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
     return call.result;
 }
 
-static void retry_list(slc_manager *m, struct slc_list *list, const struct slc_texture *scope,
-                       bool forget)
+static void retry_failed(slc_manager *m, const struct slc_managed_texture *scope)
 {
-    for (uint32_t node = list->head, next; node; node = next) {
-        next = slc_node_at(m, node)->next;
-        if (scope && slc_node_at(m, node)->texture != scope->index)
-            continue;
-        if (forget)
-            slc_node_at(m, node)->failures = 0;
-        slc_node_request_again(m, node);
+    for (uint32_t node = slc_due_first(&m->residency), next; node; node = next) {
+        next = slc_due_next(&m->residency, node);
+        if (!scope || slc_node_at(&m->residency, node)->owner == scope->index)
+            slc_node_request_again(&m->residency, node);
+    }
+}
+
+static void retry_given_up(slc_manager *m, const struct slc_managed_texture *scope)
+{
+    const uint32_t *first = scope ? &scope->given_up_first : &m->residency.given_up.head;
+    while (*first) {
+        slc_node_at(&m->residency, *first)->failures = 0;
+        slc_node_request_again(&m->residency, *first);
     }
 }
 
@@ -263,13 +262,13 @@ SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *manager,
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
-    struct slc_texture *scope;
+    struct slc_managed_texture *scope;
     struct slc_call call = {.kind = SLC_CALL_RETRY_FAILED,
                             .texture_id = textureId,
                             .result = slc_find_scope(manager, textureId, &scope)};
     if (call.result == SLUICE_SUCCESS) {
-        retry_list(manager, &manager->failed, scope, false);
-        retry_list(manager, &manager->given_up, scope, true);
+        retry_failed(manager, scope);
+        retry_given_up(manager, scope);
     }
     slc_notify(manager, &call);
     return call.result;

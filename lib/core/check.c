@@ -1,7 +1,9 @@
 #include "core/check.h"
 
-#include "core/internal.h"
-#include "core/wants.h"
+#include "core/follower.h"
+#include "core/layout.h"
+#include "core/reports.h"
+#include "residency/due.h"
 
 /* Each function answers NULL or the first thing that is wrong. */
 #define REQUIRE(condition)                                                                         \
@@ -20,10 +22,10 @@ static bool has_slot(uint8_t state)
 static const char *check_list(const slc_manager *m, const struct slc_list *list, uint8_t state)
 {
     uint32_t count = 0, previous = 0;
-    for (uint32_t node = list->head; node; node = slc_node_at(m, node)->next) {
-        REQUIRE(slc_node_at(m, node)->prev == previous);
-        REQUIRE(slc_node_at(m, node)->state == state);
-        REQUIRE(count < m->node_end);
+    for (uint32_t node = list->head; node; node = slc_node_at(&m->residency, node)->next) {
+        REQUIRE(slc_node_at(&m->residency, node)->prev == previous);
+        REQUIRE(slc_node_at(&m->residency, node)->state == state);
+        REQUIRE(count < m->residency.node_end);
         previous = node;
         count++;
     }
@@ -36,18 +38,18 @@ static const char *check_requests(const slc_manager *m)
 {
     uint32_t count = 0;
     for (uint32_t c = 0; c < SLC_REQUEST_CLASSES; c++) {
-        REQUIRE((m->requests.needs[c] != 0) == (m->requests.classes >> c & 1));
+        REQUIRE((m->residency.requests.needs[c] != 0) == (m->residency.requests.classes >> c & 1));
         for (uint32_t d = 0; d < SLC_REQUEST_NEEDS; d++) {
-            const struct slc_list *list = &m->requests.lists[c][d];
+            const struct slc_list *list = &m->residency.requests.lists[c][d];
             const char *wrong = check_list(m, list, SLUICE_TILE_STATE_REQUESTED);
             if (wrong)
                 return wrong;
-            REQUIRE((list->count > 0) == (m->requests.needs[c] >> d & 1));
+            REQUIRE((list->count > 0) == (m->residency.requests.needs[c] >> d & 1));
             count += list->count;
         }
     }
-    REQUIRE(count == m->requests.count);
-    REQUIRE(count == m->state_counts[SLUICE_TILE_STATE_REQUESTED]);
+    REQUIRE(count == m->residency.requests.count);
+    REQUIRE(count == m->residency.state_counts[SLUICE_TILE_STATE_REQUESTED]);
     return NULL;
 }
 
@@ -57,9 +59,11 @@ static const char *check_lists(const slc_manager *m)
         const struct slc_list *list;
         uint8_t state;
     } lists[] = {
-        {&m->standby, SLUICE_TILE_STATE_STANDBY},     {&m->unmapping, SLUICE_TILE_STATE_STANDBY},
-        {&m->cancelled, SLUICE_TILE_STATE_CANCELLED}, {&m->failed, SLUICE_TILE_STATE_FAILED},
-        {&m->given_up, SLUICE_TILE_STATE_GIVEN_UP},   {&m->retiring, SLC_NODE_RETIRING},
+        {&m->residency.standby, SLUICE_TILE_STATE_STANDBY},
+        {&m->residency.evicted, SLUICE_TILE_STATE_STANDBY},
+        {&m->residency.cancelled, SLUICE_TILE_STATE_CANCELLED},
+        {&m->residency.given_up, SLUICE_TILE_STATE_GIVEN_UP},
+        {&m->residency.retiring, SLC_NODE_RETIRING},
     };
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         const char *wrong = check_list(m, lists[i].list, lists[i].state);
@@ -68,39 +72,48 @@ static const char *check_lists(const slc_manager *m)
     }
     uint64_t mapped = 0;
     for (uint32_t l = 0; l < SLUICE_MAX_MIP_LEVELS; l++) {
-        const char *wrong = check_list(m, &m->mapped[l], SLUICE_TILE_STATE_MAPPED);
+        const char *wrong = check_list(m, &m->residency.mapped[l], SLUICE_TILE_STATE_MAPPED);
         if (wrong)
             return wrong;
-        mapped += m->mapped[l].count;
+        mapped += m->residency.mapped[l].count;
     }
-    REQUIRE(mapped <= m->state_counts[SLUICE_TILE_STATE_MAPPED]); /* packed ones are in none */
-    uint32_t displaced = 0;
-    for (uint32_t node = m->unmapping.head; node; node = slc_node_at(m, node)->next)
-        displaced += (slc_node_at(m, node)->flags & SLC_NODE_WANTED) != 0;
-    REQUIRE(displaced == m->displaced);
-    REQUIRE(m->standby.count <= m->config.numExtraStandbyTiles);
-    REQUIRE(m->standby.count + m->unmapping.count == m->state_counts[SLUICE_TILE_STATE_STANDBY]);
-    REQUIRE(m->failed.count == m->state_counts[SLUICE_TILE_STATE_FAILED]);
-    REQUIRE(m->given_up.count == m->state_counts[SLUICE_TILE_STATE_GIVEN_UP]);
+    REQUIRE(mapped <=
+            m->residency.state_counts[SLUICE_TILE_STATE_MAPPED]); /* packed ones are in none */
+    uint32_t evicted_wanted = 0;
+    for (uint32_t node = m->residency.evicted.head; node;
+         node = slc_node_at(&m->residency, node)->next)
+        evicted_wanted += (slc_node_at(&m->residency, node)->flags & SLC_NODE_WANTED) != 0;
+    REQUIRE(evicted_wanted == m->residency.evicted_wanted);
+    REQUIRE(m->residency.standby.count <= m->config.numExtraStandbyTiles);
+    REQUIRE(m->residency.standby.count + m->residency.evicted.count ==
+            m->residency.state_counts[SLUICE_TILE_STATE_STANDBY]);
+    REQUIRE(m->residency.failed.count == m->residency.state_counts[SLUICE_TILE_STATE_FAILED]);
+    if (slc_due_check(&m->residency))
+        return slc_due_check(&m->residency);
+    if (slc_reports_check(m))
+        return slc_reports_check(m);
+    REQUIRE(m->residency.given_up.count == m->residency.state_counts[SLUICE_TILE_STATE_GIVEN_UP]);
     return check_requests(m);
 }
 
-static uint8_t level_under(const struct slc_texture *t, uint32_t tile)
+static uint8_t level_under(const struct slc_managed_texture *t, uint32_t tile)
 {
     return t->history ? t->history->under[tile] : SLUICE_MIP_UNTOUCHED;
 }
 
-static const char *check_node(const slc_manager *m, const struct slc_texture *t, uint32_t node)
+static const char *check_node(const slc_manager *m, const struct slc_managed_texture *t,
+                              uint32_t node)
 {
-    const struct slc_node *n = slc_node_at(m, node);
-    REQUIRE(n->texture == t->index);
+    const struct slc_node *n = slc_node_at(&m->residency, node);
+    REQUIRE(n->owner == t->index);
     REQUIRE(n->tile < t->shape->tile_count);
     REQUIRE(slc_find_node(t, n->tile) == node);
-    REQUIRE(n->level == slc_tile_place(t, n->tile).level);
+    bool regular = n->tile < t->shape->regular_tile_count;
+    REQUIRE(n->level == (regular ? slc_tile_place(t, n->tile).level : SLC_PACKED_CLASS));
     REQUIRE(n->state != SLUICE_TILE_STATE_FREE && n->state != SLC_NODE_RETIRING);
     REQUIRE(has_slot(n->state) == (n->heap != SLC_NONE));
     if (n->heap != SLC_NONE)
-        REQUIRE(m->heaps.heaps[n->heap].nodes[n->slot] == node);
+        REQUIRE(m->residency.heaps.heaps[n->heap].nodes[n->slot] == node);
     bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
     if (n->flags & SLC_NODE_WANTED)
         wanted = true;
@@ -111,13 +124,13 @@ static const char *check_node(const slc_manager *m, const struct slc_texture *t,
     return NULL;
 }
 
-static bool is_resident(const struct slc_texture *t, struct slc_place p)
+static bool is_resident(const struct slc_managed_texture *t, struct slc_place p)
 {
     return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
 /** Whether a coarser tile over a regular one, or a packed one, is not resident. */
-static bool is_hidden(const struct slc_texture *t, uint32_t tile)
+static bool is_hidden(const struct slc_managed_texture *t, uint32_t tile)
 {
     struct slc_place p = slc_tile_place(t, tile);
     bool hidden = t->packed_resident < t->shape->desc.packedTileCount;
@@ -130,7 +143,7 @@ static bool is_hidden(const struct slc_texture *t, uint32_t tile)
     return hidden;
 }
 
-static const char *check_resident(const struct slc_texture *t)
+static const char *check_resident(const struct slc_managed_texture *t)
 {
     uint32_t resident = 0, hidden = 0;
     for (uint32_t i = 0; t->nodes && i < t->shape->regular_tile_count; i++) {
@@ -143,7 +156,8 @@ static const char *check_resident(const struct slc_texture *t)
     return NULL;
 }
 
-static const char *check_texture(const slc_manager *m, const struct slc_texture *t, uint64_t *nodes)
+static const char *check_texture(const slc_manager *m, const struct slc_managed_texture *t,
+                                 uint64_t *nodes)
 {
     uint32_t requested = 0, resident_packed = 0, count = 0;
     for (uint32_t tile = 0; tile < t->shape->tile_count; tile++) {
@@ -153,9 +167,9 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
         const char *wrong = check_node(m, t, node);
         if (wrong)
             return wrong;
-        uint8_t state = slc_node_at(m, node)->state;
+        uint8_t state = slc_node_at(&m->residency, node)->state;
         requested += state == SLUICE_TILE_STATE_REQUESTED;
-        if (slc_node_at(m, node)->tile >= t->shape->regular_tile_count)
+        if (slc_node_at(&m->residency, node)->tile >= t->shape->regular_tile_count)
             resident_packed +=
                 state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY;
         count++;
@@ -182,13 +196,13 @@ static const char *check_texture(const slc_manager *m, const struct slc_texture 
 }
 
 /** Who shares a history got the same maps; `t` is one of its users. */
-static const char *check_users(const slc_manager *m, const struct slc_texture *t)
+static const char *check_users(const slc_manager *m, const struct slc_managed_texture *t)
 {
     uint32_t users = 0;
     if (!t->history)
         return NULL;
     for (uint32_t i = 0; i < m->texture_end; i++) {
-        const struct slc_texture *other = slc_texture_at(m, i);
+        const struct slc_managed_texture *other = slc_texture_at(m, i);
         if (!other->live || other->history != t->history)
             continue;
         users++;
@@ -205,7 +219,7 @@ static const char *check_visited(const slc_manager *m)
 {
     uint32_t count = 0, previous = SLC_NONE;
     for (uint32_t i = m->visit_first; i != SLC_NONE; i = slc_texture_at(m, i)->visit_next) {
-        const struct slc_texture *t = slc_texture_at(m, i);
+        const struct slc_managed_texture *t = slc_texture_at(m, i);
         REQUIRE(t->live && t->visited && t->visit_prev == previous);
         REQUIRE(count < m->texture_count);
         previous = i;
@@ -238,31 +252,78 @@ static const char *check_buckets(const struct slc_tile_heaps *h)
     return NULL;
 }
 
+/** The GIVEN_UP tiles of a texture are linked, oldest first. */
+static const char *check_given_up(const slc_manager *m, const struct slc_managed_texture *t,
+                                  uint32_t *tiles)
+{
+    uint32_t previous = 0;
+    for (uint32_t node = t->given_up_first; node;
+         node = (uint32_t)slc_node_at(&m->residency, node)->order) {
+        const struct slc_node *n = slc_node_at(&m->residency, node);
+        REQUIRE(n->state == SLUICE_TILE_STATE_GIVEN_UP && n->owner == t->index);
+        REQUIRE((uint32_t)(n->order >> 32) == previous);
+        REQUIRE(++*tiles <= m->residency.given_up.count);
+        previous = node;
+    }
+    REQUIRE(t->given_up_last == previous);
+    REQUIRE(t->trouble < SLC_TROUBLE_COUNT);
+    REQUIRE(t->trouble != SLC_TROUBLE_NONE || t->given_up_first == 0);
+    return NULL;
+}
+
+/** Every texture in trouble is in the list of its state, in the order of their times. */
+static const char *check_troubles(const slc_manager *m)
+{
+    uint32_t tiles = 0, listed = 0, troubled = 0;
+    for (uint32_t i = 0; i < m->texture_end; i++) {
+        const struct slc_managed_texture *t = slc_texture_at(m, i);
+        troubled += t->live && t->trouble != SLC_TROUBLE_NONE;
+        const char *wrong = t->live ? check_given_up(m, t, &tiles) : NULL;
+        if (wrong)
+            return wrong;
+    }
+    REQUIRE(tiles == m->residency.given_up.count);
+    for (int s = SLC_TROUBLE_RESTING; s < SLC_TROUBLE_COUNT; s++) {
+        uint32_t count = 0, previous = SLC_NONE;
+        for (uint32_t i = m->troubles[s].first; count < m->troubles[s].count; count++) {
+            const struct slc_managed_texture *t = slc_texture_at(m, i);
+            REQUIRE(t->live && t->trouble == s && t->trouble_prev == previous);
+            previous = i;
+            i = t->trouble_next;
+        }
+        REQUIRE(count == 0 || previous == m->troubles[s].last);
+        listed += count;
+    }
+    REQUIRE(listed == troubled && listed == m->trouble_count);
+    return NULL;
+}
+
 static const char *check_heaps(const slc_manager *m)
 {
     uint64_t free_total = 0;
     uint32_t live = 0;
-    for (uint32_t i = 0; i < m->heaps.end; i++) {
-        const struct slc_tile_heap *h = &m->heaps.heaps[i];
+    for (uint32_t i = 0; i < m->residency.heaps.end; i++) {
+        const struct slc_tile_heap *h = &m->residency.heaps.heaps[i];
         if (h->free_count == SLC_HEAP_DEAD)
             continue;
         uint32_t used = 0, retiring = 0;
-        for (uint32_t slot = 0; slot < m->heaps.capacity; slot++) {
+        for (uint32_t slot = 0; slot < m->residency.heaps.capacity; slot++) {
             uint32_t node = h->nodes[slot];
             if (!node)
                 continue;
-            REQUIRE(slc_node_at(m, node)->heap == i && slc_node_at(m, node)->slot == slot);
+            REQUIRE(slc_node_at(&m->residency, node)->heap == i &&
+                    slc_node_at(&m->residency, node)->slot == slot);
             used++;
-            retiring += slc_node_at(m, node)->state == SLC_NODE_RETIRING;
+            retiring += slc_node_at(&m->residency, node)->state == SLC_NODE_RETIRING;
         }
-        REQUIRE(used + h->free_count == m->heaps.capacity);
+        REQUIRE(used + h->free_count == m->residency.heaps.capacity);
         REQUIRE(retiring == h->retiring_count);
         free_total += h->free_count;
         live++;
     }
-    REQUIRE(free_total == m->heaps.free_total);
-    REQUIRE(live == m->heaps.live_count);
-    return check_buckets(&m->heaps);
+    REQUIRE(free_total == m->residency.heaps.free_total);
+    REQUIRE(live == m->residency.heaps.live_count);
+    return check_buckets(&m->residency.heaps);
 }
 
 const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
@@ -273,10 +334,12 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
         wrong = check_heaps(m);
     if (!wrong)
         wrong = check_visited(m);
+    if (!wrong)
+        wrong = check_troubles(m);
     uint64_t nodes = 0, tiles = 0;
     uint32_t textures = 0;
     for (uint32_t i = 0; i < m->texture_end && !wrong; i++) {
-        const struct slc_texture *t = slc_texture_at(m, i);
+        const struct slc_managed_texture *t = slc_texture_at(m, i);
         if (!t->live)
             continue;
         wrong = check_texture(m, t, &nodes);
@@ -290,8 +353,9 @@ const char *slc_manager_check(const SluiceStreamedTextureManager *manager)
     REQUIRE(textures == m->texture_count && tiles == m->tile_count);
     uint64_t states = 0;
     for (uint32_t s = 0; s < 8; s++)
-        states += m->state_counts[s];
+        states += m->residency.state_counts[s];
     REQUIRE(states == nodes);
-    REQUIRE(nodes + m->retiring.count + m->free_node_count + 1 == m->node_end);
+    REQUIRE(nodes + m->residency.retiring.count + m->residency.free_node_count + 1 ==
+            m->residency.node_end);
     return NULL;
 }

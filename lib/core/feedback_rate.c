@@ -1,6 +1,6 @@
-#include <sluice/feedback_rate.h>
-
 #include "core/feedback_lattice.h"
+
+#include <sluice/feedback_rate.h>
 
 #include <math.h>
 

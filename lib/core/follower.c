@@ -1,4 +1,4 @@
-#include "core/wants.h"
+#include "core/follower.h"
 
 #include "base/bytes.h"
 #include "core/history.h"
@@ -25,7 +25,7 @@ static int level_offset(const SluiceStreamedTextureDesc *primary,
     return d;
 }
 
-static struct slc_grid region_grid(const struct slc_texture *t)
+static struct slc_grid region_grid(const struct slc_managed_texture *t)
 {
     return (struct slc_grid){t->shape->desc.width,
                              t->shape->desc.height,
@@ -36,7 +36,8 @@ static struct slc_grid region_grid(const struct slc_texture *t)
 }
 
 /** Regions lie on regions. */
-static bool has_same_regions(const struct slc_texture *p, const struct slc_texture *f)
+static bool has_same_regions(const struct slc_managed_texture *p,
+                             const struct slc_managed_texture *f)
 {
     const SluiceStreamedTextureDesc *a = &p->shape->desc, *b = &f->shape->desc;
     return a->width == b->width && a->height == b->height &&
@@ -44,7 +45,7 @@ static bool has_same_regions(const struct slc_texture *p, const struct slc_textu
            a->feedbackRegionHeight == b->feedbackRegionHeight;
 }
 
-bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *b)
+bool slc_have_same_shape(const struct slc_managed_texture *a, const struct slc_managed_texture *b)
 {
     const SluiceStreamedTextureDesc *c = &a->shape->desc, *d = &b->shape->desc;
     return has_same_regions(a, b) && c->tileWidth == d->tileWidth &&
@@ -52,8 +53,8 @@ bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *
            c->regularMipCount == d->regularMipCount && c->packedTileCount == d->packedTileCount;
 }
 
-SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
-                                        const uint8_t *asked, struct slc_texture *follower,
+SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_managed_texture *primary,
+                                        const uint8_t *asked, struct slc_managed_texture *follower,
                                         struct slc_wants_need *need)
 {
     if (!follower->nodes &&

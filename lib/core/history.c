@@ -3,6 +3,8 @@
 #include "base/alloc.h"
 #include "base/bytes.h"
 #include "base/checked.h"
+#include "core/minmip.h"
+#include "core/spares.h"
 
 /*
  * A region holds the least level of all maps within the timeout. The maps themselves are not kept:
@@ -13,12 +15,12 @@
 
 /* Memory ------------------------------------------------------------------------------------ */
 
-static size_t under_size(const struct slc_texture *t)
+static size_t under_size(const struct slc_managed_texture *t)
 {
     return (size_t)t->shape->regular_tile_count + SLC_BLOCK; /* blocks are read over the end */
 }
 
-static size_t texel_count(const struct slc_texture *t)
+static size_t texel_count(const struct slc_managed_texture *t)
 {
     return (size_t)t->shape->min_mip_width * t->shape->min_mip_height;
 }
@@ -35,7 +37,7 @@ static size_t history_size(const struct slc_shape *s)
            SLC_BLOCK;
 }
 
-SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
+SluiceResult slc_state_make(slc_manager *m, struct slc_managed_texture *t)
 {
     if (t->nodes)
         return SLUICE_SUCCESS;
@@ -53,7 +55,7 @@ SluiceResult slc_state_make(slc_manager *m, struct slc_texture *t)
     return SLUICE_SUCCESS;
 }
 
-static struct slc_history *create_history(slc_manager *m, const struct slc_texture *t)
+static struct slc_history *create_history(slc_manager *m, const struct slc_managed_texture *t)
 {
     size_t padded = slc_padded(slc_region_count(t)), under = under_size(t);
     struct slc_history *h = slc_spares_take(m, history_size(t->shape));
@@ -69,7 +71,7 @@ static struct slc_history *create_history(slc_manager *m, const struct slc_textu
     return h;
 }
 
-static bool add_span_map(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+static bool add_span_map(slc_manager *m, const struct slc_managed_texture *t, struct slc_history *h)
 {
     if (h->span_count == SLC_MAX_SPANS || h->spans[h->span_count].map)
         return true;
@@ -77,7 +79,8 @@ static bool add_span_map(slc_manager *m, const struct slc_texture *t, struct slc
     return h->spans[h->span_count].map != NULL;
 }
 
-static void destroy_history(slc_manager *m, const struct slc_texture *t, struct slc_history *h)
+static void destroy_history(slc_manager *m, const struct slc_managed_texture *t,
+                            struct slc_history *h)
 {
     for (uint32_t i = 0; i < SLC_MAX_SPANS; i++)
         slc_spares_give(m, h->spans[i].map, slc_padded(slc_region_count(t)));
@@ -85,7 +88,7 @@ static void destroy_history(slc_manager *m, const struct slc_texture *t, struct 
 }
 
 /** The texture's own from now on. */
-static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
+static SluiceResult copy_history(slc_manager *m, struct slc_managed_texture *t)
 {
     struct slc_history *from = t->history, *h = create_history(m, t);
     size_t padded = slc_padded(slc_region_count(t));
@@ -112,7 +115,7 @@ static SluiceResult copy_history(slc_manager *m, struct slc_texture *t)
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t users)
+SluiceResult slc_history_make(slc_manager *m, struct slc_managed_texture *t, uint32_t users)
 {
     SluiceResult result = slc_state_make(m, t);
     if (result != SLUICE_SUCCESS)
@@ -126,14 +129,14 @@ SluiceResult slc_history_make(slc_manager *m, struct slc_texture *t, uint32_t us
     return SLUICE_SUCCESS;
 }
 
-void slc_history_share(struct slc_texture *t, struct slc_history *history)
+void slc_history_share(struct slc_managed_texture *t, struct slc_history *history)
 {
     assert(t->nodes && !t->history);
     t->history = history;
     history->users++;
 }
 
-void slc_history_drop(slc_manager *m, struct slc_texture *t)
+void slc_history_drop(slc_manager *m, struct slc_managed_texture *t)
 {
     struct slc_history *h = t->history;
     t->history = NULL;
@@ -141,7 +144,7 @@ void slc_history_drop(slc_manager *m, struct slc_texture *t)
         destroy_history(m, t, h);
 }
 
-void slc_state_destroy(slc_manager *m, struct slc_texture *t)
+void slc_state_destroy(slc_manager *m, struct slc_managed_texture *t)
 {
     if (!t->nodes)
         return;
@@ -151,7 +154,7 @@ void slc_state_destroy(slc_manager *m, struct slc_texture *t)
     t->min_mip = NULL;
 }
 
-void slc_state_release(slc_manager *m, struct slc_texture *t)
+void slc_state_release(slc_manager *m, struct slc_managed_texture *t)
 {
     /* Nothing held and nothing left: the last map was empty, which is what no state means. */
     if (t->nodes && t->held_regions == 0 && t->regular_nodes == 0)
@@ -166,7 +169,7 @@ void slc_state_release(slc_manager *m, struct slc_texture *t)
  * returns / hits estimates x = (1 - q) / q; a camera that moves on makes no returns. n misses in a
  * row have the chance (1 - q)^n, and 14 (x + 1/2) >= ln(10^-6) / ln(1 - q).
  */
-static uint32_t maps_to_believe(const slc_manager *m, const struct slc_texture *t)
+static uint32_t maps_to_believe(const slc_manager *m, const struct slc_managed_texture *t)
 {
     if (m->config.missesToForget)
         return m->config.missesToForget;
@@ -176,7 +179,7 @@ static uint32_t maps_to_believe(const slc_manager *m, const struct slc_texture *
     return maps < 4096 ? (uint32_t)maps : 4096;
 }
 
-static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns)
+static void count_returns(struct slc_managed_texture *t, uint32_t hits, uint32_t returns)
 {
     size_t regions = slc_region_count(t);
     t->hits += hits;
@@ -190,7 +193,7 @@ static void count_returns(struct slc_texture *t, uint32_t hits, uint32_t returns
 }
 
 /** The hits of a map like the last one. */
-static uint32_t same_hits(const struct slc_texture *t)
+static uint32_t same_hits(const struct slc_managed_texture *t)
 {
     struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
@@ -216,7 +219,7 @@ static uint32_t add_weights(uint32_t a, uint32_t b)
  * How many misses the last maps stand for if they saw nothing at all: every region agrees. Only as
  * long as it lasts: one map that sees something says that it was chance.
  */
-static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
+static uint32_t absence(const struct slc_managed_texture *t, const uint8_t *map)
 {
     if (!slc_bytes_are(map, slc_region_count(t), SLUICE_MIP_UNTOUCHED))
         return 0;
@@ -224,7 +227,7 @@ static uint32_t absence(const struct slc_texture *t, const uint8_t *map)
 }
 
 /** log2 of the regions along the side of a tile of level 0; 0 where they do not fit. */
-static uint32_t region_shift(const struct slc_texture *t)
+static uint32_t region_shift(const struct slc_managed_texture *t)
 {
     uint8_t x = t->shape->region_shift_x, y = t->shape->region_shift_y;
     return x == SLC_UNALIGNED || y == SLC_UNALIGNED ? 0 : slc_min_u32(slc_min_u32(x, y), 8);
@@ -249,7 +252,7 @@ static slc_block least_of_spans(const struct slc_history *h, size_t i)
 }
 
 /** A block of `least` gets new values. */
-static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_block least,
+static void set_least(struct slc_managed_texture *t, size_t i, slc_block before, slc_block least,
                       struct slc_range *changed)
 {
     slc_block untouched = slc_block_of(SLUICE_MIP_UNTOUCHED);
@@ -262,7 +265,7 @@ static void set_least(struct slc_texture *t, size_t i, slc_block before, slc_blo
 }
 
 /** Removes levels from `below` on, and what of `least` came from them. */
-static void thin_span(struct slc_texture *t, struct slc_span *span, uint8_t below,
+static void thin_span(struct slc_managed_texture *t, struct slc_span *span, uint8_t below,
                       struct slc_range *changed)
 {
     const struct slc_history *h = t->history;
@@ -303,7 +306,7 @@ struct now {
 };
 
 /** Lets go of what is too old and believed to be gone. */
-static void lapse(struct slc_texture *t, const struct now *now, struct slc_range *changed)
+static void lapse(struct slc_managed_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_history *h = t->history;
     uint32_t shift = region_shift(t), newer = 1, dropped = 0;
@@ -342,7 +345,8 @@ static bool join_span(struct slc_history *h, const struct now *now)
 
 /* Merging ----------------------------------------------------------------------------------- */
 
-static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct slc_range *changed)
+static void merge(struct slc_managed_texture *t, const uint8_t *map, bool fresh,
+                  struct slc_range *changed)
 {
     struct slc_history *h = t->history;
     size_t padded = slc_padded(slc_region_count(t));
@@ -368,8 +372,8 @@ static void merge(struct slc_texture *t, const uint8_t *map, bool fresh, struct 
         h->asked_least = finest[i] < h->asked_least ? finest[i] : h->asked_least;
 }
 
-struct slc_range slc_history_merge(const slc_manager *m, struct slc_texture *t, uint64_t time,
-                                   uint64_t timeout)
+struct slc_range slc_history_merge(const slc_manager *m, struct slc_managed_texture *t,
+                                   uint64_t time, uint64_t timeout)
 {
     struct slc_history *h = t->history;
     const uint8_t *map = h->next ? h->next : h->asked;
@@ -422,7 +426,8 @@ static bool any_at_most(const uint8_t *bytes, uint32_t count, uint32_t limit)
 }
 
 /** Whether the last map asks for a level in a region under tiles of it; `r` is inclusive. */
-static bool is_asked_in(const struct slc_texture *t, uint32_t level, struct slc_tile_range r)
+static bool is_asked_in(const struct slc_managed_texture *t, uint32_t level,
+                        struct slc_tile_range r)
 {
     const struct slc_shape *s = t->shape;
     const struct slc_level *grid = &s->levels[level];
@@ -448,8 +453,8 @@ static bool is_asked_in(const struct slc_texture *t, uint32_t level, struct slc_
 
 bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 {
-    const struct slc_node *n = slc_node_at(m, node);
-    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    const struct slc_node *n = slc_node_at(&m->residency, node);
+    const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
     if (n->tile >= t->shape->regular_tile_count)
         return true;
     struct slc_place p = slc_node_place(t, n);
@@ -458,8 +463,8 @@ bool slc_is_asked_for(const slc_manager *m, uint32_t node)
 
 bool slc_is_seen(const slc_manager *m, uint32_t node)
 {
-    const struct slc_node *n = slc_node_at(m, node);
-    const struct slc_texture *t = slc_texture_at(m, n->texture);
+    const struct slc_node *n = slc_node_at(&m->residency, node);
+    const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
     struct slc_place p = slc_node_place(t, n);
     /* one map misses nine tiles by chance as rarely as nine maps miss one; half of what is needed
      * to forget for good will do */

@@ -1,4 +1,4 @@
-#include "core/internal.h"
+#include "core/layout.h"
 
 #include "base/checked.h"
 
@@ -92,7 +92,7 @@ SluiceResult sluiceGetStreamedTextureLayout(const SluiceStreamedTextureDesc *pDe
     return result;
 }
 
-struct slc_place slc_tile_place(const struct slc_texture *t, uint32_t tile)
+struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile)
 {
     if (tile >= t->shape->regular_tile_count)
         return (struct slc_place){t->shape->desc.regularMipCount,

@@ -1,4 +1,4 @@
-#include "core/internal.h"
+#include "core/minmip.h"
 
 #include "base/bytes.h"
 #include "base/checked.h"
@@ -11,20 +11,20 @@
  * under the tile only if its parent counts, and below it as far as resident tiles go down.
  */
 
-uint8_t slc_min_mip_floor(const struct slc_texture *t)
+uint8_t slc_min_mip_floor(const struct slc_managed_texture *t)
 {
     bool packed =
         t->shape->desc.packedTileCount > 0 && t->packed_resident == t->shape->desc.packedTileCount;
     return packed ? (uint8_t)t->shape->desc.regularMipCount : SLUICE_MIP_UNTOUCHED;
 }
 
-static bool is_resident(const struct slc_texture *t, struct slc_place p)
+static bool is_resident(const struct slc_managed_texture *t, struct slc_place p)
 {
     return t->nodes[slc_tile_index(t, p)] & SLC_RESIDENT;
 }
 
 /** Tiles of the next finer level whose parent is in the range: the last ones take what is over. */
-static struct slc_tile_range children(const struct slc_texture *t, uint32_t level,
+static struct slc_tile_range children(const struct slc_managed_texture *t, uint32_t level,
                                       struct slc_tile_range r)
 {
     const struct slc_level *here = &t->shape->levels[level], *fine = &t->shape->levels[level - 1];
@@ -45,7 +45,7 @@ static void axis_area(uint32_t i, uint32_t count, uint32_t level, uint32_t fine_
     *last = i + 1 == count || end > fine_count ? fine_count - 1 : (uint32_t)end - 1;
 }
 
-struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
+struct slc_tile_range slc_area(const struct slc_managed_texture *t, struct slc_place p)
 {
     const struct slc_level *grid = &t->shape->levels[p.level], *fine = &t->shape->levels[0];
     struct slc_tile_range r;
@@ -54,7 +54,7 @@ struct slc_tile_range slc_area(const struct slc_texture *t, struct slc_place p)
     return r;
 }
 
-static void dirty_list_append(slc_manager *m, struct slc_texture *t)
+static void dirty_list_append(slc_manager *m, struct slc_managed_texture *t)
 {
     t->dirty = true;
     t->dirty_next = SLC_NONE;
@@ -67,7 +67,7 @@ static void dirty_list_append(slc_manager *m, struct slc_texture *t)
     m->dirty_count++;
 }
 
-static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_range r)
+static void mark_dirty(slc_manager *m, struct slc_managed_texture *t, struct slc_tile_range r)
 {
     if (!t->dirty) {
         dirty_list_append(m, t);
@@ -81,17 +81,17 @@ static void mark_dirty(slc_manager *m, struct slc_texture *t, struct slc_tile_ra
     t->dirty_y1 = slc_max_u32(t->dirty_y1, r.y1 + 1);
 }
 
-static struct slc_tile_range all_texels(const struct slc_texture *t)
+static struct slc_tile_range all_texels(const struct slc_managed_texture *t)
 {
     return (struct slc_tile_range){0, 0, t->shape->min_mip_width - 1, t->shape->min_mip_height - 1};
 }
 
-void slc_min_mip_dirty_all(slc_manager *m, struct slc_texture *t)
+void slc_min_mip_dirty_all(slc_manager *m, struct slc_managed_texture *t)
 {
     mark_dirty(m, t, all_texels(t));
 }
 
-void slc_min_mip_forget(slc_manager *m, struct slc_texture *t)
+void slc_min_mip_drop_update(slc_manager *m, struct slc_managed_texture *t)
 {
     if (!t->dirty)
         return;
@@ -117,7 +117,7 @@ static inline void fill_ends(uint8_t *row, size_t pitch, uint32_t rows, size_t w
     }
 }
 
-static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
+static void fill(struct slc_managed_texture *t, struct slc_tile_range r, uint8_t value)
 {
     size_t pitch = t->shape->min_mip_width, width = r.x1 - r.x0 + 1;
     uint32_t rows = r.y1 - r.y0 + 1;
@@ -136,10 +136,10 @@ static void fill(struct slc_texture *t, struct slc_tile_range r, uint8_t value)
             memset(row, value, width);
 }
 
-static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area);
+static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_tile_range area);
 
 /** The tiles below one that counts, which therefore count if they are resident. */
-static void show_children(struct slc_texture *t, struct slc_place p)
+static void show_children(struct slc_managed_texture *t, struct slc_place p)
 {
     struct slc_tile_range c = children(t, p.level, (struct slc_tile_range){p.x, p.y, p.x, p.y});
     for (uint32_t y = c.y0; y <= c.y1; y++)
@@ -153,7 +153,7 @@ static void show_children(struct slc_texture *t, struct slc_place p)
 }
 
 /** Writes the area of a tile that counts, and of those below it that do. Depth: the level. */
-static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_range area)
+static void show(struct slc_managed_texture *t, struct slc_place p, struct slc_tile_range area)
 {
     fill(t, area, (uint8_t)p.level);
     if (p.level > 0 && t->hidden_tiles > 0)
@@ -161,7 +161,7 @@ static void show(struct slc_texture *t, struct slc_place p, struct slc_tile_rang
 }
 
 /** Whether a tile below one that counts does: then the map has a finer level where that begins. */
-static bool shows_children(const struct slc_texture *t, struct slc_place p)
+static bool shows_children(const struct slc_managed_texture *t, struct slc_place p)
 {
     if (p.level == 0)
         return false;
@@ -176,7 +176,7 @@ static bool shows_children(const struct slc_texture *t, struct slc_place p)
 }
 
 /** How many tiles below one count. */
-static uint32_t count_shown(const struct slc_texture *t, struct slc_place p)
+static uint32_t count_shown(const struct slc_managed_texture *t, struct slc_place p)
 {
     uint32_t count = 0;
     if (p.level == 0)
@@ -191,7 +191,7 @@ static uint32_t count_shown(const struct slc_texture *t, struct slc_place p)
     return count;
 }
 
-static void show_everything(struct slc_texture *t)
+static void show_everything(struct slc_managed_texture *t)
 {
     fill(t, all_texels(t), slc_min_mip_floor(t));
     t->hidden_tiles = t->resident_tiles;
@@ -208,7 +208,7 @@ static void show_everything(struct slc_texture *t)
         }
 }
 
-static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
+static void packed_changed(slc_manager *m, struct slc_managed_texture *t, bool resident)
 {
     bool before = t->packed_resident == t->shape->desc.packedTileCount;
     t->packed_resident += resident ? 1u : UINT32_MAX;
@@ -219,7 +219,7 @@ static void packed_changed(slc_manager *m, struct slc_texture *t, bool resident)
     slc_min_mip_dirty_all(m, t);
 }
 
-void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n)
+void slc_min_mip_prefetch(const struct slc_managed_texture *t, const struct slc_node *n)
 {
     if (n->tile >= t->shape->regular_tile_count)
         return;
@@ -228,7 +228,7 @@ void slc_min_mip_prefetch(const struct slc_texture *t, const struct slc_node *n)
     __builtin_prefetch(t->min_mip + row * t->shape->min_mip_width + (p.x << p.level));
 }
 
-static void tile_came(slc_manager *m, struct slc_texture *t, struct slc_place p,
+static void tile_came(slc_manager *m, struct slc_managed_texture *t, struct slc_place p,
                       struct slc_tile_range area, bool counts)
 {
     t->resident_tiles++;
@@ -239,7 +239,7 @@ static void tile_came(slc_manager *m, struct slc_texture *t, struct slc_place p,
     mark_dirty(m, t, area);
 }
 
-static void tile_went(slc_manager *m, struct slc_texture *t, struct slc_place p,
+static void tile_went(slc_manager *m, struct slc_managed_texture *t, struct slc_place p,
                       struct slc_tile_range area, bool counted, uint8_t above)
 {
     t->resident_tiles--;
@@ -253,8 +253,8 @@ static void tile_went(slc_manager *m, struct slc_texture *t, struct slc_place p,
 }
 
 /** As below for most tiles there are: on level 0 a tile is a texel. */
-static void finest_changed(slc_manager *m, struct slc_texture *t, uint32_t tile, uint8_t above,
-                           bool resident)
+static void finest_changed(slc_manager *m, struct slc_managed_texture *t, uint32_t tile,
+                           uint8_t above, bool resident)
 {
     uint8_t *texel = &t->min_mip[tile];
     bool counts = resident ? *texel == above : *texel == 0;
@@ -268,7 +268,7 @@ static void finest_changed(slc_manager *m, struct slc_texture *t, uint32_t tile,
     mark_dirty(m, t, (struct slc_tile_range){x, y, x, y});
 }
 
-void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc_node *n,
+void slc_min_mip_changed(slc_manager *m, struct slc_managed_texture *t, const struct slc_node *n,
                          bool resident)
 {
     const struct slc_shape *shape = t->shape;
@@ -292,98 +292,4 @@ void slc_min_mip_changed(slc_manager *m, struct slc_texture *t, const struct slc
         tile_came(m, t, p, r, shown == above && t->packed_resident == shape->desc.packedTileCount);
     else
         tile_went(m, t, p, r, shown <= p.level, above);
-}
-
-static void copy_rect(const struct slc_texture *t, const SluiceMinMipRect *r, size_t row_pitch,
-                      uint8_t *out)
-{
-    if (t->nodes && r->width == t->shape->min_mip_width && row_pitch == r->width) {
-        const uint8_t *rows = t->min_mip + (size_t)r->y * r->width;
-        memcpy(out, rows, (size_t)r->width * r->height);
-        return;
-    }
-    for (uint32_t y = 0; y < r->height; y++) {
-        uint8_t *row = out + y * row_pitch;
-        if (t->nodes)
-            memcpy(row, t->min_mip + (size_t)(r->y + y) * t->shape->min_mip_width + r->x, r->width);
-        else
-            memset(row, slc_min_mip_floor(t), r->width);
-    }
-}
-
-/** A rectangle inside the map, to where there is room for it. */
-static SluiceResult write_rect(const struct slc_texture *t, const SluiceMinMipRect *r,
-                               size_t row_pitch, size_t size, uint8_t *out)
-{
-    size_t rows, needed;
-    if (row_pitch < r->width || !slc_mul_size(r->height - 1, row_pitch, &rows) ||
-        !slc_add_size(rows, r->width, &needed) || size < needed)
-        return SLUICE_ERROR_SIZE_MISMATCH;
-    copy_rect(t, r, row_pitch, out);
-    return SLUICE_SUCCESS;
-}
-
-SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
-                                   const SluiceMinMipRect *pRect, size_t rowPitch, size_t size,
-                                   uint8_t *pMinMip)
-{
-    if (!manager || !pRect || !pMinMip)
-        return SLUICE_ERROR_NULL_POINTER;
-    struct slc_texture *t;
-    SluiceResult result = slc_find_texture(manager, pRect->textureId, &t);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    uint32_t width = t->shape->min_mip_width, height = t->shape->min_mip_height;
-    if (pRect->width == 0 || pRect->height == 0 || pRect->x >= width || pRect->y >= height ||
-        pRect->width > width - pRect->x || pRect->height > height - pRect->y)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    return write_rect(t, pRect, rowPitch, size, pMinMip);
-}
-
-SluiceResult sluiceWriteMinMipData(const SluiceStreamedTextureManager *manager,
-                                   SluiceTextureId textureId, size_t rowPitch, size_t size,
-                                   uint8_t *pMinMip)
-{
-    if (!manager || !pMinMip)
-        return SLUICE_ERROR_NULL_POINTER;
-    struct slc_texture *t;
-    SluiceResult result = slc_find_texture(manager, textureId, &t);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    SluiceMinMipRect whole = {.width = t->shape->min_mip_width, .height = t->shape->min_mip_height};
-    return write_rect(t, &whole, rowPitch, size, pMinMip);
-}
-
-static SluiceResult get_updates(slc_manager *m, uint32_t *count, SluiceMinMipRect *rects)
-{
-    uint32_t room = *count, written = 0;
-    if (!rects) {
-        *count = m->dirty_count;
-        return SLUICE_SUCCESS;
-    }
-    while (m->dirty_first != SLC_NONE && written < room) {
-        struct slc_texture *t = slc_texture_at(m, m->dirty_first);
-        rects[written++] = (SluiceMinMipRect){slc_texture_id(t), t->dirty_x0, t->dirty_y0,
-                                              t->dirty_x1 - t->dirty_x0, t->dirty_y1 - t->dirty_y0};
-        slc_min_mip_forget(m, t);
-    }
-    *count = written;
-    return m->dirty_count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
-}
-
-SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *manager, uint32_t *pRectCount,
-                                    SluiceMinMipRect *pRects)
-{
-    if (!manager)
-        return SLUICE_ERROR_NULL_POINTER;
-    struct slc_call call = {.kind = SLC_CALL_GET_MINMIP_UPDATES, .query = !pRects, .rects = pRects};
-    if (!pRectCount) {
-        call.result = SLUICE_ERROR_NULL_POINTER;
-    } else {
-        call.room = *pRectCount;
-        call.result = get_updates(manager, pRectCount, pRects);
-        call.count = *pRectCount;
-    }
-    slc_notify(manager, &call);
-    return call.result;
 }

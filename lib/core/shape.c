@@ -2,9 +2,11 @@
  * Textures of one description share what follows from it. There are few descriptions, so that is
  * nearly always in the cache, and a texture itself is small.
  */
-#include "core/wants.h"
+#include "core/shape.h"
 
 #include "base/alloc.h"
+#include "base/bytes.h"
+#include "core/layout.h"
 
 #include <string.h>
 
@@ -37,6 +39,22 @@ static bool are_equal(const SluiceStreamedTextureDesc *a, const SluiceStreamedTe
            a->feedbackRegionHeight == b->feedbackRegionHeight;
 }
 
+size_t slc_shape_rows_size(const struct slc_shape *s)
+{
+    return 2 * (slc_padded(s->levels[0].width) + SLC_BLOCK);
+}
+
+/** Scratch that merging a map of the shape needs. */
+static size_t work_size(const struct slc_shape *s)
+{
+    if (s->desc.regularMipCount == 0)
+        return 0;
+    /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
+    size_t tiles = (size_t)s->levels[0].width * s->levels[0].height + SLC_BLOCK;
+    size_t regions = slc_padded(s->region_count) + SLC_BLOCK;
+    return slc_shape_rows_size(s) + regions + (slc_regions_are_tiles(s) ? 0 : tiles);
+}
+
 SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *desc,
                             struct slc_shape **shape)
 {
@@ -45,7 +63,7 @@ SluiceResult slc_shape_take(slc_manager *m, const SluiceStreamedTextureDesc *des
     if (result != SLUICE_SUCCESS)
         return result;
     layout.hash = hash_of(&layout.desc);
-    layout.work_size = slc_wants_work_size(&layout);
+    layout.work_size = work_size(&layout);
     struct slc_shape **bucket = &m->shapes[layout.hash % SLC_SHAPE_BUCKETS], *s = *bucket;
     for (uint32_t i = 0; s && i < MAX_SEARCHED; i++, s = s->next)
         if (s->hash == layout.hash && are_equal(&s->desc, &layout.desc)) {

@@ -4,7 +4,7 @@
  * so a camera that moves soon finds all that it needs. Of a class an eighth more is held than was
  * in use at one time, and nothing once none is.
  */
-#include "core/internal.h"
+#include "core/spares.h"
 
 #include "base/alloc.h"
 

@@ -3,28 +3,19 @@
 #include "base/alloc.h"
 #include "base/bytes.h"
 #include "base/checked.h"
+#include "core/mip_bias.h"
 #include "core/history.h"
+#include "core/minmip.h"
 #include "core/overlap.h"
+#include "core/shape.h"
+#include "core/texture_tiles.h"
+#include "core/visits.h"
+#include "residency/node.h"
+#include "residency/tile_runs.h"
 
 #include <string.h>
 
 /* Room -------------------------------------------------------------------------------------- */
-
-/** Two rows of tiles. */
-static size_t rows_work_size(const struct slc_shape *s)
-{
-    return 2 * (slc_padded(s->levels[0].width) + SLC_BLOCK);
-}
-
-size_t slc_wants_work_size(const struct slc_shape *s)
-{
-    if (s->desc.regularMipCount == 0)
-        return 0;
-    /* rows, what the regions hold, the tiles of level 0; blocks are read over the end */
-    size_t tiles = (size_t)s->levels[0].width * s->levels[0].height + SLC_BLOCK;
-    size_t regions = slc_padded(s->region_count) + SLC_BLOCK;
-    return rows_work_size(s) + regions + (slc_regions_are_tiles(s) ? 0 : tiles);
-}
 
 SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t work)
 {
@@ -54,7 +45,7 @@ static uint64_t tiles_across(uint32_t region, uint32_t tile)
 }
 
 /** Adds what merging a map can need, in which `finer` regions ask for more than they hold. */
-static void add_need(const slc_manager *m, const struct slc_texture *t, uint64_t finer,
+static void add_need(const slc_manager *m, const struct slc_managed_texture *t, uint64_t finer,
                      struct slc_wants_need *need)
 {
     const SluiceStreamedTextureDesc *d = &t->shape->desc;
@@ -98,7 +89,7 @@ static inline void compare(slc_block next, slc_block asked, slc_block least, slc
 }
 
 /** Writes what `values` ask for. Returns whether that differs from the last map. */
-static bool ask_all(const struct slc_texture *t, const uint8_t *values,
+static bool ask_all(const struct slc_managed_texture *t, const uint8_t *values,
                     const struct slc_levels *levels, uint8_t *next)
 {
     const uint8_t *asked = t->history->asked;
@@ -122,7 +113,7 @@ static bool ask_all(const struct slc_texture *t, const uint8_t *values,
     return slc_block_difference(differ, slc_block_of(0)) != 0;
 }
 
-static struct compared compare_all(const struct slc_texture *t, const uint8_t *next)
+static struct compared compare_all(const struct slc_managed_texture *t, const uint8_t *next)
 {
     const struct slc_history *h = t->history;
     const uint8_t *asked = h->asked, *least = h->least, *known = h->known;
@@ -144,7 +135,7 @@ static struct compared compare_all(const struct slc_texture *t, const uint8_t *n
     return c;
 }
 
-uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
+uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_managed_texture *t,
                             struct slc_wants_need *need)
 {
     uint8_t *map = m->scratch + need->scratch;
@@ -153,7 +144,7 @@ uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
     return map;
 }
 
-void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
+void slc_wants_set_map(slc_manager *m, struct slc_managed_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need)
 {
     struct slc_history *h = t->history;
@@ -172,7 +163,8 @@ void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *val
 }
 
 /** Levels of a map of the texture's own. */
-static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFeedbackDesc *f)
+static struct slc_levels own_levels(const struct slc_managed_texture *t,
+                                    const SluiceFeedbackDesc *f)
 {
     uint32_t lowest = 0;
     if (f->streamedMipLevels && f->streamedMipLevels < t->shape->desc.regularMipCount)
@@ -185,7 +177,7 @@ static struct slc_levels own_levels(const struct slc_texture *t, const SluiceFee
                                .last = (uint8_t)(t->shape->desc.mipLevelCount - 1)};
 }
 
-SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
+SluiceResult slc_wants_prepare(slc_manager *m, struct slc_managed_texture *t,
                                const SluiceFeedbackDesc *feedback, uint32_t users,
                                struct slc_wants_need *need)
 {
@@ -199,24 +191,24 @@ SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
     return SLUICE_SUCCESS;
 }
 
-void slc_wants_abandon(slc_manager *m, struct slc_texture *t)
+void slc_wants_abandon(slc_manager *m, struct slc_managed_texture *t)
 {
     slc_state_release(m, t);
 }
 
 /* Committing -------------------------------------------------------------------------------- */
 
-static void packed_wanted(slc_manager *m, struct slc_texture *t)
+static void packed_wanted(slc_manager *m, struct slc_managed_texture *t)
 {
     for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
         slc_tile_wanted(m, t, &t->packed_nodes[i], t->shape->regular_tile_count + i,
-                        t->shape->desc.regularMipCount);
+                        SLC_PACKED_CLASS);
 }
 
-static void packed_unwanted(slc_manager *m, struct slc_texture *t)
+static void packed_unwanted(slc_manager *m, struct slc_managed_texture *t)
 {
     for (uint32_t i = 0; i < t->shape->desc.packedTileCount; i++)
-        slc_tile_unwanted(m, t->packed_nodes[i]);
+        slc_node_unwanted(&m->residency, t->packed_nodes[i]);
 }
 
 /* A tile of level l is wanted if a region under it holds l or a finer level. So the least level
@@ -248,7 +240,7 @@ static slc_block first_bytes(uint32_t count)
 }
 
 /** log2 of the tiles of level 0 that want a tile, which some do. */
-static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t level)
+static uint32_t need_of(const struct slc_managed_texture *t, uint32_t tile, uint32_t level)
 {
     if (level == 0)
         return 0;
@@ -269,14 +261,14 @@ static uint32_t need_of(const struct slc_texture *t, uint32_t tile, uint32_t lev
     return 31u - (uint32_t)__builtin_clz(count + slc_block_sum(sums));
 }
 
-static void settle_move(slc_manager *m, struct slc_texture *t, struct slc_run *run,
+static void settle_move(slc_manager *m, struct slc_managed_texture *t, struct slc_run *run,
                         const struct slc_move *move)
 {
     uint32_t *cell = &t->nodes[move->tile], node = *cell & ~SLC_RESIDENT;
-    if (node && slc_run_add(m, run, node, move->level, move->wanted))
+    if (node && slc_run_add(&m->residency, run, node, move->level, move->wanted))
         return;
     if (!move->wanted)
-        slc_tile_unwanted(m, node);
+        slc_node_unwanted(&m->residency, node);
     else if (node)
         slc_tile_wanted(m, t, cell, move->tile, move->level);
     else
@@ -284,14 +276,15 @@ static void settle_move(slc_manager *m, struct slc_texture *t, struct slc_run *r
                            need_of(t, move->tile, move->level));
 }
 
-static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *moves)
+static void settle_moves(slc_manager *m, struct slc_managed_texture *t, struct moves *moves)
 {
     struct slc_run run = {.count = 0};
     for (uint32_t i = 0; i < moves->count; i++)
-        __builtin_prefetch(slc_node_at(m, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
+        __builtin_prefetch(
+            slc_node_at(&m->residency, t->nodes[moves->tiles[i].tile] & ~SLC_RESIDENT));
     for (uint32_t i = 0; i < moves->count; i++)
         settle_move(m, t, &run, &moves->tiles[i]);
-    slc_run_end(m, &run);
+    slc_run_end(&m->residency, &run);
     if (moves->log) {
         memcpy(moves->log->moves + moves->log->count, moves->tiles,
                moves->count * sizeof *moves->tiles);
@@ -300,7 +293,7 @@ static void settle_moves(slc_manager *m, struct slc_texture *t, struct moves *mo
     moves->count = 0;
 }
 
-static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves,
+static void add_move(slc_manager *m, struct slc_managed_texture *t, struct moves *moves,
                      struct slc_move move)
 {
     if (moves->count == sizeof moves->tiles / sizeof *moves->tiles)
@@ -313,9 +306,9 @@ static void add_move(slc_manager *m, struct slc_texture *t, struct moves *moves,
  * Takes over the least levels of `count` tiles of a level, beginning with `tile`. `least` is
  * readable to the end of its last block. Returns which may have changed.
  */
-static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, struct moves *moves,
-                                     uint32_t level, uint32_t tile, const uint8_t *least,
-                                     uint32_t count)
+static struct slc_range settle_tiles(slc_manager *m, struct slc_managed_texture *t,
+                                     struct moves *moves, uint32_t level, uint32_t tile,
+                                     const uint8_t *least, uint32_t count)
 {
     slc_block limit = slc_block_of((uint8_t)level);
     struct slc_range changed = {0, 0};
@@ -340,7 +333,8 @@ static struct slc_range settle_tiles(slc_manager *m, struct slc_texture *t, stru
 }
 
 /** What the regions hold: the least level of their maps, and the bias. */
-static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, uint8_t *work)
+static const uint8_t *held_levels(slc_manager *m, const struct slc_managed_texture *t,
+                                  uint8_t *work)
 {
     const struct slc_history *h = t->history;
     if (m->bias.value == 0)
@@ -356,7 +350,8 @@ static const uint8_t *held_levels(slc_manager *m, const struct slc_texture *t, u
     return work;
 }
 
-static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *held, uint8_t *work)
+static const uint8_t *search_tiles(const struct slc_managed_texture *t, const uint8_t *held,
+                                   uint8_t *work)
 {
     const SluiceStreamedTextureDesc *d = &t->shape->desc;
     const struct slc_level *grid = &t->shape->levels[0];
@@ -377,11 +372,11 @@ static const uint8_t *search_tiles(const struct slc_texture *t, const uint8_t *h
 }
 
 /** Level 0: tiles are regions, or the regions over each tile are searched. Returns rows. */
-static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, struct moves *moves,
-                                       struct slc_range regions)
+static struct slc_range settle_level_0(slc_manager *m, struct slc_managed_texture *t,
+                                       struct moves *moves, struct slc_range regions)
 {
     const struct slc_level *grid = &t->shape->levels[0];
-    uint8_t *work = slc_wants_work(m, t) + rows_work_size(t->shape);
+    uint8_t *work = slc_wants_work(m, t) + slc_shape_rows_size(t->shape);
     const uint8_t *least = held_levels(m, t, work);
     if (!slc_regions_are_tiles(t->shape))
         least = search_tiles(t, least, work + slc_padded(slc_region_count(t)));
@@ -400,8 +395,8 @@ static struct slc_range settle_level_0(slc_manager *m, struct slc_texture *t, st
 }
 
 /** The least of the rows of the finer level under row `y`, and then of the columns. */
-static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, uint8_t *columns,
-                       uint8_t *least)
+static void reduce_row(const struct slc_managed_texture *t, uint32_t level, uint32_t y,
+                       uint8_t *columns, uint8_t *least)
 {
     const struct slc_level *fine = &t->shape->levels[level - 1], *here = &t->shape->levels[level];
     uint32_t y0 = 2 * y, y1 = y + 1 == here->height ? fine->height : 2 * y + 2;
@@ -419,11 +414,11 @@ static void reduce_row(const struct slc_texture *t, uint32_t level, uint32_t y, 
     least[here->width - 1] = last;
 }
 
-static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, struct moves *moves,
-                                     uint32_t level, struct slc_range below)
+static struct slc_range settle_level(slc_manager *m, struct slc_managed_texture *t,
+                                     struct moves *moves, uint32_t level, struct slc_range below)
 {
     const struct slc_level *grid = &t->shape->levels[level];
-    uint8_t *columns = slc_wants_work(m, t), *least = columns + rows_work_size(t->shape) / 2;
+    uint8_t *columns = slc_wants_work(m, t), *least = columns + slc_shape_rows_size(t->shape) / 2;
     uint32_t first = slc_min_u32(below.first / 2, grid->height - 1);
     uint32_t last = slc_min_u32((below.end - 1) / 2, grid->height - 1);
     struct slc_range rows = {0, 0};
@@ -437,34 +432,38 @@ static struct slc_range settle_level(slc_manager *m, struct slc_texture *t, stru
     return rows;
 }
 
-static void packed_before(slc_manager *m, struct slc_texture *t, bool held_before)
+static void packed_before(slc_manager *m, struct slc_managed_texture *t, bool held_before)
 {
     if (!m->info.alwaysMapPackedTiles && !held_before && t->held_regions > 0)
         packed_wanted(m, t);
 }
 
-static void packed_after(slc_manager *m, struct slc_texture *t, bool held_before)
+static void packed_after(slc_manager *m, struct slc_managed_texture *t, bool held_before)
 {
     if (!m->info.alwaysMapPackedTiles && held_before && t->held_regions == 0)
         packed_unwanted(m, t);
 }
 
-/** Some region holds another level. */
-static void settle(slc_manager *m, struct slc_texture *t, struct slc_range regions,
+/** Some region holds another level. Returns whether some tile of level 0 does. */
+static bool settle(slc_manager *m, struct slc_managed_texture *t, struct slc_range regions,
                    bool held_before, struct slc_move_log *log)
 {
+    bool changed = false;
     packed_before(m, t, held_before);
     if (t->shape->desc.regularMipCount > 0) {
         struct moves moves = {.count = 0, .log = log};
         struct slc_range rows = settle_level_0(m, t, &moves, regions);
+        changed = rows.end > 0;
         for (uint32_t l = 1; l < t->shape->desc.regularMipCount && rows.end > 0; l++)
             rows = settle_level(m, t, &moves, l, rows);
         settle_moves(m, t, &moves);
     }
     packed_after(m, t, held_before);
+    return changed;
 }
 
-static void take_time(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout)
+static void take_time(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
+                      uint64_t timeout)
 {
     if (t->has_map && time != t->map_time) {
         t->interval = time - t->map_time;
@@ -475,8 +474,8 @@ static void take_time(slc_manager *m, struct slc_texture *t, uint64_t time, uint
     t->map_time = time;
 }
 
-void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
-                      struct slc_move_log *log)
+void slc_wants_commit(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
+                      uint64_t timeout, struct slc_move_log *log)
 {
     if (t->nodes) {
         struct slc_history *h = t->history;
@@ -484,19 +483,21 @@ void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint
         m->bias.maps++;
         m->round.maps++;
         struct slc_range changed = slc_history_merge(m, t, time, timeout);
-        if (h->bias != m->bias.value)
+        bool same_bias = h->bias == m->bias.value;
+        if (!same_bias)
             changed = (struct slc_range){0, (uint32_t)slc_padded(slc_region_count(t))};
         h->bias = m->bias.value;
-        if (changed.end > 0)
-            settle(m, t, changed, held_before, log);
+        if (changed.end > 0 && settle(m, t, changed, held_before, log) && same_bias)
+            m->bias.changed = true;
         slc_visit(m, t, t->held_regions > 0);
         slc_state_release(m, t);
     }
     take_time(m, t, time, timeout);
 }
 
-void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct slc_texture *t,
-                      uint64_t time, uint64_t timeout, const struct slc_move_log *log)
+void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
+                      struct slc_managed_texture *t, uint64_t time, uint64_t timeout,
+                      const struct slc_move_log *log)
 {
     bool held_before = t->held_regions > 0;
     struct moves moves = {.count = 0};
@@ -516,7 +517,7 @@ void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct s
 }
 
 /** Takes all wants of a texture back whose history the caller ends. */
-static void unwant_all(slc_manager *m, struct slc_texture *t)
+static void unwant_all(slc_manager *m, struct slc_managed_texture *t)
 {
     struct moves moves = {.count = 0};
     const uint8_t *under = t->history->under;
@@ -537,7 +538,7 @@ static void unwant_all(slc_manager *m, struct slc_texture *t)
     settle_moves(m, t, &moves);
 }
 
-void slc_wants_forget(slc_manager *m, struct slc_texture *t)
+void slc_wants_drop(slc_manager *m, struct slc_managed_texture *t)
 {
     t->held_regions = 0;
     slc_visit(m, t, false);

@@ -2,7 +2,7 @@
 #ifndef SLC_CORE_WANTS_H
 #define SLC_CORE_WANTS_H
 
-#include "core/internal.h"
+#include "core/state.h"
 
 /** What the commits of one call will need at most, and how much scratch their maps have taken. */
 struct slc_wants_need {
@@ -10,16 +10,8 @@ struct slc_wants_need {
     size_t scratch; ///< bytes in use
 };
 
-/** Whether the regions are the tiles of level 0. */
-static inline bool slc_regions_are_tiles(const struct slc_shape *s)
-{
-    return s->desc.feedbackRegionWidth == s->desc.tileWidth &&
-           s->desc.feedbackRegionHeight == s->desc.tileHeight;
-}
-
-/** Scratch that a commit needs beside the map: shape->work_size, and where it is. */
-size_t slc_wants_work_size(const struct slc_shape *s);
-static inline uint8_t *slc_wants_work(slc_manager *m, const struct slc_texture *t)
+/** Where the scratch is that a commit needs beside the map: shape->work_size bytes. */
+static inline uint8_t *slc_wants_work(slc_manager *m, const struct slc_managed_texture *t)
 {
     return m->scratch + m->scratch_room - t->shape->work_size;
 }
@@ -30,17 +22,9 @@ SluiceResult slc_wants_reserve_scratch(slc_manager *m, uint64_t bytes, size_t wo
  * Puts what the map asks for into the scratch. Changes nothing that can be seen. All `users` of the
  * texture's history will get the map.
  */
-SluiceResult slc_wants_prepare(slc_manager *m, struct slc_texture *t,
+SluiceResult slc_wants_prepare(slc_manager *m, struct slc_managed_texture *t,
                                const SluiceFeedbackDesc *feedback, uint32_t users,
                                struct slc_wants_need *need);
-
-/** The same for a follower; `asked` is what the primary's map asks for, NULL for an empty one. */
-SluiceResult slc_wants_prepare_follower(slc_manager *m, const struct slc_texture *primary,
-                                        const uint8_t *asked, struct slc_texture *follower,
-                                        struct slc_wants_need *need);
-
-/** Same tiles, same regions. */
-bool slc_have_same_shape(const struct slc_texture *a, const struct slc_texture *b);
 
 /** From the values of a map to what they ask for: clamp(min(v, coarsest) + up - down, lowest,
  * last). */
@@ -51,13 +35,13 @@ struct slc_levels {
 };
 
 /** Takes room for the texture's map from the scratch. */
-uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_texture *t,
+uint8_t *slc_wants_take_map(slc_manager *m, const struct slc_managed_texture *t,
                             struct slc_wants_need *need);
 /**
  * Puts what `values`, one per region, ask for into `next`, which may be where they are, and adds
  * what merging it can need.
  */
-void slc_wants_set_map(slc_manager *m, struct slc_texture *t, const uint8_t *values,
+void slc_wants_set_map(slc_manager *m, struct slc_managed_texture *t, const uint8_t *values,
                        const struct slc_levels *levels, uint8_t *next, struct slc_wants_need *need);
 
 /** A tile that becomes wanted or no longer is. */
@@ -74,16 +58,17 @@ struct slc_move_log {
 };
 
 /** Merges history->next and writes the moves to `log` unless that is NULL. Cannot fail. */
-void slc_wants_commit(slc_manager *m, struct slc_texture *t, uint64_t time, uint64_t timeout,
-                      struct slc_move_log *log);
+void slc_wants_commit(slc_manager *m, struct slc_managed_texture *t, uint64_t time,
+                      uint64_t timeout, struct slc_move_log *log);
 /** The same for a texture that shares the history of one that has just been committed. */
-void slc_wants_repeat(slc_manager *m, const struct slc_texture *leader, struct slc_texture *t,
-                      uint64_t time, uint64_t timeout, const struct slc_move_log *log);
+void slc_wants_repeat(slc_manager *m, const struct slc_managed_texture *leader,
+                      struct slc_managed_texture *t, uint64_t time, uint64_t timeout,
+                      const struct slc_move_log *log);
 
 /** A preparation came to nothing: gives back what it made. */
-void slc_wants_abandon(slc_manager *m, struct slc_texture *t);
+void slc_wants_abandon(slc_manager *m, struct slc_managed_texture *t);
 
 /** As if nothing had ever been asked for: all wants go. */
-void slc_wants_forget(slc_manager *m, struct slc_texture *t);
+void slc_wants_drop(slc_manager *m, struct slc_managed_texture *t);
 
 #endif /* SLC_CORE_WANTS_H */

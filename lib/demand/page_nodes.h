@@ -4,7 +4,7 @@
 #define SLC_DEMAND_PAGE_NODES_H
 
 #include "base/map.h"
-#include "demand/residency.h"
+#include "demand/page_residency.h"
 
 #define SLC_NO_NODE UINT32_MAX
 

@@ -126,6 +126,13 @@ static void unlink_section(struct slc_page_space *s, uint32_t index)
         s->filled_bins[rank] &= ~(1u << bin);
 }
 
+static void note_changes(struct slc_page_space *s, uint32_t first, uint32_t end)
+{
+    bool none = s->changed_begin == s->changed_end;
+    s->changed_begin = none ? first : slc_min_u32(s->changed_begin, first);
+    s->changed_end = none ? end : slc_max_u32(s->changed_end, end);
+}
+
 static void set_ranks(struct slc_page_space *s, uint32_t first, uint32_t count, uint32_t rank)
 {
     uint32_t end = first + count;
@@ -136,9 +143,7 @@ static void set_ranks(struct slc_page_space *s, uint32_t first, uint32_t count, 
     if (first == end)
         return;
     memset(s->ranks + first, (int)rank, end - first);
-    bool none = s->changed_begin == s->changed_end;
-    s->changed_begin = none ? first : slc_min_u32(s->changed_begin, first);
-    s->changed_end = none ? end : slc_max_u32(s->changed_end, end);
+    note_changes(s, first, end);
 }
 
 /* Whole sections; the blocks of the last one beyond the range are free for others of its rank. */
@@ -273,6 +278,11 @@ bool slc_page_space_take_changes(struct slc_page_space *space, uint32_t *first, 
     *count = space->changed_end - space->changed_begin;
     space->changed_begin = space->changed_end = 0;
     return *count > 0;
+}
+
+void slc_page_space_change_again(struct slc_page_space *space, uint32_t first, uint32_t count)
+{
+    note_changes(space, first, first + count);
 }
 
 uint64_t slc_page_space_end(const struct slc_page_space *space)

@@ -39,6 +39,9 @@ const uint8_t *slc_page_space_ranks(const struct slc_page_space *space);
  *  *first + *count) with all of them. */
 bool slc_page_space_take_changes(struct slc_page_space *space, uint32_t *first, uint32_t *count);
 
+/** The ranks of these sections count as changed again. */
+void slc_page_space_change_again(struct slc_page_space *space, uint32_t first, uint32_t count);
+
 /** One past the last id ever given: nothing beyond is requested. */
 uint64_t slc_page_space_end(const struct slc_page_space *space);
 uint64_t slc_page_space_used(const struct slc_page_space *space); ///< ids of ranges that exist

@@ -134,6 +134,16 @@ enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t t
     return SLC_REQUEST_POSTPONED;
 }
 
+static void note_opened(SluiceDemandLoader *loader, const struct slc_demand_image *image)
+{
+    struct slc_demand_texture *texture = &loader->textures[image->texture];
+    if (!texture->told || texture->told_tail)
+        return;
+    texture->told = false;
+    slc_retries_note_opened(loader);
+    slc_log(&loader->info.log, SLUICE_LOG_INFO, "%s: can be opened again.", slc_image_name(image));
+}
+
 /* Pages and what shaders see. */
 static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
@@ -155,6 +165,7 @@ static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image 
     image->state = SLC_IMAGE_OPEN;
     slc_texture_show_image(loader, image);
     loader->counts.texturesOpened++;
+    note_opened(loader, image);
     return SLUICE_SUCCESS;
 }
 
@@ -175,12 +186,18 @@ static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *im
 
 static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, SluiceResult result)
 {
-    const char *name = image->source && image->info.pName ? image->info.pName : "image";
-    slc_log(&loader->info.log, SLUICE_LOG_ERROR,
-            "%s cannot be used as a texture (index %u): %s%s%s", name, image->texture,
-            sluiceResultString(result), image->trouble ? ": " : "",
-            image->trouble ? image->trouble : "");
-    loader->textures[image->texture].failed = true;
+    struct slc_demand_texture *texture = &loader->textures[image->texture];
+    char retrying[48];
+    if (!texture->told)
+        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+                "%s cannot be used as a texture (index %u): %s%s%s; %s.", slc_image_name(image),
+                image->texture, sluiceResultString(result), image->trouble ? ": " : "",
+                image->trouble ? image->trouble : "",
+                slc_retries_words(loader, retrying, sizeof retrying));
+    texture->told = true;
+    texture->failed = slc_retries_add_opening(loader, image->texture);
+    if (!texture->failed)
+        return; /* it stays unknown, so shaders ask again */
     loader->counts.texturesFailed++;
     slc_texture_show_failed(loader, image->texture);
 }
@@ -238,8 +255,8 @@ void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *imag
 
 static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
-    if (image->job_count == 0)
-        return;
+    if (image->job_count == 0 && loader->copied.first == SLC_NONE)
+        return; /* what is copied may be copied again */
     slc_jobs_drop(loader, SLC_JOB_TILE, image->slot, 0, UINT64_MAX);
     slc_jobs_drop(loader, SLC_JOB_OPEN, image->slot, 0, UINT64_MAX);
 }
@@ -262,6 +279,7 @@ static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_ima
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     leave_refresh_list(loader, image);
+    slc_retries_all(loader, &image->retry_group);
     slc_preloads_detach(loader, image->texture);
     drop_jobs(loader, image);
     if (image->origin.source && image->job_count) { /* which the application may destroy next */
@@ -279,10 +297,14 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     uint32_t texture = image->texture;
-    loader->textures[texture].failed = true;
+    bool failed = slc_retries_add_opening(loader, texture);
+    loader->textures[texture].failed = failed;
     loader->counts.texturesFailed++;
     slc_image_detach(loader, image);
-    slc_texture_show_failed(loader, texture);
+    if (failed)
+        slc_texture_show_failed(loader, texture);
+    else
+        slc_texture_show_unknown(loader, texture); /* shaders ask again */
 }
 
 void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image)
@@ -290,6 +312,7 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
     if (image->state != SLC_IMAGE_OPEN)
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
+    slc_retries_all(loader, &image->retry_group);
     slc_image_forget(loader, image);
     if (image->refresh)
         return;

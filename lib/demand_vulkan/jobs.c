@@ -93,17 +93,48 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
         slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
                             &loader->jobs[i]);
     loader->free_tile_count = loader->free_other_count = tiles;
-    SluiceResult result = slc_buffer_init(&loader->staging, &loader->vk, &loader->caps,
-                                          (uint64_t)tiles * SLC_TILE_SIZE,
-                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    SluiceResult result = slc_staging_init(&loader->staging, &loader->vk, &loader->caps,
+                                           &loader->cb, tiles, loader->info.minStagingSize);
     return result == SLUICE_SUCCESS ? create_reader(loader) : result;
 }
 
 void slc_jobs_finish(SluiceDemandLoader *loader)
 {
-    slc_buffer_finish(&loader->staging, &loader->vk);
+    slc_staging_finish(&loader->staging);
     slc_free(&loader->cb, loader->jobs, loader->job_count, sizeof *loader->jobs);
     loader->jobs = NULL;
+}
+
+static void push_front(SluiceDemandLoader *loader, struct slc_job_list *list,
+                       struct slc_demand_job *job)
+{
+    job->next = list->first;
+    if (list->first == SLC_NONE)
+        list->last = slc_job_index(loader, job);
+    list->first = slc_job_index(loader, job);
+}
+
+/* Makes a free job with staging memory the first of all. False: there is none. */
+static bool find_staged(SluiceDemandLoader *loader)
+{
+    struct slc_job_list *list = &loader->free_tiles;
+    for (uint32_t before = list->first; before != SLC_NONE; before = loader->jobs[before].next) {
+        uint32_t index = loader->jobs[before].next;
+        if (index == SLC_NONE || !slc_staging_is_there(&loader->staging, index))
+            continue;
+        loader->jobs[before].next = loader->jobs[index].next;
+        if (list->last == index)
+            list->last = before;
+        push_front(loader, list, &loader->jobs[index]);
+        return true;
+    }
+    return false;
+}
+
+bool slc_job_tile_is_ready(SluiceDemandLoader *loader)
+{
+    return loader->free_tile_count > 0 &&
+           (slc_staging_ensure(&loader->staging, loader->free_tiles.first) || find_staged(loader));
 }
 
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind)
@@ -115,8 +146,10 @@ struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kin
         return NULL;
     assert(job->kind == SLC_JOB_FREE);
     job->kind = kind; /* what the lock guards stays as it is: nothing is running */
-    job->stale = false;
+    job->stale = job->counted = false;
     job->image = NULL;
+    if (tile)
+        slc_staging_take(&loader->staging, slc_job_index(loader, job));
     *(tile ? &loader->free_tile_count : &loader->free_other_count) -= 1;
     return job;
 }
@@ -125,13 +158,15 @@ void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
     bool tile = job->kind == SLC_JOB_TILE;
     job->kind = SLC_JOB_FREE;
-    slc_job_list_append(loader, tile ? &loader->free_tiles : &loader->free_others, job);
+    if (tile)
+        slc_staging_give(&loader->staging, slc_job_index(loader, job));
+    push_front(loader, tile ? &loader->free_tiles : &loader->free_others, job);
     *(tile ? &loader->free_tile_count : &loader->free_other_count) += 1;
 }
 
 uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
-    return (uint8_t *)loader->staging.mapped + (size_t)slc_job_index(loader, job) * SLC_TILE_SIZE;
+    return slc_staging_memory(&loader->staging, slc_job_index(loader, job));
 }
 
 /* With the lock held. */

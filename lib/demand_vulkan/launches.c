@@ -3,8 +3,10 @@
  * over: they become reads.
  */
 #include "base/checked.h"
+#include "base/log.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "image/half.h"
 #include "vulkan/compute.h"
 
 #include <sluice/shared/demand.h>
@@ -25,6 +27,19 @@ static bool is_aborted(SluiceDemandLoader *loader)
     return slc_ticket_is_cancelled(&loader->tickets, 0);
 }
 
+static void complete_forgotten(SluiceDemandLoader *loader)
+{
+    uint32_t over = 0, count = loader->forgotten_count;
+    while (over < count && loader->forgotten[over].launch &&
+           loader->forgotten[over].launch <= loader->processed)
+        over++;
+    if (over == 0)
+        return;
+    memmove(loader->forgotten, loader->forgotten + over,
+            (count - over) * sizeof *loader->forgotten);
+    loader->forgotten_count -= over;
+}
+
 /* What launches up to `processed` named is free. */
 static void exhume(SluiceDemandLoader *loader)
 {
@@ -33,6 +48,10 @@ static void exhume(SluiceDemandLoader *loader)
     slc_images_exhume(loader);
     slc_textures_exhume(loader);
     slc_resources_exhume(loader);
+    complete_forgotten(loader);
+    slc_table_mirror_complete(&loader->table, loader->processed);
+    slc_table_mirror_complete(&loader->levels, loader->processed);
+    slc_table_mirror_complete(&loader->grids, loader->processed);
 }
 
 /*
@@ -51,13 +70,6 @@ static bool wants_used(const SluiceDemandLoader *loader)
     return loader->limited_count || held + soon > limit || held > limit / 4 * 3;
 }
 
-static uint32_t bits_of(float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
 static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t value)
 {
     const struct slc_mirror_element *now = slc_table_mirror_get(&loader->levels, 0);
@@ -71,13 +83,14 @@ static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t v
 static void gather(SluiceDemandLoader *loader, uint64_t launch, bool tracking)
 {
     slc_jobs_collect(loader);
+    slc_retries_advance(loader);
     slc_images_refresh(loader);
     slc_preloads_continue(loader);
     slc_uploads_admit(loader);
     float bias = slc_residency_prepare(loader->residency, launch);
     slc_changes_apply(loader);
     slc_evicted_take(loader);
-    set_parameter(loader, SLUICE_DEMAND_PARAMETER_LOD_BIAS, bits_of(bias));
+    set_parameter(loader, SLUICE_DEMAND_PARAMETER_LOD_BIAS, slc_float_bits(bias));
     set_parameter(loader, SLUICE_DEMAND_PARAMETER_TRACKING, tracking);
 }
 
@@ -87,23 +100,35 @@ static int compare_runs(const void *a, const void *b)
     return (x->first > y->first) - (x->first < y->first);
 }
 
+/* How many runs are still to be cleared. They come last. */
+static uint32_t count_forgotten(const SluiceDemandLoader *loader)
+{
+    uint32_t count = 0;
+    while (count < loader->forgotten_count &&
+           loader->forgotten[loader->forgotten_count - 1 - count].launch == 0)
+        count++;
+    return count;
+}
+
 /* Whole words of requests, each once. */
 static void record_forgotten(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     const uint64_t unit = SLUICE_DEMAND_BLOCK_PAGES;
-    struct slc_page_run *runs = loader->forgotten;
-    if (loader->forgotten_count > 1)
-        qsort(runs, loader->forgotten_count, sizeof *runs, compare_runs);
-    for (uint32_t i = 0; i < loader->forgotten_count;) {
+    uint32_t count = count_forgotten(loader);
+    if (count == 0)
+        return;
+    struct slc_page_run *runs = loader->forgotten + loader->forgotten_count - count;
+    qsort(runs, count, sizeof *runs, compare_runs);
+    for (uint32_t i = 0; i < count;) {
         uint64_t first = runs[i].first / unit * unit, end = first;
-        for (; i < loader->forgotten_count && runs[i].first / unit * unit <= end; i++) {
+        for (; i < count && runs[i].first / unit * unit <= end; i++) {
             uint64_t stop = (runs[i].first + runs[i].count + unit - 1) / unit * unit;
             end = stop > end ? stop : end;
+            runs[i].launch = loader->launch;
         }
         slc_demand_scan_record_forget(&loader->scan, &loader->vk, commands, (uint32_t)first,
                                       end - first);
     }
-    loader->forgotten_count = 0;
 }
 
 static void transfers_to_shaders(SluiceDemandLoader *loader, VkCommandBuffer commands)
@@ -121,19 +146,20 @@ static void record_first(SluiceDemandLoader *loader, VkCommandBuffer commands)
                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
                         VK_ACCESS_TRANSFER_WRITE_BIT);
     loader->cleared = true;
+    loader->cleared_launch = loader->launch;
 }
 
 static void record_ranks(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
-    uint32_t first, count;
-    if (slc_page_space_take_changes(loader->space, &first, &count))
+    struct slc_rank_run *run = &loader->ranks[slot_of(loader, loader->launch)];
+    if (slc_page_space_take_changes(loader->space, &run->first, &run->count))
         slc_demand_scan_record_ranks(&loader->scan, &loader->vk, commands,
-                                     slc_page_space_ranks(loader->space), first, count);
+                                     slc_page_space_ranks(loader->space), run->first, run->count);
 }
 
 static bool has_transfers(const SluiceDemandLoader *loader)
 {
-    return !loader->cleared || loader->space_changed || loader->forgotten_count ||
+    return !loader->cleared || loader->space_changed || count_forgotten(loader) ||
            loader->admitted.first != SLC_NONE || slc_table_mirror_has_changes(&loader->table) ||
            slc_table_mirror_has_changes(&loader->levels) ||
            slc_table_mirror_has_changes(&loader->grids);
@@ -143,6 +169,7 @@ static bool has_transfers(const SluiceDemandLoader *loader)
 static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     slc_page_cache_record(&loader->tiles.cache, loader->launch, loader->processed, commands);
+    loader->ranks[slot_of(loader, loader->launch)] = (struct slc_rank_run){0};
     if (!has_transfers(loader))
         return 0;
     slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -156,9 +183,9 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
     loader->space_changed = false;
     record_forgotten(loader, commands);
     uint32_t tiles = slc_uploads_record(loader, commands);
-    slc_table_mirror_record(&loader->table, &loader->vk, commands);
-    slc_table_mirror_record(&loader->levels, &loader->vk, commands);
-    slc_table_mirror_record(&loader->grids, &loader->vk, commands);
+    slc_table_mirror_record(&loader->table, &loader->vk, commands, loader->launch);
+    slc_table_mirror_record(&loader->levels, &loader->vk, commands, loader->launch);
+    slc_table_mirror_record(&loader->grids, &loader->vk, commands, loader->launch);
     transfers_to_shaders(loader, commands);
     return tiles;
 }
@@ -168,8 +195,12 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
 {
     if (!loader || !commandBuffer || !pLaunch)
         return SLUICE_ERROR_NULL_POINTER;
-    if (loader->launch > loader->ended)
+    if (loader->launch > loader->ended) {
+        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+                "launch %llu was neither ended nor abandoned: no other one can be prepared",
+                (unsigned long long)loader->launch);
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELLED;
     if (loader->launch - loader->processed >= loader->info.launchesInFlight)
@@ -177,6 +208,7 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
     uint64_t launch = loader->launch + 1;
     bool tracking = wants_used(loader);
     exhume(loader);
+    slc_staging_trim(&loader->staging); /* it counts launches */
     gather(loader, launch, tracking);
     SluiceResult result =
         slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
@@ -198,14 +230,84 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
 {
     if (!loader || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (loader->launch == loader->ended)
+    if (loader->launch == loader->ended) {
+        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+                "no launch can be ended: none was prepared since the last one was ended or "
+                "abandoned");
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     uint32_t slot = slot_of(loader, loader->launch);
     if (loader->tracked[slot])
         slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
     slc_demand_scan_record(&loader->scan, &loader->vk, commandBuffer, slot,
                            slc_page_space_end(loader->space), loader->info.maxRequestsPerLaunch);
     loader->ended = loader->launch;
+    return SLUICE_SUCCESS;
+}
+
+static void put_ranks_back(SluiceDemandLoader *loader, uint64_t launch)
+{
+    const struct slc_rank_run *run = &loader->ranks[slot_of(loader, launch)];
+    if (run->count == 0)
+        return;
+    slc_page_space_change_again(loader->space, run->first, run->count);
+    loader->space_changed = true;
+}
+
+/* Only the page table may lack memory for it; what of it is put back then does no harm. */
+static SluiceResult put_back(SluiceDemandLoader *loader, uint64_t launch)
+{
+    for (uint64_t i = launch; i <= loader->launch; i++) {
+        SluiceResult result = slc_page_directory_abandon(&loader->directory, slot_of(loader, i));
+        if (result != SLUICE_SUCCESS)
+            return result;
+        put_ranks_back(loader, i);
+    }
+    loader->cleared &= loader->cleared_launch < launch;
+    slc_page_cache_abandon(&loader->tiles.cache, launch);
+    slc_uploads_abandon(loader, launch);
+    slc_table_mirror_abandon(&loader->table, launch);
+    slc_table_mirror_abandon(&loader->levels, launch);
+    slc_table_mirror_abandon(&loader->grids, launch);
+    for (uint32_t i = 0; i < loader->forgotten_count; i++)
+        if (loader->forgotten[i].launch >= launch)
+            loader->forgotten[i].launch = 0;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult check_abandoned(SluiceDemandLoader *loader, uint64_t launch)
+{
+    uint64_t value = 0;
+    SluiceResult result = slc_vk_result(
+        &loader->vk,
+        loader->vk.GetSemaphoreCounterValue(loader->vk.device, loader->semaphore, &value),
+        "vkGetSemaphoreCounterValue");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (launch > loader->processed && launch <= loader->launch && value < launch)
+        return SLUICE_SUCCESS;
+    slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+            "launch %llu cannot be abandoned: it is over, was abandoned or never prepared",
+            (unsigned long long)launch);
+    return SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
+SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
+                                       const SluiceDemandLaunch *pLaunch)
+{
+    if (!loader || !pLaunch)
+        return SLUICE_ERROR_NULL_POINTER;
+    uint64_t launch = pLaunch->launchIndex;
+    SluiceResult result = check_abandoned(loader, launch);
+    if (result == SLUICE_SUCCESS)
+        result = put_back(loader, launch);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    loader->counts.launchCount -= loader->launch - (launch - 1);
+    loader->launch = launch - 1;
+    if (loader->ended > loader->launch)
+        loader->ended = loader->launch;
+    slc_residency_abandon(loader->residency, launch);
     return SLUICE_SUCCESS;
 }
 

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "vulkan/create_checks.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/sparse_layout.h"
@@ -17,12 +18,26 @@
 #define MAX_REQUESTS (1u << 20)
 #define MAX_TILES_IN_FLIGHT (1u << 16)
 #define MIN_BUDGET (UINT64_C(4) << 20)
-#define MAX_FAMILIES 64u     /* those beyond are believed */
 #define MAX_GRIDS (1u << 16) /* ranges of cells apart from each other */
 
 static uint32_t or_default(uint32_t value, uint32_t otherwise)
 {
     return value ? value : otherwise;
+}
+
+static SluiceResult check_limits(const SluiceDemandLoaderCreateInfo *info)
+{
+    const struct slc_limit limits[] = {
+        {"launchesInFlight", info->launchesInFlight, 1, SLC_MAX_LAUNCHES},
+        {"maxTextureCount", info->maxTextureCount, 1, MAX_TEXTURES},
+        {"pageCapacity", info->pageCapacity, 1, MAX_PAGES},
+        {"maxRequestsPerLaunch", info->maxRequestsPerLaunch, 1, MAX_REQUESTS},
+        {"maxTilesInFlight", info->maxTilesInFlight, 1, MAX_TILES_IN_FLIGHT},
+        {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
+        {"memoryBudget", info->memoryBudget ? info->memoryBudget : MIN_BUDGET, MIN_BUDGET,
+         UINT64_MAX},
+    };
+    return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
 }
 
 static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
@@ -33,47 +48,38 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
     info->maxRequestsPerLaunch = or_default(info->maxRequestsPerLaunch, 8192);
     info->maxTilesInFlight = or_default(info->maxTilesInFlight, 1024);
     info->maxPageChunkCount = or_default(info->maxPageChunkCount, 64);
+    if (info->failureRetryDelay == 0)
+        info->failureRetryDelay = UINT64_C(30000000000);
     if (info->pageCapacity == 0)
         info->pageCapacity = UINT64_C(1) << 26;
-    if (info->launchesInFlight > SLC_MAX_LAUNCHES || info->maxTextureCount > MAX_TEXTURES ||
-        info->pageCapacity > MAX_PAGES || info->maxRequestsPerLaunch > MAX_REQUESTS ||
-        info->maxTilesInFlight > MAX_TILES_IN_FLIGHT || info->maxPageChunkCount > UINT16_MAX ||
-        (info->memoryBudget && info->memoryBudget < MIN_BUDGET))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_limits(info);
+    if (result != SLUICE_SUCCESS)
+        return result;
     info->pageCapacity = (info->pageCapacity + section - 1) / section * section;
     return SLUICE_SUCCESS;
 }
 
-/* More tiles than all images can have layers would never come. */
 static void choose_budget(SluiceDemandLoader *loader)
 {
     SluiceDemandLoaderCreateInfo *info = &loader->info;
-    uint64_t most = (uint64_t)info->maxPageChunkCount *
-                    slc_min_u32(SLC_PAGE_CHUNK_LAYERS, loader->caps.max_image_array_layers) *
-                    SLC_TILE_SIZE;
+    uint64_t most =
+        slc_page_chunks_capacity(info->maxPageChunkCount, loader->caps.max_image_array_layers) *
+        SLC_TILE_SIZE;
     if (info->memoryBudget > most)
         slc_log(&info->log, SLUICE_LOG_WARNING,
-                "maxPageChunkCount %u images of tiles hold %llu MiB of the budget",
+                "maxPageChunkCount %u images of tiles use at most %llu MiB of the memoryBudget",
                 info->maxPageChunkCount, (unsigned long long)(most >> 20));
     if (info->memoryBudget == 0)
         info->memoryBudget = slc_device_memory_size(&loader->caps) / 2;
-    if (info->memoryBudget > most)
-        info->memoryBudget = most;
-}
-
-static bool family_computes(const SluiceDemandLoader *loader)
-{
-    VkQueueFamilyProperties families[MAX_FAMILIES];
-    uint32_t count = MAX_FAMILIES, index = loader->info.queueFamilyIndex;
-    loader->vk.GetPhysicalDeviceQueueFamilyProperties(loader->vk.physical_device, &count, families);
-    return index < count ? families[index].queueFlags & VK_QUEUE_COMPUTE_BIT
-                         : count == MAX_FAMILIES;
 }
 
 static SluiceResult check_device(SluiceDemandLoader *loader)
 {
-    if (!family_computes(loader))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result =
+        slc_check_queue_family(&loader->vk, "queueFamilyIndex", loader->info.queueFamilyIndex,
+                               VK_QUEUE_COMPUTE_BIT, "have VK_QUEUE_COMPUTE_BIT");
+    if (result != SLUICE_SUCCESS)
+        return result;
     const char *missing = slc_missing_for_mode(&loader->caps, SLUICE_RESIDENCY_MODE_PAGED);
     if (missing) {
         slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s has no %s", loader->caps.public.deviceName,
@@ -180,10 +186,10 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
         return result;
     loader->texture_page_count =
         slc_div_up_u32(count, SLUICE_DEMAND_BLOCK_PAGES) * SLUICE_DEMAND_BLOCK_PAGES;
-    const struct slc_residency_create_info info = {.cb = &loader->cb,
-                                                   .class_count = SLC_DEMAND_CLASSES,
-                                                   .no_eviction = loader->info.noEviction,
-                                                   .no_lod_bias = loader->info.noLodBias};
+    const struct slc_page_residency_create_info info = {.cb = &loader->cb,
+                                                        .class_count = SLC_DEMAND_CLASSES,
+                                                        .no_eviction = loader->info.noEviction,
+                                                        .no_lod_bias = loader->info.noLodBias};
     result = slc_residency_create(&info, &loader->residency);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -217,6 +223,7 @@ static SluiceResult create_parts(SluiceDemandLoader *loader)
         loader->vk.device = VK_NULL_HANDLE; /* nothing can be called */
         return result;
     }
+    loader->vk.memory_use = &loader->memory_use;
     slc_caps_init(&loader->caps, &loader->vk);
     static SluiceResult (*const steps[])(SluiceDemandLoader *) = {
         check_device,      create_semaphore, create_memory, create_tables,
@@ -247,18 +254,29 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     return NULL;
 }
 
+static SluiceResult check_handles(const SluiceDemandLoaderCreateInfo *info)
+{
+    const struct slc_required fields[] = {
+        {"instance", info->instance},
+        {"physicalDevice", info->physicalDevice},
+        {"device", info->device},
+        {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
+        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
+    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+}
+
 SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
                                       SluiceDemandLoader **pLoader)
 {
     if (!pLoader)
         return SLUICE_ERROR_NULL_POINTER;
     *pLoader = NULL;
-    if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
-        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr ||
-        !slc_allocator_is_valid(pCreateInfo->pAllocator))
+    if (!pCreateInfo)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceDemandLoaderCreateInfo info = *pCreateInfo;
-    SluiceResult result = fill_in(&info);
+    SluiceResult result = check_handles(&info);
+    if (result == SLUICE_SUCCESS)
+        result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceDemandLoader *loader = allocate(&info);
@@ -304,8 +322,9 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
         loader->vk.DeviceWaitIdle(loader->vk.device);
     slc_resources_finish(loader);
     slc_images_finish(loader);
-    slc_textures_finish(loader);
+    slc_demand_textures_finish(loader);
     slc_preloads_finish(loader);
+    slc_retries_finish(loader);
     sluiceDestroyTileLoader(loader->reader);
     slc_jobs_finish(loader);
     slc_residency_destroy(loader->residency); /* gives its places back */
@@ -323,8 +342,10 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_free(&cb, loader, 1, sizeof *loader);
 }
 
-void sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *pBuffers)
+SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *pBuffers)
 {
+    if (!loader || !pBuffers)
+        return SLUICE_ERROR_NULL_POINTER;
     *pBuffers = (SluiceDemandBuffers){.textures = loader->table_buffer.buffer,
                                       .levels = loader->levels_buffer.buffer,
                                       .directory = loader->directory.directory.buffer,
@@ -332,25 +353,19 @@ void sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDemandBuffer
                                       .masks = loader->directory.masks.buffer,
                                       .requests = loader->scan.requests.buffer,
                                       .sections = loader->scan.sections.buffer};
+    return SLUICE_SUCCESS;
 }
 
-void sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages)
+SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages)
 {
+    if (!loader || !pPages)
+        return SLUICE_ERROR_NULL_POINTER;
     const struct slc_page_views *views = &loader->views;
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,
                                   .generation = views->generation};
-}
-
-static uint64_t device_size(const SluiceDemandLoader *loader)
-{
-    const struct slc_demand_scan *scan = &loader->scan;
-    const struct slc_page_directory *directory = &loader->directory;
-    return loader->tiles.cache.memory.total_size + loader->views.memory.total_size +
-           loader->table_buffer.size + loader->levels_buffer.size + scan->requests.size +
-           scan->sections.size + scan->postponed.size + scan->ranks.size + scan->scratch.size +
-           directory->directory.size + directory->blocks.size + directory->masks.size;
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
@@ -366,7 +381,10 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     pStatistics->residentTileCount = tiles.resident;
     pStatistics->residentResourcePageCount = loader->held_count;
     pStatistics->tileMemorySize = loader->tiles.cache.memory.total_size;
-    pStatistics->deviceMemorySize = device_size(loader);
+    pStatistics->deviceMemorySize = loader->memory_use.device;
+    pStatistics->hostVisibleMemorySize = loader->memory_use.host;
+    pStatistics->pageChunkCount = loader->tiles.cache.chunk_count;
+    pStatistics->pageChunkShortages = loader->tiles.cache.shortages;
     pStatistics->lodBias = slc_residency_lod_bias(loader->residency);
     pthread_mutex_lock(&loader->tickets.mutex);
     memcpy(pStatistics->latencyHistogram, loader->tickets.latency,

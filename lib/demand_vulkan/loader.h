@@ -9,14 +9,15 @@
 #include <sluice/demand.h>
 
 #include "demand/page_space.h"
-#include "demand/residency.h"
+#include "base/none.h"
+#include "demand/page_residency.h"
 #include "demand_vulkan/page_directory.h"
 #include "demand_vulkan/scan.h"
 #include "demand_vulkan/table_mirror.h"
 #include "demand_vulkan/tickets.h"
 #include "demand_vulkan/tile_memory.h"
+#include "vulkan/staging.h"
 
-#define SLC_NONE UINT32_MAX
 #define SLC_MAX_LAUNCHES 16u
 #define SLC_MAX_REGULAR_LEVELS 16u /* words of an element of the buffer of levels */
 #define SLC_DEMAND_CLASSES 256u    /* tiles, resources without a limit, each resource with one */
@@ -37,12 +38,17 @@ struct slc_demand_texture {
     uint32_t generation; ///< of the index, from 1 on
     uint32_t image;      ///< IMAGE: slot of the image while it is opened or open; else SLC_NONE
     bool failed;         ///< IMAGE: it cannot be opened
+    bool retry_queued;   ///< the index is in the list of openings to be tried again
+    bool told;           ///< that it failed; until it is well again
+    bool told_tail;      ///< ... at its tail: opening it does not show that it is well
     uint32_t grid_uses;  ///< cells of grids that name it
     uint32_t first_element, cell_count; ///< GRID: where its cells are, 16 in an element of `grids`
     uint32_t base;                      ///< VARIANT
     uint32_t next;                      ///< IMAGE, VARIANT: next variant; FREE, BURIED: in the list
     uint64_t launch;                    ///< BURIED: the last that may name it
     SluiceDemandImage source;           ///< IMAGE
+    VkSamplerAddressMode modes[2];      ///< IMAGE, VARIANT: the sampler's
+    bool explicit_modes;
     float failure_color[4];
 };
 
@@ -77,6 +83,8 @@ struct slc_demand_image {
     uint32_t regular_count, tail_page;
     uint32_t first_pages[SLC_MAX_REGULAR_LEVELS];
     float base_color[4];
+    uint32_t retry_group; ///< tiles that could not be read; 0: none
+    bool told;            ///< that tiles cannot be read; until one comes that could not
 };
 
 enum slc_resource_state { SLC_RESOURCE_FREE = 0, SLC_RESOURCE_LIVE, SLC_RESOURCE_DESTROYED };
@@ -91,6 +99,8 @@ struct slc_demand_resource {
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
+    uint32_t retry_group; ///< pages that have no value; 0: none
+    bool told;            ///< of the first of them
 };
 
 /* A value that no new launch sees. */
@@ -108,6 +118,7 @@ struct slc_demand_job {
     uint32_t place;                 ///< of a tile: chunk << 16 | layer
     uint32_t next;                  ///< free, arrived or copied: in the list
     bool stale;                     ///< what is read is not wanted any more
+    bool counted;                   ///< in bytesUploaded
     uint64_t launch;                ///< copied: the one that does
     uint64_t start;                 ///< ns
     uint64_t value;                 ///< of a resource
@@ -147,22 +158,63 @@ struct slc_preload {
     uint32_t planned_count; ///< tasks of the ticket that have not begun
 };
 
+/* A page that is refused because it could not be read, or a texture that could not be opened. */
+struct slc_failed_page {
+    uint32_t page, next; ///< next in the list; 0: none
+    uint64_t since;      ///< ns
+};
+
+struct slc_failed_list {
+    uint32_t first, last; ///< 0: empty
+};
+
+#define SLC_PAGES_PER_PROBE 4u
+
+/* Of an image, or of a resource. */
+struct slc_retry_group {
+    uint32_t *owner;         ///< where the image or resource keeps the group's index
+    uint32_t previous, next; ///< of those that rest, the longest first; free ones by next
+    uint64_t since;          ///< ns; when it began to rest
+    struct slc_failed_list pages;
+    uint32_t probes[SLC_PAGES_PER_PROBE], probe_count; ///< pages that were tried last
+};
+
+/* Index 0 of both arrays is none. */
+struct slc_retries {
+    struct slc_failed_page *pages; ///< owned
+    uint32_t page_capacity, free_page;
+    struct slc_retry_group *groups; ///< owned
+    uint32_t group_capacity, free_group, first_group, last_group;
+    struct slc_failed_list openings; ///< texture indices
+    bool has_opened;                 ///< a texture whose opening had failed
+    uint64_t opened, now;            ///< ns; when it did; as it was looked at last
+};
+
 struct slc_page_run {
     uint32_t first;
     uint64_t count;
+    uint64_t launch; ///< that clears its requests; 0: none yet
+};
+
+/** Sections whose ranks a launch wrote. */
+struct slc_rank_run {
+    uint32_t first, count;
 };
 
 struct SluiceDemandLoader {
     SluiceAllocationCallbacks cb;
     SluiceDemandLoaderCreateInfo info; ///< with the defaults filled in
     struct slc_vk vk;
+    struct slc_memory_use memory_use; ///< of vk
     struct slc_caps caps;
     bool usable[SLUICE_FORMAT_COUNT]; ///< formats that the device samples and filters
     VkSemaphore semaphore;
 
     struct slc_page_views views;
     struct slc_tile_memory tiles;
-    struct slc_buffer table_buffer, levels_buffer, staging;
+    struct slc_buffer table_buffer, levels_buffer;
+    bool told_of_modes;             ///< that a texture's address modes are not its image's
+    struct slc_staging staging;     ///< a slot per tile job
     struct slc_table_mirror table;  ///< struct SluiceDemandTexture by index
     struct slc_table_mirror levels; ///< parameters; then 16 words for each image slot
     struct slc_table_mirror grids;  ///< the words of grids, behind them
@@ -175,8 +227,10 @@ struct SluiceDemandLoader {
     struct slc_page_memory tile_interface;
     uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
     uint32_t owner_capacity;
-    bool space_changed;             ///< ids were given since the last launch
-    struct slc_page_run *forgotten; ///< owned; pages whose requests the next launch clears
+    bool space_changed;                          ///< ids were given since the last launch
+    struct slc_rank_run ranks[SLC_MAX_LAUNCHES]; ///< by launch
+    /** Owned; pages whose requests the next launch clears, after those of launches under way. */
+    struct slc_page_run *forgotten;
     uint32_t forgotten_count, forgotten_capacity;
 
     struct slc_demand_texture *textures; ///< owned
@@ -212,9 +266,11 @@ struct SluiceDemandLoader {
 
     uint64_t launch, ended, processed; ///< the last of each
     bool cleared;                      ///< the device's buffers
+    uint64_t cleared_launch;           ///< that did
     bool page_table_was_full;          ///< it was told
     bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
     uint32_t limited_count;            ///< resources with a limit
+    struct slc_retries retries;
     SluiceDemandStatistics counts;
 };
 
@@ -223,6 +279,14 @@ static inline bool slc_result_may_pass(SluiceResult result)
 {
     return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELLED ||
            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+/** For messages: as the application calls it, else as its source does. */
+static inline const char *slc_image_name(const struct slc_demand_image *image)
+{
+    if (image->origin.pName)
+        return image->origin.pName;
+    return image->source && image->info.pName ? image->info.pName : "image";
 }
 
 /* textures.c */
@@ -238,7 +302,27 @@ void slc_texture_show_failed(SluiceDemandLoader *loader, uint32_t index);
 void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_image *image);
 /** Indices of textures that no launch after `processed` names. */
 void slc_textures_exhume(SluiceDemandLoader *loader);
-void slc_textures_finish(SluiceDemandLoader *loader);
+void slc_demand_textures_finish(SluiceDemandLoader *loader);
+/** True: it could not be opened, and may be asked for again. */
+bool slc_texture_retry(SluiceDemandLoader *loader, uint32_t index);
+
+/* retries.c: what failed is tried again */
+/** `owner`: the retry_group of whose page it is. False: there is no memory to keep it in mind. */
+bool slc_retries_add(SluiceDemandLoader *loader, uint32_t *owner, uint32_t page);
+/** A page of the owner was read. */
+void slc_retries_success(SluiceDemandLoader *loader, uint32_t *owner, uint32_t page);
+/** All pages of the owner may be asked for again, now; or the owner goes. */
+void slc_retries_all(SluiceDemandLoader *loader, uint32_t *owner);
+/** False: there is no memory to keep it in mind. */
+bool slc_retries_add_opening(SluiceDemandLoader *loader, uint32_t texture);
+/** A texture was opened that could not be before. */
+void slc_retries_note_opened(SluiceDemandLoader *loader);
+/** What has rested may be asked for again; before changes are applied. */
+void slc_retries_advance(SluiceDemandLoader *loader);
+void slc_retries_everything(SluiceDemandLoader *loader);
+/** "retrying in 30 s", for a message; `size` bytes. Returns `words`. */
+const char *slc_retries_words(const SluiceDemandLoader *loader, char *words, size_t size);
+void slc_retries_finish(SluiceDemandLoader *loader);
 
 /* grids.c */
 /** Cells that name the texture show their grid's own colour. */
@@ -283,7 +367,9 @@ void slc_resources_finish(SluiceDemandLoader *loader);
 /* jobs.c */
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader);
 void slc_jobs_finish(SluiceDemandLoader *loader);
-/** NULL: too much is under way. TILE jobs have staging memory. */
+/** Whether a TILE job can be taken. Makes staging memory for it. */
+bool slc_job_tile_is_ready(SluiceDemandLoader *loader);
+/** NULL: too much is under way. TILE jobs have staging memory: only if one is ready. */
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind);
 void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job);
 uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job);
@@ -326,6 +412,8 @@ void slc_uploads_admit(SluiceDemandLoader *loader);
 void slc_uploads_drop(SluiceDemandLoader *loader);
 /** Copies what was admitted; how many tiles. */
 uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands);
+/** What launches from this one on copied is admitted again. */
+void slc_uploads_abandon(SluiceDemandLoader *loader, uint64_t launch);
 /** Staging memory that launches up to `processed` have read. */
 void slc_uploads_exhume(SluiceDemandLoader *loader);
 

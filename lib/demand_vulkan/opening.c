@@ -5,6 +5,7 @@
 #include "demand_vulkan/opening.h"
 
 #include "image/convert.h"
+#include "image/info.h"
 
 #include <string.h>
 
@@ -22,14 +23,12 @@ static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 static const char *find_trouble(const struct slc_demand_image *image)
 {
     const SluiceImageInfo *info = &image->info;
-    if (info->width == 0 || info->height == 0 || info->width > SLC_DEMAND_MAX_EXTENT ||
-        info->height > SLC_DEMAND_MAX_EXTENT)
-        return "its size is 0 or beyond 2^20";
+    const char *trouble = slc_image_info_trouble(info, SLC_LEVELS_ALL);
+    if (trouble)
+        return trouble;
     if (info->arrayLayerCount > 1)
-        return "it has layers";
-    if (info->mipLevelCount != slc_mip_count(slc_max_u32(info->width, info->height)))
-        return "it has not all levels";
-    if ((uint32_t)info->format >= SLUICE_FORMAT_COUNT || !image->loader->usable[info->format])
+        return "arrayLayerCount is beyond 1";
+    if (!image->loader->usable[info->format])
         return "the device does not sample and filter its format";
     return NULL;
 }

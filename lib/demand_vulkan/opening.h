@@ -6,7 +6,6 @@
 #include "demand_vulkan/loader.h"
 
 /** Largest width and height of images. */
-#define SLC_DEMAND_MAX_EXTENT (1u << 20)
 
 /**
  * The colour of the last level of a texture: its first texel, in linear light. Of BC6H, which takes

@@ -57,8 +57,10 @@ static SluiceResult create_buffers(struct slc_page_directory *d)
 
 static SluiceResult create_passes(struct slc_page_directory *d)
 {
-    const struct slc_compute_pass patch = {demand_patch_comp, sizeof demand_patch_comp, {0}};
-    const struct slc_compute_pass take = {demand_take_used_comp, sizeof demand_take_used_comp, {0}};
+    const struct slc_compute_pass patch = {
+        slc_demand_patch_comp, sizeof slc_demand_patch_comp, {0}};
+    const struct slc_compute_pass take = {
+        slc_demand_take_used_comp, sizeof slc_demand_take_used_comp, {0}};
     struct slc_compute_create_info info = {.binding_count = 4,
                                            .push_size = sizeof(struct SluiceDemandPatchParams),
                                            .set_count = d->slot_count,
@@ -128,10 +130,10 @@ void slc_page_directory_finish(struct slc_page_directory *dir)
     *dir = (struct slc_page_directory){0};
 }
 
-/* Room for one entry more, and for those of all blocks in use, so that hiding never fails. */
-static bool reserve_entry(struct slc_page_directory *d)
+bool slc_page_directory_reserve_entries(struct slc_page_directory *dir, uint32_t count)
 {
-    uint32_t needed = d->entry_list_count + d->pool.count + 1;
+    struct slc_page_directory *d = dir;
+    uint32_t needed = d->entry_list_count + d->pool.count + count;
     if (needed <= d->entry_list_capacity)
         return true;
     uint32_t capacity = slc_max_u32(slc_max_u32(FIRST_LIST, needed), 2 * d->entry_list_capacity);
@@ -155,12 +157,17 @@ static void set_entry(struct slc_page_directory *d, uint32_t entry, uint32_t blo
     d->entry_list[d->entry_list_count++] = entry;
 }
 
+void slc_page_directory_change_entry(struct slc_page_directory *dir, uint32_t entry)
+{
+    set_entry(dir, entry, dir->entries[entry]);
+}
+
 static SluiceResult find_block(struct slc_page_directory *d, uint32_t entry, uint32_t *block)
 {
     *block = d->entries[entry];
     if (*block != SLUICE_DEMAND_NO_BLOCK)
         return SLUICE_SUCCESS;
-    if (!reserve_entry(d))
+    if (!slc_page_directory_reserve_entries(d, 1))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     SluiceResult result = slc_page_blocks_take(&d->pool, entry, block);
     if (result == SLUICE_SUCCESS)
@@ -200,6 +207,13 @@ bool slc_page_directory_has(const struct slc_page_directory *dir, uint32_t page)
     uint32_t block = dir->entries[page / SLUICE_DEMAND_BLOCK_PAGES];
     return block != SLUICE_DEMAND_NO_BLOCK &&
            dir->pool.table[block].resident >> page % SLUICE_DEMAND_BLOCK_PAGES & 1;
+}
+
+bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value)
+{
+    uint32_t block = dir->entries[page / SLUICE_DEMAND_BLOCK_PAGES];
+    return slc_page_directory_has(dir, page) &&
+           dir->pool.table[block].words[page % SLUICE_DEMAND_BLOCK_PAGES] == value;
 }
 
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page)

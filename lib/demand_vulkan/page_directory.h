@@ -55,7 +55,9 @@ struct slc_page_directory {
     uint32_t recorded_end; ///< the device has no blocks in use from here on
     struct slc_page_directory_slot {
         struct slc_buffer upload;
-        uint32_t used_end; ///< blocks whose used bits were taken
+        uint32_t patch_count; ///< in `upload`, of the last record
+        bool cleared;         ///< that record cleared the device's buffers
+        uint32_t used_end;    ///< blocks whose used bits were taken
     } slots[SLC_COMPUTE_SETS];
 };
 
@@ -85,6 +87,8 @@ SluiceResult slc_page_directory_refuse(struct slc_page_directory *dir, uint32_t 
 /** Absent: its bit in the mask is cleared, its words stay what they are. Of a page that is neither
  *  shown nor refused: nothing. */
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page);
+/** Shown with this value, of which the low 32 bits count. */
+bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value);
 /** Shown or refused. */
 bool slc_page_directory_has(const struct slc_page_directory *dir, uint32_t page);
 
@@ -92,13 +96,17 @@ bool slc_page_directory_has(const struct slc_page_directory *dir, uint32_t page)
  * Records what changed since the last time, and, the first time, clears the device's buffers. With
  * barriers: from all shaders before to all shaders and transfers after, nothing if nothing changed.
  * Binds a compute pipeline and set 0. What is recorded must be submitted, in the order of the
- * calls. `slot`: its last submission is complete. Errors, with nothing recorded and all changes
- * kept: OUT_OF_DEVICE_MEMORY, VULKAN, when the slot must grow; LIMIT_EXCEEDED if so much has
- * changed that the slot would be beyond the device's maxStorageBufferRange, eight bytes for each
- * word.
+ * calls, or abandoned. `slot`: its last submission is complete. Errors, with nothing recorded and
+ * all changes kept: OUT_OF_DEVICE_MEMORY, VULKAN, when the slot must grow; LIMIT_EXCEEDED if so
+ * much has changed that the slot would be beyond the device's maxStorageBufferRange, eight bytes
+ * for each word.
  */
 SluiceResult slc_page_directory_record(struct slc_page_directory *dir, VkCommandBuffer commands,
                                        uint32_t slot);
+
+/** The last record of the slot was never submitted, nor were those after it, whose slots are
+ * abandoned as well: what it was to change, the next record changes. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_page_directory_abandon(struct slc_page_directory *dir, uint32_t slot);
 
 /**
  * Takes the used bits of all blocks in use: copies them into the slot and clears them. With
@@ -119,5 +127,12 @@ struct slc_page_used_iterator {
  */
 bool slc_page_directory_next_used(const struct slc_page_directory *dir, uint32_t slot,
                                   struct slc_page_used_iterator *iterator, uint32_t *page);
+
+/* Of page_directory.c and page_directory_record.c alone. */
+/** Room for so many entries more in the list, and for those of all blocks in use, so that hiding
+ *  never fails. False: no memory. */
+bool slc_page_directory_reserve_entries(struct slc_page_directory *dir, uint32_t count);
+/** The device may have another word there. */
+void slc_page_directory_change_entry(struct slc_page_directory *dir, uint32_t entry);
 
 #endif /* SLC_DEMAND_VULKAN_PAGE_DIRECTORY_H */

@@ -153,6 +153,8 @@ SluiceResult slc_page_directory_record(struct slc_page_directory *dir, VkCommand
         if (result != SLUICE_SUCCESS)
             return result;
     }
+    dir->slots[slot].patch_count = 0;
+    dir->slots[slot].cleared = !dir->cleared;
     if (!dir->cleared)
         record_clear(dir, commands);
     if (!dir->changed)
@@ -162,8 +164,51 @@ SluiceResult slc_page_directory_record(struct slc_page_directory *dir, VkCommand
     slc_page_blocks_unmark(&dir->pool);
     dir->changed = false;
     const struct SluiceDemandPatchParams params = {(uint32_t)(end - first), 0};
+    dir->slots[slot].patch_count = params.count;
     if (params.count)
         record_dispatch(dir, &dir->patch, commands, slot, &params);
+    return SLUICE_SUCCESS;
+}
+
+/* A word of a block that is in use, which the device may not have. Those of free ones do not
+ * matter: who takes them writes all that counts. */
+static void change_again(struct slc_page_directory *d, uint32_t buffer, uint32_t word)
+{
+    const uint32_t pages = SLUICE_DEMAND_BLOCK_PAGES;
+    bool mask = buffer == SLUICE_PATCH_MASKS;
+    uint32_t index = word / (mask ? 2 : SLUICE_DEMAND_BLOCK_WORDS);
+    uint32_t at = word % (mask ? 2 : SLUICE_DEMAND_BLOCK_WORDS);
+    if (slc_page_blocks_is_free(&d->pool, index))
+        return;
+    struct slc_page_block *block = &d->pool.table[index];
+    if (mask && at == 0)
+        block->device_resident = ~block->resident;
+    else if (mask)
+        block->fresh = true;
+    else if (at < pages)
+        block->changed |= block->resident & 1u << at;
+    else
+        block->changed_wide |= block->resident & 1u << (at - pages);
+    slc_page_blocks_mark(&d->pool, index);
+}
+
+SluiceResult slc_page_directory_abandon(struct slc_page_directory *dir, uint32_t slot)
+{
+    const struct slc_page_directory_slot *s = &dir->slots[slot];
+    const struct SluiceDemandPatch *patches = s->upload.mapped;
+    const uint32_t mask = (1u << SLUICE_PATCH_BUFFER_SHIFT) - 1;
+    if (!slc_page_directory_reserve_entries(dir, s->patch_count))
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    dir->cleared &= !s->cleared;
+    for (uint32_t i = 0; i < s->patch_count; i++) {
+        uint32_t buffer = patches[i].target >> SLUICE_PATCH_BUFFER_SHIFT;
+        uint32_t word = patches[i].target & mask;
+        if (buffer == SLUICE_PATCH_DIRECTORY)
+            slc_page_directory_change_entry(dir, word);
+        else
+            change_again(dir, buffer, word);
+    }
+    dir->changed |= s->patch_count > 0;
     return SLUICE_SUCCESS;
 }
 

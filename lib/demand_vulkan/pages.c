@@ -79,5 +79,5 @@ void slc_pages_forget_requests(SluiceDemandLoader *loader, uint32_t first, uint6
         loader->forgotten = runs;
         loader->forgotten_capacity = capacity;
     }
-    loader->forgotten[loader->forgotten_count++] = (struct slc_page_run){first, count};
+    loader->forgotten[loader->forgotten_count++] = (struct slc_page_run){first, count, 0};
 }

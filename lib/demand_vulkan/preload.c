@@ -137,7 +137,7 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         return over;
     if (!preload->planned)
         plan(loader, preload, image);
-    while (loader->free_tile_count) {
+    while (slc_job_tile_is_ready(loader)) {
         uint32_t page;
         SluiceResult result;
         if (!has_room(loader) || !next_page(preload, image, &page))

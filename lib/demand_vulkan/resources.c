@@ -123,6 +123,7 @@ static SluiceResult create(SluiceDemandLoader *loader, const SluiceDemandResourc
     new->state = SLC_RESOURCE_LIVE;
     new->generation++;
     new->info = *info;
+    new->told = false;
     return SLUICE_SUCCESS;
 }
 
@@ -232,13 +233,19 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
     if (filled && !job->stale && reserve_eviction(loader)) {
         loader->held_count++;
         slc_residency_loaded(loader->residency, job->page, job->value);
+        slc_retries_success(loader, &resource->retry_group, job->page);
+        resource->told = resource->told && resource->retry_group != 0;
     } else {
         bool refuse = !filled && !job->stale && !slc_result_may_pass(result);
+        char retrying[48];
         if (filled) /* which no launch has seen */
             tell_evicted(resource, page, job->value);
-        if (refuse)
-            slc_log(&loader->info.log, SLUICE_LOG_WARNING, "page %u of a resource has no value: %s",
-                    page, sluiceResultString(result));
+        if (refuse && !resource->told)
+            slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+                    "page %u of a resource has no value: %s; %s.", page, sluiceResultString(result),
+                    slc_retries_words(loader, retrying, sizeof retrying));
+        resource->told |= refuse;
+        refuse = refuse && slc_retries_add(loader, &resource->retry_group, job->page);
         slc_residency_failed(loader->residency, job->page, refuse);
     }
     resource->job_count--;
@@ -278,6 +285,7 @@ void slc_resources_exhume(SluiceDemandLoader *loader)
 static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource, uint32_t first,
                    uint32_t count)
 {
+    slc_retries_all(loader, &resource->retry_group);
     if (resource->job_count)
         slc_jobs_drop(loader, SLC_JOB_RESOURCE, resource->index, first, count);
     slc_residency_forget(loader->residency, first, count);

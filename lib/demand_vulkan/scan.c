@@ -87,15 +87,15 @@ static SluiceResult create_buffers(struct slc_demand_scan *s, const struct slc_v
 static SluiceResult create_passes(struct slc_demand_scan *s, const struct slc_vk *vk)
 {
     const struct slc_compute_pass passes[PASSES] = {
-        [COMPACT] = {demand_compact_comp,
-                     sizeof demand_compact_comp,
+        [COMPACT] = {slc_demand_compact_comp,
+                     sizeof slc_demand_compact_comp,
                      {slc_compute_group_size(vk, SLUICE_SCAN_COMPACT_SIZE)}},
-        [COUNT] = {demand_count_comp, sizeof demand_count_comp, {0}},
-        [PLACE] = {demand_place_comp,
-                   sizeof demand_place_comp,
+        [COUNT] = {slc_demand_count_comp, sizeof slc_demand_count_comp, {0}},
+        [PLACE] = {slc_demand_place_comp,
+                   sizeof slc_demand_place_comp,
                    {slc_compute_group_size(vk, SLUICE_SCAN_PLACE_SIZE)}},
-        [LIST] = {demand_list_comp, sizeof demand_list_comp, {0}},
-        [WHOLE] = {demand_whole_comp, sizeof demand_whole_comp, {0}}};
+        [LIST] = {slc_demand_list_comp, sizeof slc_demand_list_comp, {0}},
+        [WHOLE] = {slc_demand_whole_comp, sizeof slc_demand_whole_comp, {0}}};
     struct slc_compute_create_info info = {.binding_count = 6,
                                            .push_size = sizeof(struct SluiceDemandScanParams),
                                            .set_count = 1,

@@ -24,6 +24,7 @@ void slc_table_mirror_finish(struct slc_table_mirror *mirror)
     if (mirror->capacity) {
         slc_free(mirror->cb, mirror->elements, mirror->capacity, SLC_MIRROR_ELEMENT);
         slc_free(mirror->cb, mirror->changed, mirror->capacity / 64, sizeof *mirror->changed);
+        slc_free(mirror->cb, mirror->recorded, mirror->capacity / 64, sizeof *mirror->recorded);
     }
     *mirror = (struct slc_table_mirror){0};
 }
@@ -38,20 +39,25 @@ SluiceResult slc_table_mirror_reserve(struct slc_table_mirror *mirror, uint32_t 
     uint32_t capacity = slc_max_u32(slc_max_u32(2 * old, 256), slc_div_up_u32(count, 64) * 64);
     struct slc_mirror_element *elements = slc_alloc(mirror->cb, capacity, sizeof *elements);
     uint64_t *changed = slc_calloc(mirror->cb, capacity / 64, sizeof *changed);
-    if (!elements || !changed) {
+    uint64_t *recorded = slc_calloc(mirror->cb, capacity / 64, sizeof *recorded);
+    if (!elements || !changed || !recorded) {
         slc_free(mirror->cb, elements, capacity, sizeof *elements);
         slc_free(mirror->cb, changed, capacity / 64, sizeof *changed);
+        slc_free(mirror->cb, recorded, capacity / 64, sizeof *recorded);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
     memset(elements + old, 0, (size_t)(capacity - old) * sizeof *elements);
     if (old) {
         memcpy(elements, mirror->elements, (size_t)old * sizeof *elements);
         memcpy(changed, mirror->changed, old / 64 * sizeof *changed);
+        memcpy(recorded, mirror->recorded, old / 64 * sizeof *recorded);
         slc_free(mirror->cb, mirror->elements, old, sizeof *elements);
         slc_free(mirror->cb, mirror->changed, old / 64, sizeof *changed);
+        slc_free(mirror->cb, mirror->recorded, old / 64, sizeof *recorded);
     }
     mirror->elements = elements;
     mirror->changed = changed;
+    mirror->recorded = recorded;
     mirror->capacity = capacity;
     return SLUICE_SUCCESS;
 }
@@ -90,12 +96,15 @@ static void extend(const struct slc_table_mirror *mirror, const struct slc_vk *v
 }
 
 void slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
-                             VkCommandBuffer commands)
+                             VkCommandBuffer commands, uint64_t launch)
 {
     struct run run = {0};
+    if (slc_table_mirror_has_changes(mirror))
+        mirror->recorded_launch = launch;
     for (uint32_t word = mirror->first_word; word < mirror->end_word; word++) {
         uint64_t bits = mirror->changed[word];
         mirror->changed[word] = 0;
+        mirror->recorded[word] |= bits;
         for (uint32_t bit = 0; bits >> bit; bit++) {
             if (bits >> bit & 1)
                 extend(mirror, vk, commands, &run, word * 64 + bit);
@@ -106,4 +115,25 @@ void slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_v
     flush(mirror, vk, commands, &run);
     mirror->first_word = UINT32_MAX;
     mirror->end_word = 0;
+}
+
+void slc_table_mirror_complete(struct slc_table_mirror *mirror, uint64_t launch)
+{
+    if (mirror->recorded_launch == 0 || mirror->recorded_launch > launch)
+        return;
+    memset(mirror->recorded, 0, mirror->capacity / 64 * sizeof *mirror->recorded);
+    mirror->recorded_launch = 0;
+}
+
+void slc_table_mirror_abandon(struct slc_table_mirror *mirror, uint64_t launch)
+{
+    if (mirror->recorded_launch < launch)
+        return;
+    for (uint32_t word = 0; word < mirror->capacity / 64; word++) {
+        if (!mirror->recorded[word])
+            continue;
+        mirror->changed[word] |= mirror->recorded[word];
+        mirror->first_word = slc_min_u32(mirror->first_word, word);
+        mirror->end_word = slc_max_u32(mirror->end_word, word + 1);
+    }
 }

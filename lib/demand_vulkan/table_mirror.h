@@ -20,6 +20,8 @@ struct slc_table_mirror {
     uint32_t max_count;                  ///< elements
     struct slc_mirror_element *elements; ///< owned; zero until written
     uint64_t *changed;                   ///< owned; a bit per element
+    uint64_t *recorded;                  ///< owned; of those, by launches that are not over
+    uint64_t recorded_launch;            ///< the last that recorded any; 0: none is set
     uint32_t capacity;                   ///< a multiple of 64
     uint32_t first_word, end_word;       ///< of `changed`: nothing is set outside
 };
@@ -45,8 +47,13 @@ static inline bool slc_table_mirror_has_changes(const struct slc_table_mirror *m
     return mirror->first_word < mirror->end_word;
 }
 
-/** Transfers; the caller puts barriers around. */
+/** Transfers of `launch`; the caller puts barriers around. */
 void slc_table_mirror_record(struct slc_table_mirror *mirror, const struct slc_vk *vk,
-                             VkCommandBuffer commands);
+                             VkCommandBuffer commands, uint64_t launch);
+/** Launches up to this one are over. */
+void slc_table_mirror_complete(struct slc_table_mirror *mirror, uint64_t launch);
+/** Launches from this one on were never submitted: what they recorded, and perhaps more, has
+ * changed again. */
+void slc_table_mirror_abandon(struct slc_table_mirror *mirror, uint64_t launch);
 
 #endif /* SLC_DEMAND_VULKAN_TABLE_MIRROR_H */

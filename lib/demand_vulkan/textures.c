@@ -1,8 +1,10 @@
 /* Textures by id: what the application creates, and what shaders see of it in the table. */
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "vulkan/address_mode.h"
 
 #include <sluice/shared/demand.h>
 
@@ -48,13 +50,22 @@ static struct SluiceDemandTexture *change_entry(SluiceDemandLoader *loader, uint
     return slc_table_mirror_change(&loader->table, index);
 }
 
-static void write_sampler(struct SluiceDemandTexture *entry, const SluiceDemandSampler *s)
+static uint32_t mode_bits(VkSamplerAddressMode u, VkSamplerAddressMode v)
 {
+    return (uint32_t)u << SLUICE_DEMAND_MODE_U_SHIFT | (uint32_t)v << SLUICE_DEMAND_MODE_V_SHIFT;
+}
+
+static void write_sampler(SluiceDemandLoader *loader, uint32_t index, const SluiceDemandSampler *s)
+{
+    struct SluiceDemandTexture *entry = change_entry(loader, index);
+    struct slc_demand_texture *texture = &loader->textures[index];
+    texture->modes[0] = s->addressModeU;
+    texture->modes[1] = s->addressModeV;
+    texture->explicit_modes = s->explicitAddressModes;
     *entry = (struct SluiceDemandTexture){
         .state = SLUICE_DEMAND_TEXTURE_UNKNOWN,
         .shape =
-            (uint32_t)s->addressModeU << SLUICE_DEMAND_MODE_U_SHIFT |
-            (uint32_t)s->addressModeV << SLUICE_DEMAND_MODE_V_SHIFT |
+            mode_bits(s->addressModeU, s->addressModeV) |
             (s->filter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST : 0) |
             (s->mipmapFilter == SLUICE_DEMAND_FILTER_NEAREST ? SLUICE_DEMAND_NEAREST_LEVEL : 0),
         .maxAnisotropy = fmaxf(1, s->maxAnisotropy),
@@ -95,6 +106,7 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
     struct slc_demand_texture *texture = &loader->textures[*index];
     *texture = (struct slc_demand_texture){.generation = texture->generation + 1,
                                            .image = SLC_NONE,
+                                           .retry_queued = texture->retry_queued,
                                            .base = SLC_NONE,
                                            .next = SLC_NONE};
     loader->texture_count++;
@@ -119,7 +131,7 @@ SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
     texture->kind = SLC_TEXTURE_IMAGE;
     texture->source = pCreateInfo->image;
     memcpy(texture->failure_color, pCreateInfo->failureColor, sizeof texture->failure_color);
-    write_sampler(change_entry(loader, index), &pCreateInfo->sampler);
+    write_sampler(loader, index, &pCreateInfo->sampler);
     *pTextureId = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
 }
@@ -140,6 +152,28 @@ static void show_failed(SluiceDemandLoader *loader, uint32_t index, const float 
     memcpy(entry->baseColor, color, sizeof entry->baseColor);
 }
 
+/* Those of the sampler, or what the image records. */
+static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
+                             const SluiceImageInfo *info)
+{
+    const struct slc_demand_texture *texture = &loader->textures[index];
+    VkSamplerAddressMode u =
+        slc_address_mode(texture->modes[0], texture->explicit_modes, info->addressModeU);
+    VkSamplerAddressMode v =
+        slc_address_mode(texture->modes[1], texture->explicit_modes, info->addressModeV);
+    bool differs = slc_address_mode_differs(u, info->addressModeU) ||
+                   slc_address_mode_differs(v, info->addressModeV);
+    if (differs && !loader->told_of_modes)
+        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+                "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
+                "%d, %d (VkSamplerAddressMode)",
+                info->pName ? info->pName : "image", (int)u, (int)v,
+                (int)info->addressModeU - SLUICE_IMAGE_ADDRESS_MODE_REPEAT,
+                (int)info->addressModeV - SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+    loader->told_of_modes |= differs;
+    return mode_bits(u, v);
+}
+
 static void show_image(SluiceDemandLoader *loader, uint32_t index,
                        const struct slc_demand_image *image)
 {
@@ -149,7 +183,8 @@ static void show_image(SluiceDemandLoader *loader, uint32_t index,
     entry->state = SLUICE_DEMAND_TEXTURE_OPEN;
     entry->width = image->info.width;
     entry->height = image->info.height;
-    entry->shape = (entry->shape & SAMPLER_BITS) | slc_log2_u32(image->tile_width) |
+    entry->shape = (entry->shape & SAMPLER_BITS & ~mode_bits(7, 7)) |
+                   choose_modes(loader, index, &image->info) | slc_log2_u32(image->tile_width) |
                    slc_log2_u32(image->tile_height) << SLUICE_DEMAND_TILE_HEIGHT_SHIFT |
                    image->info.mipLevelCount << SLUICE_DEMAND_LEVEL_COUNT_SHIFT |
                    image->regular_count << SLUICE_DEMAND_REGULAR_SHIFT |
@@ -201,7 +236,7 @@ SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
     texture->base = base;
     texture->next = of->next;
     of->next = index;
-    write_sampler(change_entry(loader, index), pSampler);
+    write_sampler(loader, index, pSampler);
     if (of->failed)
         show_failed(loader, index, of->failure_color);
     else if (of->image != SLC_NONE && loader->images[of->image]->state == SLC_IMAGE_OPEN)
@@ -301,7 +336,7 @@ SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader, SluiceDemandTe
     if (texture->image != SLC_NONE)
         slc_image_detach(loader, loader->images[texture->image]);
     texture->source = *pImage;
-    texture->failed = false;
+    texture->failed = texture->told = texture->told_tail = false;
     slc_texture_show_unknown(loader, index);
     return SLUICE_SUCCESS;
 }
@@ -320,16 +355,44 @@ SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->kind == SLC_TEXTURE_GRID)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (texture->failed) { /* perhaps it is better now */
-        texture->failed = false;
-        slc_texture_show_unknown(loader, index);
-    } else if (texture->image != SLC_NONE) {
+    if (!slc_texture_retry(loader, index) && texture->image != SLC_NONE)
         slc_image_invalidate(loader, loader->images[texture->image]);
-    }
     return SLUICE_SUCCESS;
 }
 
-void slc_textures_finish(SluiceDemandLoader *loader)
+bool slc_texture_retry(SluiceDemandLoader *loader, uint32_t index)
+{
+    struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->kind != SLC_TEXTURE_IMAGE || !texture->failed)
+        return false;
+    texture->failed = false;
+    slc_texture_show_unknown(loader, index);
+    return true;
+}
+
+SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId)
+{
+    uint32_t index;
+    if (!loader)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (textureId == SLUICE_NO_DEMAND_TEXTURE) {
+        slc_retries_everything(loader);
+        return SLUICE_SUCCESS;
+    }
+    SluiceResult result = slc_texture_find(loader, textureId, &index);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (loader->textures[index].kind == SLC_TEXTURE_VARIANT)
+        index = loader->textures[index].base;
+    const struct slc_demand_texture *texture = &loader->textures[index];
+    if (texture->kind == SLC_TEXTURE_GRID)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (!slc_texture_retry(loader, index) && texture->image != SLC_NONE)
+        slc_retries_all(loader, &loader->images[texture->image]->retry_group);
+    return SLUICE_SUCCESS;
+}
+
+void slc_demand_textures_finish(SluiceDemandLoader *loader)
 {
     slc_free(&loader->cb, loader->textures, loader->texture_capacity, sizeof *loader->textures);
     loader->textures = NULL;

@@ -8,7 +8,9 @@ SluiceResult slc_tile_memory_init(struct slc_tile_memory *memory, const struct s
                                   const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                                   struct slc_page_views *views, uint64_t budget)
 {
-    *memory = (struct slc_tile_memory){.limit = budget / SLC_TILE_SIZE};
+    uint64_t most = slc_page_chunks_capacity(views->count, caps->max_image_array_layers);
+    uint64_t limit = budget / SLC_TILE_SIZE;
+    *memory = (struct slc_tile_memory){.limit = limit < most ? limit : most};
     SluiceResult result = slc_page_cache_init(&memory->cache, vk, caps, cb, views);
     memory->cache.max_size = budget;
     return result;

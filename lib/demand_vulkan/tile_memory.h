@@ -4,12 +4,12 @@
 #ifndef SLC_DEMAND_VULKAN_TILE_MEMORY_H
 #define SLC_DEMAND_VULKAN_TILE_MEMORY_H
 
-#include "demand/residency.h"
+#include "demand/page_residency.h"
 #include "vulkan/page_cache.h"
 
 struct slc_tile_memory {
     struct slc_page_cache cache;
-    uint64_t limit;  ///< tiles that the budget holds
+    uint64_t limit;  ///< tiles that the budget and the chunks hold
     bool short_of;   ///< a place was asked for and not there since the last look
     uint32_t wanted; ///< the format it was asked for
 };

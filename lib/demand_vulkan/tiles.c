@@ -104,7 +104,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     *result = SLUICE_SUCCESS;
     if (image->state != SLC_IMAGE_OPEN)
         return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
-    if (loader->free_tile_count == 0)
+    if (!slc_job_tile_is_ready(loader))
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
     uint32_t index, level = find_level(image, page, &index);
@@ -126,20 +126,45 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     return SLC_REQUEST_POSTPONED;
 }
 
-static void log_failure(const SluiceDemandLoader *loader, const struct slc_demand_image *image,
+/* Once for a file, until it is well again: the statistics count the rest. */
+static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_image *image,
                         uint32_t page, SluiceResult result)
 {
-    const char *name = image->info.pName ? image->info.pName : "image";
+    const char *name = slc_image_name(image);
+    struct slc_demand_texture *texture = &loader->textures[image->texture];
+    char retrying[48];
+    slc_retries_words(loader, retrying, sizeof retrying);
     uint32_t index, level = find_level(image, page, &index);
-    if (level == image->regular_count)
+    if (level == image->regular_count && !texture->told)
         slc_log(&loader->info.log, SLUICE_LOG_ERROR,
-                "%s: levels from %u on cannot be read, and so it cannot be sampled: %s", name,
-                level, sluiceResultString(result));
-    else
+                "%s: levels from %u on cannot be read, and so it cannot be sampled: %s; %s.", name,
+                level, sluiceResultString(result), retrying);
+    else if (level < image->regular_count && !image->told)
         slc_log(&loader->info.log, SLUICE_LOG_WARNING,
-                "%s: level %u, tile (%u, %u) cannot be read: %s", name, level,
-                index % slc_image_level_width(image, level),
-                index / slc_image_level_width(image, level), sluiceResultString(result));
+                "%s: level %u, tile (%u, %u) cannot be read: %s. Showing a coarser level; %s.",
+                name, level, index % slc_image_level_width(image, level),
+                index / slc_image_level_width(image, level), sluiceResultString(result), retrying);
+    if (level == image->regular_count)
+        texture->told = texture->told_tail = true;
+    else
+        image->told = true;
+}
+
+/* A texture whose tail comes is well, and so is an image with a tile that could not be read. */
+static void note_success(SluiceDemandLoader *loader, struct slc_demand_image *image, uint32_t page)
+{
+    struct slc_demand_texture *texture = &loader->textures[image->texture];
+    bool tail = page == image->tail_page && image->state == SLC_IMAGE_OPEN;
+    bool had_group = image->retry_group != 0;
+    slc_retries_success(loader, &image->retry_group, page);
+    bool well = (tail && texture->told) || (image->told && had_group && image->retry_group == 0);
+    if (well)
+        slc_log(&loader->info.log, SLUICE_LOG_INFO, "%s: can be read again.",
+                slc_image_name(image));
+    if (well)
+        image->told = false;
+    if (tail)
+        texture->told = texture->told_tail = false;
 }
 
 void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result,
@@ -149,16 +174,18 @@ void slc_tile_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, S
     loader->counts.bytesRead += size;
     loader->reading_count--;
     if (result == SLUICE_SUCCESS && !job->stale) {
+        note_success(loader, image, job->page);
         slc_job_list_append(loader, &loader->arrived, job);
         return;
     }
     uint32_t page = job->page;
-    bool refuse = !job->stale && !slc_result_may_pass(result);
+    bool failed = !job->stale && !slc_result_may_pass(result), tail = page == image->tail_page;
+    bool refuse = failed && (tail || slc_retries_add(loader, &image->retry_group, page));
     slc_residency_failed(loader->residency, page, refuse);
-    if (refuse)
+    if (failed)
         log_failure(loader, image, page, result);
     slc_job_free(loader, job);
     slc_image_release(loader, image);
-    if (refuse && page == image->tail_page && image->state == SLC_IMAGE_OPEN)
+    if (failed && tail && image->state == SLC_IMAGE_OPEN)
         slc_image_fail(loader, image);
 }

@@ -9,6 +9,7 @@ struct copies {
     SluiceDemandLoader *loader;
     VkCommandBuffer commands;
     VkImage target;
+    VkBuffer source;
     uint32_t count;
     VkBufferImageCopy list[COPY_BATCH];
 };
@@ -54,7 +55,7 @@ void slc_uploads_drop(SluiceDemandLoader *loader)
 static void flush(struct copies *c)
 {
     if (c->count)
-        c->loader->vk.CmdCopyBufferToImage(c->commands, c->loader->staging.buffer, c->target,
+        c->loader->vk.CmdCopyBufferToImage(c->commands, c->source, c->target,
                                            VK_IMAGE_LAYOUT_GENERAL, c->count, c->list);
     c->count = 0;
 }
@@ -69,24 +70,29 @@ static void add(struct copies *c, const struct slc_demand_job *job,
 {
     VkImage target = slc_page_image(&c->loader->tiles.cache, job->place);
     uint32_t block = job->image->blocks ? 4 : 1;
-    if (c->count == COPY_BATCH || target != c->target)
+    uint32_t slot = slc_job_index(c->loader, job);
+    VkBuffer source = slc_staging_buffer(&c->loader->staging, slot);
+    if (c->count == COPY_BATCH || target != c->target || source != c->source)
         flush(c);
     c->target = target;
+    c->source = source;
     /* A level may end inside the page, where only whole blocks may end. */
     c->list[c->count++] = (VkBufferImageCopy){
-        .bufferOffset = (uint64_t)slc_job_index(c->loader, job) * SLC_TILE_SIZE + part->offset,
+        .bufferOffset = slc_staging_offset(slot) + part->offset,
         .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, job->place & 0xFFFFu, 1},
         .imageOffset = {(int32_t)part->x, (int32_t)part->y, 0},
         .imageExtent = {round_up(part->region.width, block), round_up(part->region.height, block),
                         1}};
-    c->loader->counts.bytesUploaded +=
-        sluiceFormatRegionSize(job->image->info.format, part->region.width, part->region.height);
+    if (!job->counted)
+        c->loader->counts.bytesUploaded += sluiceFormatRegionSize(
+            job->image->info.format, part->region.width, part->region.height);
 }
 
-/* Forgotten since it was admitted, because the page table had no room. */
+/* False: forgotten since it was admitted, because the page table had no room, or while its launch
+ * was abandoned; then even its place may be another's. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
-    return !job->stale && slc_page_directory_has(&loader->directory, job->page);
+    return !job->stale && slc_page_directory_shows(&loader->directory, job->page, job->place);
 }
 
 uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands)
@@ -102,6 +108,7 @@ uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands
             count++;
         }
         job->launch = loader->launch;
+        job->counted = true;
         slc_image_release(loader, job->image);
         slc_job_list_append(loader, &loader->copied, job);
     }
@@ -114,4 +121,20 @@ void slc_uploads_exhume(SluiceDemandLoader *loader)
     while (loader->copied.first != SLC_NONE &&
            loader->jobs[loader->copied.first].launch <= loader->processed)
         slc_job_free(loader, slc_job_list_pop(loader, &loader->copied));
+}
+
+void slc_uploads_abandon(SluiceDemandLoader *loader, uint64_t launch)
+{
+    struct slc_job_list kept = {SLC_NONE, SLC_NONE};
+    for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->copied));) {
+        if (job->launch < launch) {
+            slc_job_list_append(loader, &kept, job);
+        } else if (job->stale) { /* its image may be another's by now */
+            slc_job_free(loader, job);
+        } else {
+            job->image->job_count++;
+            slc_job_list_append(loader, &loader->admitted, job);
+        }
+    }
+    loader->copied = kept;
 }

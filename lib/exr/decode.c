@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { BATCH = 64 }; /* texels that are converted at once */
+
 SluiceFormat slc_exr_natural_format(const struct slc_exr_file *file)
 {
     bool is_half = file->widest == EXR_PIXEL_HALF;
@@ -107,7 +109,6 @@ struct component {
 static void convert_span(exr_pixel_type_t type, const unsigned char *source,
                          const struct component *component, char *result, uint32_t count)
 {
-    enum { BATCH = 64 };
     float values[BATCH];
     uint32_t size = type == EXR_PIXEL_HALF ? 2 : 4;
     if (type == EXR_PIXEL_HALF && component->size == 2) {
@@ -134,16 +135,71 @@ static int32_t find_channel(const struct slc_exr_file *file, uint32_t component_
     return component_count == 1 && file->channel_count == 1 ? 0 : file->rgba[c];
 }
 
+/* R, G and B of part of a row, in the file's bytes, where they are converted to other primaries. */
+static void load_colors(const struct slc_exr_file *file, const unsigned char *row,
+                        uint32_t chunk_width, uint32_t first, float *colors, uint32_t count)
+{
+    float values[BATCH];
+    for (uint32_t c = 0; c < 3; c++) {
+        const struct slc_exr_channel *channel = &file->channels[file->rgba[c]];
+        load_span(channel->type,
+                  row + (size_t)chunk_width * channel->offset + (size_t)first * channel->size,
+                  values, count);
+        for (uint32_t i = 0; i < count; i++)
+            colors[3 * i + c] = values[i];
+    }
+}
+
+/* Halves that were infinite or NaN in the file stay so. */
+static void store_kept_halves(const float *values, char *result, size_t stride, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++, result += stride) {
+        uint32_t bits = slc_float_bits(values[i]);
+        uint16_t half = slc_half_from_float(values[i]);
+        if ((bits & 0x7F800000u) == 0x7F800000u)
+            half = (uint16_t)((bits >> 16 & 0x8000u) | 0x7C00u | (bits >> 13 & 0x3FFu));
+        memcpy(result, &half, 2);
+    }
+}
+
+static void deliver_colors(struct slc_exr_file *file, const unsigned char *row,
+                           const SluiceImageRegion *chunk, const SluiceImageRegion *shared,
+                           const struct slc_exr_target *target, char *result)
+{
+    uint32_t component_count = slc_min_u32(3, slc_format_channel_count(target->format));
+    size_t texel_size = sluiceFormatTexelSize(target->format);
+    uint32_t size = (uint32_t)texel_size / slc_format_channel_count(target->format);
+    bool encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB;
+    for (uint32_t done = 0; done < shared->width; done += BATCH, result += BATCH * texel_size) {
+        float colors[3 * BATCH], values[BATCH];
+        uint32_t count = slc_min_u32(BATCH, shared->width - done);
+        load_colors(file, row, chunk->width, shared->x - chunk->x + done, colors, count);
+        slc_convert_colors(file->to_rec709, colors, count);
+        for (uint32_t c = 0; c < component_count; c++) {
+            for (uint32_t i = 0; i < count; i++)
+                values[i] = colors[3 * i + c];
+            if (size == 2 && file->channels[file->rgba[c]].type == EXR_PIXEL_HALF)
+                store_kept_halves(values, result + c * size, texel_size, count);
+            else
+                store_span(size, encode, values, result + c * size, texel_size, count);
+        }
+    }
+}
+
 /* The part of a row that chunk and target share: every component from its channel. */
-static void deliver_row(const struct slc_exr_file *file, const unsigned char *row,
+static void deliver_row(struct slc_exr_file *file, const unsigned char *row,
                         const SluiceImageRegion *chunk, const SluiceImageRegion *shared,
                         const struct slc_exr_target *target, char *result)
 {
     uint32_t component_count = slc_format_channel_count(target->format);
     size_t texel_size = sluiceFormatTexelSize(target->format);
     struct component component = {(uint32_t)texel_size / component_count, false, texel_size};
+    if (file->converts)
+        deliver_colors(file, row, chunk, shared, target, result);
     for (uint32_t c = 0; c < component_count; c++, result += component.size) {
         component.encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB && c < 3;
+        if (file->converts && c < 3)
+            continue;
         int32_t index = find_channel(file, component_count, c);
         if (index < 0) {
             fill_span(c == 3 ? 1.0f : 0.0f, &component, result, shared->width);

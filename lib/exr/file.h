@@ -9,6 +9,7 @@
 
 #include <sluice/image.h>
 
+#include "exr/primaries.h"
 #include "image/input_file.h"
 
 #include <openexr.h>
@@ -17,8 +18,10 @@
 
 /** Largest width and height; a texture cannot be larger either. */
 #define SLC_EXR_MAX_SIZE (1u << 20)
-/** Of R, G, B, A or Y, A. */
+/** Channels that are read: R, G, B, A or Y, A. */
 #define SLC_EXR_MAX_CHANNELS 4
+/** Channels that a file may have, so that the bytes of a chunk stay far below 2^64. */
+#define SLC_EXR_MAX_FILE_CHANNELS 1024
 
 enum slc_exr_layout {
     SLC_EXR_SCANLINES,
@@ -48,11 +51,18 @@ struct slc_exr_file {
     uint64_t chunk_table_offset;          ///< for rip maps only
     bool is_multipart;
 
-    uint32_t channel_count;
-    struct slc_exr_channel channels[SLC_EXR_MAX_CHANNELS]; ///< in the file's order
-    int32_t rgba[4];     ///< index of the channel that R, G, B and A come from, -1: none
-    uint32_t texel_size; ///< bytes of all channels
-    exr_pixel_type_t widest;
+    char channel_names[256]; ///< of the file, as far as they fit
+    uint32_t channel_count;  ///< that are read; the file may have others
+    struct slc_exr_channel channels[SLC_EXR_MAX_CHANNELS]; ///< that are read, in the file's order
+    int32_t rgba[4];         ///< index of the channel that R, G, B and A come from, -1: none
+    uint32_t texel_size;     ///< bytes of all channels of the file
+    exr_pixel_type_t widest; ///< of the channels that are read
+
+    bool has_chromaticities;
+    struct slc_chromaticities chromaticities;
+    bool is_foreign; ///< R, G and B are delivered in other primaries than those of Rec. 709
+    bool converts;   ///< R, G and B are multiplied by:
+    double to_rec709[3][3];
 };
 
 /**
@@ -70,6 +80,12 @@ SluiceResult slc_exr_result(const struct slc_exr_file *file, exr_result_t result
 
 /** Fills the fields that describe the image from the open context. Errors are logged. */
 SluiceResult slc_exr_read_header(struct slc_exr_file *file);
+
+/** Chooses the channels to read. Errors: CORRUPT_DATA, UNSUPPORTED; logged. */
+SluiceResult slc_exr_read_channels(struct slc_exr_file *file);
+
+/** Finds out whether R, G and B are to be converted. Says what is not applied. */
+SluiceResult slc_exr_read_primaries(struct slc_exr_file *file);
 
 /** Size of a level of the file. Levels beyond those of one direction repeat its last. */
 SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level, uint32_t *width,

@@ -2,108 +2,7 @@
 
 #include "base/checked.h"
 
-#include <stdio.h>
 #include <string.h>
-
-static bool is_one_of(const char *name, const char *letters)
-{
-    return strlen(name) == 1 && strchr(letters, name[0]);
-}
-
-/* The channel names as far as they fit, for messages. */
-static void list_channels(const exr_attr_chlist_t *list, char *text, size_t size)
-{
-    char name[64];
-    size_t used = 0;
-    text[0] = '\0';
-    for (int32_t i = 0; i < list->num_channels && used < size; i++) {
-        slc_printable(list->entries[i].name.str, name, sizeof name);
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", name);
-    }
-}
-
-/* Which letters are there, as a set of bits in the order of "RGBAY"; ~0 if there are others. */
-static uint32_t find_letters(const exr_attr_chlist_t *list)
-{
-    static const char letters[] = "RGBAY";
-    uint32_t found = 0;
-    for (int32_t i = 0; i < list->num_channels; i++) {
-        const char *name = list->entries[i].name.str;
-        if (!is_one_of(name, letters))
-            return ~0u;
-        found |= 1u << (strchr(letters, name[0]) - letters);
-    }
-    return found;
-}
-
-static SluiceResult check_names(const struct slc_exr_file *file, const exr_attr_chlist_t *list)
-{
-    enum { A = 8, Y = 16 };
-    char names[256];
-    list_channels(list, names, sizeof names);
-    for (int32_t i = 0; i < list->num_channels; i++)
-        if (strcmp(list->entries[i].name.str, "RY") == 0 ||
-            strcmp(list->entries[i].name.str, "BY") == 0)
-            return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
-                                  "has luminance-chroma channels (%s), which are not read; "
-                                  "convert the file to R, G, B",
-                                  names);
-    uint32_t found = find_letters(list);
-    bool is_rgb = found != 0 && !(found & Y);
-    bool is_grey = found != ~0u && (found & ~(uint32_t)A) == Y;
-    if (is_rgb || is_grey)
-        return SLUICE_SUCCESS;
-    return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
-                          "has the channels %s; any of R, G, B, A, or Y with or without A, are "
-                          "read; write the wanted ones to a file of their own under such names",
-                          names);
-}
-
-static SluiceResult read_channel(struct slc_exr_file *file, const exr_attr_chlist_entry_t *entry)
-{
-    uint32_t index = file->channel_count;
-    if (index == SLC_EXR_MAX_CHANNELS)
-        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has a channel name twice");
-    if (entry->x_sampling != 1 || entry->y_sampling != 1)
-        return slc_input_fail(
-            &file->input, SLUICE_ERROR_UNSUPPORTED,
-            "channel %s is subsampled %d x %d, which is not read; convert the file "
-            "to full resolution",
-            entry->name.str, entry->x_sampling, entry->y_sampling);
-    if (entry->pixel_type != EXR_PIXEL_UINT && entry->pixel_type != EXR_PIXEL_HALF &&
-        entry->pixel_type != EXR_PIXEL_FLOAT)
-        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA,
-                              "channel %s has the unknown type %d", entry->name.str,
-                              (int)entry->pixel_type);
-    struct slc_exr_channel *channel = &file->channels[index];
-    channel->type = entry->pixel_type;
-    channel->size = entry->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
-    channel->offset = file->texel_size;
-    file->texel_size += channel->size;
-    if (channel->size == 4)
-        file->widest = EXR_PIXEL_FLOAT;
-    file->channel_count++;
-    if (entry->name.str[0] == 'Y')
-        file->rgba[0] = file->rgba[1] = file->rgba[2] = (int32_t)index;
-    else
-        file->rgba[strchr("RGBA", entry->name.str[0]) - "RGBA"] = (int32_t)index;
-    return SLUICE_SUCCESS;
-}
-
-static SluiceResult read_channels(struct slc_exr_file *file)
-{
-    const exr_attr_chlist_t *list;
-    exr_result_t result = exr_get_channels(file->context, 0, &list);
-    if (result != EXR_ERR_SUCCESS || list->num_channels < 1)
-        return slc_input_fail(&file->input, SLUICE_ERROR_CORRUPT_DATA, "has no channels");
-    SluiceResult answer = check_names(file, list);
-    file->widest = EXR_PIXEL_HALF;
-    for (int i = 0; i < 4; i++)
-        file->rgba[i] = -1;
-    for (int32_t i = 0; answer == SLUICE_SUCCESS && i < list->num_channels; i++)
-        answer = read_channel(file, &list->entries[i]);
-    return answer;
-}
 
 static SluiceResult read_size(struct slc_exr_file *file)
 {
@@ -331,8 +230,9 @@ static SluiceResult read_multipart_flag(struct slc_exr_file *file)
 SluiceResult slc_exr_read_header(struct slc_exr_file *file)
 {
     static SluiceResult (*const steps[])(struct slc_exr_file *) = {
-        read_multipart_flag, read_size,    read_layout,        read_channels,
-        check_compression,   check_levels, check_plausibility, check_chunk_count,
+        read_multipart_flag,    read_size,         read_layout,  slc_exr_read_channels,
+        slc_exr_read_primaries, check_compression, check_levels, check_plausibility,
+        check_chunk_count,
     };
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         SluiceResult result = steps[i](file);

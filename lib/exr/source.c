@@ -1,22 +1,35 @@
+#define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
+
 #include <sluice/exr.h>
 
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "exr/decode.h"
+#include "exr/memory_budget.h"
 #include "image/format.h"
 #include "image/mip.h"
 
 #include <pthread.h>
 #include <string.h>
+#include <time.h>
+
+/* Until a file that could not be decoded is decoded again though it seems unchanged. */
+#define SECONDS_BETWEEN_BUILDS 10
 
 struct exr_source {
     SluiceImageSource base;
     struct slc_exr_file file;
     SluiceImageInfo info;
-    bool reads_chain;      ///< the file has no levels of its own
-    pthread_mutex_t mutex; ///< around what follows
+    bool reads_chain;              ///< the file has no levels of its own
+    uint64_t chain_size;           ///< bytes that building takes and the chain then holds; 0: none
+    uint64_t read_size;            ///< bytes that a read takes
+    SluiceExrMemoryBudget *budget; ///< NULL, or chain_size was taken from it
+    pthread_mutex_t mutex;         ///< around what follows
     bool is_built;
-    SluiceResult failure; ///< of building, where another attempt would fail again
+    SluiceResult failure;                ///< of building, if another attempt now would fail again
+    struct slc_file_stamp failure_stamp; ///< of the file then
+    time_t failure_time;
     struct slc_mip_chain chain;
 };
 
@@ -70,16 +83,42 @@ static SluiceResult build_chain(struct exr_source *source)
     return result;
 }
 
+static time_t now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return time.tv_sec;
+}
+
+/* Decoding all of a file takes long, so it is not done for every tile that is asked for again. */
+static void note_failure(struct exr_source *source, SluiceResult result)
+{
+    if (result != SLUICE_ERROR_CORRUPT_DATA && result != SLUICE_ERROR_UNSUPPORTED)
+        return;
+    source->failure = result;
+    source->failure_stamp = slc_input_file_stamp(&source->file.input);
+    source->failure_time = now();
+}
+
+/* It was written again, or there may have been an outage. */
+static bool may_be_well(const struct exr_source *source)
+{
+    struct slc_file_stamp stamp = slc_input_file_stamp(&source->file.input);
+    return memcmp(&stamp, &source->failure_stamp, sizeof stamp) != 0 ||
+           now() - source->failure_time >= SECONDS_BETWEEN_BUILDS;
+}
+
 /* The first reader builds while the others wait; afterwards the chain never changes. */
 static SluiceResult ensure_chain(struct exr_source *source)
 {
     pthread_mutex_lock(&source->mutex);
+    if (source->failure != SLUICE_SUCCESS && may_be_well(source))
+        source->failure = SLUICE_SUCCESS;
     SluiceResult result = source->failure;
     if (!source->is_built && result == SLUICE_SUCCESS) {
         result = build_chain(source);
         source->is_built = result == SLUICE_SUCCESS;
-        if (result == SLUICE_ERROR_CORRUPT_DATA || result == SLUICE_ERROR_UNSUPPORTED)
-            source->failure = result;
+        note_failure(source, result);
     }
     pthread_mutex_unlock(&source->mutex);
     return result;
@@ -104,12 +143,88 @@ static void destroy(SluiceImageSource *base)
     struct exr_source *source = (struct exr_source *)base;
     SluiceAllocationCallbacks cb = source->file.input.allocator;
     slc_mip_chain_finish(&source->chain, &cb);
+    if (source->budget)
+        slc_memory_budget_give_back(source->budget, source->chain_size);
     slc_exr_file_close(&source->file);
     pthread_mutex_destroy(&source->mutex);
     slc_free(&cb, source, 1, sizeof *source);
 }
 
 static const SluiceImageSourceInterface exr_interface = {get_info, read_region, destroy};
+
+static const char *const storage_names[] = {
+    [SLC_EXR_SCANLINES] = "scanlines",
+    [SLC_EXR_ONE_LEVEL] = "tiles without levels",
+    [SLC_EXR_MIPMAP] = "tiles",
+    [SLC_EXR_RIPMAP] = "tiles",
+};
+
+/* What OpenEXRCore takes for a chunk: its bytes, its texels, and as much to sort them. */
+static uint64_t chunk_memory(const struct slc_exr_file *file)
+{
+    return 3 * (uint64_t)slc_min_u32(file->chunk_width, file->width) *
+           slc_min_u32(file->chunk_height, file->height) * file->texel_size;
+}
+
+static uint64_t chain_memory(const struct exr_source *source)
+{
+    const SluiceImageInfo *info = &source->info;
+    uint64_t size = slc_mip_chain_size(info->format, info->width, info->height);
+    uint64_t meanwhile = slc_mip_chain_build_size(info->width);
+    return size < UINT64_MAX - meanwhile ? size + meanwhile : UINT64_MAX;
+}
+
+static uint64_t to_mib(uint64_t size)
+{
+    return size / (1 << 20) + (size % (1 << 20) != 0);
+}
+
+static SluiceResult refuse_memory(const struct exr_source *source, uint64_t limit)
+{
+    const struct slc_exr_file *file = &source->file;
+    /* The limit is rounded down and the need up, so that a message never says "1 MiB of 1". */
+    unsigned long long mib = limit >> 20, chunk = to_mib(source->read_size),
+                       chain = to_mib(source->chain_size + source->read_size);
+    if (source->read_size > limit)
+        return slc_input_fail(&file->input, SLUICE_ERROR_LIMIT_EXCEEDED,
+                              "decoding a chunk of %u x %u texels takes %llu MiB of memory; "
+                              "maxMemorySize is %llu MiB; raise it, or write smaller tiles",
+                              slc_min_u32(file->chunk_width, file->width),
+                              slc_min_u32(file->chunk_height, file->height), chunk, mib);
+    return slc_input_fail(&file->input, SLUICE_ERROR_LIMIT_EXCEEDED,
+                          "is %u x %u texels in %s; the levels built of them take %llu MiB of "
+                          "memory; maxMemorySize is %llu MiB; better bake the file once "
+                          "(sluice-bake FILE -o DIR), or raise the limit",
+                          file->width, file->height, storage_names[file->layout], chain, mib);
+}
+
+static SluiceResult reserve_memory(struct exr_source *source,
+                                   const SluiceExrImageSourceCreateInfo *info)
+{
+    struct slc_exr_file *file = &source->file;
+    uint64_t limit = info->maxMemorySize  ? info->maxMemorySize
+                     : info->memoryBudget ? info->memoryBudget->max_size
+                                          : SLUICE_EXR_DEFAULT_MEMORY_SIZE;
+    source->read_size = chunk_memory(file);
+    if (source->reads_chain)
+        source->chain_size = chain_memory(source);
+    if (source->read_size > limit || source->chain_size > limit - source->read_size)
+        return refuse_memory(source, limit);
+    if (!info->memoryBudget || source->chain_size == 0)
+        return SLUICE_SUCCESS;
+    if (!slc_memory_budget_take(info->memoryBudget, source->chain_size))
+        return slc_input_fail(
+            &file->input, SLUICE_ERROR_LIMIT_EXCEEDED,
+            "is %u x %u texels in %s; the levels built of them take %llu MiB of memory; other "
+            "files have taken %llu of the %llu MiB that they share; better bake the file once "
+            "(sluice-bake FILE -o DIR), or raise the limit",
+            file->width, file->height, storage_names[file->layout],
+            (unsigned long long)to_mib(source->chain_size),
+            (unsigned long long)to_mib(atomic_load(&info->memoryBudget->used_size)),
+            (unsigned long long)to_mib(info->memoryBudget->max_size));
+    source->budget = info->memoryBudget;
+    return SLUICE_SUCCESS;
+}
 
 static SluiceResult describe(struct exr_source *source, SluiceFormat format, uint64_t max_size,
                              bool level_zero_alone)
@@ -153,14 +268,64 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     source->base.pInterface = &exr_interface;
     pthread_mutex_init(&source->mutex, NULL);
     SluiceResult result = slc_exr_file_open(&source->file, pInfo->pPath, &cb, &pInfo->log);
+    if (pInfo->keepPrimaries && source->file.converts) {
+        source->file.converts = false;
+        source->file.is_foreign = true;
+    }
     if (result == SLUICE_SUCCESS)
         result = describe(source, pInfo->format,
                           pInfo->maxImageSize ? pInfo->maxImageSize : (uint64_t)1 << 34,
                           pInfo->levelZeroAlone);
+    if (result == SLUICE_SUCCESS)
+        result = reserve_memory(source, pInfo);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;
     }
     *pSource = &source->base;
+    return SLUICE_SUCCESS;
+}
+
+static const char *compression_name(exr_compression_t compression)
+{
+    static const char *const names[] = {"NONE",  "RLE", "ZIPS", "ZIP",  "PIZ",
+                                        "PXR24", "B44", "B44A", "DWAA", "DWAB"};
+    size_t index = (size_t)compression;
+    return index < sizeof names / sizeof names[0] ? names[index] : "unknown";
+}
+
+static SluiceExrStorage storage_of(enum slc_exr_layout layout)
+{
+    switch (layout) {
+    case SLC_EXR_SCANLINES: return SLUICE_EXR_STORAGE_SCANLINES;
+    case SLC_EXR_ONE_LEVEL: return SLUICE_EXR_STORAGE_TILES;
+    case SLC_EXR_MIPMAP: return SLUICE_EXR_STORAGE_MIP_TILES;
+    default: return SLUICE_EXR_STORAGE_RIP_TILES;
+    }
+}
+
+SluiceResult sluiceGetExrInfo(SluiceImageSource *source, SluiceExrInfo *pInfo)
+{
+    if (!source || !pInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (source->pInterface != &exr_interface)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    const struct exr_source *exr = (const struct exr_source *)source;
+    *pInfo = (SluiceExrInfo){
+        .storage = storage_of(exr->file.layout),
+        .chunkWidth = exr->file.chunk_width,
+        .chunkHeight = exr->file.chunk_height,
+        .pCompression = compression_name(exr->file.compression),
+        .pChannels = exr->file.channel_names,
+        .chainSize = exr->chain_size,
+        .readSize = exr->read_size,
+        .hasChromaticities = exr->file.has_chromaticities,
+        .convertsPrimaries = exr->file.converts,
+        .foreignPrimaries = exr->file.is_foreign,
+    };
+    const struct slc_chromaticities *from = &exr->file.chromaticities;
+    const double *const points[4] = {from->red, from->green, from->blue, from->white};
+    for (int i = 0; i < 8; i++)
+        pInfo->chromaticities[i] = (float)points[i / 2][i % 2];
     return SLUICE_SUCCESS;
 }

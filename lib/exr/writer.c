@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "exr/write_file.h"
+#include "base/part_file.h"
 #include "image/convert.h"
 #include "image/half.h"
 
@@ -25,7 +25,8 @@ struct writer {
     SluiceImageInfo image;
     uint32_t channel_count;
     uint64_t tile_count, texel_count;
-    struct slc_write_file file;
+    struct slc_part_file file;
+    bool write_failed; ///< And was logged.
     exr_context_t context;
 
     pthread_mutex_t mutex; ///< around what follows and around every write
@@ -54,7 +55,7 @@ static SluiceResult library_result(const struct writer *writer, exr_result_t res
         return SLUICE_SUCCESS;
     if (result == EXR_ERR_OUT_OF_MEMORY)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    if (writer->file.has_failed) /* already logged */
+    if (writer->write_failed) /* already logged */
         return SLUICE_ERROR_IO;
     return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT, exr_get_default_error_message(result));
 }
@@ -64,8 +65,11 @@ static int64_t on_write(exr_const_context_t context, void *user, const void *buf
 {
     (void)context;
     (void)error;
-    struct slc_write_file *file = user;
-    return slc_write_file_put(file, buffer, size, offset) ? (int64_t)size : -1;
+    struct writer *writer = user;
+    if (slc_part_file_write(&writer->file, offset, buffer, size) == SLUICE_SUCCESS)
+        return (int64_t)size;
+    writer->write_failed = true;
+    return -1;
 }
 
 /* Results say enough, and the context may be locked where this is called. */
@@ -114,7 +118,7 @@ static exr_result_t start_context(struct writer *writer)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = on_error;
-    init.user_data = &writer->file;
+    init.user_data = writer;
     init.write_fn = on_write;
     init.zip_level = 4; /* twice as fast as 6 for files that are a few percent larger */
     exr_result_t result =
@@ -361,10 +365,12 @@ static SluiceResult run_workers(struct writer *writer)
 
 static SluiceResult write_image(struct writer *writer)
 {
-    SluiceResult result = slc_write_file_open(&writer->file, writer->info.pPath, &writer->allocator,
-                                              &writer->info.log);
-    if (result != SLUICE_SUCCESS)
-        return result;
+    SluiceResult result = slc_part_file_open(&writer->file, writer->info.pPath, 0,
+                                             &writer->allocator, &writer->info.log);
+    if (result != SLUICE_SUCCESS) {
+        slc_part_file_close(&writer->file);
+        return result == SLUICE_ERROR_FILE_NOT_FOUND ? SLUICE_ERROR_IO : result;
+    }
     result = library_result(writer, start_context(writer));
     if (result == SLUICE_SUCCESS)
         result = run_workers(writer);
@@ -373,7 +379,7 @@ static SluiceResult write_image(struct writer *writer)
         if (result == SLUICE_SUCCESS)
             result = library_result(writer, finished);
     }
-    SluiceResult closed = slc_write_file_finish(&writer->file, result == SLUICE_SUCCESS);
+    SluiceResult closed = slc_part_file_finish(&writer->file, result == SLUICE_SUCCESS);
     return result == SLUICE_SUCCESS ? closed : result;
 }
 

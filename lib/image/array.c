@@ -1,5 +1,6 @@
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "image/info.h"
 
 #include <sluice/image.h>
 
@@ -44,6 +45,9 @@ static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t coun
         SluiceResult result = sluiceGetImageInfo(layers[i], i ? &other : info);
         if (result != SLUICE_SUCCESS)
             return result;
+        result = slc_image_info_check(i ? &other : info, SLC_LEVELS_ALL_OR_ONE, NULL);
+        if (result != SLUICE_SUCCESS)
+            return result;
         if (i == 0)
             other = *info;
         if (other.width != info->width || other.height != info->height ||
@@ -62,7 +66,7 @@ SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers, ui
     if (!ppLayers || !pSource || !slc_allocator_is_valid(pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
     SluiceImageInfo info;
-    if (layerCount == 0)
+    if (layerCount == 0 || layerCount > SLC_MAX_IMAGE_LAYERS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceResult result = check_layers(ppLayers, layerCount, &info);
     if (result != SLUICE_SUCCESS)

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/log.h"
 #include "image/format.h"
 
 #include <string.h>
@@ -25,6 +26,42 @@ SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const Slui
     info->mipLevelCount = level_count;
     info->pName = name;
     return SLUICE_SUCCESS;
+}
+
+const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_levels levels)
+{
+    SluiceFormatInfo format;
+    if (info->width == 0 || info->height == 0 || info->width > SLC_MAX_IMAGE_EXTENT ||
+        info->height > SLC_MAX_IMAGE_EXTENT)
+        return "width or height is 0 or beyond 2^20";
+    if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS)
+        return "format is unknown";
+    if (info->arrayLayerCount > SLC_MAX_IMAGE_LAYERS)
+        return "arrayLayerCount is beyond 2^16";
+    if ((uint32_t)info->addressModeU > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
+        (uint32_t)info->addressModeV > SLUICE_IMAGE_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
+        return "addressModeU or addressModeV is unknown";
+    if (info->mipLevelCount == slc_mip_count(slc_max_u32(info->width, info->height)))
+        return NULL;
+    if (levels == SLC_LEVELS_ALL_OR_ONE)
+        return info->mipLevelCount == 1 ? NULL : "mipLevelCount is neither 1 nor the full chain's";
+    return "mipLevelCount is not the full chain's";
+}
+
+SluiceResult slc_image_info_check(const SluiceImageInfo *info, enum slc_image_levels levels,
+                                  const SluiceLogCallback *log)
+{
+    const char *trouble = slc_image_info_trouble(info, levels);
+    if (!trouble)
+        return SLUICE_SUCCESS;
+    if (log)
+        slc_log(log, SLUICE_LOG_ERROR,
+                "%s: the source's %s: width %u, height %u, mipLevelCount %u, format %s (%d), "
+                "arrayLayerCount %u",
+                info->pName && info->pName[0] ? info->pName : "image", trouble, info->width,
+                info->height, info->mipLevelCount, sluiceFormatString(info->format),
+                (int)info->format, info->arrayLayerCount);
+    return SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
 void slc_image_info_finish(const SluiceAllocationCallbacks *cb, SluiceImageInfo *info)

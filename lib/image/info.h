@@ -4,6 +4,9 @@
 
 #include <sluice/image.h>
 
+#define SLC_MAX_IMAGE_EXTENT (1u << 20) ///< texels in a direction
+#define SLC_MAX_IMAGE_LAYERS (1u << 16)
+
 /**
  * Copies `given` with its name ("" for NULL); a level count of 0 becomes the full chain's.
  * Errors: INVALID_ARGUMENT for an empty or unknown format, a size of 0 or another level count than
@@ -13,6 +16,22 @@
  */
 SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const SluiceImageInfo *given,
                                  SluiceImageInfo *info);
+
+/** Levels that a source may have. */
+enum slc_image_levels {
+    SLC_LEVELS_ALL,       ///< the full chain
+    SLC_LEVELS_ALL_OR_ONE ///< or level 0 alone
+};
+
+/**
+ * Checks every field of what an application's source says about itself, before anything is
+ * computed from it. NULL: the values are in the ranges that image.h gives; else what is wrong.
+ */
+const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_levels levels);
+
+/** Checks the same and logs name, field and values. `log` may be NULL. Errors: INVALID_ARGUMENT. */
+SluiceResult slc_image_info_check(const SluiceImageInfo *info, enum slc_image_levels levels,
+                                  const SluiceLogCallback *log);
 
 /** Frees the name. */
 void slc_image_info_finish(const SluiceAllocationCallbacks *cb, SluiceImageInfo *info);

@@ -5,14 +5,34 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/system.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+static SluiceResult say(const struct slc_input_file *file, SluiceResult result, uint64_t key,
+                        const char *message)
+{
+    enum slc_say say = slc_said_note(file->said, key);
+    if (say != SLC_SAY_NOTHING)
+        slc_log(&file->log, SLUICE_LOG_ERROR, "%s: %s%s", file->path, message,
+                say == SLC_SAY_IT_LAST ? SLC_SAID_ENOUGH : "");
+    return result;
+}
+
+/* Where does not matter: during an outage every read fails. */
+static SluiceResult fail_read(const struct slc_input_file *file, SluiceResult result,
+                              uint64_t offset, size_t size, const char *why)
+{
+    char message[512];
+    snprintf(message, sizeof message, "cannot read %zu bytes at %llu: %s", size,
+             (unsigned long long)offset, why);
+    return say(file, result, slc_said_key(why), message);
+}
 
 SluiceResult slc_input_fail(const struct slc_input_file *file, SluiceResult result,
                             const char *format, ...)
@@ -22,8 +42,7 @@ SluiceResult slc_input_fail(const struct slc_input_file *file, SluiceResult resu
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    slc_log(&file->log, SLUICE_LOG_ERROR, "%s: %s", file->path, message);
-    return result;
+    return say(file, result, slc_said_key(message), message);
 }
 
 void slc_printable(const char *text, char *printable, size_t size)
@@ -39,14 +58,15 @@ SluiceResult slc_input_file_init(struct slc_input_file *file, const char *path,
 {
     *file = (struct slc_input_file){.allocator = *cb, .log = *log, .descriptor = -1};
     file->path = slc_strdup(cb, path);
-    return file->path ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    file->said = slc_calloc(cb, 1, sizeof *file->said);
+    return file->path && file->said ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
 static SluiceResult check_status(struct slc_input_file *file)
 {
     struct stat status;
     if (fstat(file->descriptor, &status) != 0)
-        return slc_input_fail(file, SLUICE_ERROR_IO, "cannot stat: %s", strerror(errno));
+        return slc_input_fail(file, slc_system_result(errno), "cannot stat: %s", strerror(errno));
     if (!S_ISREG(status.st_mode))
         return slc_input_fail(file, SLUICE_ERROR_IO, "is not a regular file");
     file->size = (uint64_t)status.st_size;
@@ -57,13 +77,9 @@ SluiceResult slc_input_file_open(struct slc_input_file *file)
 {
     if (file->descriptor >= 0)
         return SLUICE_SUCCESS;
-    /* Not blocking, so that the name of a pipe cannot stop the program. */
-    file->descriptor = open(file->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file->descriptor < 0) {
-        bool absent = errno == ENOENT || errno == ENOTDIR;
-        return slc_input_fail(file, absent ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO,
-                              "cannot open: %s", strerror(errno));
-    }
+    file->descriptor = slc_open_input(file->path);
+    if (file->descriptor < 0)
+        return slc_input_fail(file, slc_system_result(errno), "cannot open: %s", strerror(errno));
     SluiceResult result = check_status(file);
     if (result != SLUICE_SUCCESS)
         slc_input_file_close(file);
@@ -79,11 +95,14 @@ void slc_input_file_close(struct slc_input_file *file)
 
 void slc_input_file_finish(struct slc_input_file *file)
 {
-    if (!file->path)
-        return;
-    slc_input_file_close(file);
-    slc_free(&file->allocator, file->path, strlen(file->path) + 1, 1);
+    if (file->path) {
+        slc_input_file_close(file);
+        slc_free(&file->allocator, file->path, strlen(file->path) + 1, 1);
+    }
+    if (file->said)
+        slc_free(&file->allocator, file->said, 1, sizeof *file->said);
     file->path = NULL;
+    file->said = NULL;
 }
 
 int64_t slc_input_file_read_some(const struct slc_input_file *file, uint64_t offset, void *bytes,
@@ -114,7 +133,17 @@ SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t off
     int64_t got = slc_input_file_read_some(file, offset, bytes, size);
     if (got == (int64_t)size)
         return SLUICE_SUCCESS;
-    return slc_input_fail(file, SLUICE_ERROR_IO, "cannot read %zu bytes at %llu: %s", size,
-                          (unsigned long long)offset,
-                          got < 0 ? strerror(errno) : "the file has become shorter");
+    if (got < 0)
+        return fail_read(file, slc_system_result(errno), offset, size, strerror(errno));
+    return fail_read(file, SLUICE_ERROR_IO, offset, size, "the file has become shorter");
+}
+
+struct slc_file_stamp slc_input_file_stamp(const struct slc_input_file *file)
+{
+    struct stat status;
+    if (fstat(file->descriptor, &status) != 0)
+        return (struct slc_file_stamp){0};
+    return (struct slc_file_stamp){{status.st_mtim.tv_sec, status.st_ctim.tv_sec},
+                                   {status.st_mtim.tv_nsec, status.st_ctim.tv_nsec},
+                                   (uint64_t)status.st_size};
 }

@@ -8,13 +8,16 @@
 
 #include <sluice/base.h>
 
+#include "base/said.h"
+
 /** Constant while it is open. */
 struct slc_input_file {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
-    char *path;     ///< owned
-    int descriptor; ///< -1: not open
-    uint64_t size;  ///< when it was opened
+    char *path;            ///< owned
+    int descriptor;        ///< -1: not open
+    uint64_t size;         ///< when it was opened
+    struct slc_said *said; ///< owned; what the log was told
 };
 
 /** Keeps a copy of the path and opens nothing. Errors: OUT_OF_HOST_MEMORY; finish is allowed then.
@@ -22,7 +25,12 @@ struct slc_input_file {
 SluiceResult slc_input_file_init(struct slc_input_file *file, const char *path,
                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log);
 
-/** Opens what is not open. Errors: FILE_NOT_FOUND; IO, also for what is no regular file. Logged. */
+/**
+ * Opens the file unless it is open. Logs every failure.
+ *
+ * Returns SLUICE_NOT_READY for want of file descriptors: call again later.
+ * Errors: FILE_NOT_FOUND; IO, also for what is no regular file; OUT_OF_HOST_MEMORY.
+ */
 SluiceResult slc_input_file_open(struct slc_input_file *file);
 
 /** The opposite of open; what is not open stays so. No read may be under way. */
@@ -32,8 +40,9 @@ void slc_input_file_close(struct slc_input_file *file);
 void slc_input_file_finish(struct slc_input_file *file);
 
 /**
- * Reads `size` bytes at `offset`. Errors: CORRUPT_DATA beyond the end of the file; IO, also for a
- * file that has become shorter. Logged. Thread safety: any thread.
+ * Reads `size` bytes at `offset`. Logs every failure. Returns SLUICE_NOT_READY if the system says
+ * "try again". Errors: CORRUPT_DATA beyond the end of the file; IO, also for a file that has become
+ * shorter; OUT_OF_HOST_MEMORY. Thread safety: any thread.
  */
 SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t offset, void *bytes,
                                  size_t size);
@@ -45,7 +54,14 @@ SluiceResult slc_input_file_read(const struct slc_input_file *file, uint64_t off
 int64_t slc_input_file_read_some(const struct slc_input_file *file, uint64_t offset, void *bytes,
                                  uint64_t size);
 
-/** Logs an error with the path in front and returns `result`. */
+/** Differs after the contents were changed in place. Zeros if the system does not say. */
+struct slc_file_stamp {
+    int64_t seconds[2], nanoseconds[2]; ///< of the last change of contents, and of anything
+    uint64_t size;
+};
+struct slc_file_stamp slc_input_file_stamp(const struct slc_input_file *file);
+
+/** Logs an error, once for each text, with the path in front and returns `result`. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif

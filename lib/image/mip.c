@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
-                                SluiceFormat format, uint32_t width, uint32_t height)
+/* Everything but the memory. False if it is more than a size_t holds. */
+static bool plan(struct slc_mip_chain *chain, SluiceFormat format, uint32_t width, uint32_t height)
 {
     *chain = (struct slc_mip_chain){.format = format, .width = width, .height = height};
     chain->level_count = slc_mip_count(slc_max_u32(width, height));
@@ -19,9 +19,22 @@ SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocat
         if (!slc_mul_size(slc_mip_size(width, level), slc_mip_size(height, level), &size) ||
             !slc_mul_size(size, texel_size, &size) ||
             !slc_add_size(chain->size, size, &chain->size))
-            return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+            return false;
     }
-    chain->texels = slc_alloc(cb, chain->size, 1);
+    return true;
+}
+
+uint64_t slc_mip_chain_size(SluiceFormat format, uint32_t width, uint32_t height)
+{
+    struct slc_mip_chain chain;
+    return plan(&chain, format, width, height) ? chain.size : UINT64_MAX;
+}
+
+SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
+                                SluiceFormat format, uint32_t width, uint32_t height)
+{
+    if (plan(chain, format, width, height))
+        chain->texels = slc_alloc(cb, chain->size, 1);
     return chain->texels ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -100,6 +113,13 @@ static void build_level(struct slc_mip_chain *chain, uint32_t level,
         slc_texels_from_rgba(chain->format, buffers->result, result + y * width * texel_size,
                              width);
     }
+}
+
+uint64_t slc_mip_chain_build_size(uint32_t width)
+{
+    const struct row_buffers *buffers = NULL;
+    return 4 * (uint64_t)width *
+           (sizeof *buffers->source + sizeof *buffers->sum + sizeof *buffers->result);
 }
 
 SluiceResult slc_mip_chain_build(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb)

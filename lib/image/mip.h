@@ -16,6 +16,12 @@ struct slc_mip_chain {
     char *texels;
 };
 
+/** Bytes of all levels of a format that is not compressed; UINT64_MAX beyond 64 bits. */
+uint64_t slc_mip_chain_size(SluiceFormat format, uint32_t width, uint32_t height);
+
+/** Bytes that slc_mip_chain_build takes meanwhile, at a width. */
+uint64_t slc_mip_chain_build_size(uint32_t width);
+
 /** Room for all levels; what it holds is undefined. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_mip_chain_init(struct slc_mip_chain *chain, const SluiceAllocationCallbacks *cb,
                                 SluiceFormat format, uint32_t width, uint32_t height);

@@ -4,7 +4,7 @@
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {
-    if (!source || !pInfo)
+    if (!source || !pInfo || !source->pInterface || !source->pInterface->pfnGetInfo)
         return SLUICE_ERROR_NULL_POINTER;
     return source->pInterface->pfnGetInfo(source, pInfo);
 }
@@ -47,7 +47,7 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
         return SLUICE_ERROR_NULL_POINTER;
     *pFault = (SluiceImageFault){"", SLUICE_UNKNOWN_OFFSET};
     SluiceImageInfo info;
-    SluiceResult result = source->pInterface->pfnGetInfo(source, &info);
+    SluiceResult result = sluiceGetImageInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;
     pFault->pName = info.pName ? info.pName : "";
@@ -57,6 +57,8 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
         rowPitch < slc_format_row_size(&format, pRegion->width))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     const SluiceImageSourceInterface *source_interface = source->pInterface;
+    if (!source_interface->pfnReadRegionLocated && !source_interface->pfnReadRegion)
+        return SLUICE_ERROR_NULL_POINTER;
     return source_interface->pfnReadRegionLocated
                ? source_interface->pfnReadRegionLocated(source, pRegion, pTexels, rowPitch, pFault)
                : source_interface->pfnReadRegion(source, pRegion, pTexels, rowPitch);
@@ -64,6 +66,6 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
 
 void sluiceDestroyImageSource(SluiceImageSource *source)
 {
-    if (source)
+    if (source && source->pInterface && source->pInterface->pfnDestroy)
         source->pInterface->pfnDestroy(source);
 }

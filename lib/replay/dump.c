@@ -135,6 +135,8 @@ static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManager
     add(dump, " retry-delay=%" PRIu64, c->retryDelay);
     if (c->missesToForget || c->prefetchLevels)
         add(dump, " misses=%" PRIu32 " prefetch=%" PRIu32, c->missesToForget, c->prefetchLevels);
+    if (c->givenUpRetryDelay != 0 && c->givenUpRetryDelay != UINT64_MAX)
+        add(dump, " given-up-retry-delay=%" PRIu64, c->givenUpRetryDelay);
 }
 
 static void add_feedback(struct slc_dump *dump, const SluiceFeedbackDesc *f)

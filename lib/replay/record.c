@@ -41,21 +41,34 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
 
 /** In place of SLC_INPUT_PRESENT: a configuration with the fields that came later. */
 #define CONFIG_WITH_MORE (SLC_INPUT_PRESENT + 1)
+#define CONFIG_WITH_RETRIES (SLC_INPUT_PRESENT + 2)
+
+/* What the managers did that could not be told: with no retryDelay, 0 means the same. */
+static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
+{
+    return config->retryDelay ? UINT64_MAX : 0;
+}
 
 static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManagerConfig *config)
 {
     bool more = config && (config->missesToForget || config->prefetchLevels);
-    slc_put_u8(out, !config ? SLC_INPUT_NULL : more ? CONFIG_WITH_MORE : SLC_INPUT_PRESENT);
+    bool retries = config && config->givenUpRetryDelay != untold_retries(config);
+    slc_put_u8(out, !config   ? SLC_INPUT_NULL
+                    : retries ? CONFIG_WITH_RETRIES
+                    : more    ? CONFIG_WITH_MORE
+                              : SLC_INPUT_PRESENT);
     if (!config)
         return;
     slc_put_varint(out, config->numExtraStandbyTiles);
     slc_put_varint(out, config->maxHeapCount);
     slc_put_varint(out, config->maxLoadAttempts);
     slc_put_varint(out, config->retryDelay);
-    if (!more)
+    if (!more && !retries)
         return;
     slc_put_varint(out, config->missesToForget);
     slc_put_varint(out, config->prefetchLevels);
+    if (retries)
+        slc_put_varint(out, config->givenUpRetryDelay);
 }
 
 static void put_desc(struct slc_bytes *out, const struct slc_call *call)
@@ -188,18 +201,21 @@ static void get_config(struct slc_cursor *in, struct slc_record *record)
 {
     size_t start = in->pos;
     uint8_t mark = slc_get_u8(in);
-    if (mark > CONFIG_WITH_MORE)
-        slc_cursor_fail(in, start, "a configuration's mark of presence is above 3");
+    if (mark > CONFIG_WITH_RETRIES)
+        slc_cursor_fail(in, start, "a configuration's mark of presence is above 4");
     if (in->why || mark == SLC_INPUT_NULL)
         return;
     record->config.numExtraStandbyTiles = slc_get_varint32(in);
     record->config.maxHeapCount = slc_get_varint32(in);
     record->config.maxLoadAttempts = slc_get_varint32(in);
     record->config.retryDelay = slc_get_varint(in);
-    if (mark == CONFIG_WITH_MORE) {
+    if (mark >= CONFIG_WITH_MORE) {
         record->config.missesToForget = slc_get_varint32(in);
         record->config.prefetchLevels = slc_get_varint32(in);
     }
+    record->config.givenUpRetryDelay = untold_retries(&record->config);
+    if (mark == CONFIG_WITH_RETRIES)
+        record->config.givenUpRetryDelay = slc_get_varint(in);
     record->call.config = &record->config;
 }
 

@@ -1,8 +1,9 @@
 #include "base/alloc.h"
+#include "base/log.h"
+#include "base/part_file.h"
 #include "core/observer.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
-#include "replay/record_file.h"
 
 #include <sluice/replay.h>
 #include <sluice/version.h>
@@ -19,7 +20,7 @@ struct SluiceRecorder {
     uint64_t checksum;      ///< over all bytes written so far but checksums
     uint64_t hash;          ///< over all decisions so far
     uint64_t event_count;
-    struct slc_record_file *file; ///< owned; NULL if the caller writes
+    struct slc_part_file file; ///< Closed if the caller writes.
 };
 
 static void write_bytes(SluiceRecorder *recorder, const struct slc_bytes *bytes)
@@ -116,6 +117,36 @@ static void release(SluiceRecorder *recorder)
     slc_free(&cb, recorder, 1, sizeof *recorder);
 }
 
+static SluiceRecorder *create(SluiceStreamedTextureManager *manager,
+                              const SluiceAllocationCallbacks *cb)
+{
+    SluiceRecorder *recorder = slc_calloc(cb, 1, sizeof *recorder);
+    if (!recorder)
+        return NULL;
+    recorder->cb = *cb;
+    recorder->manager = manager;
+    recorder->hash = SLC_HASH_EMPTY;
+    slc_bytes_init(&recorder->block, cb);
+    slc_bytes_init(&recorder->head, cb);
+    return recorder;
+}
+
+/* On errors the recorder is gone, and so is the file that it has begun. */
+static SluiceResult begin(SluiceRecorder *recorder, SluiceRecorder **out)
+{
+    write_header(recorder);
+    write_configuration(recorder);
+    SluiceResult result = recorder->result;
+    if (result != SLUICE_SUCCESS) {
+        slc_part_file_finish(&recorder->file, false);
+        release(recorder);
+        return result;
+    }
+    slc_manager_set_observer(recorder->manager, (struct slc_observer){recorder, notify});
+    *out = recorder;
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
                                   const SluiceRecordWriter *pWriter,
                                   const SluiceAllocationCallbacks *pAllocator,
@@ -130,50 +161,69 @@ SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manager,
         return SLUICE_ERROR_INVALID_ARGUMENT;
 
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
-    SluiceRecorder *recorder = slc_calloc(&cb, 1, sizeof *recorder);
+    SluiceRecorder *recorder = create(manager, &cb);
     if (!recorder)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    recorder->cb = cb;
-    recorder->manager = manager;
     recorder->writer = *pWriter;
-    recorder->hash = SLC_HASH_EMPTY;
-    slc_bytes_init(&recorder->block, &cb);
-    slc_bytes_init(&recorder->head, &cb);
-    write_header(recorder);
-    write_configuration(recorder);
-    if (recorder->result != SLUICE_SUCCESS) {
-        SluiceResult result = recorder->result;
-        release(recorder);
-        return result;
+    return begin(recorder, pRecorder);
+}
+
+static SluiceResult write_to_file(void *user, const void *data, size_t size)
+{
+    SluiceRecorder *recorder = user;
+    return slc_part_file_append(&recorder->file, data, size);
+}
+
+static SluiceResult open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info)
+{
+    SluiceResult result = slc_part_file_open(&recorder->file, info->pPath, SLC_PART_FILE_STREAM,
+                                             &recorder->cb, &info->log);
+    return result == SLUICE_ERROR_FILE_NOT_FOUND ? SLUICE_ERROR_IO : result;
+}
+
+SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
+                                      const SluiceFileRecordingInfo *pInfo,
+                                      SluiceRecorder **pRecorder)
+{
+    if (pRecorder)
+        *pRecorder = NULL;
+    if (!manager || !pInfo || !pInfo->pPath || !pRecorder)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (slc_manager_is_used(manager)) {
+        slc_log(&pInfo->log, SLUICE_LOG_ERROR,
+                "%s: cannot record: the manager was used before or is being recorded already",
+                pInfo->pPath);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     }
-    slc_manager_set_observer(manager, (struct slc_observer){recorder, notify});
-    *pRecorder = recorder;
-    return SLUICE_SUCCESS;
+    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceRecorder *recorder = create(manager, &cb);
+    if (!recorder)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    recorder->writer = (SluiceRecordWriter){recorder, write_to_file};
+    SluiceResult result = open_file(recorder, pInfo);
+    if (result == SLUICE_SUCCESS)
+        return begin(recorder, pRecorder);
+    slc_part_file_close(&recorder->file);
+    release(recorder);
+    return result;
 }
 
 SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager, const char *pPath,
                                         const SluiceAllocationCallbacks *pAllocator,
                                         SluiceRecorder **pRecorder)
 {
-    if (pRecorder)
-        *pRecorder = NULL;
-    if (!manager || !pPath || !pRecorder)
-        return SLUICE_ERROR_NULL_POINTER;
-    /* Before the file is opened: the recorder that is there may be writing to this very one. */
-    if (!slc_allocator_is_valid(pAllocator) || slc_manager_is_used(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
-    struct slc_record_file *file;
-    SluiceResult result = slc_record_file_open(&cb, pPath, &file);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    SluiceRecordWriter writer = {file, slc_record_file_write};
-    result = sluiceBeginRecording(manager, &writer, pAllocator, pRecorder);
-    if (result == SLUICE_SUCCESS)
-        (*pRecorder)->file = file;
-    else
-        slc_record_file_close(file, false);
-    return result;
+    const SluiceFileRecordingInfo info = {.pPath = pPath, .pAllocator = pAllocator};
+    return sluiceBeginFileRecording(manager, &info, pRecorder);
+}
+
+/* The file, and why its recording is lost; a failed write has said so itself. */
+static void log_loss(const SluiceRecorder *recorder)
+{
+    if (recorder->file.is_open && recorder->result != SLUICE_ERROR_IO)
+        slc_log(&recorder->file.log, SLUICE_LOG_ERROR, "%s: the recording is lost: %s",
+                recorder->file.target, sluiceResultString(recorder->result));
 }
 
 SluiceResult sluiceEndRecording(SluiceRecorder *recorder)
@@ -185,7 +235,11 @@ SluiceResult sluiceEndRecording(SluiceRecorder *recorder)
         write_block(recorder);
     write_end(recorder);
     SluiceResult result = recorder->result;
-    SluiceResult closed = slc_record_file_close(recorder->file, result == SLUICE_SUCCESS);
+    if (result != SLUICE_SUCCESS)
+        log_loss(recorder);
+    SluiceResult closed = SLUICE_SUCCESS;
+    if (recorder->file.is_open)
+        closed = slc_part_file_finish(&recorder->file, result == SLUICE_SUCCESS);
     release(recorder);
     return result != SLUICE_SUCCESS ? result : closed;
 }

@@ -22,8 +22,10 @@ SluiceResult slc_replay_start(struct slc_replay *replay,
                   info->alwaysMapPackedTiles ? " always-map-packed" : "");
     if (!replay->info->pRecordPath)
         return SLUICE_SUCCESS;
-    return sluiceBeginRecordingToFile(replay->player.manager, replay->info->pRecordPath,
-                                      replay->info->pAllocator, &replay->recorder);
+    const SluiceFileRecordingInfo recording = {.pPath = replay->info->pRecordPath,
+                                               .pAllocator = replay->info->pAllocator,
+                                               .log = replay->info->log};
+    return sluiceBeginFileRecording(replay->player.manager, &recording, &replay->recorder);
 }
 
 SluiceResult slc_replay_corrupt(struct slc_replay *replay, uint64_t offset, const char *why)

@@ -5,19 +5,40 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/system.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+static SluiceResult say(const struct slc_store_file *file, SluiceResult result, uint64_t key,
+                        const char *message)
+{
+    enum slc_say say = slc_said_note(file->said, key);
+    if (say != SLC_SAY_NOTHING)
+        slc_log(&file->log, SLUICE_LOG_ERROR, "%s: %s%s", file->path, message,
+                say == SLC_SAY_IT_LAST ? SLC_SAID_ENOUGH : "");
+    return result;
+}
+
+/* Where does not matter: during an outage every read fails. */
+static SluiceResult fail_read(const struct slc_store_file *file, SluiceResult result,
+                              uint64_t offset, const char *why)
+{
+    char message[512];
+    snprintf(message, sizeof message, "at %llu: %s", (unsigned long long)offset, why);
+    return say(file, result, slc_said_key(why), message);
+}
+
 SluiceResult slc_store_fail_at(const struct slc_store_file *file, SluiceResult result,
                                uint64_t offset, const char *what)
 {
-    slc_log(&file->log, SLUICE_LOG_ERROR, "%s: at %llu: %s", file->path, (unsigned long long)offset,
-            what);
-    return result;
+    char message[512];
+    snprintf(message, sizeof message, "at %llu: %s", (unsigned long long)offset, what);
+    return say(file, result, slc_said_key(message), message);
 }
 
 SluiceResult slc_store_fail_system(const struct slc_store_file *file, const char *what)
@@ -26,18 +47,22 @@ SluiceResult slc_store_fail_system(const struct slc_store_file *file, const char
     return SLUICE_ERROR_IO;
 }
 
+/* As slc_store_fail_system, with a result that says whether to try again. */
+static SluiceResult fail_for_now(const struct slc_store_file *file, const char *what)
+{
+    SluiceResult result = slc_system_result(errno);
+    slc_store_fail_system(file, what);
+    return result;
+}
+
 static SluiceResult open_descriptor(struct slc_store_file *file)
 {
-    /* Not blocking, so that the name of a pipe cannot stop the program. */
-    file->descriptor = open(file->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file->descriptor < 0) {
-        bool absent = errno == ENOENT || errno == ENOTDIR;
-        slc_store_fail_system(file, "open");
-        return absent ? SLUICE_ERROR_FILE_NOT_FOUND : SLUICE_ERROR_IO;
-    }
+    file->descriptor = slc_open_input(file->path);
+    if (file->descriptor < 0)
+        return fail_for_now(file, "open");
     struct stat status;
     if (fstat(file->descriptor, &status) != 0)
-        return slc_store_fail_system(file, "stat");
+        return fail_for_now(file, "stat");
     if (!S_ISREG(status.st_mode))
         return slc_store_fail_at(file, SLUICE_ERROR_IO, 0, "is not a regular file");
     file->size = (uint64_t)status.st_size;
@@ -70,12 +95,12 @@ SluiceResult slc_store_file_read(const struct slc_store_file *file, uint64_t off
         ssize_t got =
             pread(file->descriptor, (char *)bytes + done, size - done, (off_t)(offset + done));
         if (got == 0)
-            return slc_store_fail_at(file, SLUICE_ERROR_IO, offset + done,
-                                     "the file ends here; it has become shorter");
+            return fail_read(file, SLUICE_ERROR_IO, offset + done,
+                             "the file ends here; it has become shorter");
         if (got > 0)
             done += (size_t)got;
         else if (errno != EINTR)
-            return slc_store_fail_at(file, SLUICE_ERROR_IO, offset + done, strerror(errno));
+            return fail_read(file, slc_system_result(errno), offset + done, strerror(errno));
     }
     return SLUICE_SUCCESS;
 }

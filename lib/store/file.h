@@ -4,22 +4,31 @@
 
 #include <sluice/base.h>
 
+#include "base/said.h"
+
 /** What messages and reads need of an open file. */
 struct slc_store_file {
     SluiceAllocationCallbacks allocator;
     SluiceLogCallback log;
     char *path; ///< owned
     int descriptor;
-    uint64_t size; ///< when it was opened
+    uint64_t size;         ///< when it was opened
+    struct slc_said *said; ///< of faults that are read again and again; NULL: all are logged
 };
 
-/** Opens a regular file for reading. Errors: FILE_NOT_FOUND, IO, logged; OUT_OF_HOST_MEMORY. */
+/**
+ * Opens a regular file for reading. Logs every failure of the system.
+ *
+ * Returns SLUICE_NOT_READY for want of file descriptors: close the file and open it again later.
+ * Errors: FILE_NOT_FOUND, IO, OUT_OF_HOST_MEMORY.
+ */
 SluiceResult slc_store_file_open(struct slc_store_file *file, const char *path,
                                  const SluiceAllocationCallbacks *cb, const SluiceLogCallback *log);
 /** Also after a failed open. */
 void slc_store_file_close(struct slc_store_file *file);
 
-/** All of `size` bytes. Errors: IO, also beyond the end; logged. Any thread. */
+/** Reads all of `size` bytes. Returns SLUICE_NOT_READY if the system says "try again". Errors: IO,
+ *  also beyond the end; OUT_OF_HOST_MEMORY. Logs every failure. Any thread. */
 SluiceResult slc_store_file_read(const struct slc_store_file *file, uint64_t offset, void *bytes,
                                  size_t size);
 /** All of `size` bytes. Errors: IO, logged; any number of the bytes may be written then. */

@@ -36,6 +36,7 @@ SluiceResult slc_store_reader_open(struct slc_store_reader *reader,
     *reader = (struct slc_store_reader){
         .file.descriptor = -1, .pool = info->readPool, .checks_always = info->alwaysCheckRawTiles};
     SluiceResult result = slc_store_file_open(&reader->file, info->pPath, &cb, &info->log);
+    reader->file.said = &reader->said;
     if (result == SLUICE_SUCCESS)
         result = read_header(reader);
     if (result == SLUICE_SUCCESS && !reader->pool) {

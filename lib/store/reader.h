@@ -13,6 +13,7 @@
 
 struct slc_store_reader {
     struct slc_store_file file;
+    struct slc_said said;           ///< of the file
     struct slc_store_header header; ///< constant
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     SluiceStoreReadPool *pool, *own_pool; ///< the second NULL where the first is the caller's

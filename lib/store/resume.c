@@ -5,7 +5,7 @@
 #include <string.h>
 
 struct resume {
-    const struct slc_store_part *part;
+    const struct slc_store_file *file;
     const struct slc_store_header *header;
     struct slc_store_resumed *resumed;
     unsigned char *chunk; ///< SLC_STORE_MAX_CHUNK_SIZE bytes
@@ -21,10 +21,10 @@ static SluiceResult check_chunk(const struct resume *resume, uint64_t number,
 {
     struct slc_store_place place = slc_store_chunk_place(&resume->header->grid, number);
     *is_right = false;
-    if (slc_store_entry_defect(resume->header, resume->part->file.size, &place, entry))
+    if (slc_store_entry_defect(resume->header, resume->file->size, &place, entry))
         return SLUICE_SUCCESS;
     SluiceResult result =
-        slc_store_file_read(&resume->part->file, entry->offset, resume->chunk, entry->size);
+        slc_store_file_read(resume->file, entry->offset, resume->chunk, entry->size);
     if (result == SLUICE_SUCCESS)
         *is_right = slc_store_chunk_checksum(resume->header, number, resume->chunk, entry->size) ==
                     entry->checksum;
@@ -58,7 +58,7 @@ static SluiceResult check_entry(const struct resume *resume, uint64_t number, un
 static SluiceResult check_block(const struct resume *resume, uint64_t block)
 {
     unsigned char bytes[SLC_STORE_BLOCK_SIZE];
-    const struct slc_store_file *file = &resume->part->file;
+    const struct slc_store_file *file = resume->file;
     uint64_t offset = slc_store_block_offset(block);
     bool has_changed = false;
     SluiceResult result = slc_store_file_read(file, offset, bytes, sizeof bytes);
@@ -70,13 +70,13 @@ static SluiceResult check_block(const struct resume *resume, uint64_t block)
     return result;
 }
 
-SluiceResult slc_store_resume(const struct slc_store_part *part,
+SluiceResult slc_store_resume(const struct slc_store_file *file,
                               const struct slc_store_header *header,
                               struct slc_store_resumed *resumed)
 {
-    const SluiceAllocationCallbacks *cb = &part->file.allocator;
+    const SluiceAllocationCallbacks *cb = &file->allocator;
     *resumed = (struct slc_store_resumed){.end = header->data_offset};
-    struct resume resume = {part, header, resumed, slc_alloc(cb, SLC_STORE_MAX_CHUNK_SIZE, 1)};
+    struct resume resume = {file, header, resumed, slc_alloc(cb, SLC_STORE_MAX_CHUNK_SIZE, 1)};
     if (!resume.chunk)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     SluiceResult result = SLUICE_SUCCESS;

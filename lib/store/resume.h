@@ -2,8 +2,8 @@
 #ifndef SLC_STORE_RESUME_H
 #define SLC_STORE_RESUME_H
 
+#include "store/file.h"
 #include "store/layout.h"
-#include "store/part_file.h"
 
 struct slc_store_resumed {
     uint64_t chunk_count;
@@ -11,11 +11,11 @@ struct slc_store_resumed {
 };
 
 /**
- * Reads every chunk that the index of a .part file has, and clears the entries of those whose
- * checksum is not right. The header has been found to match; the file is as long as header and
- * index at least. Errors: IO, logged; OUT_OF_HOST_MEMORY.
+ * Reads every chunk that the index of a .sluice-part file has, and clears the entries of those
+ * whose checksum is not right. The header has been found to match; the file is as long as header
+ * and index at least. Errors: IO, logged; OUT_OF_HOST_MEMORY.
  */
-SluiceResult slc_store_resume(const struct slc_store_part *part,
+SluiceResult slc_store_resume(const struct slc_store_file *file,
                               const struct slc_store_header *header,
                               struct slc_store_resumed *resumed);
 

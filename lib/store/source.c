@@ -11,6 +11,12 @@ struct store_source {
     char name[SLUICE_STORE_MAX_SOURCE_NAME + 1]; ///< the image's own source
 };
 
+/* Both are VkSamplerAddressMode's values, one of them plus 1. */
+static SluiceImageAddressMode image_mode(SluiceStoreAddressMode mode)
+{
+    return (SluiceImageAddressMode)((int)mode + SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+}
+
 static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 {
     const struct slc_store_reader *reader = &((struct store_source *)base)->reader;
@@ -22,6 +28,8 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
         .format = grid->layout.format,
         .pName = reader->file.path,
         .arrayLayerCount = grid->layer_count,
+        .addressModeU = image_mode(reader->header.address_mode_u),
+        .addressModeV = image_mode(reader->header.address_mode_v),
     };
     return SLUICE_SUCCESS;
 }

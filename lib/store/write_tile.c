@@ -16,7 +16,7 @@ SluiceResult slc_store_writer_entry(const SluiceStoreWriter *writer, uint64_t nu
 {
     unsigned char bytes[SLC_STORE_ENTRY_SIZE];
     SluiceResult result =
-        slc_store_file_read(&writer->part.file, entry_offset(number), bytes, sizeof bytes);
+        slc_store_file_read(&writer->file, entry_offset(number), bytes, sizeof bytes);
     if (result == SLUICE_SUCCESS)
         *entry = slc_store_entry_read(bytes);
     return result;
@@ -26,7 +26,7 @@ SluiceResult slc_store_writer_seal(const SluiceStoreWriter *writer, uint64_t blo
                                    uint64_t *missing)
 {
     unsigned char bytes[SLC_STORE_BLOCK_SIZE];
-    const struct slc_store_file *file = &writer->part.file;
+    const struct slc_store_file *file = &writer->file;
     uint64_t count = writer->header.grid.chunk_count;
     SluiceResult result =
         slc_store_file_read(file, slc_store_block_offset(block), bytes, sizeof bytes);
@@ -123,7 +123,7 @@ static SluiceResult write_entry(SluiceStoreWriter *writer, uint64_t number,
     unsigned char bytes[SLC_STORE_ENTRY_SIZE];
     slc_store_entry_write(entry, bytes);
     SluiceResult result =
-        slc_store_file_write(&writer->part.file, entry_offset(number), bytes, sizeof bytes);
+        slc_store_file_write(&writer->file, entry_offset(number), bytes, sizeof bytes);
     pthread_mutex_lock(&writer->mutex);
     if (result == SLUICE_SUCCESS)
         writer->written_count++;
@@ -144,7 +144,7 @@ static SluiceResult write_stored(SluiceStoreWriter *writer, const struct slc_sto
     SluiceResult result = take_place(writer, place, &entry);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_store_file_write(&writer->part.file, entry.offset, bytes, size);
+    result = slc_store_file_write(&writer->file, entry.offset, bytes, size);
     if (result != SLUICE_SUCCESS) {
         return_place(writer, &entry);
         return result;

@@ -45,7 +45,7 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
 static SluiceResult find_match(const SluiceStoreWriter *writer, bool *matches)
 {
     unsigned char bytes[SLC_STORE_HEADER_SIZE];
-    const struct slc_store_file *file = &writer->part.file;
+    const struct slc_store_file *file = &writer->file;
     *matches = false;
     if (!writer->may_resume || file->size < writer->header.data_offset)
         return SLUICE_SUCCESS;
@@ -58,11 +58,11 @@ static SluiceResult find_match(const SluiceStoreWriter *writer, bool *matches)
 static SluiceResult begin_anew(SluiceStoreWriter *writer)
 {
     writer->end = writer->header.data_offset;
-    SluiceResult result = slc_store_part_cut(&writer->part, 0);
+    SluiceResult result = slc_part_file_cut(&writer->part, 0);
     if (result == SLUICE_SUCCESS)
-        result = slc_store_part_reserve(&writer->part, writer->header.data_offset);
+        result = slc_part_file_reserve(&writer->part, writer->header.data_offset);
     if (result == SLUICE_SUCCESS)
-        result = slc_store_file_write(&writer->part.file, 0, writer->header_bytes,
+        result = slc_store_file_write(&writer->file, 0, writer->header_bytes,
                                       sizeof writer->header_bytes);
     return result;
 }
@@ -70,26 +70,32 @@ static SluiceResult begin_anew(SluiceStoreWriter *writer)
 static SluiceResult go_on(SluiceStoreWriter *writer)
 {
     struct slc_store_resumed resumed;
-    SluiceResult result = slc_store_resume(&writer->part, &writer->header, &resumed);
+    SluiceResult result = slc_store_resume(&writer->file, &writer->header, &resumed);
     if (result != SLUICE_SUCCESS)
         return result;
     writer->end = resumed.end;
     writer->written_count = resumed.chunk_count;
-    slc_log(&writer->part.file.log, SLUICE_LOG_INFO, "%s: goes on with %llu of %llu tiles",
-            writer->part.file.path, (unsigned long long)resumed.chunk_count,
+    slc_log(&writer->file.log, SLUICE_LOG_INFO, "%s: goes on with %llu of %llu tiles",
+            writer->file.path, (unsigned long long)resumed.chunk_count,
             (unsigned long long)writer->header.grid.chunk_count);
-    result = slc_store_part_cut(&writer->part, writer->end);
+    result = slc_part_file_cut(&writer->part, writer->end);
     if (result == SLUICE_SUCCESS) /* a finished one is not any more */
-        result = slc_store_file_write(&writer->part.file, 0, writer->header_bytes,
+        result = slc_store_file_write(&writer->file, 0, writer->header_bytes,
                                       sizeof writer->header_bytes);
     return result;
 }
 
 static SluiceResult begin(SluiceStoreWriter *writer, const SluiceStoreCreateInfo *info)
 {
-    SluiceResult result =
-        slc_store_part_open(&writer->part, info->pPath, &writer->allocator, &info->log);
+    SluiceResult result = slc_part_file_open(&writer->part, info->pPath,
+                                             writer->may_resume ? SLC_PART_FILE_RESUME : 0,
+                                             &writer->allocator, &info->log);
     bool matches = false;
+    writer->file = (struct slc_store_file){.allocator = writer->allocator,
+                                           .log = info->log,
+                                           .path = writer->part.path,
+                                           .descriptor = writer->part.descriptor,
+                                           .size = writer->part.size};
     if (result == SLUICE_SUCCESS)
         result = find_match(writer, &matches);
     if (result == SLUICE_SUCCESS && matches) {
@@ -123,7 +129,6 @@ SluiceResult sluiceCreateStoreWriter(const SluiceStoreCreateInfo *pInfo,
     writer->may_resume = (pInfo->flags & SLUICE_STORE_WRITER_RESUME) != 0;
     slc_store_header_write(&writer->header, writer->header_bytes);
     writer->header.name = NULL; /* the caller's, from here on only in the bytes */
-    writer->part.file.descriptor = writer->part.folder = -1;
     result = begin(writer, pInfo);
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyStoreWriter(writer);
@@ -138,8 +143,8 @@ void sluiceDestroyStoreWriter(SluiceStoreWriter *writer)
     if (!writer)
         return;
     if (!writer->may_resume && writer->state != SLC_STORE_FINISHED)
-        slc_store_part_remove(&writer->part);
-    slc_store_part_close(&writer->part);
+        slc_part_file_remove(&writer->part);
+    slc_part_file_close(&writer->part);
     slc_store_writer_free_benches(writer);
     if (writer->has_mutex)
         pthread_mutex_destroy(&writer->mutex);
@@ -190,10 +195,10 @@ static SluiceResult refuse_unfinished(const SluiceStoreWriter *writer, uint64_t 
 {
     const struct slc_store_grid *grid = &writer->header.grid;
     struct slc_store_place place = slc_store_chunk_place(grid, missing);
-    slc_log(&writer->part.file.log, SLUICE_LOG_ERROR,
+    slc_log(&writer->file.log, SLUICE_LOG_ERROR,
             "%s: cannot be finished: %llu of %llu tiles are written; the first that is missing: "
             "layer %u, level %u, x %u, y %u%s",
-            writer->part.file.path, (unsigned long long)writer->written_count,
+            writer->file.path, (unsigned long long)writer->written_count,
             (unsigned long long)grid->chunk_count, place.layer, place.level, place.x, place.y,
             slc_store_is_tail(grid, &place) ? " (the tail)" : "");
     return SLUICE_ERROR_INVALID_TILE_STATE;
@@ -221,11 +226,11 @@ static SluiceResult seal_and_publish(SluiceStoreWriter *writer)
     if (header.compression_level == 0)
         header.file_size = header.data_offset + header.grid.layer_size * header.grid.layer_count;
     slc_store_header_write(&header, bytes);
-    SluiceResult result = slc_store_part_cut(&writer->part, header.file_size);
+    SluiceResult result = slc_part_file_cut(&writer->part, header.file_size);
     if (result == SLUICE_SUCCESS)
-        result = slc_store_file_write(&writer->part.file, 0, bytes, sizeof bytes);
+        result = slc_store_file_write(&writer->file, 0, bytes, sizeof bytes);
     if (result == SLUICE_SUCCESS)
-        result = slc_store_part_publish(&writer->part);
+        result = slc_part_file_publish(&writer->part);
     return result;
 }
 

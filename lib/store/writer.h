@@ -2,9 +2,10 @@
 #ifndef SLC_STORE_WRITER_H
 #define SLC_STORE_WRITER_H
 
+#include "base/part_file.h"
 #include "store/codec.h"
+#include "store/file.h"
 #include "store/layout.h"
-#include "store/part_file.h"
 
 #include <pthread.h>
 
@@ -24,7 +25,8 @@ enum slc_store_state {
 
 struct SluiceStoreWriter {
     SluiceAllocationCallbacks allocator;
-    struct slc_store_part part;
+    struct slc_part_file part;
+    struct slc_store_file file; ///< Borrowed from `part`: how its bytes are read and written.
     struct slc_store_header header;
     unsigned char header_bytes[SLC_STORE_HEADER_SIZE];
     bool may_resume;

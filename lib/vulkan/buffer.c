@@ -36,13 +36,12 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
         return result;
     VkMemoryRequirements memory;
     vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .allocationSize = memory.size,
-                                     .memoryTypeIndex =
-                                         find_type(caps, memory.memoryTypeBits, kind)};
+    uint32_t type = find_type(caps, memory.memoryTypeBits, kind);
+    buffer->memory_size = memory.size;
+    buffer->memory_kind = kind == SLC_BUFFER_DEVICE ? SLC_MEMORY_DEVICE : SLC_MEMORY_HOST;
     VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    if (allocate.memoryTypeIndex != UINT32_MAX)
-        status = vk->AllocateMemory(vk->device, &allocate, NULL, &buffer->memory);
+    if (type != UINT32_MAX)
+        status = slc_memory_allocate(vk, memory.size, type, buffer->memory_kind, &buffer->memory);
     if (status == VK_SUCCESS)
         status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory, 0);
     if (status == VK_SUCCESS && kind != SLC_BUFFER_DEVICE)
@@ -58,6 +57,6 @@ void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk)
     if (!buffer->buffer && !buffer->memory)
         return; /* also where nothing was loaded yet */
     vk->DestroyBuffer(vk->device, buffer->buffer, NULL);
-    vk->FreeMemory(vk->device, buffer->memory, NULL);
+    slc_memory_free(vk, buffer->memory, buffer->memory_size, buffer->memory_kind);
     *buffer = (struct slc_buffer){0};
 }

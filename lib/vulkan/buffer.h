@@ -3,6 +3,7 @@
 #define SLC_VULKAN_BUFFER_H
 
 #include "vulkan/caps.h"
+#include "vulkan/memory.h"
 
 enum slc_buffer_kind {
     SLC_BUFFER_DEVICE,   ///< the GPU's own
@@ -15,6 +16,8 @@ struct slc_buffer {
     VkBuffer buffer;
     VkDeviceMemory memory;
     uint64_t size;
+    uint64_t memory_size;
+    enum slc_memory_kind memory_kind;
     void *mapped; ///< NULL for DEVICE
 };
 

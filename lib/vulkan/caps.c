@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define MAX_QUEUE_FAMILIES 32u
+#define USUAL_PACKED_TILES 8u /* of a texture on software devices, which pack no levels */
 
 /* A software device maps every page that is bound into its process, and keeps the map until the
  * image goes. When the system refuses more it loses data silently. A quarter is left to others. */
@@ -138,11 +139,26 @@ uint64_t slc_device_memory_size(const struct slc_caps *caps)
     return size;
 }
 
-SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
+SluiceResidencyMode
+sluiceChooseVulkanResidencyMode(const SluiceVulkanDeviceCapabilities *pCapabilities,
+                                SluiceResidencyMode mode, uint32_t maxTextureCount)
 {
-    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO || !pCapabilities)
         return mode;
-    return caps->public.sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
+    uint32_t count = maxTextureCount ? maxTextureCount : SLC_DEFAULT_TEXTURE_COUNT;
+    uint32_t bearable = pCapabilities->maxTouchedTiles / (2 * USUAL_PACKED_TILES);
+    bool crowded = pCapabilities->maxTouchedTiles > 0 && count > bearable;
+    return pCapabilities->sparse && !crowded ? SLUICE_RESIDENCY_MODE_SPARSE
+                                             : SLUICE_RESIDENCY_MODE_PAGED;
+}
+
+SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode,
+                                    uint32_t max_texture_count)
+{
+    SluiceResidencyMode chosen =
+        sluiceChooseVulkanResidencyMode(&caps->public, mode, max_texture_count);
+    bool sparse = chosen != mode && caps->public.sparse && !caps->array_dynamic_indexing;
+    return sparse ? SLUICE_RESIDENCY_MODE_SPARSE : chosen;
 }
 
 const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode)
@@ -190,7 +206,8 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         return result;
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
-    mode = slc_choose_mode(&caps, mode);
+    bool is_auto = mode == SLUICE_RESIDENCY_MODE_AUTO;
+    mode = slc_choose_mode(&caps, mode, 0);
     VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
     const char *missing = slc_missing_for_mode(&caps, mode);
@@ -204,7 +221,8 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         pFeatures->sparseBinding = VK_TRUE;
         pFeatures->sparseResidencyImage2D = VK_TRUE;
     }
-    if (mode == SLUICE_RESIDENCY_MODE_PAGED) {
+    /* AUTO is paged for many textures, whose number nobody knows here. */
+    if (mode == SLUICE_RESIDENCY_MODE_PAGED || (is_auto && caps.array_dynamic_indexing)) {
         pFeatures->shaderSampledImageArrayDynamicIndexing = VK_TRUE;
         if (caps.public.nonUniformIndexing)
             pVulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;

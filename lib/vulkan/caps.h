@@ -26,14 +26,17 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
 /** Bytes of the largest device-local heap: more may not even be asked for. */
 uint64_t slc_device_memory_size(const struct slc_caps *caps);
 
+#define SLC_DEFAULT_TEXTURE_COUNT 1024u
+
 static inline bool slc_mode_is_known(SluiceResidencyMode mode)
 {
     return mode == SLUICE_RESIDENCY_MODE_AUTO || mode == SLUICE_RESIDENCY_MODE_SPARSE ||
            mode == SLUICE_RESIDENCY_MODE_PAGED || mode == SLUICE_RESIDENCY_MODE_DENSE;
 }
 
-/** What AUTO is on this device; other modes are themselves. */
-SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode);
+/** sluiceChooseVulkanResidencyMode, but for devices that cannot page. */
+SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode,
+                                    uint32_t max_texture_count);
 
 /** What a mode other than AUTO needs and the device lacks; NULL: nothing. */
 const char *slc_missing_for_mode(const struct slc_caps *caps, SluiceResidencyMode mode);

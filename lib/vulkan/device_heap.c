@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "vulkan/memory.h"
 
 static SluiceResult grow(struct slc_device_heaps *heaps, const SluiceAllocationCallbacks *cb)
 {
@@ -37,13 +38,9 @@ SluiceResult slc_device_heaps_allocate(struct slc_device_heaps *heaps, const str
         if (result != SLUICE_SUCCESS)
             return result;
     }
-    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                 .allocationSize = size,
-                                 .memoryTypeIndex = memory_type};
-    if (vk->AllocateMemory(vk->device, &info, NULL, &heaps->memory[id]) != VK_SUCCESS) {
-        heaps->memory[id] = VK_NULL_HANDLE;
+    if (slc_memory_allocate(vk, size, memory_type, SLC_MEMORY_DEVICE, &heaps->memory[id]) !=
+        VK_SUCCESS)
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
-    }
     heaps->sizes[id] = size;
     heaps->total_size += size;
     *heap_id = id;
@@ -53,7 +50,7 @@ SluiceResult slc_device_heaps_allocate(struct slc_device_heaps *heaps, const str
 void slc_device_heaps_release(struct slc_device_heaps *heaps, const struct slc_vk *vk,
                               uint32_t heap_id)
 {
-    vk->FreeMemory(vk->device, heaps->memory[heap_id], NULL);
+    slc_memory_free(vk, heaps->memory[heap_id], heaps->sizes[heap_id], SLC_MEMORY_DEVICE);
     heaps->memory[heap_id] = VK_NULL_HANDLE;
     heaps->total_size -= heaps->sizes[heap_id];
 }

@@ -2,6 +2,28 @@
 
 #include "base/log.h"
 
+#include <string.h>
+
+/* Loaders and drivers hide what is newer than the version that the instance was created for. */
+static bool is_of_vulkan_1_0(const char *function)
+{
+    static const char *const newer[] = {"vkGetPhysicalDeviceFeatures2",
+                                        "vkGetPhysicalDeviceProperties2",
+                                        "vkGetSemaphoreCounterValue", "vkWaitSemaphores"};
+    for (size_t i = 0; i < sizeof newer / sizeof newer[0]; i++)
+        if (strcmp(function, newer[i]) == 0)
+            return false;
+    return true;
+}
+
+static void log_missing(const struct slc_vk *vk, const char *of, const char *function)
+{
+    slc_log(&vk->log, SLUICE_LOG_ERROR, "the Vulkan %s has no %s%s", of, function,
+            is_of_vulkan_1_0(function) ? ""
+                                       : ": create the instance with apiVersion 1.2 "
+                                         "(VkApplicationInfo), and choose a device of Vulkan 1.2");
+}
+
 SluiceResult slc_vk_init_instance(struct slc_vk *vk, VkInstance instance,
                                   VkPhysicalDevice physical_device, PFN_vkGetInstanceProcAddr get,
                                   const SluiceLogCallback *log)
@@ -12,7 +34,7 @@ SluiceResult slc_vk_init_instance(struct slc_vk *vk, VkInstance instance,
 #define LOAD(name)                                                                                 \
     vk->name = (PFN_vk##name)get(instance, "vk" #name);                                            \
     if (!vk->name) {                                                                               \
-        slc_log(&vk->log, SLUICE_LOG_ERROR, "the Vulkan instance has no vk" #name);                \
+        log_missing(vk, "instance", "vk" #name);                                                   \
         return SLUICE_ERROR_UNSUPPORTED;                                                           \
     }
     SLC_VK_INSTANCE_FUNCTIONS(LOAD)
@@ -26,7 +48,7 @@ SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device)
 #define LOAD(name)                                                                                 \
     vk->name = (PFN_vk##name)vk->GetDeviceProcAddr(device, "vk" #name);                            \
     if (!vk->name) {                                                                               \
-        slc_log(&vk->log, SLUICE_LOG_ERROR, "the Vulkan device has no vk" #name);                  \
+        log_missing(vk, "device", "vk" #name);                                                     \
         return SLUICE_ERROR_UNSUPPORTED;                                                           \
     }
     SLC_VK_DEVICE_FUNCTIONS(LOAD)

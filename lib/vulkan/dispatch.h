@@ -28,6 +28,8 @@
     X(WaitSemaphores)
 /* clang-format on */
 
+struct slc_memory_use; ///< memory.h
+
 struct slc_vk {
     VkInstance instance;
     VkPhysicalDevice physical_device;
@@ -37,6 +39,7 @@ struct slc_vk {
     SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
 #undef SLC_VK_MEMBER
     SluiceLogCallback log;
+    struct slc_memory_use *memory_use; ///< NULL: nobody counts
 };
 
 /** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */

@@ -201,7 +201,8 @@ void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     uint32_t share = share_of_frame(s);
     if (share == 0 || s->info.mapEverything)
         return;
-    struct slc_readback_slot *slot = slc_readback_begin(&s->readback, s->frame, s->time_stamp);
+    struct slc_readback_slot *slot =
+        slc_readback_begin(&s->readback, s->slot, s->frame, s->time_stamp);
     if (slot->list_version == s->list_version && slot->list_first == s->primary_cursor) {
         slc_resolve_resume(&s->resolve, (uint32_t)(slot - s->readback.slots), slot->item_count,
                            slot->segment_count);
@@ -213,4 +214,18 @@ void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         slc_resolve_record(&s->resolve, &s->vk, commands,
                            slc_readback_result_offset(&s->readback, slot),
                            slc_readback_data_offset(&s->readback, slot), s->readback.capacity);
+}
+
+void slc_feedback_abandon(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    uint64_t oldest = UINT64_MAX;
+    for (uint32_t i = 0; i < s->readback.slot_count; i++) {
+        struct slc_readback_slot *slot = &s->readback.slots[i];
+        if (slot->frame < frame)
+            continue;
+        if (slot->frame < oldest)
+            s->primary_cursor = slot->list_first;
+        oldest = slot->frame < oldest ? slot->frame : oldest;
+        slot->frame = 0;
+    }
 }

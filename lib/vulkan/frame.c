@@ -19,7 +19,8 @@ static SluiceResult poll_frames(SluiceVulkanStreamer *s)
 /* What the GPU has finished: slots, images and staging memory come back. */
 static SluiceResult retire(SluiceVulkanStreamer *s)
 {
-    SluiceResult result = s->residency->interface->update(s->residency, s->completed_frame);
+    SluiceResult result =
+        s->residency->interface->update(s->residency, s->frame, s->completed_frame);
     if (result != SLUICE_SUCCESS)
         return result;
     slc_loads_recycle(s);
@@ -45,10 +46,11 @@ static SluiceResult unmap_tiles(SluiceVulkanStreamer *s)
             sluiceGetTilesToUnmap(s->manager, SLUICE_ALL_TEXTURES, s->frame, &count, s->tiles);
         if (result < 0)
             return slc_streamer_check(s, result, "sluiceGetTilesToUnmap");
-        for (uint32_t i = 0; i < count; i++)
-            s->residency->interface->unmap(s->residency,
-                                           s->by_manager_index[(uint32_t)s->tiles[i].textureId],
-                                           &s->tiles[i], s->frame);
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
+            bool filled = slc_loads_unmap(s, index, &s->tiles[i]);
+            s->residency->interface->unmap(s->residency, index, &s->tiles[i], s->frame, filled);
+        }
         s->counts.tilesUnmapped += count;
         if (count < asked)
             return SLUICE_SUCCESS;
@@ -74,6 +76,8 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
         result = slc_feedback_read(s);
     if (result >= 0)
         result = slc_loads_cancel(s);
+    if (result >= 0)
+        result = slc_loads_make_room(s);
     if (result >= 0)
         result = unmap_tiles(s);
     if (result >= 0)
@@ -137,14 +141,20 @@ static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     const struct slc_residency_interface *residency = s->residency->interface;
+    bool written_twice = s->new_texture_count || s->has_put_back;
     barrier_before(s, commands);
-    if (!s->buffers_cleared)
+    if (!s->buffers_cleared) {
         clear_buffers(s, commands);
+        s->cleared_frame = s->frame;
+    }
     if (residency->record_begin)
         residency->record_begin(s->residency, s->frame, commands);
     slc_textures_record_new(s, commands);
     slc_feedback_record_turns(s, commands);
     s->buffers_cleared = true;
+    s->has_put_back = false;
+    if (written_twice) /* entries and words of the page table, which what follows changes */
+        barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
     SluiceResult result = slc_tile_uploads_record(s, commands);
     if (result >= 0 && residency->record_publish)
         residency->record_publish(s->residency, commands);
@@ -155,6 +165,11 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     return result;
 }
 
+static uint32_t slot_of(const SluiceVulkanStreamer *s, uint64_t turn)
+{
+    return (uint32_t)(turn % s->info.framesInFlight);
+}
+
 SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                        VkCommandBuffer commandBuffer, uint64_t timeStamp,
                                        SluiceStreamingFrame *pFrame)
@@ -162,30 +177,94 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     SluiceVulkanStreamer *s = streamer;
     if (!s || !commandBuffer || !pFrame)
         return SLUICE_ERROR_NULL_POINTER;
-    if (s->frame && timeStamp - s->time_stamp > UINT64_MAX / 2)
+    if (s->frame && timeStamp - s->time_stamp > UINT64_MAX / 2) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+                "timeStamp is %llu; it must not be below the last frame's, %llu",
+                (unsigned long long)timeStamp, (unsigned long long)s->time_stamp);
         return SLUICE_ERROR_TIME_BACKWARDS;
+    }
+    if (s->ended_frame != s->frame) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+                "frame %llu was neither ended nor abandoned: no other one can be begun",
+                (unsigned long long)s->frame);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     SluiceResult result = poll_frames(s);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (s->frame - s->completed_frame >= s->info.framesInFlight)
+    s->slot = slot_of(s, s->slot_turn);
+    if (s->in_flight[s->slot] > s->completed_frame)
         return SLUICE_NOT_READY;
-    s->frame++;
+    s->in_flight[s->slot] = ++s->frame;
+    s->slot_turn++;
     s->time_stamp = timeStamp;
+    slc_time_check_frame(&s->time_check, &s->info.log, timeStamp);
     *pFrame = (SluiceStreamingFrame){s->frame, s->semaphore, s->frame};
+    s->manager_locked = false;
     result = decide(s);
     if (result >= 0)
         result = record(s, commandBuffer);
-    return result < 0 ? result : SLUICE_SUCCESS;
+    s->manager_locked = true;
+    if (result >= 0)
+        return SLUICE_SUCCESS;
+    s->ended_frame = s->frame;
+    return result;
 }
 
 SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBuffer commandBuffer)
 {
     if (!streamer || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
-    if (streamer->ended_frame == streamer->frame)
+    if (streamer->ended_frame == streamer->frame) {
+        slc_log(&streamer->info.log, SLUICE_LOG_ERROR,
+                "no frame can be ended: none was begun since the last one was ended or abandoned");
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     streamer->ended_frame = streamer->frame;
     slc_feedback_record(streamer, commandBuffer);
+    return SLUICE_SUCCESS;
+}
+
+static bool is_in_flight(const SluiceVulkanStreamer *s, uint64_t frame)
+{
+    for (uint32_t i = 0; i < s->info.framesInFlight; i++)
+        if (frame && s->in_flight[i] == frame)
+            return frame > s->completed_frame;
+    return false;
+}
+
+static void give_slots_back(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    while (s->slot_turn && s->in_flight[slot_of(s, s->slot_turn - 1)] >= frame)
+        s->in_flight[slot_of(s, --s->slot_turn)] = 0;
+}
+
+SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
+                                         const SluiceStreamingFrame *pFrame)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !pFrame)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = poll_frames(s);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint64_t frame = pFrame->frameIndex;
+    if (!is_in_flight(s, frame)) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+                "frame %llu cannot be abandoned: it is over, was abandoned or never begun",
+                (unsigned long long)frame);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    give_slots_back(s, frame);
+    s->ended_frame = s->frame;
+    s->buffers_cleared &= s->cleared_frame < frame;
+    s->has_put_back = true;
+    slc_textures_abandon(s, frame);
+    slc_loads_abandon(s, frame);
+    slc_min_mip_abandon(s, frame);
+    slc_feedback_abandon(s, frame);
+    if (s->residency->interface->abandon)
+        s->residency->interface->abandon(s->residency, frame);
     return SLUICE_SUCCESS;
 }
 

@@ -1,21 +1,19 @@
 #include "vulkan/image_memory.h"
 
 #include "base/alloc.h"
+#include "vulkan/memory.h"
 
 #include <string.h>
 
 #define UNIT 1024u
-#define BLOCK_UNITS 8192u /* 8 MiB */
+#define FIRST_UNITS 64u   /* 64 KiB: the first block of a pool */
+#define BLOCK_UNITS 8192u /* 8 MiB: the largest */
 #define SMALL_UNITS 2048u
-#define BLOCK_IMAGES 2048u /* each takes at least SLC_REGION_ALIGNMENT units */
 
 static SluiceResult allocate(const struct slc_vk *vk, uint64_t size, uint32_t type,
                              VkDeviceMemory *memory)
 {
-    VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                 .allocationSize = size,
-                                 .memoryTypeIndex = type};
-    return slc_vk_result(vk, vk->AllocateMemory(vk->device, &info, NULL, memory),
+    return slc_vk_result(vk, slc_memory_allocate(vk, size, type, SLC_MEMORY_DEVICE, memory),
                          "vkAllocateMemory for an image");
 }
 
@@ -33,8 +31,18 @@ static SluiceResult grow(struct slc_image_memory *pool, const SluiceAllocationCa
     return SLUICE_SUCCESS;
 }
 
+/* As much again as the pool has, so that few images take little and many few allocations. */
+static uint32_t next_block_units(const struct slc_image_memory *pool, uint32_t needed)
+{
+    uint32_t units = FIRST_UNITS;
+    while (units < BLOCK_UNITS && (units < needed || (uint64_t)units * UNIT < pool->total_size))
+        units *= 2;
+    return units;
+}
+
 static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk *vk,
-                              const SluiceAllocationCallbacks *cb, uint32_t type, uint32_t *index)
+                              const SluiceAllocationCallbacks *cb, uint32_t type, uint32_t needed,
+                              uint32_t *index)
 {
     uint32_t at = 0;
     while (at < pool->block_capacity && pool->blocks[at].memory)
@@ -43,16 +51,18 @@ static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_image_block *block = &pool->blocks[at];
-    result = slc_region_arena_init(&block->arena, cb, BLOCK_UNITS, BLOCK_IMAGES);
+    uint32_t units = next_block_units(pool, needed);
+    result = slc_region_arena_init(&block->arena, cb, units, units / SLC_REGION_ALIGNMENT);
     if (result == SLUICE_SUCCESS)
-        result = allocate(vk, (uint64_t)BLOCK_UNITS * UNIT, type, &block->memory);
+        result = allocate(vk, (uint64_t)units * UNIT, type, &block->memory);
     if (result != SLUICE_SUCCESS) {
         slc_region_arena_finish(&block->arena, cb);
         block->memory = VK_NULL_HANDLE;
         return result;
     }
     block->type = type;
-    pool->total_size += (uint64_t)BLOCK_UNITS * UNIT;
+    block->size = (uint64_t)units * UNIT;
+    pool->total_size += block->size;
     *index = at;
     return SLUICE_SUCCESS;
 }
@@ -67,7 +77,7 @@ static SluiceResult take(struct slc_image_memory *pool, const struct slc_vk *vk,
             place->block = i;
             return SLUICE_SUCCESS;
         }
-    SluiceResult result = add_block(pool, vk, cb, type, &place->block);
+    SluiceResult result = add_block(pool, vk, cb, type, place->count, &place->block);
     if (result == SLUICE_SUCCESS)
         slc_region_arena_take(&pool->blocks[place->block].arena, place->count, &place->first);
     return result;
@@ -117,17 +127,17 @@ void slc_image_memory_release(struct slc_image_memory *pool, const struct slc_vk
                               const SluiceAllocationCallbacks *cb, struct slc_image_place *place)
 {
     if (place->own) {
-        vk->FreeMemory(vk->device, place->own, NULL);
+        slc_memory_free(vk, place->own, place->own_size, SLC_MEMORY_DEVICE);
         pool->total_size -= place->own_size;
     }
     if (place->count) {
         struct slc_image_block *block = &pool->blocks[place->block];
         slc_region_arena_give(&block->arena, place->first, place->count);
         if (--block->used == 0) {
-            vk->FreeMemory(vk->device, block->memory, NULL);
+            slc_memory_free(vk, block->memory, block->size, SLC_MEMORY_DEVICE);
             slc_region_arena_finish(&block->arena, cb);
+            pool->total_size -= block->size;
             *block = (struct slc_image_block){0};
-            pool->total_size -= (uint64_t)BLOCK_UNITS * UNIT;
         }
     }
     *place = (struct slc_image_place){0};

@@ -10,6 +10,7 @@
 
 struct slc_image_block {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: free
+    uint64_t size;         ///< bytes
     uint32_t type;
     struct slc_region_arena arena; ///< in units of 1 KiB
     uint32_t used;                 ///< images

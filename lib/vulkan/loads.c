@@ -34,10 +34,48 @@ uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list)
     return unit;
 }
 
+static void push_free(SluiceVulkanStreamer *s, uint32_t unit)
+{
+    s->units[unit].next = s->free_units.first;
+    s->free_units.first = unit;
+}
+
+/* The free ones that have memory come first; how many there are. */
+static uint32_t sort_free(SluiceVulkanStreamer *s)
+{
+    const struct slc_unit_list empty = {SLC_NONE, SLC_NONE};
+    struct slc_unit_list there = empty, others = empty;
+    uint32_t count = 0;
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->free_units)) != SLC_NONE;) {
+        bool is_there = slc_staging_is_there(&s->staging, unit);
+        slc_unit_list_append(s, is_there ? &there : &others, unit);
+        count += is_there;
+    }
+    s->free_units = count ? there : others;
+    if (count)
+        s->units[there.last].next = others.first;
+    return count;
+}
+
+/* True: so many units can be taken. Makes memory for them, and where there is none makes do with
+ * those that have some. */
+static bool units_are_ready(SluiceVulkanStreamer *s, uint32_t count)
+{
+    if (count > s->free_unit_count)
+        return false;
+    uint32_t unit = s->free_units.first;
+    for (uint32_t i = 0; i < count; i++, unit = s->units[unit].next)
+        if (!slc_staging_ensure(&s->staging, unit))
+            return sort_free(s) >= count;
+    return true;
+}
+
+/* One that is ready. */
 static uint32_t unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
 {
     uint32_t unit = slc_unit_list_pop(s, &s->free_units);
     assert(unit != SLC_NONE && s->units[unit].state == SLC_UNIT_FREE);
+    slc_staging_take(&s->staging, unit);
     s->free_unit_count--;
     s->units[unit] = (struct slc_unit){.texture = texture, .packed_unit = packed_unit};
     s->textures[texture].unit_count++;
@@ -49,7 +87,8 @@ void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit)
     s->textures[s->units[unit].texture].unit_count--;
     s->units[unit].state = SLC_UNIT_FREE;
     s->free_unit_count++;
-    slc_unit_list_append(s, &s->free_units, unit);
+    slc_staging_give(&s->staging, unit);
+    push_free(s, unit);
 }
 
 SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
@@ -66,8 +105,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_buffer_init(&s->staging, &s->vk, &s->caps, (uint64_t)count * SLC_TILE_SIZE,
-                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    result = slc_staging_init(&s->staging, &s->vk, &s->caps, &s->cb, count, s->info.minStagingSize);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
@@ -82,7 +120,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
 void slc_loads_finish(SluiceVulkanStreamer *s)
 {
     sluiceDestroyTileLoader(s->loader); /* first: its threads write into the staging slots */
-    slc_buffer_finish(&s->staging, &s->vk);
+    slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
     slc_parked_tiles_finish(&s->parked, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);
@@ -90,7 +128,7 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
 
 static uint8_t *unit_memory(SluiceVulkanStreamer *s, uint32_t unit)
 {
-    return (uint8_t *)s->staging.mapped + (size_t)unit * SLC_TILE_SIZE;
+    return slc_staging_memory(&s->staging, unit);
 }
 
 static SluiceImageRegion tile_region(const struct slc_texture *texture, const SluiceTile *tile)
@@ -138,40 +176,36 @@ static SluiceResult submit_unit(SluiceVulkanStreamer *s, uint32_t index)
     return sluiceSubmitTileRead(s->loader, &read, &unit->ticket);
 }
 
+static bool is_packed(const SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    return tile->tileIndex >= s->textures[texture].layout.regularTileCount;
+}
+
 static void packed_restart(struct slc_texture *texture)
 {
+    texture->packed_collected = 0;
     texture->packed_state = SLC_PACKED_COLLECTING;
     texture->packed_done = 0;
-    texture->packed_failed = false;
+    texture->packed_result = SLUICE_SUCCESS;
     texture->packed_first_unit = SLC_NONE;
 }
 
-static void log_failure(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
-                        const struct slc_unit *unit, SluiceResult result)
-{
-    const char *name = texture->info.pName ? texture->info.pName : "image";
-    if (unit->packed_unit != SLC_NONE)
-        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: packed levels cannot be read: %s", name,
-                sluiceResultString(result));
-    else
-        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: level %u, tile (%u, %u) cannot be read: %s",
-                name, unit->tile.mipLevel, unit->tile.x, unit->tile.y, sluiceResultString(result));
-}
-
 /* All units are back and one of them failed: nothing was bound, the manager tries again later. */
-static SluiceResult packed_fail(SluiceVulkanStreamer *s, struct slc_texture *texture)
+static SluiceResult packed_fail(SluiceVulkanStreamer *s, uint32_t index)
 {
+    struct slc_texture *texture = &s->textures[index];
     while (texture->packed_first_unit != SLC_NONE) {
         uint32_t unit = texture->packed_first_unit;
         texture->packed_first_unit = s->units[unit].next;
         slc_unit_free(s, unit);
     }
-    uint32_t count = texture->layout.desc.packedTileCount;
+    uint32_t count = texture->packed_collected;
     SluiceResult result = SLUICE_SUCCESS;
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = sluiceReportFailedTiles(s->manager, texture->id, 1,
                                          &texture->packed_tiles[i].tileIndex, s->manager_time);
     s->counts.tilesFailed += count;
+    slc_read_trouble_failed(s, index, texture->packed_tiles[0].tileIndex, texture->packed_result);
     packed_restart(texture);
     return slc_streamer_check(s, result, "sluiceReportFailedTiles");
 }
@@ -180,17 +214,16 @@ static SluiceResult packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, Sl
 {
     struct slc_unit *unit = &s->units[index];
     struct slc_texture *texture = &s->textures[unit->texture];
-    if (answer != SLUICE_SUCCESS) {
-        log_failure(s, texture, unit, answer);
-        texture->packed_failed = true;
-    }
+    if (answer != SLUICE_SUCCESS)
+        texture->packed_result = answer;
     unit->state = SLC_UNIT_ARRIVED;
     unit->next = texture->packed_first_unit;
     texture->packed_first_unit = index;
     if (++texture->packed_done < texture->packed.unit_count)
         return SLUICE_SUCCESS;
-    if (texture->packed_failed)
-        return packed_fail(s, texture);
+    if (texture->packed_result != SLUICE_SUCCESS)
+        return packed_fail(s, unit->texture);
+    slc_read_trouble_delivered(s, unit->texture, texture->packed_tiles[0].tileIndex);
     texture->packed_state = SLC_PACKED_MAPPING;
     texture->packed_done = 0;
     s->packed_queue[s->packed_queue_count++] = unit->texture;
@@ -199,7 +232,8 @@ static SluiceResult packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, Sl
 
 static void forget_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit)
 {
-    slc_map_remove(&s->tile_units, slc_pair_key(unit->texture, unit->tile.tileIndex));
+    if (unit->packed_unit == SLC_NONE && !unit->dropped)
+        slc_map_remove(&s->tile_units, slc_pair_key(unit->texture, unit->tile.tileIndex));
 }
 
 static SluiceResult tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
@@ -212,12 +246,13 @@ static SluiceResult tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceRes
         slc_streamer_check(s, result, "sluiceReportCancelledTiles");
         s->counts.tilesCancelled++;
     } else if (answer != SLUICE_SUCCESS) {
-        log_failure(s, texture, unit, answer);
         result = sluiceReportFailedTiles(s->manager, texture->id, 1, &unit->tile.tileIndex,
                                          s->manager_time);
         slc_streamer_check(s, result, "sluiceReportFailedTiles");
         s->counts.tilesFailed++;
+        slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
     } else {
+        slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
         unit->state = SLC_UNIT_ARRIVED;
         slc_unit_list_append(s, &s->arrived, index);
         return SLUICE_SUCCESS;
@@ -225,6 +260,13 @@ static SluiceResult tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceRes
     forget_tile(s, unit);
     slc_unit_free(s, index);
     return result;
+}
+
+/* Sources that are not ready may hold half of the staging slots. The others are for sources that
+ * are: what is not ready then fails, and the manager asks again later. */
+static bool can_wait(const SluiceVulkanStreamer *s)
+{
+    return s->free_unit_count >= s->info.maxLoadsInFlight / 2;
 }
 
 static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResult *read)
@@ -238,7 +280,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
         return SLUICE_SUCCESS;
     }
     SluiceResult answer = read->result;
-    if (answer == SLUICE_NOT_READY && !unit->cancelled) {
+    if (answer == SLUICE_NOT_READY && !unit->cancelled && can_wait(s)) {
         answer = submit_unit(s, index);
         if (answer == SLUICE_SUCCESS)
             return SLUICE_SUCCESS;
@@ -276,6 +318,34 @@ static SluiceResult give_back(SluiceVulkanStreamer *s, uint32_t texture, const S
         "sluiceReportCancelledTiles");
 }
 
+/* All packed tiles are there or handed out: then the levels are read, as one. */
+static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    uint32_t count = texture->packed_collected + texture->packed_mapped;
+    if (texture->packed_state != SLC_PACKED_COLLECTING || texture->packed_collected == 0 ||
+        count < texture->layout.desc.packedTileCount)
+        return;
+    texture->packed_state = SLC_PACKED_READY;
+    s->packed_queue[s->packed_queue_count++] = index;
+}
+
+/* Given back while others are not even handed out; later it goes on and ends on standby. */
+static SluiceResult cancel_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
+                                       const SluiceTile *tile)
+{
+    struct slc_texture *texture = &s->textures[index];
+    if (texture->packed_state != SLC_PACKED_COLLECTING)
+        return SLUICE_SUCCESS;
+    uint32_t at = 0;
+    while (at < texture->packed_collected && texture->packed_tiles[at].tileIndex != tile->tileIndex)
+        at++;
+    if (at == texture->packed_collected)
+        return SLUICE_SUCCESS;
+    texture->packed_tiles[at] = texture->packed_tiles[--texture->packed_collected];
+    return give_back(s, index, tile);
+}
+
 SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
 {
     SluiceTile tiles[BATCH];
@@ -287,6 +357,10 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
             return slc_streamer_check(s, result, "sluiceGetTilesToCancel");
         for (uint32_t i = 0; i < count; i++) {
             uint32_t texture = s->by_manager_index[(uint32_t)tiles[i].textureId];
+            if (is_packed(s, texture, &tiles[i])) {
+                cancel_packed_tile(s, texture, &tiles[i]);
+                continue;
+            }
             uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tiles[i].tileIndex));
             if (slc_parked_tiles_remove(&s->parked, texture, tiles[i].tileIndex)) {
                 give_back(s, texture, &tiles[i]);
@@ -358,6 +432,34 @@ static void forget_pages_left(SluiceVulkanStreamer *s)
         s->pages_left[i] = SLC_NONE;
 }
 
+/* Parked tiles that even pages which are free now do not suffice for. */
+static uint32_t count_without_page(SluiceVulkanStreamer *s)
+{
+    uint32_t count = 0;
+    forget_pages_left(s);
+    for (uint32_t i = 0; i < s->parked.count; i++) {
+        uint32_t texture = s->parked.tiles[i].texture, left = pages_left(s, texture);
+        count += left == 0;
+        if (left > 0 && left != SLC_NONE)
+            s->pages_left[s->textures[texture].info.format]--;
+    }
+    return count;
+}
+
+SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
+{
+    uint32_t count = s->parked.count ? count_without_page(s) : 0;
+    if (count == 0)
+        return SLUICE_SUCCESS;
+    SluiceStreamedTextureStatistics stats;
+    sluiceGetStatistics(s->manager, &stats);
+    if (stats.standbyTileCount == 0)
+        return SLUICE_SUCCESS;
+    uint32_t kept = stats.standbyTileCount > count ? (uint32_t)stats.standbyTileCount - count : 0;
+    return slc_streamer_check(s, sluiceTrimStandbyTiles(s->manager, kept),
+                              "sluiceTrimStandbyTiles");
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
@@ -371,7 +473,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     if (interface->reserve && !interface->reserve(s->residency, texture, tile))
         return refuse_tile(s, texture, tile);
     uint32_t left = pages_left(s, texture);
-    if (left == 0)
+    if (left == 0 || !units_are_ready(s, 1))
         return park_tile(s, texture, tile);
     if (left != SLC_NONE)
         s->pages_left[s->textures[texture].info.format]--;
@@ -387,7 +489,7 @@ static SluiceResult start_parked(SluiceVulkanStreamer *s)
 {
     SluiceResult result = SLUICE_SUCCESS;
     for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->parked.count > 0 && level-- > 0;)
-        for (uint32_t i = 0; i < s->parked.count && s->free_unit_count > 0 && result >= 0;) {
+        for (uint32_t i = 0; i < s->parked.count && units_are_ready(s, 1) && result >= 0;) {
             struct slc_parked_tile parked = s->parked.tiles[i];
             if (parked.tile.mipLevel != level || pages_left(s, parked.texture) == 0) {
                 i++;
@@ -399,15 +501,16 @@ static SluiceResult start_parked(SluiceVulkanStreamer *s)
     return result;
 }
 
-static void collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index, const SluiceTile *tile)
+/* One that comes while the others are on their way was evicted meanwhile. Its turn is later. */
+static SluiceResult collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
+                                        const SluiceTile *tile)
 {
     struct slc_texture *texture = &s->textures[index];
-    assert(texture->packed_state == SLC_PACKED_COLLECTING);
-    texture->packed_tiles[tile->x] = *tile;
-    if (++texture->packed_done == texture->layout.desc.packedTileCount) {
-        texture->packed_state = SLC_PACKED_READY;
-        s->packed_queue[s->packed_queue_count++] = index;
-    }
+    if (texture->packed_state != SLC_PACKED_COLLECTING)
+        return give_back(s, index, tile);
+    texture->packed_tiles[texture->packed_collected++] = *tile;
+    check_packed(s, index);
+    return SLUICE_SUCCESS;
 }
 
 static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
@@ -445,7 +548,7 @@ static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
             i++;
             continue;
         }
-        if (texture->packed.unit_count > s->free_unit_count) {
+        if (!units_are_ready(s, texture->packed.unit_count)) {
             *waits = true;
             return SLUICE_SUCCESS;
         }
@@ -475,8 +578,8 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
         result = SLUICE_SUCCESS;
-        if (s->tiles[i].tileIndex >= s->textures[index].layout.regularTileCount)
-            collect_packed_tile(s, index, &s->tiles[i]);
+        if (is_packed(s, index, &s->tiles[i]))
+            result = collect_packed_tile(s, index, &s->tiles[i]);
         else
             result = start_tile(s, index, &s->tiles[i]);
         if (result < 0)
@@ -491,7 +594,7 @@ static void bind_packed(SluiceVulkanStreamer *s)
     for (uint32_t i = 0; i < s->packed_queue_count; i++) {
         uint32_t index = s->packed_queue[i];
         struct slc_texture *texture = &s->textures[index];
-        uint32_t count = texture->layout.desc.packedTileCount;
+        uint32_t count = texture->packed_collected;
         if (texture->packed_state != SLC_PACKED_MAPPING)
             continue;
         while (texture->packed_done < count &&
@@ -542,7 +645,7 @@ void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value)
     for (uint32_t i = 0; i < s->packed_queue_count;) {
         struct slc_texture *texture = &s->textures[s->packed_queue[i]];
         if (texture->packed_state != SLC_PACKED_MAPPING ||
-            texture->packed_done < texture->layout.desc.packedTileCount) {
+            texture->packed_done < texture->packed_collected) {
             i++;
             continue;
         }
@@ -564,8 +667,48 @@ void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value)
 
 void slc_loads_recycle(SluiceVulkanStreamer *s)
 {
-    while (s->uploaded.first != SLC_NONE && s->units[s->uploaded.first].value <= s->completed_frame)
-        slc_unit_free(s, slc_unit_list_pop(s, &s->uploaded));
+    while (s->uploaded.first != SLC_NONE &&
+           s->units[s->uploaded.first].value <= s->completed_frame) {
+        uint32_t unit = slc_unit_list_pop(s, &s->uploaded);
+        forget_tile(s, &s->units[unit]);
+        slc_unit_free(s, unit);
+    }
+    slc_staging_trim(&s->staging);
+}
+
+bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    if (is_packed(s, texture, tile)) {
+        s->textures[texture].packed_mapped--;
+        return true;
+    }
+    uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tile->tileIndex));
+    if (unit == SLC_MAP_NONE)
+        return true;
+    forget_tile(s, &s->units[unit]);
+    s->units[unit].dropped = true;
+    return false;
+}
+
+/* They come before all others: MinMip maps are about to show them. */
+void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    struct slc_unit_list kept = {SLC_NONE, SLC_NONE}, again = kept;
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->uploaded)) != SLC_NONE;) {
+        struct slc_unit *u = &s->units[unit];
+        if (u->value < frame) {
+            slc_unit_list_append(s, &kept, unit);
+            continue;
+        }
+        u->state = SLC_UNIT_BINDING;
+        u->value = 0; /* its bind is over */
+        u->published = true;
+        slc_unit_list_append(s, &again, unit);
+    }
+    s->uploaded = kept;
+    for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->binding)) != SLC_NONE;)
+        slc_unit_list_append(s, &again, unit);
+    s->binding = again;
 }
 
 void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
@@ -587,8 +730,8 @@ void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
         struct slc_unit *unit = &s->units[i];
         if (unit->state == SLC_UNIT_FREE || unit->texture != index)
             continue;
-        if (unit->packed_unit == SLC_NONE && unit->state != SLC_UNIT_UPLOADED)
-            forget_tile(s, unit);
+        forget_tile(s, unit);
+        unit->dropped = true;
         if (unit->state == SLC_UNIT_READING)
             sluiceCancelTileRead(s->loader, unit->ticket);
     }

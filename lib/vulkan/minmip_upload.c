@@ -1,7 +1,8 @@
 /*
  * Publishes the MinMip maps. The manager's changed rectangles are what texels are to become; what
  * they are moves there step by step (fade.h). What moved goes through this frame's staging memory,
- * which has the layout of the buffer, with what is around (around.h), and is copied row by row.
+ * with what is around (around.h), and is copied row by row. That memory grows with what moves;
+ * where there is none texels go through the command buffer.
  */
 #include "vulkan/streamer.h"
 
@@ -13,6 +14,16 @@
 #include <string.h>
 
 #define BATCH 64u
+#define MIN_STAGING (64u << 10)
+#define NOT_STAGED UINT64_MAX
+#define UPDATE_WORDS 16384u /* as much as an update takes */
+#define REFUSED_FRAMES 60u  /* until the device is asked for memory again */
+
+/* Of this frame; the one that used it before is over. */
+static struct slc_buffer *staging_of(SluiceVulkanStreamer *s)
+{
+    return &s->min_mip_staging[s->slot];
+}
 
 static void add_to_fades(SluiceVulkanStreamer *s, uint32_t index, const SluiceMinMipRect *rect)
 {
@@ -60,28 +71,70 @@ static SluiceResult take_updates(SluiceVulkanStreamer *s)
     }
 }
 
-/* Whole rows, and as many beside those of the rectangle as their words look around. */
-static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *texture,
-                          const struct slc_fade_rect *rect)
+static struct slc_around around_of(const SluiceVulkanStreamer *s, const struct slc_texture *texture)
 {
-    struct slc_around around = {
+    return (struct slc_around){
         .texels = s->min_mip_texels + texture->region_first,
         .width = texture->layout.minMipWidth,
         .height = texture->layout.minMipHeight,
         .radius = slc_texture_is_ragged(texture) ? SLUICE_AROUND_RAGGED : SLUICE_AROUND,
         .wraps_x = texture->address_modes[0] == VK_SAMPLER_ADDRESS_MODE_REPEAT,
         .wraps_y = texture->address_modes[1] == VK_SAMPLER_ADDRESS_MODE_REPEAT};
-    uint32_t y0 = rect->y0 > around.radius ? rect->y0 - around.radius : 0;
-    uint32_t y1 = slc_min_u32(rect->y1 + around.radius, around.height);
-    if (around.wraps_y && (rect->y0 < around.radius || rect->y1 + around.radius > around.height))
-        y0 = 0, y1 = around.height;
+}
+
+/* Whole rows, and as many beside those of the rectangle as their words look around. */
+static void find_rows(const struct slc_around *around, const struct slc_fade_rect *rect,
+                      uint32_t *y0, uint32_t *y1)
+{
+    *y0 = rect->y0 > around->radius ? rect->y0 - around->radius : 0;
+    *y1 = slc_min_u32(rect->y1 + around->radius, around->height);
+    if (around->wraps_y &&
+        (rect->y0 < around->radius || rect->y1 + around->radius > around->height))
+        *y0 = 0, *y1 = around->height;
+}
+
+/* Bytes of staging memory. */
+static uint64_t staged_size(const SluiceVulkanStreamer *s, const struct slc_texture *texture)
+{
+    struct slc_around around = around_of(s, texture);
+    uint32_t y0, y1;
+    find_rows(&around, &texture->fade, &y0, &y1);
+    return (uint64_t)(y1 - y0) * around.width * sizeof(uint32_t);
+}
+
+/* Through the command buffer, where there is no staging memory: what was unmapped must not be shown
+ * any longer, whatever memory there is. */
+static void update_row(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint64_t offset,
+                       uint32_t count)
+{
+    for (uint32_t done = 0; done < count; done += UPDATE_WORDS) {
+        uint32_t piece = slc_min_u32(count - done, UPDATE_WORDS);
+        s->vk.CmdUpdateBuffer(commands, s->min_mip.buffer, offset + done * sizeof(uint32_t),
+                              piece * sizeof(uint32_t), s->around_words + done);
+    }
+}
+
+/* To `offset` in the staging memory; NOT_STAGED: straight into the buffer, and nothing is left to
+ * copy. */
+static VkBufferCopy stage(SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                          const struct slc_fade_rect *rect, uint64_t offset,
+                          VkCommandBuffer commands)
+{
+    struct slc_around around = around_of(s, texture);
+    uint32_t y0, y1;
+    find_rows(&around, rect, &y0, &y1);
     uint64_t first = texture->region_first + (uint64_t)y0 * around.width;
-    uint64_t size = (uint64_t)(y1 - y0) * around.width * sizeof(uint32_t);
-    uint64_t slot = s->frame % s->info.framesInFlight * (uint64_t)s->regions.size;
-    uint32_t *words = (uint32_t *)s->min_mip_staging.mapped + slot + first;
+    uint64_t at = first * sizeof(uint32_t), row = around.width * sizeof(uint32_t);
+    for (uint32_t y = y0; y < y1 && offset == NOT_STAGED; y++) {
+        slc_around_row(&around, y, s->around_row, s->around_words);
+        update_row(s, commands, at + (y - y0) * row, around.width);
+    }
+    if (offset == NOT_STAGED)
+        return (VkBufferCopy){0};
+    uint32_t *words = (uint32_t *)staging_of(s)->mapped + offset / sizeof(uint32_t);
     for (uint32_t y = y0; y < y1; y++, words += around.width)
         slc_around_row(&around, y, s->around_row, words);
-    return (VkBufferCopy){(slot + first) * sizeof *words, first * sizeof *words, size};
+    return (VkBufferCopy){offset, at, (y1 - y0) * row};
 }
 
 /* What shaders look at before they look at the map. */
@@ -93,9 +146,10 @@ static void publish_whole(SluiceVulkanStreamer *s, uint32_t index, VkCommandBuff
     uint16_t most = 0;
     for (uint32_t i = 0; i < count; i++)
         most = texels[i] > most ? texels[i] : most;
-    if (most == texture->whole_shown)
+    if (most == texture->whole_shown && !texture->whole_stale)
         return;
     texture->whole_shown = most;
+    texture->whole_stale = false;
     uint32_t word = most;
     s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer,
                           (uint64_t)index * sizeof(struct SluiceTextureEntry) +
@@ -104,7 +158,8 @@ static void publish_whole(SluiceVulkanStreamer *s, uint32_t index, VkCommandBuff
 }
 
 /* One step of all that moves in a texture; the rectangle shrinks to the rows that move on. */
-static VkBufferCopy move(SluiceVulkanStreamer *s, struct slc_texture *texture, uint16_t steps)
+static VkBufferCopy move(SluiceVulkanStreamer *s, struct slc_texture *texture, uint16_t steps,
+                         uint64_t offset, VkCommandBuffer commands)
 {
     struct slc_fade_rect moved = texture->fade, *fade = &texture->fade;
     uint32_t width = texture->layout.minMipWidth;
@@ -118,22 +173,48 @@ static VkBufferCopy move(SluiceVulkanStreamer *s, struct slc_texture *texture, u
             fade->y0 = y;
         fade->y1 = y + 1;
     }
-    return stage(s, texture, &moved);
+    return stage(s, texture, &moved, offset, commands);
 }
 
 static void copy(SluiceVulkanStreamer *s, VkCommandBuffer commands, const VkBufferCopy *copies,
                  uint32_t *count)
 {
     if (*count)
-        s->vk.CmdCopyBuffer(commands, s->min_mip_staging.buffer, s->min_mip.buffer, *count, copies);
+        s->vk.CmdCopyBuffer(commands, staging_of(s)->buffer, s->min_mip.buffer, *count, copies);
     *count = 0;
+}
+
+/* Makes room for all that moves in this frame, if there is memory. */
+static void reserve(SluiceVulkanStreamer *s)
+{
+    struct slc_buffer *staging = staging_of(s);
+    uint64_t needed = 0, size = MIN_STAGING;
+    for (uint32_t i = 0; i < s->fade_count; i++)
+        if (s->textures[s->fades[i]].state == SLC_TEXTURE_LIVE)
+            needed += staged_size(s, &s->textures[s->fades[i]]);
+    if (needed <= staging->size ||
+        (s->min_mip_refused && s->frame < s->min_mip_refused + REFUSED_FRAMES))
+        return;
+    while (size < needed)
+        size *= 2;
+    struct slc_buffer larger;
+    if (slc_buffer_init(&larger, &s->vk, &s->caps, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                        SLC_BUFFER_UPLOAD) != SLUICE_SUCCESS) {
+        s->min_mip_refused = s->frame;
+        return;
+    }
+    s->min_mip_refused = 0;
+    slc_buffer_finish(staging, &s->vk);
+    *staging = larger;
 }
 
 SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     VkBufferCopy copies[BATCH];
     uint32_t copy_count = 0, kept = 0;
+    uint64_t offset = 0;
     SluiceResult result = take_updates(s);
+    reserve(s);
     uint16_t steps = slc_fade_clock_advance(&s->fade_clock, s->time_stamp);
     for (uint32_t i = 0; i < s->fade_count; i++) {
         struct slc_texture *texture = &s->textures[s->fades[i]];
@@ -141,7 +222,11 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
             texture->fade.y1 = 0;
             continue;
         }
-        copies[copy_count++] = move(s, texture, steps);
+        bool fits = offset + staged_size(s, texture) <= staging_of(s)->size;
+        copies[copy_count] = move(s, texture, steps, fits ? offset : NOT_STAGED, commands);
+        offset += copies[copy_count].size;
+        copy_count += fits;
+        texture->shown_frame = s->frame;
         publish_whole(s, s->fades[i], commands);
         if (texture->fade.y1)
             s->fades[kept++] = s->fades[i];
@@ -151,4 +236,18 @@ SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer command
     copy(s, commands, copies, &copy_count);
     s->fade_count = kept;
     return result;
+}
+
+void slc_min_mip_abandon(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    for (uint32_t i = 0; i < s->texture_high; i++) {
+        struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_LIVE || texture->shown_frame < frame)
+            continue;
+        const SluiceMinMipRect all = {.textureId = texture->id,
+                                      .width = texture->layout.minMipWidth,
+                                      .height = texture->layout.minMipHeight};
+        texture->whole_stale = true;
+        add_to_fades(s, i, &all);
+    }
 }

@@ -14,6 +14,16 @@
 #define IDLE_FRAMES 60u    /* that an empty chunk is kept */
 #define REFUSED_FRAMES 60u /* until the device is asked for memory again */
 
+uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers)
+{
+    uint64_t most = slc_min_u32(SLC_PAGE_CHUNK_LAYERS, max_image_array_layers), count = 0;
+    for (uint32_t i = 0; i < chunk_count; i++) {
+        uint64_t layers = count > MIN_LAYERS ? count : MIN_LAYERS;
+        count += layers < most ? layers : most;
+    }
+    return count;
+}
+
 SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_vk *vk,
                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                                  struct slc_page_views *views)
@@ -70,7 +80,8 @@ static SluiceResult create_chunk(struct slc_page_cache *cache, struct slc_page_c
 
 bool slc_page_cache_is_refused(const struct slc_page_cache *cache)
 {
-    return cache->refused_frame && cache->frame < cache->refused_frame + REFUSED_FRAMES;
+    return cache->refused_frame && !cache->has_freed &&
+           cache->frame < cache->refused_frame + REFUSED_FRAMES;
 }
 
 uint32_t slc_page_cache_layer_count(const struct slc_page_cache *cache)
@@ -127,6 +138,15 @@ static bool is_beyond_cap(const struct slc_page_cache *cache)
     return cache->max_size && cache->memory.total_size > cache->max_size;
 }
 
+static void tell_of_shortage(struct slc_page_cache *cache, SluiceFormat format)
+{
+    if (cache->shortages++ == 0)
+        slc_log(&cache->vk->log, SLUICE_LOG_WARNING,
+                "all maxPageChunkCount %u images of pages are in use: no more than %u tiles of %s, "
+                "finer ones will not be loaded",
+                cache->views->count, cache->page_count[format], sluiceFormatString(format));
+}
+
 /* As many pages again as the format has; fewer where the device has no memory for them. */
 static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
 {
@@ -134,9 +154,7 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
     if (slc_page_cache_is_refused(cache) || left == 0)
         return false;
     if (at == cache->views->count)
-        slc_log(&cache->vk->log, SLUICE_LOG_WARNING,
-                "no tiles of %s beyond %u: there are maxPageChunkCount %u images of pages",
-                sluiceFormatString(format), cache->page_count[format], cache->views->count);
+        tell_of_shortage(cache, format);
     uint32_t layers = slc_max_u32(MIN_LAYERS, cache->page_count[format]);
     layers = slc_min_u32(layers, slc_min_u32(left, cache->max_layer_count));
     if (at == cache->views->count)
@@ -148,6 +166,7 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
         capped = created && is_beyond_cap(cache);
         if (created && !capped) {
             chunk->state = SLC_CHUNK_LIVE;
+            cache->chunk_count++;
             cache->page_count[format] += layers;
             cache->last_chunk[format] = at;
             cache->refused_frame = 0;
@@ -159,6 +178,7 @@ static bool add_chunk(struct slc_page_cache *cache, SluiceFormat format)
             break;
     }
     cache->refused_frame = cache->frame + 1;
+    cache->has_freed = false;
     return false;
 }
 
@@ -248,11 +268,24 @@ void slc_page_cache_record(struct slc_page_cache *cache, uint64_t frame, uint64_
         struct slc_page_chunk *chunk = &cache->chunks[i];
         if (chunk->state == SLC_CHUNK_LIVE)
             retire(cache, i);
-        else if (chunk->state == SLC_CHUNK_RETIRING && chunk->frame <= completed_frame + 1)
+        else if (chunk->state == SLC_CHUNK_RETIRING && chunk->frame <= completed_frame + 1) {
             destroy_chunk(cache, chunk);
-        if (chunk->state == SLC_CHUNK_LIVE && chunk->fresh)
+            cache->chunk_count--;
+            cache->has_freed = true;
+        }
+        if (chunk->state == SLC_CHUNK_LIVE && chunk->fresh) {
             slc_record_general_layout(cache->vk, commands, chunk->image.image);
+            chunk->layout_frame = frame;
+        }
         chunk->fresh = false;
     }
     cache->hurry = false;
+}
+
+void slc_page_cache_abandon(struct slc_page_cache *cache, uint64_t frame)
+{
+    for (uint32_t i = 0; i < cache->views->count; i++) {
+        struct slc_page_chunk *chunk = &cache->chunks[i];
+        chunk->fresh |= chunk->state == SLC_CHUNK_LIVE && chunk->layout_frame >= frame;
+    }
 }

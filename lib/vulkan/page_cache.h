@@ -12,6 +12,7 @@
 
 #define SLC_PAGE_FORMATS 64u
 #define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
+#define SLC_MAX_PAGE_CHUNKS (1u << 10)
 #define SLC_NO_OWNER UINT32_MAX
 
 enum slc_page_chunk_state {
@@ -32,7 +33,8 @@ struct slc_page_chunk {
     VkImageView view;
     struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
     uint32_t free_count, layer_count;
-    bool fresh;     ///< not yet in the layout in which it stays
+    bool fresh;            ///< not yet in the layout in which it stays
+    uint64_t layout_frame; ///< that put it there
     uint64_t frame; ///< LIVE: the last in which it was not empty; RETIRING: the first without it
 };
 
@@ -47,9 +49,12 @@ struct slc_page_cache {
     uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
     uint64_t frame;                        ///< the last one recorded
     uint64_t refused_frame; ///< the last in which the device had no memory; 0: it had some then
+    bool has_freed;         ///< a chunk has gone since then: one may be made at once
     uint32_t max_layer_count;
-    uint64_t max_size; ///< bytes of device memory, a hard cap; 0: none
-    bool hurry;        ///< chunks that are empty go with the next record
+    uint64_t max_size;    ///< bytes of device memory, a hard cap; 0: none
+    uint32_t chunk_count; ///< that have an image
+    uint64_t shortages;   ///< pages that were not there because all chunks were in use
+    bool hurry;           ///< chunks that are empty go with the next record
 };
 
 SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_vk *vk,
@@ -57,6 +62,9 @@ SluiceResult slc_page_cache_init(struct slc_page_cache *cache, const struct slc_
                                  struct slc_page_views *views);
 /** Nothing of it is in use on the GPU. */
 void slc_page_cache_finish(struct slc_page_cache *cache);
+
+/** Pages that so many chunks hold, at most: if all are of one format. */
+uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
 
 /** Pages of all chunks that are in use, free ones included. */
 uint32_t slc_page_cache_layer_count(const struct slc_page_cache *cache);
@@ -85,5 +93,7 @@ static inline VkImage slc_page_image(const struct slc_page_cache *cache, uint32_
 /** New chunks into their layout; drops chunks. Before anything that `frame` copies or draws. */
 void slc_page_cache_record(struct slc_page_cache *cache, uint64_t frame, uint64_t completed_frame,
                            VkCommandBuffer commands);
+/** Nothing that frames from `frame` on recorded has happened. */
+void slc_page_cache_abandon(struct slc_page_cache *cache, uint64_t frame);
 
 #endif /* SLC_VULKAN_PAGE_CACHE_H */

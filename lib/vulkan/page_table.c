@@ -97,6 +97,7 @@ static void remember(struct slc_page_table *table, struct slc_page *page, uint32
     page->image = image;
     page->place = place;
     page->live = true;
+    page->spoiled = false;
     page->previous = SLC_NO_PAGE;
     page->next = first;
     if (first != SLC_NO_PAGE)
@@ -167,8 +168,10 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
     *displaced = SLC_NO_IMAGE;
     if (list->capacity - list->count < 2)
         return false;
-    if (slc_page_table_revive(table, image, place, heap_id, slot))
+    if (slc_page_table_revive(table, image, place, heap_id, slot)) {
+        table->pages[slc_map_get(&table->places, slc_place_key(image, place))].spoiled = false;
         return true;
+    }
     struct slc_page *page = page_of(table, heap_id, slot);
     uint32_t there = slc_map_get(&table->places, slc_place_key(image, place));
     if (there != SLC_MAP_NONE) { /* in another heap; its unbind merges with the bind */
@@ -192,6 +195,20 @@ void slc_page_table_give_up(struct slc_page_table *table, uint32_t image,
     uint32_t page = slc_map_get(&table->places, slc_place_key(image, place));
     assert(page != SLC_MAP_NONE && table->pages[page].live);
     table->pages[page].live = false;
+}
+
+void slc_page_table_spoil(struct slc_page_table *table, uint32_t image, struct slc_tile_place place)
+{
+    uint32_t page = slc_map_get(&table->places, slc_place_key(image, place));
+    assert(page != SLC_MAP_NONE);
+    table->pages[page].spoiled = true;
+}
+
+bool slc_page_table_is_spoiled(const struct slc_page_table *table, uint32_t image,
+                               struct slc_tile_place place)
+{
+    uint32_t page = slc_map_get(&table->places, slc_place_key(image, place));
+    return page != SLC_MAP_NONE && table->pages[page].spoiled;
 }
 
 bool slc_page_table_unbind(struct slc_page_table *table, struct slc_bind_list *list,

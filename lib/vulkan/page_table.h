@@ -31,6 +31,7 @@ struct slc_page {
     uint32_t image; ///< SLC_NO_IMAGE: bound nowhere
     struct slc_tile_place place;
     bool live;               ///< false: given up
+    bool spoiled;            ///< it may hold other texels than the tile's
     uint32_t previous, next; ///< pages of the same image
     uint32_t slot;           ///< that stands for this page; an index, as the next
     uint32_t page_of_slot;   ///< the page that the slot of this index stands for
@@ -72,7 +73,7 @@ bool slc_page_table_bind(struct slc_page_table *table, struct slc_bind_list *lis
 /**
  * True: the tile was given up and its page, with its texels, is one of the heap's; from now on the
  * slot stands for that page, and the tile is bound as if it had not been given up. No tile that has
- * not been given up may have the slot.
+ * not been given up may have the slot. Ask slc_page_table_is_spoiled first where the texels matter.
  */
 bool slc_page_table_revive(struct slc_page_table *table, uint32_t image,
                            struct slc_tile_place place, uint32_t heap_id, uint32_t slot);
@@ -80,6 +81,13 @@ bool slc_page_table_revive(struct slc_page_table *table, uint32_t image,
 /** The tile is given up; it was bound. */
 void slc_page_table_give_up(struct slc_page_table *table, uint32_t image,
                             struct slc_tile_place place);
+
+/** What is on the page of the tile, which is bound, may not be its texels; until it is bound again.
+ */
+void slc_page_table_spoil(struct slc_page_table *table, uint32_t image,
+                          struct slc_tile_place place);
+bool slc_page_table_is_spoiled(const struct slc_page_table *table, uint32_t image,
+                               struct slc_tile_place place);
 
 /**
  * Puts into the list what unbinds whatever has given up a page. `*image`: of that, or SLC_NO_IMAGE

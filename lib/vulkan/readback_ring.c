@@ -46,11 +46,11 @@ void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_v
     *ring = (struct slc_readback_ring){0};
 }
 
-struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint64_t frame,
-                                             uint64_t time_stamp)
+struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint32_t index,
+                                             uint64_t frame, uint64_t time_stamp)
 {
-    struct slc_readback_slot *slot = &ring->slots[frame % ring->slot_count];
-    assert(slot->frame == 0);
+    struct slc_readback_slot *slot = &ring->slots[index];
+    assert(index < ring->slot_count && slot->frame == 0);
     slot->frame = frame;
     slot->time_stamp = time_stamp;
     return slot;

@@ -38,9 +38,9 @@ SluiceResult slc_readback_ring_init(struct slc_readback_ring *ring, const struct
 void slc_readback_ring_finish(struct slc_readback_ring *ring, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb);
 
-/** The slot of `frame`, which must have been read; its items are those of its last frame. */
-struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint64_t frame,
-                                             uint64_t time_stamp);
+/** A slot whose last frame was read or abandoned; its items are those of that frame. */
+struct slc_readback_slot *slc_readback_begin(struct slc_readback_ring *ring, uint32_t index,
+                                             uint64_t frame, uint64_t time_stamp);
 /** Words of the buffer: where the slot's results are, and where what they name is. */
 uint32_t slc_readback_result_offset(const struct slc_readback_ring *ring,
                                     const struct slc_readback_slot *slot);

@@ -11,6 +11,10 @@
  *     record_begin      before everything else
  *     record_uploads    into images whose maps are over
  *     record_publish    behind the uploads, before the MinMip maps that show them
+ *
+ * After any of these frames:
+ *
+ *     abandon           it, and those after it, were never submitted, but for what submit did
  */
 #ifndef SLC_VULKAN_RESIDENCY_H
 #define SLC_VULKAN_RESIDENCY_H
@@ -28,6 +32,9 @@ struct slc_residency_image {
 };
 
 struct slc_residency_interface {
+    /** Uploads go to images that are not sparse and have all their memory. */
+    bool ordinary_images;
+
     /** Nothing of it is in use on the GPU. */
     void (*destroy)(struct slc_residency *residency);
 
@@ -56,16 +63,17 @@ struct slc_residency_interface {
                                   uint32_t *heap_id);
     void (*release_heap)(struct slc_residency *residency, uint32_t heap_id);
 
-    /** `completed_frame`: the last frame that is over on the GPU. Never waits. */
-    SluiceResult (*update)(struct slc_residency *residency, uint64_t completed_frame);
+    /** `frame` begins. `completed_frame`: the last frame that is over on the GPU. Never waits. */
+    SluiceResult (*update)(struct slc_residency *residency, uint64_t frame,
+                           uint64_t completed_frame);
     /** NOT_READY, and nothing is collected: there is no room now, or an older use of the tile's
      *  place is not over. Ask again in the next frame. OUT_OF_DEVICE_MEMORY, of regular
      *  tiles alone: not even soon. */
     SluiceResult (*map)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
-    /** The MinMip maps of `frame` are the first that do not show the tile. Only room_to_unmap
-     * times. */
+    /** The MinMip maps of `frame` are the first that do not show the tile. `filled` false: its
+     *  texels may not be there, so it cannot be revived. Only room_to_unmap times. */
     void (*unmap)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
-                  uint64_t frame);
+                  uint64_t frame, bool filled);
     /** How many unmaps may be collected. */
     uint32_t (*room_to_unmap)(const struct slc_residency *residency);
     /** All that was collected goes to the GPU; `*value` names it. */
@@ -86,6 +94,9 @@ struct slc_residency_interface {
     /** Of the frame being begun, behind a barrier over all that earlier ones do. */
     void (*record_begin)(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands);
     void (*record_publish)(struct slc_residency *residency, VkCommandBuffer commands);
+    /** What frames from `frame` on recorded is recorded by the next one; uploads come again by
+     *  themselves. */
+    void (*abandon)(struct slc_residency *residency, uint64_t frame);
     /** The same for its whole life. */
     VkBuffer (*page_table)(const struct slc_residency *residency);
     /** Of SluiceTextureEntry. */
@@ -96,6 +107,8 @@ struct slc_residency_interface {
 struct slc_residency_counters {
     uint64_t bind_calls, bind_runs, device_memory_size;
     uint64_t unbinds, unbinds_saved; ///< tiles
+    uint32_t page_chunks;
+    uint64_t page_chunk_shortages;
 };
 
 /** The first member of every implementation's own struct. */

@@ -88,9 +88,10 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     (void)residency, (void)heap_id;
 }
 
-static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
+static SluiceResult update(struct slc_residency *residency, uint64_t frame,
+                           uint64_t completed_frame)
 {
-    (void)residency, (void)completed_frame;
+    (void)residency, (void)frame, (void)completed_frame;
     return SLUICE_SUCCESS;
 }
 
@@ -101,9 +102,9 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
 }
 
 static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
-                  uint64_t frame)
+                  uint64_t frame, bool filled)
 {
-    (void)residency, (void)index, (void)tile, (void)frame;
+    (void)residency, (void)index, (void)tile, (void)frame, (void)filled;
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
@@ -159,6 +160,7 @@ static void destroy(struct slc_residency *residency)
 }
 
 static const struct slc_residency_interface dense_interface = {
+    .ordinary_images = true,
     .destroy = destroy,
     .create_image = create_image,
     .destroy_image = destroy_image,

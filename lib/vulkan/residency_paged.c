@@ -23,6 +23,8 @@
 /* In `pages`: the tile was unmapped, and may still be on that page. Also a bit of SLUICE_PAGE_NONE.
  */
 #define PAGE_GIVEN 0x8000u
+/* In `pages`: the table shows the page, as its texels are there. */
+#define PAGE_SHOWN 0x4000u
 #define COPY_BATCH 64u
 #define STORE_BATCH 256u /* words */
 
@@ -35,11 +37,15 @@ struct paged_image {
     SluiceFormat format;
     uint32_t block_width, block_height; ///< texels
     uint32_t first_word, word_count;    ///< in the table; 0: all levels are packed
+    uint64_t recorded_frame;            ///< that wrote its part of the table; 0: none did
+    uint64_t stored_frame;              ///< the last that stored words there
+    bool is_lost;                       ///< the device may have other words than are in `pages`
 };
 
 /* A word of the table that changes with this frame. */
 struct store {
     uint32_t word, value;
+    uint32_t turn; ///< of equal words the last one counts
 };
 
 struct paged_residency {
@@ -59,7 +65,8 @@ struct paged_residency {
                                    ///< or, with PAGE_GIVEN, that was given back
     struct store *stores;          ///< owned
     uint32_t store_count, store_capacity, upload_reserve;
-    uint64_t completed_frame;
+    uint64_t frame, completed_frame;
+    bool has_lost; ///< some image is
     uint32_t next_heap, heap_count;
 };
 
@@ -72,6 +79,8 @@ static void count_memory(struct paged_residency *p)
 {
     p->base.counters.device_memory_size =
         p->memory.total_size + p->cache.memory.total_size + p->table.size;
+    p->base.counters.page_chunks = p->cache.chunk_count;
+    p->base.counters.page_chunk_shortages = p->cache.shortages;
 }
 
 static uint32_t level_width(const SluiceStreamedTextureDesc *desc, uint32_t level)
@@ -114,11 +123,16 @@ static bool is_taken(uint32_t page)
     return !(page & PAGE_GIVEN);
 }
 
+static uint32_t page_of(uint32_t entry)
+{
+    return entry & ~(PAGE_GIVEN | PAGE_SHOWN);
+}
+
 static void give_words(struct paged_residency *p, const struct paged_image *image)
 {
     for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
         if (is_taken(p->pages[image->first_word + i]))
-            slc_page_cache_give(&p->cache, p->pages[image->first_word + i], SLC_NO_OWNER);
+            slc_page_cache_give(&p->cache, page_of(p->pages[image->first_word + i]), SLC_NO_OWNER);
     if (image->word_count)
         slc_region_arena_give(&p->arena, image->first_word, image->word_count);
 }
@@ -224,8 +238,10 @@ static uint32_t page_room(const struct slc_residency *residency, uint32_t index)
     return slc_page_cache_free_count(&p->cache, p->images[index].format);
 }
 
-static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
+static SluiceResult update(struct slc_residency *residency, uint64_t frame,
+                           uint64_t completed_frame)
 {
+    paged(residency)->frame = frame;
     paged(residency)->completed_frame = completed_frame;
     return SLUICE_SUCCESS;
 }
@@ -243,26 +259,31 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
 }
 
-static void store(struct paged_residency *p, uint32_t word, uint32_t value)
+/* What the table is to show of the entry in `pages` from this frame on. */
+static void store(struct paged_residency *p, struct paged_image *image, uint32_t word)
 {
-    assert(p->store_count < p->store_capacity);
-    p->stores[p->store_count++] = (struct store){word, value};
+    uint32_t entry = p->pages[word], turn = p->store_count++;
+    bool shown = is_taken(entry) && entry & PAGE_SHOWN;
+    assert(turn < p->store_capacity);
+    p->stores[turn] = (struct store){word, shown ? page_of(entry) : SLUICE_PAGE_NONE, turn};
+    image->stored_frame = p->frame;
 }
 
 /* This frame's maps no longer show it, and earlier frames come before what this frame copies. */
 static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
-                  uint64_t frame)
+                  uint64_t frame, bool filled)
 {
     struct paged_residency *p = paged(residency);
-    const struct paged_image *image = &p->images[index];
+    struct paged_image *image = &p->images[index];
     (void)frame;
     if (tile->mipLevel >= image->desc.regularMipCount)
         return;
     uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
     assert(is_taken(p->pages[word]));
-    slc_page_cache_give(&p->cache, p->pages[word], word);
-    p->pages[word] |= PAGE_GIVEN;
-    store(p, word, SLUICE_PAGE_NONE);
+    uint32_t page = page_of(p->pages[word]);
+    slc_page_cache_give(&p->cache, page, filled ? word : SLC_NO_OWNER);
+    p->pages[word] = filled ? page | PAGE_GIVEN : SLUICE_PAGE_NONE;
+    store(p, image, word);
 }
 
 /* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
@@ -273,11 +294,11 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
     assert(!is_taken(p->pages[word]));
     if (p->pages[word] == SLUICE_PAGE_NONE)
         return false;
-    uint32_t page = p->pages[word] & ~PAGE_GIVEN;
+    uint32_t page = page_of(p->pages[word]);
     bool there = slc_page_cache_retake(&p->cache, page, word);
-    p->pages[word] = there ? page : SLUICE_PAGE_NONE;
+    p->pages[word] = there ? page | PAGE_SHOWN : SLUICE_PAGE_NONE;
     if (there)
-        store(p, word, page);
+        store(p, &p->images[index], word);
     return there;
 }
 
@@ -312,27 +333,99 @@ static uint64_t retire_limit(const struct slc_residency *residency, uint64_t com
     return completed_frame;
 }
 
-/* Before the tiles of a level stands where they begin; no tile has a page yet. */
-static void record_new_image(struct paged_residency *p, const struct paged_image *image,
-                             VkCommandBuffer commands)
+/* Before the tiles of a level stands where they begin. */
+static void record_header(struct paged_residency *p, const struct paged_image *image,
+                          VkCommandBuffer commands)
 {
     uint32_t levels = image->desc.regularMipCount, header[SLUICE_MAX_MIP_LEVELS];
     for (uint32_t level = 0; level < levels; level++)
         header[level] = image->first_word + level_word(&image->desc, level);
     VkDeviceSize first = (VkDeviceSize)image->first_word * 4;
     p->vk->CmdUpdateBuffer(commands, p->table.buffer, first, levels * 4, header);
-    p->vk->CmdFillBuffer(commands, p->table.buffer, first + levels * 4,
-                         (VkDeviceSize)(image->word_count - levels) * 4, SLUICE_PAGE_NONE);
+}
+
+static void fill_none(struct paged_residency *p, uint32_t first, uint32_t count,
+                      VkCommandBuffer commands)
+{
+    if (count)
+        p->vk->CmdFillBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4,
+                             (VkDeviceSize)count * 4, SLUICE_PAGE_NONE);
+}
+
+static void record_no_pages(struct paged_residency *p, const struct paged_image *image,
+                            VkCommandBuffer commands)
+{
+    uint32_t levels = image->desc.regularMipCount;
+    fill_none(p, image->first_word + levels, image->word_count - levels, commands);
+}
+
+static bool is_shown(const struct paged_residency *p, uint32_t word)
+{
+    return is_taken(p->pages[word]) && p->pages[word] & PAGE_SHOWN;
+}
+
+/* Every word of its tiles, as they are before this frame's stores or already with them. */
+static void record_words(struct paged_residency *p, const struct paged_image *image,
+                         VkCommandBuffer commands)
+{
+    uint32_t run[STORE_BATCH], end = image->first_word + image->word_count;
+    for (uint32_t word = image->first_word + image->desc.regularMipCount; word < end;) {
+        uint32_t first = word, count = 0;
+        while (word < end && !is_shown(p, word))
+            word++;
+        fill_none(p, first, word - first, commands);
+        for (first = word; word < end && count < STORE_BATCH && is_shown(p, word); word++)
+            run[count++] = page_of(p->pages[word]);
+        if (count)
+            p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4, count * 4,
+                                   run);
+    }
+}
+
+static void record_lost(struct paged_residency *p, uint64_t frame, VkCommandBuffer commands)
+{
+    for (uint32_t i = 0; i < p->max_image_count; i++) {
+        struct paged_image *image = &p->images[i];
+        if (!image->is_lost)
+            continue;
+        record_words(p, image, commands);
+        image->stored_frame = frame;
+        image->is_lost = false;
+    }
+    p->has_lost = false;
 }
 
 static void record_begin(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands)
 {
     struct paged_residency *p = paged(residency);
     slc_page_cache_record(&p->cache, frame, p->completed_frame, commands);
-    for (uint32_t i = 0; i < p->new_image_count; i++)
-        record_new_image(p, &p->images[p->new_images[i]], commands);
+    for (uint32_t i = 0; i < p->new_image_count; i++) {
+        struct paged_image *image = &p->images[p->new_images[i]];
+        record_header(p, image, commands);
+        if (!image->is_lost)
+            record_no_pages(p, image, commands);
+        image->recorded_frame = frame;
+    }
     p->new_image_count = 0;
+    if (p->has_lost)
+        record_lost(p, frame, commands);
     count_memory(p);
+}
+
+static void abandon(struct slc_residency *residency, uint64_t frame)
+{
+    struct paged_residency *p = paged(residency);
+    slc_page_cache_abandon(&p->cache, frame);
+    for (uint32_t i = 0; i < p->max_image_count; i++) {
+        struct paged_image *image = &p->images[i];
+        if (image->recorded_frame >= frame) {
+            image->recorded_frame = 0;
+            p->new_images[p->new_image_count++] = i;
+            image->is_lost = true;
+        }
+        image->is_lost |= image->stored_frame >= frame;
+        p->has_lost |= image->is_lost;
+    }
 }
 
 static uint32_t round_up(uint32_t size, uint32_t to)
@@ -341,7 +434,7 @@ static uint32_t round_up(uint32_t size, uint32_t to)
 }
 
 /* The copy into the image that holds the texels; which one that is. */
-static VkImage place_copy(struct paged_residency *p, const struct paged_image *image,
+static VkImage place_copy(struct paged_residency *p, struct paged_image *image,
                           VkBufferImageCopy *copy)
 {
     const SluiceStreamedTextureDesc *desc = &image->desc;
@@ -352,8 +445,9 @@ static VkImage place_copy(struct paged_residency *p, const struct paged_image *i
     }
     uint32_t word = tile_word(image, level, (uint32_t)copy->imageOffset.x / desc->tileWidth,
                               (uint32_t)copy->imageOffset.y / desc->tileHeight);
-    uint32_t page = p->pages[word];
-    assert(is_taken(page));
+    assert(is_taken(p->pages[word]));
+    uint32_t page = page_of(p->pages[word]);
+    p->pages[word] |= PAGE_SHOWN;
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
@@ -361,7 +455,7 @@ static VkImage place_copy(struct paged_residency *p, const struct paged_image *i
     /* A tile at the edge ends inside the page, where only whole blocks may end. */
     copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
     copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
-    store(p, word, page);
+    store(p, image, word);
     return slc_page_image(&p->cache, page);
 }
 
@@ -389,13 +483,13 @@ static void record_uploads(struct slc_residency *residency, uint32_t index,
                                     copies);
 }
 
-/* By word; of a tile that went and came in one frame, that it went first. */
+/* By word; of a tile that went and came in one frame, as it did. */
 static int compare_stores(const void *a, const void *b)
 {
     const struct store *x = a, *y = b;
     if (x->word != y->word)
         return x->word < y->word ? -1 : 1;
-    return (x->value < y->value) - (x->value > y->value);
+    return x->turn < y->turn ? -1 : 1;
 }
 
 static void record_publish(struct slc_residency *residency, VkCommandBuffer commands)
@@ -471,6 +565,7 @@ static const struct slc_residency_interface paged_interface = {
     .record_begin = record_begin,
     .record_uploads = record_uploads,
     .record_publish = record_publish,
+    .abandon = abandon,
     .page_table = page_table,
     .page_table_offset = page_table_offset,
 };

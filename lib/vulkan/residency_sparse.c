@@ -25,6 +25,7 @@ struct pending_unmap {
     uint64_t key;   ///< in pending_tiles
     uint32_t index;
     struct slc_tile_place place;
+    bool filled; ///< its texels are there
 };
 
 /* A heap that was released: it goes when the last binding to it is over. */
@@ -96,10 +97,12 @@ static SluiceResult reserve_packed(struct sparse_residency *s, struct slc_sparse
         result = slc_touched_tiles_init(&image->touched, s->cb, &s->touched, layout.tileCount,
                                         layout.regularTileCount);
     if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
-        slc_log(&s->vk->log, SLUICE_LOG_ERROR,
-                "%s: %u of %u tiles were bound, which is all %s bears",
-                info->pName ? info->pName : "image", s->touched.count, s->touched.limit,
-                s->caps->public.deviceName);
+        slc_log(
+            &s->vk->log, SLUICE_LOG_ERROR,
+            "%s: no room for its mip tail, %s bears %u different tiles in sparse mode and %u are "
+            "taken: use paged mode, or add fewer textures",
+            info->pName ? info->pName : "image", s->caps->public.deviceName, s->touched.limit,
+            s->touched.count);
     return result;
 }
 
@@ -110,7 +113,8 @@ static bool reserve(struct slc_residency *residency, uint32_t index, const Sluic
         return true;
     if (!s->told_of_touched)
         slc_log(&s->vk->log, SLUICE_LOG_WARNING,
-                "%u different tiles were bound, %s bears no more: textures stay coarser",
+                "reached the limit of %u different tiles that %s bears in sparse mode: finer tiles "
+                "will not be loaded; paged mode has no such limit",
                 s->touched.count, s->caps->public.deviceName);
     s->told_of_touched = true;
     return false;
@@ -239,13 +243,14 @@ static uint32_t room_to_unmap(const struct slc_residency *residency)
 }
 
 static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
-                  uint64_t frame)
+                  uint64_t frame, bool filled)
 {
     struct sparse_residency *s = sparse(residency);
     assert(s->pending_count < s->pending_capacity);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
     uint32_t at = (s->pending_first + s->pending_count++) % s->pending_capacity;
-    s->pending[at] = (struct pending_unmap){frame, slc_place_key(index, place), index, place};
+    s->pending[at] =
+        (struct pending_unmap){frame, slc_place_key(index, place), index, place, filled};
     slc_map_add(&s->pending_tiles, s->pending[at].key, at);
     s->images[index].unmap_count++;
 }
@@ -270,12 +275,14 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return SLUICE_SUCCESS;
 }
 
-/* What was given up was shown before, so its texels are on its page. */
+/* What was given up was shown before, so its texels are on its page, unless unmap said otherwise.
+ */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
-    return slc_page_table_revive(&s->pages, index, place, tile->heapId, tile->slot);
+    return !slc_page_table_is_spoiled(&s->pages, index, place) &&
+           slc_page_table_revive(&s->pages, index, place, tile->heapId, tile->slot);
 }
 
 /* Tiles that no incomplete frame reads any more: their pages may go to others. */
@@ -285,6 +292,8 @@ static void release_pending(struct sparse_residency *s, uint64_t completed_frame
         struct pending_unmap *unmap = &s->pending[s->pending_first];
         if (unmap->frame > completed_frame + 1)
             return;
+        if (!unmap->filled)
+            slc_page_table_spoil(&s->pages, unmap->index, unmap->place);
         slc_page_table_give_up(&s->pages, unmap->index, unmap->place);
         slc_map_remove(&s->pending_tiles, unmap->key);
         s->images[unmap->index].unmap_count--;
@@ -293,9 +302,11 @@ static void release_pending(struct sparse_residency *s, uint64_t completed_frame
     }
 }
 
-static SluiceResult update(struct slc_residency *residency, uint64_t completed_frame)
+static SluiceResult update(struct slc_residency *residency, uint64_t frame,
+                           uint64_t completed_frame)
 {
     struct sparse_residency *s = sparse(residency);
+    (void)frame;
     uint64_t value = 0;
     SluiceResult result =
         slc_vk_result(s->vk, s->vk->GetSemaphoreCounterValue(s->vk->device, s->semaphore, &value),

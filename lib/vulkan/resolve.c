@@ -32,9 +32,9 @@ static SluiceResult create_passes(struct slc_resolve *r, const struct slc_vk *vk
 {
     const uint32_t group = slc_compute_group_size(vk, SLUICE_RESOLVE_SCAN_GROUP_SIZE);
     const struct slc_compute_pass passes[3] = {
-        {resolve_count_comp, sizeof resolve_count_comp, {info->encoding, group}},
-        {resolve_scan_comp, sizeof resolve_scan_comp, {info->encoding, group}},
-        {resolve_write_comp, sizeof resolve_write_comp, {info->encoding, group}}};
+        {slc_resolve_count_comp, sizeof slc_resolve_count_comp, {info->encoding, group}},
+        {slc_resolve_scan_comp, sizeof slc_resolve_scan_comp, {info->encoding, group}},
+        {slc_resolve_write_comp, sizeof slc_resolve_write_comp, {info->encoding, group}}};
     struct slc_compute_create_info compute = {.binding_count = 5,
                                               .push_size = sizeof(struct SluiceResolveParams),
                                               .set_count = 1,

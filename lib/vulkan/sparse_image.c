@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
+#include "vulkan/memory.h"
 
 #define MAX_ASPECTS 4u
 
@@ -117,10 +118,9 @@ static const char *read_layout(struct slc_sparse_image *image, const struct slc_
 static SluiceResult allocate_metadata(struct slc_sparse_image *image, const struct slc_vk *vk,
                                       uint32_t memory_type, uint32_t count)
 {
-    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                     .allocationSize = image->layout.metadata_size * count,
-                                     .memoryTypeIndex = memory_type};
-    return slc_vk_result(vk, vk->AllocateMemory(vk->device, &allocate, NULL, &image->metadata),
+    return slc_vk_result(vk,
+                         slc_memory_allocate(vk, image->layout.metadata_size * count, memory_type,
+                                             SLC_MEMORY_DEVICE, &image->metadata),
                          "vkAllocateMemory for image metadata");
 }
 
@@ -169,7 +169,9 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk)
 {
     vk->DestroyImage(vk->device, images->image, NULL);
-    vk->FreeMemory(vk->device, images->metadata, NULL);
+    slc_memory_free(vk, images->metadata,
+                    images->layout.metadata_size * slc_max_u32(1, images->layer_count),
+                    SLC_MEMORY_DEVICE);
     for (uint32_t i = images->layer_count; i-- > 1;)
         images[i] = (struct slc_sparse_image){0};
     *images = (struct slc_sparse_image){0};

@@ -5,8 +5,11 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/around.h"
+#include "vulkan/create_checks.h"
 
 #include <string.h>
+
+#define MAX_TILES_PER_FRAME (1u << 14)
 
 static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
 {
@@ -27,40 +30,67 @@ static void set_default(uint32_t *value, uint32_t otherwise)
 }
 
 /* Bounds keep every size below 2^32 bytes of staging and 2^30 regions. */
+static SluiceResult check_limits(const SluiceVulkanStreamerCreateInfo *info)
+{
+    const struct slc_limit limits[] = {
+        {"framesInFlight", info->framesInFlight, 1, SLC_MAX_FRAMES},
+        {"maxTextureCount", info->maxTextureCount, 1, 1u << 20},
+        {"tilesPerFrame", info->tilesPerFrame, 1, MAX_TILES_PER_FRAME},
+        {"maxLoadsInFlight", info->maxLoadsInFlight, 1, 1u << 16},
+        {"heapTileCapacity", info->heapTileCapacity, 1, 1u << 20},
+        {"maxRegionCount", info->maxRegionCount, SLC_REGION_ALIGNMENT, 1u << 28},
+        {"feedbackEncoding", (uint32_t)info->feedbackEncoding, 0, SLUICE_FEEDBACK_ENCODING_MASKS},
+        {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
+        {"residencyFadeTime", info->residencyFadeTime, 0, SLC_MAX_FADE_TIME},
+        {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
+    };
+    return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
+}
+
 static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
 {
     set_default(&info->framesInFlight, 3);
-    set_default(&info->maxTextureCount, 1024);
+    set_default(&info->maxTextureCount, SLC_DEFAULT_TEXTURE_COUNT);
     set_default(&info->texturesPerFrame, 10);
     set_default(&info->tilesPerFrame, 256);
-    if (info->tilesPerFrame > 1u << 14)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    set_default(&info->maxLoadsInFlight, slc_max_u32(64, 4 * info->tilesPerFrame));
+    set_default(&info->maxLoadsInFlight,
+                slc_max_u32(64, 4 * slc_min_u32(info->tilesPerFrame, MAX_TILES_PER_FRAME)));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
     set_default(&info->maxPageChunkCount, 64);
-    if (info->framesInFlight > 16 || info->maxTextureCount > 1u << 20 ||
-        info->maxLoadsInFlight > 1u << 16 || info->maxRegionCount > 1u << 28 ||
-        (info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_LEVELS &&
-         info->feedbackEncoding != SLUICE_FEEDBACK_ENCODING_MASKS) ||
-        info->maxRegionCount < SLC_REGION_ALIGNMENT || info->maxPageChunkCount > 1u << 10 ||
-        info->heapTileCapacity > 1u << 20 || info->residencyFadeTime > SLC_MAX_FADE_TIME)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
-    return SLUICE_SUCCESS;
+    SluiceResult result = check_limits(info);
+    return result == SLUICE_SUCCESS ? slc_fill_in_times(info) : result;
+}
+
+static SluiceResult check_queues(const SluiceVulkanStreamer *s)
+{
+    SluiceResult result =
+        slc_check_queue_family(&s->vk, "queueFamilyIndex", s->info.queueFamilyIndex,
+                               VK_QUEUE_COMPUTE_BIT, "have VK_QUEUE_COMPUTE_BIT");
+    if (result != SLUICE_SUCCESS || s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE)
+        return result;
+    if (!s->info.sparseQueue) {
+        slc_log(&s->info.log, SLUICE_LOG_ERROR, "sparseQueue is NULL, in sparse mode");
+        return SLUICE_ERROR_NULL_POINTER;
+    }
+    return slc_check_queue_family(&s->vk, "sparseQueueFamilyIndex", s->info.sparseQueueFamilyIndex,
+                                  VK_QUEUE_SPARSE_BINDING_BIT, "have VK_QUEUE_SPARSE_BINDING_BIT");
 }
 
 static SluiceResult create_residency(SluiceVulkanStreamer *s)
 {
-    s->info.residencyMode = slc_choose_mode(&s->caps, s->info.residencyMode);
+    s->info.residencyMode =
+        slc_choose_mode(&s->caps, s->info.residencyMode, s->info.maxTextureCount);
     const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
     if (missing) {
         slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    if (s->info.residencyMode == SLUICE_RESIDENCY_MODE_SPARSE && !s->info.sparseQueue)
-        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = check_queues(s);
+    if (result != SLUICE_SUCCESS)
+        return result;
     struct slc_residency_create_info info = {
         .vk = &s->vk,
         .caps = &s->caps,
@@ -73,7 +103,7 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_region_count = s->info.maxRegionCount,
         .page_views = &s->page_views,
     };
-    SluiceResult result =
+    result =
         slc_page_views_init(&s->page_views, &s->vk, &s->caps, &s->cb, s->info.maxPageChunkCount);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -91,7 +121,8 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .pAllocator = s->info.pAllocator,
         .heapTileCapacity = s->info.heapTileCapacity,
         .tileSize = SLC_TILE_SIZE,
-        .alwaysMapPackedTiles = true,
+        .alwaysMapPackedTiles = !s->info.packedLevelsOnDemand,
+        .pLocked = &s->manager_locked,
     };
     SluiceResult result = sluiceCreateStreamedTextureManager(&info, &s->manager);
     if (result != SLUICE_SUCCESS)
@@ -100,6 +131,7 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .numExtraStandbyTiles = s->info.numExtraStandbyTiles,
         .maxHeapCount = s->info.maxHeapCount,
         .retryDelay = s->info.retryDelay,
+        .givenUpRetryDelay = s->info.givenUpRetryDelay,
     };
     return sluiceSetConfig(s->manager, &config);
 }
@@ -122,14 +154,17 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->min_mip_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     s->fades = slc_alloc(cb, textures, sizeof *s->fades);
     s->around_row = slc_alloc(cb, SLC_AROUND_SCRATCH, sizeof *s->around_row);
+    s->around_words = slc_alloc(cb, SLC_MAX_MAP_WIDTH, sizeof *s->around_words);
     s->turns = slc_calloc(cb, 1, slc_turns_size(s));
+    s->min_mip_staging = slc_calloc(cb, s->info.framesInFlight, sizeof *s->min_mip_staging);
     s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
     if (s->info.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
     if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
         !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->around_row ||
-        !s->feedback_levels || !s->turns || (s->info.mapEverything && !s->zero_map))
+        !s->feedback_levels || !s->turns || !s->min_mip_staging || !s->around_words ||
+        (s->info.mapEverything && !s->zero_map))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
@@ -191,10 +226,6 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
         result =
             slc_buffer_init(&s->min_mip, &s->vk, &s->caps, min_mip_size, usage, SLC_BUFFER_DEVICE);
     if (result == SLUICE_SUCCESS)
-        result = slc_buffer_init(&s->min_mip_staging, &s->vk, &s->caps,
-                                 min_mip_size * s->info.framesInFlight,
-                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
-    if (result == SLUICE_SUCCESS)
         result =
             slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
                                    s->info.texturesPerFrame, s->info.feedbackReadbackSize / 4);
@@ -224,6 +255,7 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
         s->vk.device = VK_NULL_HANDLE; /* nothing can be called */
         return result;
     }
+    s->vk.memory_use = &s->memory_use;
     slc_caps_init(&s->caps, &s->vk);
     result = create_residency(s);
     if (result == SLUICE_SUCCESS)
@@ -237,26 +269,38 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
     return result;
 }
 
+static SluiceResult check_handles(const SluiceVulkanStreamerCreateInfo *info)
+{
+    const struct slc_required fields[] = {
+        {"instance", info->instance},
+        {"physicalDevice", info->physicalDevice},
+        {"device", info->device},
+        {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
+        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
+    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+}
+
 SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
                                         SluiceVulkanStreamer **pStreamer)
 {
     if (!pStreamer)
         return SLUICE_ERROR_NULL_POINTER;
     *pStreamer = NULL;
-    if (!pCreateInfo || !pCreateInfo->instance || !pCreateInfo->physicalDevice ||
-        !pCreateInfo->device || !pCreateInfo->pfnGetInstanceProcAddr)
+    if (!pCreateInfo)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
-    SluiceResult result = fill_in(&info);
-    if (result != SLUICE_SUCCESS || !slc_allocator_is_valid(info.pAllocator) ||
-        !slc_mode_is_known(info.residencyMode))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_handles(&info);
+    if (result == SLUICE_SUCCESS)
+        result = fill_in(&info);
+    if (result != SLUICE_SUCCESS)
+        return result;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceVulkanStreamer *s = slc_calloc(&cb, 1, sizeof *s);
     if (!s)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     s->cb = cb;
     s->info = info;
+    s->time_check.on = pCreateInfo->timeStampsPerSecond == 0;
     if (info.pAllocator)
         s->info.pAllocator = &s->cb;
     result = create_arrays(s);
@@ -266,6 +310,7 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
         sluiceDestroyVulkanStreamer(s);
         return result;
     }
+    s->manager_locked = true;
     *pStreamer = s;
     return SLUICE_SUCCESS;
 }
@@ -276,9 +321,11 @@ static void free_arrays(SluiceVulkanStreamer *s)
     uint32_t textures = s->info.maxTextureCount, tiles = s->info.tilesPerFrame;
     slc_region_arena_finish(&s->regions, cb);
     slc_free(cb, s->zero_map, s->info.maxRegionCount, 1);
+    slc_free(cb, s->min_mip_staging, s->info.framesInFlight, sizeof *s->min_mip_staging);
     slc_free(cb, s->turns, 1, slc_turns_size(s));
     slc_free(cb, s->feedback_levels, s->info.maxRegionCount, 1);
     slc_free(cb, s->fades, textures, sizeof *s->fades);
+    slc_free(cb, s->around_words, SLC_MAX_MAP_WIDTH, sizeof *s->around_words);
     slc_free(cb, s->around_row, SLC_AROUND_SCRATCH, sizeof *s->around_row);
     slc_free(cb, s->min_mip_levels, s->info.maxRegionCount, 1);
     slc_free(cb, s->min_mip_texels, s->info.maxRegionCount, sizeof *s->min_mip_texels);
@@ -299,10 +346,12 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     slc_loads_finish(s);
     for (uint32_t i = 0; i < s->texture_high; i++)
         slc_texture_destroy(s, i);
+    s->manager_locked = false;
     sluiceDestroyStreamedTextureManager(s->manager); /* releases its heaps */
     slc_resolve_finish(&s->resolve, &s->vk);
     slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
-    slc_buffer_finish(&s->min_mip_staging, &s->vk);
+    for (uint32_t i = 0; i < s->info.framesInFlight; i++)
+        slc_buffer_finish(&s->min_mip_staging[i], &s->vk);
     slc_buffer_finish(&s->min_mip, &s->vk);
     slc_buffer_finish(&s->feedback_turns, &s->vk);
     slc_buffer_finish(&s->feedback, &s->vk);
@@ -333,8 +382,11 @@ SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)
     return s->residency->interface->wait(s->residency);
 }
 
-void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBuffers *pBuffers)
+SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
+                                    SluiceVulkanBuffers *pBuffers)
 {
+    if (!streamer || !pBuffers)
+        return SLUICE_ERROR_NULL_POINTER;
     const struct slc_residency *residency = streamer->residency;
     VkBuffer table = streamer->texture_table.buffer;
     *pBuffers = (SluiceVulkanBuffers){.textureTable = table,
@@ -345,20 +397,26 @@ void sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer, SluiceVulkanBu
                                       .pageTable = residency->interface->page_table
                                                        ? residency->interface->page_table(residency)
                                                        : table};
+    return SLUICE_SUCCESS;
 }
 
-void sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVulkanPages *pPages)
+SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVulkanPages *pPages)
 {
+    if (!streamer || !pPages)
+        return SLUICE_ERROR_NULL_POINTER;
     const struct slc_page_views *views = &streamer->page_views;
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,
                                   .generation = views->generation};
+    return SLUICE_SUCCESS;
 }
 
-void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
-                                       SluiceVulkanStreamerStatistics *pStatistics)
+SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
+                                               SluiceVulkanStreamerStatistics *pStatistics)
 {
+    if (!streamer || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
     *pStatistics = streamer->counts;
     sluiceGetStatistics(streamer->manager, &pStatistics->manager);
     const struct slc_residency_counters *counters = &streamer->residency->counters;
@@ -366,7 +424,11 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
     pStatistics->bindRuns = counters->bind_runs;
     pStatistics->unbinds = counters->unbinds;
     pStatistics->unbindsSaved = counters->unbinds_saved;
-    pStatistics->deviceMemorySize = counters->device_memory_size;
+    pStatistics->tileMemorySize = counters->device_memory_size;
+    pStatistics->deviceMemorySize = streamer->memory_use.device;
+    pStatistics->hostVisibleMemorySize = streamer->memory_use.host;
+    pStatistics->pageChunkCount = counters->page_chunks;
+    pStatistics->pageChunkShortages = counters->page_chunk_shortages;
     pStatistics->fadingTextures = streamer->fade_count;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;
@@ -374,6 +436,7 @@ void sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
         uploaded++;
     pStatistics->loadsInFlight =
         streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *streamer,

@@ -5,6 +5,7 @@
 #include <sluice/loader.h>
 
 #include "base/map.h"
+#include "base/none.h"
 #include "vulkan/buffer.h"
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
@@ -12,15 +13,18 @@
 #include "vulkan/page_cache.h"
 #include "vulkan/page_views.h"
 #include "vulkan/parked_tiles.h"
+#include "vulkan/read_troubles.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/residency.h"
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
+#include "vulkan/staging.h"
+#include "vulkan/time_defaults.h"
 
 #include <sluice/shared/texture_table.h>
 
-#define SLC_NONE UINT32_MAX
+#define SLC_MAX_FRAMES 16u
 
 enum slc_texture_state {
     SLC_TEXTURE_FREE = 0,
@@ -30,7 +34,7 @@ enum slc_texture_state {
 
 /** The packed levels are read, bound, copied and published as one. */
 enum slc_packed_state {
-    SLC_PACKED_COLLECTING = 0, ///< until every packed tile was handed out
+    SLC_PACKED_COLLECTING = 0, ///< until every packed tile that is not mapped was handed out
     SLC_PACKED_READY,          ///< waits for staging slots
     SLC_PACKED_READING,
     SLC_PACKED_MAPPING,
@@ -60,16 +64,22 @@ struct slc_texture {
     struct slc_feedback_map feedback; ///< of primaries; its levels are part of feedback_levels
     bool feedback_whole;              ///< the next resolve must bring the whole map
     uint32_t primary_place;           ///< in primaries; SLC_NONE for followers
-    uint64_t added_frame; ///< the last one begun before; its feedback and table entry come later
+    uint64_t added_frame;    ///< the last one begun before; its feedback and table entry come later
+    uint64_t recorded_frame; ///< that recorded its layout and table entry; 0: none did
+    uint64_t shown_frame;    ///< the last that recorded any of its MinMip map
+    bool whole_stale;        ///< the device may have another whole_shown
     uint64_t removed_frame;
     uint32_t unit_count; ///< staging slots that name it
 
     struct slc_packed_units packed;
-    SluiceTile *packed_tiles; ///< owned; desc.packedTileCount
+    SluiceTile *packed_tiles;  ///< owned; desc.packedTileCount, of which packed_collected
+    uint32_t packed_collected; ///< handed out and not answered
+    uint32_t packed_mapped;    ///< answered as mapped, and not unmapped
     enum slc_packed_state packed_state;
-    uint32_t packed_done; ///< tiles handed out, units arrived, tiles mapped, units uploaded
-    bool packed_failed;
-    uint32_t packed_first_unit; ///< chain over slc_unit.next of those that arrived
+    uint32_t packed_done;            ///< units arrived, tiles bound, units uploaded
+    SluiceResult packed_result;      ///< of the last unit that failed; SUCCESS: none did
+    struct slc_read_trouble trouble; ///< of the first layer
+    uint32_t packed_first_unit;      ///< chain over slc_unit.next of those that arrived
 };
 
 enum slc_unit_state {
@@ -87,6 +97,8 @@ struct slc_unit {
     SluiceTile tile;
     uint32_t packed_unit; ///< SLC_NONE for a tile
     bool cancelled;
+    bool published; ///< the manager counts it as mapped: copied by a frame that was abandoned
+    bool dropped;   ///< its tile was unmapped, and is not in tile_units; what it copied is no use
     uint64_t ticket;
     uint64_t value; ///< BINDING: of the bind; UPLOADED: the frame
     uint32_t next;  ///< in its list
@@ -100,20 +112,28 @@ struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
     struct slc_vk vk;
+    struct slc_memory_use memory_use; ///< of vk
     struct slc_caps caps;
     struct slc_page_views page_views;
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;
+    bool manager_locked; ///< for the application, but inside of the streamer's own calls
     SluiceTileLoader *loader;
 
     VkSemaphore semaphore; ///< of frames
-    uint64_t frame;        ///< the last one begun
-    uint64_t ended_frame;  ///< the last one that sluiceEndStreamingFrame was called for
+    uint64_t frame;        ///< the last one begun; numbers of abandoned ones are not used again
+    uint64_t ended_frame;  ///< the last one that was ended or abandoned
     uint64_t completed_frame;
-    uint64_t retired;      ///< the last value that the manager was told
-    uint64_t time_stamp;   ///< of the last frame begun
-    uint64_t manager_time; ///< the last time stamp that the manager got
+    uint64_t retired;    ///< the last value that the manager was told
+    uint64_t time_stamp; ///< of the last frame begun
+    struct slc_time_check time_check;
+    uint64_t manager_time;              ///< the last time stamp that the manager got
+    uint64_t in_flight[SLC_MAX_FRAMES]; ///< by slot; framesInFlight of them; 0: none
+    uint64_t slot_turn;                 ///< frames begun and not abandoned
+    uint32_t slot;                      ///< of the last frame begun
     bool buffers_cleared;
+    uint64_t cleared_frame; ///< that did
+    bool has_put_back;      ///< what abandoned frames recorded is to be recorded again
 
     struct slc_texture *textures; ///< owned; maxTextureCount
     uint32_t *by_manager_index;   ///< owned; low half of a texture id -> index in textures
@@ -126,27 +146,31 @@ struct SluiceVulkanStreamer {
     uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
     uint32_t packed_queue_count;
     uint32_t removed_count;
+    bool told_of_modes; ///< that a texture's address modes are not its source's
     struct slc_region_arena regions;
 
-    struct slc_unit *units; ///< owned; maxLoadsInFlight
-    struct slc_unit_list free_units, arrived, binding, uploaded;
+    struct slc_unit *units;          ///< owned; maxLoadsInFlight
+    struct slc_unit_list free_units; ///< used last, first
+    struct slc_unit_list arrived, binding, uploaded;
     uint32_t free_unit_count;
-    struct slc_map tile_units; ///< (texture, tile) -> unit, from READING to UPLOADED
+    struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
     struct slc_parked_tiles parked;
     uint32_t
         pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
-    struct slc_buffer staging;
-    uint32_t *frame_units;     ///< owned; tilesPerFrame
-    VkBufferImageCopy *copies; ///< owned
+    struct slc_staging staging;       ///< a slot per unit
+    uint32_t *frame_units;            ///< owned; tilesPerFrame
+    VkBufferImageCopy *copies;        ///< owned
     uint32_t copy_capacity;
     SluiceTile *tiles;      ///< owned; tilesPerFrame
     uint32_t *tile_indices; ///< owned; tilesPerFrame
 
     struct slc_buffer texture_table, feedback, min_mip;
-    struct slc_buffer min_mip_staging; ///< framesInFlight copies of the whole
-    uint16_t *min_mip_texels;          ///< owned; what min_mip shows after the frames begun
-    uint16_t *around_row;              ///< owned; scratch
-    uint8_t *min_mip_levels;           ///< owned; the manager's maps, which texels move to
+    struct slc_buffer *min_mip_staging; ///< owned; per frame in flight, as large as one needed it
+    uint64_t min_mip_refused; ///< frame in which there was no memory for a larger one; 0: none
+    uint16_t *min_mip_texels; ///< owned; what min_mip shows after the frames begun
+    uint16_t *around_row;     ///< owned; scratch
+    uint32_t *around_words;   ///< owned; scratch for a row
+    uint8_t *min_mip_levels;  ///< owned; the manager's maps, which texels move to
     struct slc_fade_clock fade_clock;
     uint32_t *fades; ///< owned; textures whose texels move
     uint32_t fade_count;
@@ -180,10 +204,18 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s);
 void slc_loads_finish(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_collect(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s);
+/** The manager knows of slots alone: where pages are short, standby tiles give theirs to tiles that
+ *  wait for one. Before tiles are unmapped. */
+SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s);
 SluiceResult slc_loads_start(SluiceVulkanStreamer *s);
 void slc_loads_bind(SluiceVulkanStreamer *s); ///< what arrived is given to the residency
 void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value); ///< by the submission of that value
 void slc_loads_recycle(SluiceVulkanStreamer *s);               ///< slots of completed frames
+/** A tile is unmapped. False: its texels may not be on its page, as the frame that copies them is
+ *  not complete, or was abandoned. */
+bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
+/** What frames from `frame` on copied is copied again. */
+void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 void slc_loads_drop(SluiceVulkanStreamer *s,
                     uint32_t texture); ///< of a texture that is being removed
 void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
@@ -195,6 +227,8 @@ SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer co
 
 /* minmip_upload.c: publishes what the manager changed */
 SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+/** What frames from `frame` on published is published again. */
+void slc_min_mip_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 
 /* feedback.c: which textures' feedback is resolved, and what the manager gets of it */
 void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture);
@@ -205,9 +239,13 @@ uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
 uint32_t slc_feedback_clear_value(const SluiceVulkanStreamer *s);                 ///< of each word
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s);
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+/** Nothing comes back of frames from `frame` on; their share of the textures has the next turn. */
+void slc_feedback_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 
 /* texture.c */
 void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands);
+/** Textures that were first recorded in frames from `frame` on are new again. */
+void slc_textures_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 /** Destroys what is over; returns the largest retire value that no texture holds back. */
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit);
 void slc_texture_destroy(SluiceVulkanStreamer *s, uint32_t index);

@@ -5,6 +5,8 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "image/info.h"
+#include "vulkan/address_mode.h"
 #include "vulkan/format.h"
 
 #include <assert.h>
@@ -77,8 +79,10 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s: its packed levels need %u loads at once",
-                texture->info.pName ? texture->info.pName : "image", texture->packed.unit_count);
+        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+                "%s: its packed levels need %u loads at once; maxLoadsInFlight is %u",
+                texture->info.pName ? texture->info.pName : "image", texture->packed.unit_count,
+                s->info.maxLoadsInFlight);
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     }
     texture->packed_tiles = slc_alloc(&s->cb, desc->packedTileCount, sizeof(SluiceTile));
@@ -154,12 +158,33 @@ static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
     return result;
 }
 
+static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
+                         const SluiceImageInfo *image, VkSamplerAddressMode modes[2])
+{
+    modes[0] =
+        slc_address_mode(info->addressModeU, info->explicitAddressModes, image->addressModeU);
+    modes[1] =
+        slc_address_mode(info->addressModeV, info->explicitAddressModes, image->addressModeV);
+    bool differs = slc_address_mode_differs(modes[0], image->addressModeU) ||
+                   slc_address_mode_differs(modes[1], image->addressModeV);
+    if (differs && !s->told_of_modes)
+        slc_log(&s->info.log, SLUICE_LOG_WARNING,
+                "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
+                "%d, %d (VkSamplerAddressMode)",
+                image->pName ? image->pName : "image", (int)modes[0], (int)modes[1],
+                (int)image->addressModeU - SLUICE_IMAGE_ADDRESS_MODE_REPEAT,
+                (int)image->addressModeV - SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+    s->told_of_modes |= differs;
+}
+
 /* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
 static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceVulkanTextureCreateInfo *info,
                               const SluiceImageInfo *image, uint32_t count)
 {
     struct slc_residency_image residency_image;
+    VkSamplerAddressMode modes[2];
+    choose_modes(s, info, image, modes);
     SluiceResult result =
         s->residency->interface->create_image(s->residency, first, image, &residency_image);
     if (result != SLUICE_SUCCESS)
@@ -175,7 +200,7 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                                  .layer = i,
                                  .layer_count = count,
                                  .added_frame = s->frame,
-                                 .address_modes = {info->addressModeU, info->addressModeV}};
+                                 .address_modes = {modes[0], modes[1]}};
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = build(s, &s->textures[first + i]);
     uint32_t added = 0;
@@ -215,6 +240,8 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .tableIndex = index,
         .arrayLayer = texture->layer,
         .arrayView = s->textures[texture->first].array_view,
+        .addressModeU = texture->address_modes[0],
+        .addressModeV = texture->address_modes[1],
     };
 }
 
@@ -229,6 +256,8 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     SluiceResult result = check_create_info(s, pCreateInfo);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(pCreateInfo->source, &image);
+    if (result == SLUICE_SUCCESS)
+        result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->info.log);
     if (result != SLUICE_SUCCESS)
         return result;
     if (layerCount != (image.arrayLayerCount ? image.arrayLayerCount : 1))
@@ -236,7 +265,9 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     uint32_t first = find_free(s, layerCount);
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
+    s->manager_locked = false;
     result = build_all(s, first, pCreateInfo, &image, layerCount);
+    s->manager_locked = true;
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < layerCount; i++)
@@ -302,8 +333,10 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     const struct slc_texture *texture = &s->textures[s->by_manager_index[(uint32_t)textureId]];
     assert(texture->id == textureId && texture->state == SLC_TEXTURE_LIVE);
     uint32_t first = texture->first, count = texture->layer_count;
+    s->manager_locked = false;
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = remove_layer(s, first + i);
+    s->manager_locked = true;
     return result;
 }
 
@@ -416,11 +449,23 @@ void slc_textures_record_new(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     for (uint32_t i = 0; i < s->new_texture_count; i++) {
         uint32_t index = s->new_textures[i];
-        const struct slc_texture *texture = &s->textures[index];
+        struct slc_texture *texture = &s->textures[index];
         struct SluiceTextureEntry entry = table_entry(s, index);
         s->vk.CmdUpdateBuffer(commands, s->texture_table.buffer, (uint64_t)index * sizeof entry,
                               sizeof entry, &entry);
         slc_feedback_record_new(s, texture, commands);
+        texture->recorded_frame = s->frame;
     }
     s->new_texture_count = 0;
+}
+
+void slc_textures_abandon(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    for (uint32_t i = 0; i < s->texture_high; i++) {
+        struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_LIVE || texture->recorded_frame < frame)
+            continue;
+        texture->recorded_frame = 0;
+        s->new_textures[s->new_texture_count++] = i;
+    }
 }

@@ -21,7 +21,7 @@ static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
 {
     const struct slc_unit *unit = &s->units[index];
     const struct slc_texture *texture = &s->textures[unit->texture];
-    uint64_t base = (uint64_t)index * SLC_TILE_SIZE;
+    uint64_t base = slc_staging_offset(index);
     if (unit->packed_unit != SLC_NONE) {
         const struct slc_packed_unit *packed = &texture->packed.units[unit->packed_unit];
         for (uint32_t i = 0; i < packed->rect_count; i++) {
@@ -49,13 +49,15 @@ static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t pa
     SluiceResult result = SLUICE_SUCCESS;
     texture->packed_done += packed_units;
     if (packed_units && texture->packed_done == texture->packed.unit_count) {
-        for (uint32_t i = 0; i < texture->layout.desc.packedTileCount; i++) {
+        for (uint32_t i = 0; i < texture->packed_collected; i++) {
             result = sluiceUpdateTilesMapping(s->manager, texture->id, 1,
                                               &texture->packed_tiles[i].tileIndex);
             if (result < 0)
                 return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
         }
-        s->counts.tilesMapped += texture->layout.desc.packedTileCount;
+        s->counts.tilesMapped += texture->packed_collected;
+        texture->packed_mapped += texture->packed_collected;
+        texture->packed_collected = 0;
         texture->packed_state = SLC_PACKED_COLLECTING;
         texture->packed_done = 0;
     }
@@ -66,66 +68,167 @@ static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t pa
     return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
 }
 
-/* Units of one texture: frame_units[0..count). */
-static SluiceResult upload_texture(SluiceVulkanStreamer *s, VkCommandBuffer commands,
-                                   const uint32_t *units, uint32_t count)
+/* Tiles that the manager does not know yet, in the order of their arrival: into tile_indices. The
+ * order must not follow from staging slots, which depend on the timing of earlier reads. */
+static void list_tiles(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t count,
+                       uint32_t *tile_count, uint32_t *packed_count)
 {
-    uint32_t texture = s->units[units[0]].texture, copy_count = 0, tile_count = 0;
+    *tile_count = *packed_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct slc_unit *unit = &s->units[units[i]];
+        if (unit->published)
+            continue;
+        if (unit->packed_unit == SLC_NONE)
+            s->tile_indices[(*tile_count)++] = unit->tile.tileIndex;
+        else
+            (*packed_count)++;
+    }
+}
+
+/* The copies of units of one texture from one staging buffer. */
+static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
+                         uint32_t count)
+{
+    uint32_t texture = s->units[units[0]].texture, copy_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         struct slc_unit *unit = &s->units[units[i]];
         uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
-        for (uint32_t j = copy_count; j < copy_count + added; j++)
+        for (uint32_t j = copy_count; j < copy_count + added && !unit->published; j++)
             s->counts.bytesUploaded += sluiceFormatRegionSize(s->textures[texture].info.format,
                                                               s->copies[j].imageExtent.width,
                                                               s->copies[j].imageExtent.height);
         copy_count += added;
         assert(copy_count <= s->copy_capacity);
-        if (unit->packed_unit == SLC_NONE) {
-            s->tile_indices[tile_count++] = unit->tile.tileIndex;
-            slc_map_remove(&s->tile_units, slc_pair_key(texture, unit->tile.tileIndex));
-        }
         unit->state = SLC_UNIT_UPLOADED;
         unit->value = s->frame;
         slc_unit_list_append(s, &s->uploaded, units[i]);
     }
-    s->residency->interface->record_uploads(s->residency, texture, commands, s->staging.buffer,
-                                            copy_count, s->copies);
-    return publish(s, texture, count - tile_count, tile_count);
+    s->residency->interface->record_uploads(s->residency, texture, commands,
+                                            slc_staging_buffer(&s->staging, units[0]), copy_count,
+                                            s->copies);
 }
 
-/* Shell sort by texture: a few hundred entries, stable enough, no allocation. */
-static void sort_by_texture(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count)
+static uint64_t by_texture(const SluiceVulkanStreamer *s, uint32_t unit)
+{
+    return s->units[unit].texture;
+}
+
+static uint64_t by_texture_and_slot(const SluiceVulkanStreamer *s, uint32_t unit)
+{
+    return (uint64_t)s->units[unit].texture << 32 | unit;
+}
+
+/* Shell sort: a few hundred entries, no allocation. */
+static void sort_units(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count,
+                       uint64_t (*key)(const SluiceVulkanStreamer *s, uint32_t unit))
 {
     for (uint32_t gap = count / 2; gap > 0; gap /= 2)
         for (uint32_t i = gap; i < count; i++) {
             uint32_t unit = units[i], at = i;
-            for (; at >= gap && s->units[units[at - gap]].texture > s->units[unit].texture;
-                 at -= gap)
+            for (; at >= gap && key(s, units[at - gap]) > key(s, unit); at -= gap)
                 units[at] = units[at - gap];
             units[at] = unit;
         }
 }
 
-SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+/* By texture, and of each texture in the order of arrival. */
+static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units, uint32_t count)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0, next; i < count && result >= 0; i = next) {
+        uint32_t texture = s->units[units[i]].texture, tile_count, packed_count;
+        for (next = i + 1; next < count; next++)
+            if (s->units[units[next]].texture != texture)
+                break;
+        list_tiles(s, &units[i], next - i, &tile_count, &packed_count);
+        result = publish(s, texture, packed_count, tile_count);
+    }
+    return result;
+}
+
+/* Copies of a texture are disjoint and need no barrier. But synchronization validation (1.3.239)
+ * takes block-compressed texels for rows of texels, and reports disjoint copies of two commands to
+ * an ordinary image as overlapping. */
+static bool needs_barriers(const SluiceVulkanStreamer *s, uint32_t texture)
+{
+    return s->residency->interface->ordinary_images &&
+           sluiceFormatTexelSize(s->textures[texture].info.format) == 0;
+}
+
+static void wait_for_copies(const SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                              .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT};
+    s->vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &memory, 0, NULL, 0, NULL);
+}
+
+/* Round n has the nth command of each texture that needs barriers; round 0 has all of the others,
+ * too. So there is at most one barrier for each staging buffer. False if nothing is left. */
+static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, const uint32_t *units,
+                         uint32_t count, uint32_t round)
+{
+    bool any = false;
+    uint32_t turn = 0;
+    for (uint32_t i = 0, next; i < count; i = next) {
+        uint32_t texture = s->units[units[i]].texture;
+        for (next = i + 1; next < count; next++)
+            if (s->units[units[next]].texture != texture ||
+                slc_staging_block(units[next]) != slc_staging_block(units[i]))
+                break;
+        bool continues = i > 0 && s->units[units[i - 1]].texture == texture;
+        turn = continues && needs_barriers(s, texture) ? turn + 1 : 0;
+        if (turn != round)
+            continue;
+        if (round > 0 && !any)
+            wait_for_copies(s, commands);
+        upload_block(s, commands, &units[i], next - i);
+        any = true;
+    }
+    return any;
+}
+
+/* frame_units[0..count). The manager may know them from an abandoned frame. */
+static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint32_t count)
+{
+    uint32_t round = 0;
+    sort_units(s, s->frame_units, count, by_texture);
+    SluiceResult result = publish_units(s, s->frame_units, count);
+    sort_units(s, s->frame_units, count, by_texture_and_slot);
+    while (record_round(s, commands, s->frame_units, count, round))
+        round++;
+    return result;
+}
+
+/* Units whose binding is over, into frame_units: all that the manager knows, and `*left` others. */
+static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
 {
     uint64_t completed = s->residency->interface->completed_value(s->residency);
     uint32_t count = 0;
-    while (count < s->info.tilesPerFrame && s->binding.first != SLC_NONE &&
-           s->units[s->binding.first].value <= completed) {
-        uint32_t unit = slc_unit_list_pop(s, &s->binding);
-        if (s->textures[s->units[unit].texture].state == SLC_TEXTURE_REMOVED)
-            slc_unit_free(s, unit);
+    while (count < s->info.tilesPerFrame && s->binding.first != SLC_NONE) {
+        const struct slc_unit *unit = &s->units[s->binding.first];
+        if (unit->value > completed || (!unit->published && *left == 0))
+            break;
+        bool useless = unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED;
+        *left -= !unit->published && !useless;
+        uint32_t taken = slc_unit_list_pop(s, &s->binding);
+        if (useless)
+            slc_unit_free(s, taken);
         else
-            s->frame_units[count++] = unit;
+            s->frame_units[count++] = taken;
     }
-    sort_by_texture(s, s->frame_units, count);
-    for (uint32_t i = 0, next; i < count; i = next) {
-        for (next = i + 1; next < count; next++)
-            if (s->units[s->frame_units[next]].texture != s->units[s->frame_units[i]].texture)
-                break;
-        SluiceResult result = upload_texture(s, commands, &s->frame_units[i], next - i);
-        if (result < 0)
-            return result;
+    return count;
+}
+
+SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    uint32_t left = s->info.tilesPerFrame, count;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (bool first = true; result >= 0 && (count = take_units(s, &left)) > 0; first = false) {
+        if (!first && s->residency->interface->ordinary_images)
+            wait_for_copies(s, commands); /* see needs_barriers */
+        result = record_units(s, commands, count);
     }
-    return SLUICE_SUCCESS;
+    return result;
 }

@@ -49,7 +49,7 @@ static struct bake_job *job_of(const struct run *run, const char *message)
     for (size_t i = 0; i < run->count; i++) {
         const struct bake_job *job = &run->jobs[i];
         if (is_of_file(message, job->input, ":") || is_of_file(message, job->output, ":") ||
-            is_of_file(message, job->output, ".part:"))
+            is_of_file(message, job->output, ".sluice-part:"))
             return &run->jobs[i];
     }
     return NULL;

@@ -1,6 +1,8 @@
 #include "gpu.h"
 
 #include "gpu_rays.h"
+#include "log.h"
+#include "no_vulkan.h"
 #include "text.h"
 
 #include <ctype.h>
@@ -90,6 +92,10 @@ static bool create_instance(bool validation, struct gpu *gpu, bool *no_driver)
     }
     VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     *no_driver = result == VK_ERROR_INCOMPATIBLE_DRIVER;
+    if (*no_driver) {
+        fprintf(stderr, "%s\n", NO_VULKAN_DRIVER);
+        return false;
+    }
     if (!gpu_check(result, "vkCreateInstance"))
         return false;
     if (!validation)
@@ -106,7 +112,11 @@ static uint32_t enumerate_devices(VkInstance instance, VkPhysicalDevice devices[
 {
     uint32_t count = MAX_DEVICES;
     VkResult result = vkEnumeratePhysicalDevices(instance, &count, devices);
-    return result == VK_SUCCESS || result == VK_INCOMPLETE ? count : 0;
+    if (result != VK_SUCCESS && result != VK_INCOMPLETE)
+        count = 0;
+    if (count == 0)
+        fprintf(stderr, "%s\n", NO_VULKAN_DRIVER);
+    return count;
 }
 
 static const char *device_type_string(VkPhysicalDeviceType type)
@@ -120,15 +130,6 @@ static const char *device_type_string(VkPhysicalDeviceType type)
     }
 }
 
-/** AUTO in words that both streamers and this program understand. */
-static SluiceResidencyMode choose_mode(const SluiceVulkanDeviceCapabilities *capabilities,
-                                       SluiceResidencyMode mode)
-{
-    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
-        return mode;
-    return capabilities->sparse ? SLUICE_RESIDENCY_MODE_SPARSE : SLUICE_RESIDENCY_MODE_PAGED;
-}
-
 /** The shaders of samples find pages by non-uniform indices. */
 static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResidencyMode mode,
                        SluiceVulkanDeviceCapabilities *capabilities)
@@ -138,7 +139,7 @@ static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResid
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
                                              capabilities) == SLUICE_SUCCESS &&
-           (choose_mode(capabilities, mode) != SLUICE_RESIDENCY_MODE_PAGED ||
+           (sluiceChooseVulkanResidencyMode(capabilities, mode, 0) != SLUICE_RESIDENCY_MODE_PAGED ||
             capabilities->nonUniformIndexing) &&
            sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr, mode, NULL,
                                        &features, &vulkan12) == SLUICE_SUCCESS;
@@ -239,14 +240,14 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         gpu->properties = properties;
         gpu->capabilities = capabilities;
     }
-    gpu->modes[0] = choose_mode(&gpu->capabilities, gpu->modes[0]);
+    gpu->is_auto = gpu->modes[0] == SLUICE_RESIDENCY_MODE_AUTO;
+    gpu->modes[0] = sluiceChooseVulkanResidencyMode(&gpu->capabilities, gpu->modes[0], 0);
     if (gpu->modes[1] == SLUICE_RESIDENCY_MODE_AUTO)
         gpu->modes[1] = gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? SLUICE_RESIDENCY_MODE_SPARSE
                                                                       : SLUICE_RESIDENCY_MODE_DENSE;
-    if (best_rank < 0)
-        fprintf(stderr,
-                "no Vulkan device%s%s can stream in this residency mode; see --list-devices\n",
-                wanted ? " like " : "", wanted ? wanted : "");
+    if (best_rank < 0 && count > 0)
+        text_say("no Vulkan device%s%s " CANNOT_STREAM, wanted ? " like " : "",
+                 wanted ? wanted : "");
     return best_rank >= 0;
 }
 
@@ -267,13 +268,6 @@ static bool choose_queue_family(struct gpu *gpu)
     return false;
 }
 
-static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
-{
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
-}
-
 static bool create_device(struct gpu *gpu)
 {
     VkPhysicalDeviceVulkan12Features vulkan12 = {
@@ -286,11 +280,12 @@ static bool create_device(struct gpu *gpu)
     features.features.shaderResourceResidency = supported.shaderResourceResidency;
     features.features.fragmentStoresAndAtomics = VK_TRUE;
 
-    SluiceLogCallback log = {.pfnLog = print_log};
+    SluiceLogCallback log = {.pfnLog = log_say};
     for (int i = 0; i < 2; i++)
         if (sluiceRequireVulkanFeatures(gpu->instance, gpu->physical_device, vkGetInstanceProcAddr,
-                                        gpu->modes[i], &log, &features.features,
-                                        &vulkan12) != SLUICE_SUCCESS)
+                                        i == 0 && gpu->is_auto ? SLUICE_RESIDENCY_MODE_AUTO
+                                                               : gpu->modes[i],
+                                        &log, &features.features, &vulkan12) != SLUICE_SUCCESS)
             return false;
 
     static const float priority = 1.0f;
@@ -337,6 +332,13 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
     }
     gpu_destroy(gpu);
     return false;
+}
+
+void gpu_choose_mode(struct gpu *gpu, uint32_t texture_count)
+{
+    if (gpu->is_auto && gpu->capabilities.nonUniformIndexing)
+        gpu->modes[0] = sluiceChooseVulkanResidencyMode(&gpu->capabilities,
+                                                        SLUICE_RESIDENCY_MODE_AUTO, texture_count);
 }
 
 void gpu_destroy(struct gpu *gpu)

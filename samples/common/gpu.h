@@ -29,6 +29,7 @@ struct gpu {
     VkPhysicalDeviceMemoryProperties memory;
     SluiceVulkanDeviceCapabilities capabilities;
     SluiceResidencyMode modes[2]; ///< as asked for, never AUTO
+    bool is_auto;                 ///< the first was AUTO: gpu_choose_mode may change it
     bool ray_tracing;             ///< asked for and there, with buffer addresses
     VkDebugUtilsMessengerEXT messenger;
     atomic_uint validation_messages; ///< warnings and errors of the validation layers so far
@@ -60,6 +61,8 @@ void gpu_print_json(const struct gpu *gpu);
  * other failures.
  */
 bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupported);
+/** Where modes[0] was AUTO: what it is for a streamer of so many textures. Before it is used. */
+void gpu_choose_mode(struct gpu *gpu, uint32_t texture_count);
 /** A zeroed struct is fine. */
 void gpu_destroy(struct gpu *gpu);
 

@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include "text.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -158,11 +160,11 @@ static const struct option *find_option(const struct option *options, size_t opt
 
 static void explain_bad_value(const struct option *option, const char *text)
 {
-    fprintf(stderr, "--%s%s%s: wants %s", option->name, *text ? " " : "", text,
-            option->operand ? option->operand : "no value");
+    char range[64] = "";
     if (option->kind == OPTION_UINT || option->kind == OPTION_REAL || option->kind == OPTION_SIZE)
-        fprintf(stderr, " from %g to %g", option->minimum, option->maximum);
-    fprintf(stderr, "\n");
+        snprintf(range, sizeof range, " from %.15g to %.15g", option->minimum, option->maximum);
+    text_say("--%s%s%s: wants %s%s", option->name, *text ? " " : "", text,
+             option->operand ? option->operand : "no value", range);
 }
 
 /** Takes the operand behind `--name=` or the next argument; moves *index to the last one used. */
@@ -176,12 +178,13 @@ static bool take_operands(const struct option *option, int argc, char *const *ar
     if (option->kind == OPTION_LIST) {
         struct option_list *list = option->value;
         if (equals || list->count > 0) {
-            fprintf(stderr, "--%s: give it once, with all of %s behind it\n", option->name,
-                    option->operand);
+            text_say("--%s: give it once, with all of %s behind it", option->name, option->operand);
             return false;
         }
+        bool all = *index + 1 < argc && strcmp(argv[*index + 1], "--") == 0;
+        *index += all;
         list->items = argv + *index + 1;
-        for (list->count = 0; *index + 1 < argc && strncmp(argv[*index + 1], "--", 2) != 0;
+        for (list->count = 0; *index + 1 < argc && (all || strncmp(argv[*index + 1], "--", 2) != 0);
              ++*index)
             list->count++;
         return list->count > 0 || (explain_bad_value(option, ""), false);
@@ -197,15 +200,21 @@ static bool take_operands(const struct option *option, int argc, char *const *ar
 enum option_outcome options_parse(const struct option *options, size_t option_count,
                                   const char *usage, int argc, char *const *argv)
 {
-    for (int i = 1; i < argc; i++)
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             print_help(options, option_count, usage);
             return OPTIONS_HELP;
         }
     for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--") == 0 && i + 1 == argc)
+            break;
+        if (strcmp(argv[i], "--") == 0) {
+            text_say("%s: only options are taken, no words", argv[i + 1]);
+            return OPTIONS_ERROR;
+        }
         const struct option *option = find_option(options, option_count, argv[i]);
         if (!option) {
-            fprintf(stderr, "%s: no such option; see --help\n", argv[i]);
+            text_say("%s: no such option; see --help", argv[i]);
             return OPTIONS_ERROR;
         }
         if (!take_operands(option, argc, argv, &i))

@@ -15,7 +15,8 @@ enum option_kind {
     OPTION_TEXT,    ///< const char *, borrowed from argv
     OPTION_CHOICE,  ///< int: index in `choices`, which are separated by '|'
     OPTION_SIZE,    ///< uint32_t[2]: WxH, both within [minimum, maximum]
-    OPTION_LIST,    ///< struct option_list: this argument and those after it that are no options
+    OPTION_LIST,    ///< struct option_list: this argument and those after it that are no options;
+                    ///< after "--" all that follow
 };
 
 struct option_list {

@@ -7,7 +7,7 @@
 
 /**
  * Writes [height][width] RGBA bytes, row 0 on top, as an opaque sRGB picture. Says on stderr why it
- * failed. Errors leave no file.
+ * failed. After an error the path is as it was before; see output_file.h.
  */
 bool png_file_write(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height);
 

@@ -1,6 +1,8 @@
 #include "report.h"
 
-#include <errno.h>
+#include "input.h"
+#include "output_file.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -50,11 +52,10 @@ static void put_element(FILE *file, const char *tag, const char *text)
 
 bool report_begin(struct report *report, const char *path, const char *title)
 {
-    report->file = fopen(path, "w");
-    if (!report->file) {
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    report->output = output_file_begin(path);
+    if (!report->output)
         return false;
-    }
+    report->file = output_file_stream(report->output);
     fprintf(report->file, "<!DOCTYPE html><html lang=\"en\"><meta charset=\"utf-8\"><title>");
     put_escaped(report->file, title);
     fprintf(report->file, "</title><style>%s</style>\n", style);
@@ -259,7 +260,7 @@ static void put_base64(FILE *out, FILE *in)
 
 void report_picture(struct report *report, const char *png_path, const char *caption)
 {
-    FILE *png = fopen(png_path, "rb");
+    FILE *png = input_open(png_path);
     if (!png)
         return;
     fputs("<figure><img alt=\"", report->file);
@@ -279,9 +280,5 @@ void report_end_pictures(struct report *report)
 
 bool report_end(struct report *report)
 {
-    bool written = !ferror(report->file);
-    written = fclose(report->file) == 0 && written;
-    if (!written)
-        fprintf(stderr, "the report could not be written: %s\n", strerror(errno));
-    return written;
+    return output_file_end(report->output, true);
 }

@@ -8,7 +8,8 @@
 #include <stdio.h>
 
 struct report {
-    FILE *file;
+    struct output_file *output; ///< Owned.
+    FILE *file;                 ///< Of `output`.
 };
 
 /** One line of a plot. Values that are not finite leave a gap, +infinity touches the top. */

@@ -1,9 +1,10 @@
 #include "text.h"
 
+#include <errno.h>
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define NO_CHARACTER UINT32_MAX
 
@@ -63,6 +64,17 @@ void text_say(const char *format, ...)
     va_end(arguments);
     text_write(stderr, line);
     fputc('\n', stderr);
+}
+
+bool text_flush(const char *speaker)
+{
+    bool failed = ferror(stdout) != 0;
+    errno = 0;
+    if (fflush(stdout) == 0 && !failed)
+        return true;
+    text_say("%scannot write the answer%s%s", speaker, errno ? ": " : "",
+             errno ? strerror(errno) : "");
+    return false;
 }
 
 void text_write_json(FILE *out, const char *text)

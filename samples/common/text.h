@@ -5,6 +5,7 @@
 #ifndef SAMPLES_COMMON_TEXT_H
 #define SAMPLES_COMMON_TEXT_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 /**
@@ -12,6 +13,13 @@
  * turn the direction of writing, \xff for a byte that is no UTF-8. Nothing else is changed.
  */
 void text_write(FILE *out, const char *text);
+
+/**
+ * Whether all that was printed on stdout got there, which a full disk or a closed pipe may prevent;
+ * if not, says so on stderr with `speaker` in front. To be asked before a program ends with
+ * success.
+ */
+bool text_flush(const char *speaker);
 
 /** A line on stderr, as printf makes it, written as above; at most 8 KiB of it. */
 #if defined(__GNUC__)

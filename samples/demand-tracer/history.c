@@ -1,9 +1,10 @@
 #include "history.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../common/output_file.h"
 
 bool history_add(struct history *h, const struct history_row *row)
 {
@@ -43,16 +44,13 @@ bool history_write(const struct history *h, const char *folder)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/frames.csv", folder);
-    FILE *file = fopen(path, "w");
+    struct output_file *output = output_file_begin(path);
+    FILE *file = output ? output_file_stream(output) : NULL;
     if (file)
         fputs("frame,sample,traced_pixels,missing_pixels,missing_pages,served_pages,loaded_tiles,"
               "resident_tiles,bytes_read,bytes_uploaded,lod_bias,seconds\n",
               file);
     for (size_t i = 0; file && i < h->count; i++)
         write_row(file, &h->rows[i]);
-    bool done = file && !ferror(file);
-    done = (!file || fclose(file) == 0) && done;
-    if (!done)
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
-    return done;
+    return output_file_end(output, true);
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "../common/progress.h"
+#include "../common/text.h"
 
 /* Nanoseconds: how long a preview waits for tiles before it shows what is there. */
 #define PATIENCE 20000000u
@@ -10,7 +11,7 @@
 static bool check(SluiceResult result, const char *what)
 {
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+        text_say("%s: %s", what, sluiceResultString(result));
     return result == SLUICE_SUCCESS;
 }
 
@@ -44,9 +45,12 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
     l->tile_count += launch.tileCount;
     if (l->film->missing_count > 0)
         renderer_record(l->gpu, l->renderer, l->loader, l->film, sample, l->commands);
-    return check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") &&
-           submit(l, &launch) &&
-           check(sluiceProcessDemandRequests(l->loader, &launch, UINT64_MAX, requests, ticket),
+    if (!check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") ||
+        !submit(l, &launch)) {
+        sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */
+        return false;
+    }
+    return check(sluiceProcessDemandRequests(l->loader, &launch, UINT64_MAX, requests, ticket),
                  "requests cannot be served");
 }
 

@@ -9,11 +9,15 @@
 #include <stdlib.h>
 
 #include "../common/clock.h"
+#include "../common/descriptors.h"
 #include "../common/files.h"
+#include "../common/log.h"
+#include "../common/output_file.h"
 #include "../common/progress.h"
 #include "contact_sheet.h"
 #include "history.h"
 #include "summary.h"
+#include "../common/text.h"
 
 #define EXIT_USAGE 2
 #define EXIT_NO_DEVICE 77
@@ -36,13 +40,6 @@ struct tracer {
     char progress_text[96];
 };
 
-static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
-{
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
-}
-
 static bool create_loader(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
@@ -52,7 +49,7 @@ static bool create_loader(struct tracer *t)
         .device = t->gpu.device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .queueFamilyIndex = t->gpu.family,
-        .log = {.pfnLog = print_log},
+        .log = {.pfnLog = log_say},
         .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
         .memoryBudget = (uint64_t)o->budget << 20,
@@ -62,9 +59,28 @@ static bool create_loader(struct tracer *t)
     SluiceResult result = sluiceCreateDemandLoader(&info, &t->loader);
     if (result == SLUICE_SUCCESS)
         return true;
-    fprintf(stderr, "textures cannot be loaded on demand: %s\n", sluiceResultString(result));
+    text_say("textures cannot be loaded on demand: %s", sluiceResultString(result));
     t->unsupported = result == SLUICE_ERROR_UNSUPPORTED;
     return false;
+}
+
+static bool check_outputs(const struct tracer_options *o, bool (*check)(const char *path))
+{
+    static const char *const names[] = {"picture.png", "picture.exr", "frames.csv"};
+    char path[4096];
+    bool good = !o->contact_sheet || check(o->contact_sheet);
+    for (size_t i = 0; i < sizeof names / sizeof *names && good; i++) {
+        snprintf(path, sizeof path, "%s/%s", o->output, names[i]);
+        good = check(path);
+    }
+    return good;
+}
+
+/* Before anything takes its time. */
+static bool can_write_outputs(const struct tracer_options *o)
+{
+    return (!o->compare || output_add_input(o->compare)) && files_make_folders(o->output) &&
+           (!o->frames || files_make_folders(o->frames)) && check_outputs(o, output_can_write);
 }
 
 static bool open_all(struct tracer *t)
@@ -75,13 +91,13 @@ static bool open_all(struct tracer *t)
         .validation = o->validation,
         .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED},
         .ray_tracing = o->path != PATH_COMPUTE};
-    if (!files_make_folders(o->output) || (o->frames && !files_make_folders(o->frames)) ||
-        !scene_build(o->seed, o->texture_count, &t->scene) ||
+    if (!can_write_outputs(o) || !scene_build(o->seed, o->texture_count, &t->scene) ||
         !gpu_create(&request, &t->gpu, &t->unsupported))
         return false;
     if (o->path == PATH_PIPELINE && !t->gpu.ray_tracing)
         t->unsupported = true;
     return create_loader(t) && textures_create(o, t->loader, &t->textures) &&
+           check_outputs(o, output_spares_inputs) &&
            film_create(&t->gpu, o->size[0], o->size[1], &t->film) &&
            picture_create(o->size[0], o->size[1], &t->picture) &&
            renderer_create(&t->gpu, o, &t->scene, &t->textures, t->loader, &t->film, &t->renderer);
@@ -193,13 +209,12 @@ static bool print_summary(struct tracer *t, double seconds)
     if (o->json)
         gpu_print_json(&t->gpu);
     summary_print(&summary, o->json);
-    if (!o->json)
-        printf("picture.png and picture.exr are in %s\n", o->output);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        perror("the figures could not be written");
-        return false;
+    if (!o->json) {
+        fputs("picture.png and picture.exr are in ", stdout);
+        text_write(stdout, o->output);
+        putchar('\n');
     }
-    return true;
+    return text_flush("");
 }
 
 static bool trace(struct tracer *t)
@@ -228,20 +243,28 @@ static bool trace(struct tracer *t)
     return write_files(t) && print_summary(t, seconds) && t->film.missing_count == 0;
 }
 
+/* A status, unless what was printed did not get out. */
+static int ends_well(int status)
+{
+    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
+}
+
 int main(int argc, char **argv)
 {
     struct tracer tracer = {0};
     switch (tracer_options_parse(argc, argv, &tracer.options)) {
-    case OPTIONS_HELP: return EXIT_SUCCESS;
+    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
+    descriptors_raise();
     if (tracer.options.list_devices)
-        return gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE;
+        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     tracer.sheet.marks_missing = !tracer.options.preview;
     bool opened = open_all(&tracer);
     bool done = opened && trace(&tracer);
     close_all(&tracer);
+    log_finish();
     uint32_t messages = atomic_load(&tracer.gpu.validation_messages);
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);

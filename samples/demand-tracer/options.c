@@ -1,5 +1,9 @@
 #include "options.h"
 
+#include "../common/text.h"
+
+#include <sluice/exr.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -33,8 +37,8 @@ static bool check(struct tracer_options *o)
 {
     o->view = scene_default_camera();
     if (o->camera && !parse_camera(o->camera, &o->view)) {
-        fprintf(stderr, "--camera %s: wants X,Y,Z,X,Y,Z, and must not look straight up or down\n",
-                o->camera);
+        text_say("--camera %s: wants X,Y,Z,X,Y,Z, and must not look straight up or down",
+                 o->camera);
         return false;
     }
     if (o->budget > 0 && o->budget < 4) {
@@ -60,6 +64,7 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
         .max_launches = 1000,
         .seed = 1,
         .anisotropy = 8,
+        .memory = SLUICE_EXR_DEFAULT_MEMORY_BUDGET >> 20,
         .output = "demand-tracer-out",
     };
     const struct option options[] = {
@@ -99,6 +104,10 @@ enum option_outcome tracer_options_parse(int argc, char *const *argv, struct tra
          "tiles that one launch may ask for; 0: as many as the library's\ndefault", 0, 1048576},
         {OPTION_UINT, "budget", "MIB", &o->budget,
          "MiB for tiles at most, 4 or more; 0: half of the device's memory", 0, 1048576},
+        {OPTION_UINT, "memory", "MIB", &o->memory,
+         "MiB of host memory for OpenEXR files without levels, together;\n"
+         "one that does not fit is magenta: bake it (sluice-bake FILE -o DIR)",
+         1, 1048576},
         {OPTION_UINT, "threads", "N", &o->threads,
          "threads that load; 0: by the number of processors", 0, 256},
         {OPTION_TEXT, "device", "NAME", &o->device,

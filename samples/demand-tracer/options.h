@@ -20,7 +20,7 @@ struct tracer_options {
     bool needs;      ///< of `count_needs`
     int count_needs; ///< enum needs_choice
     double exposure; ///< stops
-    uint32_t budget, threads, requests;
+    uint32_t budget, memory, threads, requests;
     double anisotropy;
     const char *output, *frames, *contact_sheet, *compare;
     bool json, list_devices, validation;

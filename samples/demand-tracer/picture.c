@@ -8,7 +8,9 @@
 #include <sluice/exr.h>
 #include <sluice/metrics.h>
 
+#include "../common/output_file.h"
 #include "../common/png_file.h"
+#include "../common/text.h"
 
 bool picture_create(uint32_t width, uint32_t height, struct picture *picture)
 {
@@ -54,18 +56,27 @@ void picture_develop(const struct picture *picture, double exposure, uint8_t *rg
     }
 }
 
+static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
+{
+    (void)user_data;
+    if (severity != SLUICE_LOG_INFO)
+        text_say("%s", message);
+}
+
 static bool write_exr(const struct picture *picture, const char *path)
 {
     SluiceImageInfo info = {picture->width, picture->height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
                             "picture"};
-    SluiceExrWriteInfo write = {.pPath = path, .opaque = true};
+    SluiceExrWriteInfo write = {.pPath = path, .opaque = true, .log = {.pfnLog = print_log}};
     SluiceImageSource *source = NULL;
+    if (!output_spares_inputs(path))
+        return false;
     SluiceResult result = sluiceCreateMemoryImageSource(picture->rgba, &info, NULL, &source);
     if (result == SLUICE_SUCCESS)
         result = sluiceWriteExrFile(&write, source);
     sluiceDestroyImageSource(source);
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "%s: cannot write: %s\n", path, sluiceResultString(result));
+        text_say("%s: cannot write: %s", path, sluiceResultString(result));
     return result == SLUICE_SUCCESS;
 }
 
@@ -144,8 +155,7 @@ bool picture_compare(const struct picture *picture, double exposure, const char 
         return false;
     bool fits = width == picture->width && height == picture->height;
     if (!fits)
-        fprintf(stderr, "%s: is %ux%u, not %ux%u\n", path, width, height, picture->width,
-                picture->height);
+        text_say("%s: is %ux%u, not %ux%u", path, width, height, picture->width, picture->height);
     uint8_t *rgba = fits ? develop_new(picture, exposure) : NULL;
     bool done = rgba && compare(rgba, other, width, height, place, difference);
     free(rgba);

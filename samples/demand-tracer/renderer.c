@@ -1,5 +1,7 @@
 #include "renderer.h"
 
+#include "../common/text.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -64,8 +66,8 @@ static bool choose_path(const struct gpu *gpu, int choice, struct renderer *r)
     r->uses_pipeline = gpu->ray_tracing && choice != PATH_COMPUTE;
     if (gpu->ray_tracing || choice == PATH_COMPUTE)
         return true;
-    fprintf(stderr, "%s has no ray-tracing pipeline%s\n", gpu->properties.deviceName,
-            choice == PATH_AUTO ? ": rays are traced in a compute shader, which is slower" : "");
+    text_say("%s has no ray-tracing pipeline%s", gpu->properties.deviceName,
+             choice == PATH_AUTO ? ": rays are traced in a compute shader, which is slower" : "");
     return choice == PATH_AUTO;
 }
 

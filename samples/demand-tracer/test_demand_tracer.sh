@@ -185,6 +185,23 @@ grep -q 'b.exr' "$folder/files.log" || { echo "nobody said that b.exr is none" >
 trace nothing --textures "$folder/frames/launch-00001.png.store"
 [ "$status" -eq 1 ] || { echo "no texture is no error" >&2; failed=1; }
 
+# A header alone that promises 16384 x 16384 texels in scanlines: refused before anything is decoded, and once.
+mkdir "$folder/bomb"
+bomb=$folder/bomb/bomb.exr
+cat "$(dirname "$0")/../../tests/exr/data/scan_zip.exr" >"$bomb"
+at=$(LC_ALL=C grep -abo dataWindow "$bomb" | head -n 1 | cut -d: -f1)
+printf '\0\0\0\0\0\0\0\0\377\77\0\0\377\77\0\0' | dd of="$bomb" bs=1 seek=$((at + 21)) conv=notrunc 2>"$folder/dd.log"
+dd if=/dev/null of="$bomb" bs=1 seek=2097152 2>"$folder/dd.log"
+trace bomb --textures "$folder/bomb"
+succeeds
+is_complete bomb
+check bomb textures_failed 'v + 0 == 1'
+if ! grep -q 'bomb.exr: .*2738 MiB.*sluice-bake FILE -o DIR' "$folder/bomb.log" ||
+    ! grep -q 'bomb.exr: --memory raises' "$folder/bomb.log" || [ "$(grep -c '2738 MiB' "$folder/bomb.log")" -ne 1 ]; then
+    echo "nobody said once what bomb.exr takes" >&2
+    failed=1
+fi
+
 # Who stops too early says so.
 trace short --launches 1
 [ "$status" -eq 1 ] || { echo "an incomplete picture is no error" >&2; failed=1; }

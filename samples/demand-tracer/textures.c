@@ -4,30 +4,43 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "../streaming/picture_file.h"
 
 #define TEXTURE_SUFFIXES ".store|.exr|.dds|.ktx2"
 
-static SluiceResult open_file(const char *path, SluiceImageSource **source)
+static SluiceResult open_file(const struct texture *texture, SluiceImageSource **source)
 {
+    const char *path = texture->path;
     enum picture_kind kind;
     SluiceImageInfo info;
-    struct picture_opening opening = {.pixels = PIXEL_FORMAT_AUTO};
-    if (!picture_file_kind(path, &kind))
-        return SLUICE_ERROR_IO;
+    struct picture_opening opening = {.pixels = PIXEL_FORMAT_AUTO, .memory = texture->memory};
+    SluiceResult result = picture_file_kind(path, &kind);
+    if (result != SLUICE_SUCCESS)
+        return result;
     if (kind == PICTURE_OTHER) {
-        fprintf(stderr, "%s: is no OpenEXR, DDS or KTX2 file, nor a tile store\n", path);
+        text_say("%s: is no OpenEXR, DDS or KTX2 file, nor a tile store", path);
         return SLUICE_ERROR_UNSUPPORTED;
     }
     return picture_file_open(path, kind, &opening, source, &info);
 }
 
-/* On a thread of the loader, when a ray has hit the texture. */
+/* On a thread of the loader, when a ray has hit the texture; again from time to time if it failed.
+ * What no other attempt changes is not said again. */
 static SluiceResult open_texture(void *user_data, SluiceImageSource **source)
 {
-    const struct texture *texture = user_data;
+    struct texture *texture = user_data;
+    if (texture->path && texture->refusal == SLUICE_SUCCESS) {
+        SluiceResult result = open_file(texture, source);
+        if (result == SLUICE_ERROR_LIMIT_EXCEEDED || result == SLUICE_ERROR_UNSUPPORTED)
+            texture->refusal = result;
+        if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+            text_say("%s: --memory raises the limit", texture->path);
+        return result;
+    }
     if (texture->path)
-        return open_file(texture->path, source);
+        return texture->refusal;
     return pattern_open(&texture->pattern, texture->size, source);
 }
 
@@ -63,6 +76,7 @@ static void choose_images(const struct tracer_options *options, struct textures 
         }
         struct texture *texture = &t->items[t->count];
         t->of_scene[i] = t->count++;
+        texture->memory = t->memory;
         if (is_file) {
             texture->path = t->files.paths[i];
         } else {
@@ -80,15 +94,16 @@ static bool create_texture(const struct tracer_options *options, SluiceDemandLoa
     VkSamplerAddressMode mode =
         leaf ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
     SluiceDemandTextureCreateInfo info = {
-        .image = {.pUserData = texture, .pfnOpen = open_texture},
+        .image = {.pUserData = texture, .pfnOpen = open_texture, .pName = texture->path},
         .sampler = {.addressModeU = mode,
                     .addressModeV = mode,
-                    .maxAnisotropy = (float)options->anisotropy},
+                    .maxAnisotropy = (float)options->anisotropy,
+                    .explicitAddressModes = !texture->path},
         .failureColor = {1.0f, 0.0f, 1.0f, 1.0f},
     };
     SluiceResult result = sluiceCreateDemandTexture(loader, &info, &texture->id);
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "a texture cannot be created: %s\n", sluiceResultString(result));
+        text_say("a texture cannot be created: %s", sluiceResultString(result));
     return result == SLUICE_SUCCESS;
 }
 
@@ -98,9 +113,14 @@ bool textures_create(const struct tracer_options *options, SluiceDemandLoader *l
     *t = (struct textures){.scene_count = options->texture_count};
     if (!collect_files(&options->textures, &t->files))
         return false;
+    for (size_t i = 0; i < t->files.count; i++)
+        if (!output_add_input(t->files.paths[i]))
+            return false;
     t->items = calloc(t->scene_count, sizeof *t->items);
     t->of_scene = calloc(t->scene_count, sizeof *t->of_scene);
-    if (!t->items || !t->of_scene) {
+    if (!t->items || !t->of_scene ||
+        sluiceCreateExrMemoryBudget((uint64_t)options->memory << 20, NULL, &t->memory) !=
+            SLUICE_SUCCESS) {
         fprintf(stderr, "out of memory\n");
         return false;
     }
@@ -113,6 +133,7 @@ bool textures_create(const struct tracer_options *options, SluiceDemandLoader *l
 
 void textures_finish(struct textures *t)
 {
+    sluiceDestroyExrMemoryBudget(t->memory);
     free(t->items);
     free(t->of_scene);
     files_finish(&t->files);

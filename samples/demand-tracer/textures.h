@@ -4,6 +4,7 @@
 #define TRACER_TEXTURES_H
 
 #include <sluice/demand.h>
+#include <sluice/exr.h>
 
 #include "../common/files.h"
 #include "options.h"
@@ -11,9 +12,11 @@
 
 /** One image behind one texture. */
 struct texture {
-    const char *path;       ///< NULL: a pattern; borrowed from the list of files
-    struct pattern pattern; ///< else
-    uint32_t size;          ///< of a pattern, texels
+    const char *path;              ///< NULL: a pattern; borrowed from the list of files
+    struct pattern pattern;        ///< else
+    uint32_t size;                 ///< of a pattern, texels
+    SluiceExrMemoryBudget *memory; ///< of all textures
+    SluiceResult refusal;          ///< of a file that will never be opened
     SluiceDemandTextureId id;
 };
 
@@ -24,6 +27,7 @@ struct textures {
     uint32_t *of_scene; ///< owned; index in `items` of each texture of the scene
     uint32_t scene_count;
     struct file_list files;
+    SluiceExrMemoryBudget *memory;
     uint64_t virtual_size; ///< bytes of all levels of all patterns
 };
 

@@ -1,7 +1,9 @@
 #include "corridor.h"
 
 #include "../common/options.h"
+#include "../common/output_file.h"
 #include "../common/png_file.h"
+#include "../common/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +31,9 @@ struct settings read_settings(int argc, char **argv)
     const enum option_outcome outcome =
         options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
     if (outcome != OPTIONS_RUN)
-        exit(outcome == OPTIONS_HELP ? 0 : 2);
+        exit(outcome == OPTIONS_ERROR ? 2 : text_flush("") ? 0 : 1);
+    if (!output_can_write(settings.output))
+        exit(1);
     settings.mode = (SluiceResidencyMode)mode;
     settings.frames = settings.walk_frames + REST_FRAMES;
     return settings;
@@ -91,5 +95,6 @@ void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames)
 
 bool write_picture(const struct settings *settings, const uint8_t *texels)
 {
-    return png_file_write(settings->output, texels, settings->size[0], settings->size[1]);
+    return png_file_write(settings->output, texels, settings->size[0], settings->size[1]) &&
+           text_flush("");
 }

@@ -70,7 +70,8 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                  .log = log_callback,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
                                                  .maxPageChunkCount = PAGE_CHUNKS,
-                                                 .feedbackTimeout = 128, /* frames, our time */
+                                                 .timeStampsPerSecond = 60, /* one a frame */
+                                                 .feedbackTimeout = 128,
                                                  .mapEverything = settings->everything};
     SLUICE(sluiceCreateVulkanStreamer(&info, &r->streamer));
 }

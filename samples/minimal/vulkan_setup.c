@@ -1,5 +1,7 @@
 #include "vulkan_setup.h"
 
+#include "../common/no_vulkan.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -29,7 +31,7 @@ static void create_instance(struct gpu *gpu)
                                        .pApplicationInfo = &application};
     const VkResult result = vkCreateInstance(&info, NULL, &gpu->instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
-        fprintf(stderr, "there is no Vulkan driver\n");
+        fprintf(stderr, "%s\n", NO_VULKAN_DRIVER);
         exit(77);
     }
     check_vulkan(result, "vkCreateInstance");
@@ -101,7 +103,7 @@ void open_device(struct gpu *gpu, device_test *test, const void *user)
         if (create_device(gpu, &needs))
             return;
     }
-    fprintf(stderr, "no device can be used\n");
+    fprintf(stderr, "%s\n", count ? "no Vulkan device " CANNOT_STREAM : NO_VULKAN_DRIVER);
     exit(77);
 }
 

@@ -11,6 +11,7 @@
 
 #include "../common/bake_jobs.h"
 #include "../common/files.h"
+#include "../common/text.h"
 #include "cache.h"
 
 /* Somebody waits: a third of the time of the baker's own level, for files a sixth larger. */
@@ -37,7 +38,7 @@ static char *store_path(const char *picture, const char *cache)
     char folder[4096];
     char *whole = realpath(picture, NULL), *path = NULL;
     if (!whole)
-        fprintf(stderr, "%s: %s\n", picture, strerror(errno));
+        text_say("%s: %s", picture, strerror(errno));
     else if (!cache_path(cache, "baked", folder, sizeof folder))
         fprintf(stderr, "the cache folder's name is too long\n");
     else {
@@ -69,7 +70,7 @@ static SluiceResult choose_settings(const struct picture_path *picture, enum pix
 static void refuse(struct picture_path *picture, SluiceResult result)
 {
     picture->refused = true;
-    fprintf(stderr, "%s: left out: %s\n", picture->path, sluiceResultString(result));
+    text_say("%s: left out: %s", picture->path, sluiceResultString(result));
 }
 
 static const struct bake_job *find_job(const struct bake_job *jobs, size_t count,
@@ -115,7 +116,7 @@ static void report(const struct bake_job *jobs, size_t count)
         baked += outcome(&jobs[i]) == SLUICE_SUCCESS && !jobs[i].report.skipped;
         skipped += outcome(&jobs[i]) == SLUICE_SUCCESS && jobs[i].report.skipped;
         if (jobs[i].message[0])
-            fprintf(stderr, "%s\n", jobs[i].message);
+            text_say("%s", jobs[i].message);
     }
     fprintf(stderr, "%u pictures baked, %u were up to date\n", baked, skipped);
 }

@@ -13,6 +13,7 @@
 
 #include "../common/png_file.h"
 #include "../common/progress.h"
+#include "../common/text.h"
 #include "gallery_report.h"
 
 #define MAX_WORKERS 64
@@ -136,7 +137,7 @@ static bool run_pass(struct pass *pass, const char *what)
 static bool check(SluiceResult result, uint32_t frame)
 {
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "frame %u cannot be compared: %s\n", frame, sluiceResultString(result));
+        text_say("frame %u cannot be compared: %s", frame, sluiceResultString(result));
     return result == SLUICE_SUCCESS;
 }
 

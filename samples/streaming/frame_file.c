@@ -10,20 +10,32 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../common/output_file.h"
 #include "../common/text.h"
 
 static bool take_descriptor(int descriptor, size_t frame_size, struct frame_file *file)
 {
-    *file = (struct frame_file){descriptor >= 0, descriptor, frame_size};
+    *file = (struct frame_file){descriptor >= 0, descriptor, frame_size, NULL};
     return file->is_open;
 }
 
 bool frame_file_create(const char *path, size_t frame_size, struct frame_file *file)
 {
-    if (take_descriptor(open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), frame_size, file))
-        return true;
-    text_say("%s: %s", path, strerror(errno));
-    return false;
+    struct output_file *output = output_file_begin(path);
+    if (!output || !take_descriptor(fileno(output_file_stream(output)), frame_size, file)) {
+        output_file_end(output, false);
+        *file = (struct frame_file){0};
+        return false;
+    }
+    file->output = output;
+    return true;
+}
+
+bool frame_file_keep(struct frame_file *file)
+{
+    bool kept = file->output && output_file_end(file->output, true);
+    *file = (struct frame_file){0};
+    return kept;
 }
 
 bool frame_file_create_scratch(const char *folder, size_t frame_size, struct frame_file *file)
@@ -41,8 +53,8 @@ bool frame_file_create_scratch(const char *folder, size_t frame_size, struct fra
 
 bool frame_file_open(const char *path, size_t frame_size, uint32_t count, struct frame_file *file)
 {
-    struct stat status;
-    if (!take_descriptor(open(path, O_RDONLY | O_CLOEXEC), frame_size, file))
+    struct stat status; /* not blocking, so that the name of a pipe cannot stop the program */
+    if (!take_descriptor(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK), frame_size, file))
         return false;
     if (fstat(file->descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
         (uint64_t)status.st_size == (uint64_t)frame_size * count)
@@ -53,7 +65,9 @@ bool frame_file_open(const char *path, size_t frame_size, uint32_t count, struct
 
 void frame_file_close(struct frame_file *file)
 {
-    if (file->is_open)
+    if (file->output)
+        output_file_end(file->output, false);
+    else if (file->is_open)
         close(file->descriptor);
     *file = (struct frame_file){0};
 }
@@ -67,7 +81,7 @@ bool frame_file_write(const struct frame_file *file, uint32_t frame, const uint8
         if (count < 0 && errno == EINTR)
             continue;
         if (count <= 0) {
-            fprintf(stderr, "frame %u cannot be kept: %s\n", frame, strerror(errno));
+            text_say("frame %u cannot be kept: %s", frame, strerror(errno));
             return false;
         }
         done += (size_t)count;
@@ -84,8 +98,8 @@ bool frame_file_read(const struct frame_file *file, uint32_t frame, uint8_t *pix
         if (count < 0 && errno == EINTR)
             continue;
         if (count <= 0) {
-            fprintf(stderr, "frame %u cannot be read again: %s\n", frame,
-                    count ? strerror(errno) : "the file ends before it");
+            text_say("frame %u cannot be read again: %s", frame,
+                     count ? strerror(errno) : "the file ends before it");
             return false;
         }
         done += (size_t)count;

@@ -3,7 +3,13 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "../common/descriptors.h"
+#include "../common/output_file.h"
 #include "../common/progress.h"
+#include "../common/text.h"
+
+/* Recordings, traces, frames of the reference, and three for each worker of comparison.c. */
+#define WRITTEN_AT_ONCE 210
 
 /* Long after a device that had no memory for pages was asked again. */
 #define FRAMES_IN_VAIN 240
@@ -33,8 +39,8 @@ static bool counts_residency(const struct gallery *gallery)
         mode == SLUICE_RESIDENCY_MODE_PAGED ||
         (mode == SLUICE_RESIDENCY_MODE_SPARSE && gallery->gpu.capabilities.shaderResourceResidency);
     if (settings->check_residency == THREE_WAY_ON && !able)
-        fprintf(stderr, "%s cannot tell in this mode what is not resident: nothing is checked\n",
-                gallery->gpu.properties.deviceName);
+        text_say("%s cannot tell in this mode what is not resident: nothing is checked",
+                 gallery->gpu.properties.deviceName);
     return able && (settings->check_residency == THREE_WAY_ON ||
                     (settings->check_residency == THREE_WAY_AUTO && settings->compare));
 }
@@ -146,6 +152,23 @@ static struct picture_limits device_limits(const struct gpu *gpu)
     };
 }
 
+/* Said before anything is drawn. */
+static bool outputs_spare_inputs(const struct gallery *gallery)
+{
+    const struct settings *settings = &gallery->settings;
+    char csv[4096], report[4096];
+    bool good = true;
+    for (size_t i = 0; i < settings->images.count && good; i++)
+        good = output_add_input(settings->images.items[i]);
+    for (uint32_t i = 0; i < gallery->pictures.count && good; i++)
+        good = output_add_input(gallery->pictures.pictures[i].path);
+    snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
+    snprintf(report, sizeof report, "%s/report.html", settings->output);
+    return good && output_spares_inputs(csv) && output_spares_inputs(report) &&
+           (!settings->record || output_spares_inputs(settings->record)) &&
+           (!settings->needs_trace || output_spares_inputs(settings->needs_trace));
+}
+
 enum gallery_outcome gallery_open(struct gallery *gallery)
 {
     const struct settings *settings = &gallery->settings;
@@ -157,7 +180,13 @@ enum gallery_outcome gallery_open(struct gallery *gallery)
     if (!gpu_create(&device, &gallery->gpu, &unsupported))
         return unsupported ? GALLERY_NO_DEVICE : GALLERY_FAILED;
     struct picture_limits limits = device_limits(&gallery->gpu);
-    return pictures_open(settings, &limits, &gallery->pictures) && open_surroundings(gallery) &&
+    /* Pictures stay open: what the walk writes must find descriptors when it comes to that. */
+    struct descriptors_kept kept;
+    descriptors_keep(&kept, WRITTEN_AT_ONCE);
+    bool hung = pictures_open(settings, &limits, &gallery->pictures);
+    descriptors_release(&kept);
+    gpu_choose_mode(&gallery->gpu, view_texture_count(&gallery->pictures));
+    return hung && outputs_spare_inputs(gallery) && open_surroundings(gallery) &&
                    (!settings->reference || reference_open(gallery, &gallery->reference)) &&
                    open_views(gallery)
                ? GALLERY_READY

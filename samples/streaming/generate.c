@@ -9,7 +9,9 @@
 #include <sluice/exr.h>
 
 #include "../common/files.h"
+#include "../common/log.h"
 #include "../common/progress.h"
+#include "../common/text.h"
 #include "cache.h"
 
 /* In hanging order. About 105 million texels, 1.1 GB as half floats with all levels. */
@@ -71,13 +73,6 @@ static bool note_progress(void *user_data, uint64_t done, uint64_t total)
     return true;
 }
 
-static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
-{
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
-}
-
 static struct pattern_image scaled(const struct pattern_image *image, uint32_t scale)
 {
     struct pattern_image small = *image;
@@ -107,14 +102,14 @@ static bool write_picture(const struct pattern_image *image, const char *path,
                                .tileHeight = 64,
                                .threadCount = thread_count,
                                .opaque = true,
-                               .log = {NULL, print_log},
+                               .log = {NULL, log_say},
                                .pUserData = generation,
                                .pfnProgress = note_progress};
     if (result == SLUICE_SUCCESS)
         result = sluiceWriteExrFile(&info, source);
     sluiceDestroyImageSource(source);
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "%s: cannot be made: %s\n", path, sluiceResultString(result));
+        text_say("%s: cannot be made: %s", path, sluiceResultString(result));
     return result == SLUICE_SUCCESS;
 }
 
@@ -138,7 +133,7 @@ bool generate_pictures(const char *folder, uint32_t scale, uint32_t thread_count
     if (missing_count == 0)
         return true;
 
-    fprintf(stderr, "making %u pictures in %s\n", missing_count, folder);
+    text_say("making %u pictures in %s", missing_count, folder);
     progress_begin(&generation.progress, "generating", "texels", total);
     for (uint32_t i = 0; i < missing_count; i++) {
         if (!write_picture(&missing[i], paths[missing_index[i]], thread_count, &generation))

@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L
 /**
  * A walk through a room hung with pictures whose textures are streamed; see --help.
  *
@@ -12,9 +13,13 @@
 #include <sluice/metrics.h>
 
 #include "../common/clock.h"
+#include "../common/descriptors.h"
 #include "../common/files.h"
+#include "../common/output_file.h"
 #include "../common/png_file.h"
+#include "../common/log.h"
 #include "../common/progress.h"
+#include "../common/text.h"
 #include "comparison.h"
 #include "gallery.h"
 #include "gallery_report.h"
@@ -187,6 +192,13 @@ static char *join_arguments(int argc, char *const *argv)
     return line;
 }
 
+static void print_line(const char *words, const char *name)
+{
+    fputs(words, stdout);
+    text_write(stdout, name);
+    putchar('\n');
+}
+
 static bool write_results(const struct walk *walk, int argc, char *const *argv)
 {
     const struct gallery *gallery = walk->gallery;
@@ -215,12 +227,8 @@ static bool write_results(const struct walk *walk, int argc, char *const *argv)
     else
         measure_print_text(figures, figure_count);
     if (written && !settings->json)
-        printf("pictures, frames.csv and report.html are in %s\n", settings->output);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        perror("the figures could not be written");
-        return false;
-    }
-    return written;
+        print_line("pictures, frames.csv and report.html are in ", settings->output);
+    return text_flush("") && written;
 }
 
 static bool begin_needs(struct walk *walk)
@@ -256,20 +264,31 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     if (gallery->settings.compare) {
         SluiceVulkanStreamerStatistics truth;
         sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
-        measure.truth_bytes = truth.deviceMemorySize;
+        measure.truth_bytes = truth.tileMemorySize;
     } else if (gallery->settings.reference) {
         measure.truth_bytes = gallery->reference.device_memory;
     }
     measure.texture_count = gallery->streamed.texture_count;
     done = done && begin_needs(&walk) && walk_through(&walk) && needs_wait_end(&walk.needs.wait);
     measure.reads = view_reads(&gallery->streamed);
-    done = needs_trace_end(&walk.trace) && done &&
+    done = needs_trace_end(&walk.trace, done) && done &&
            comparison_run(&walk.comparison, &walk.written) && write_results(&walk, argc, argv);
     needs_finish(&walk.needs);
     comparison_finish(&walk.comparison);
     free(walk.written.frames);
     measure_finish(&measure);
     return done;
+}
+
+/* Before anything takes its time. */
+static bool can_write_outputs(const struct settings *settings)
+{
+    char report[4096], csv[4096];
+    snprintf(report, sizeof report, "%s/report.html", settings->output);
+    snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
+    return files_make_folders(settings->output) && output_can_write(report) &&
+           output_can_write(csv) &&
+           (!settings->needs_trace || output_can_write(settings->needs_trace));
 }
 
 static int generate_only(const struct settings *settings)
@@ -279,29 +298,38 @@ static int generate_only(const struct settings *settings)
     if (!pictures_open(settings, &limits, &pictures))
         return EXIT_FAILURE;
     for (uint32_t i = 0; i < pictures.count; i++)
-        printf("%s\n", pictures.pictures[i].path);
+        print_line("", pictures.pictures[i].path);
     pictures_close(&pictures);
     return EXIT_SUCCESS;
+}
+
+/* A status, unless what was printed did not get out. */
+static int ends_well(int status)
+{
+    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)
 {
     struct gallery gallery = {0};
+    setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     switch (settings_parse(argc, argv, &gallery.settings)) {
-    case OPTIONS_HELP: return EXIT_SUCCESS;
+    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
+    descriptors_raise();
     if (gallery.settings.list_devices)
-        return gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE;
+        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     if (gallery.settings.generate_only)
-        return generate_only(&gallery.settings);
-    if (!files_make_folders(gallery.settings.output))
+        return ends_well(generate_only(&gallery.settings));
+    if (!can_write_outputs(&gallery.settings))
         return EXIT_FAILURE;
 
     enum gallery_outcome opened = gallery_open(&gallery);
     bool done = opened == GALLERY_READY && run_walk(&gallery, argc, argv);
     done = gallery_close(&gallery) && done;
+    log_finish();
     uint32_t messages = atomic_load(&gallery.gpu.validation_messages);
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);

@@ -1,10 +1,11 @@
 #include "measure.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../common/output_file.h"
 
 bool measure_begin(struct measure *measure, const struct settings *settings)
 {
@@ -204,8 +205,8 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
         sampled += record->counts.sampled;
         if (measure_resident_tiles(record) > peak_tiles)
             peak_tiles = measure_resident_tiles(record);
-        if (record->statistics.deviceMemorySize > peak_memory)
-            peak_memory = record->statistics.deviceMemorySize;
+        if (record->statistics.tileMemorySize > peak_memory)
+            peak_memory = record->statistics.tileMemorySize;
     }
     struct metric_summary ssim = summarise(measure, offsetof(struct frame_record, ssim));
     struct metric_summary flip = summarise(measure, offsetof(struct frame_record, flip));
@@ -286,7 +287,7 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
             (unsigned long long)(now->tilesUnmapped - then->tilesUnmapped),
             (unsigned long long)(now->bytesRead - then->bytesRead),
             (unsigned long long)(now->bytesUploaded - then->bytesUploaded),
-            (unsigned long long)now->deviceMemorySize);
+            (unsigned long long)now->tileMemorySize);
     if (measure->needs && !measure->counting)
         fprintf(file, ",%u,%u,,", record->needs.sampled_pixels, record->needs.missing_pixels);
     else if (measure->counting)
@@ -306,8 +307,9 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
 
 bool measure_write_csv(const struct measure *measure, const char *path)
 {
-    FILE *file = fopen(path, "w");
-    if (file) {
+    struct output_file *output = output_file_begin(path);
+    if (output) {
+        FILE *file = output_file_stream(output);
         fputs("frame,at_rest,frame_ms,host_ms,gpu_ms,psnr_db,resident_tiles,mapped_tiles,"
               "standby_tiles,requested_tiles,loads_in_flight,tiles_mapped,tiles_unmapped,"
               "bytes_read,bytes_uploaded,device_memory,nonresident_reads,sampled_pixels,"
@@ -316,11 +318,7 @@ bool measure_write_csv(const struct measure *measure, const char *path)
         for (uint32_t i = 0; i < measure->frame_count; i++)
             write_csv_line(file, measure, i);
     }
-    if (!file || ferror(file) | fclose(file)) {
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
-        return false;
-    }
-    return true;
+    return output_file_end(output, true);
 }
 
 const char *measure_format(double value, char buffer[32])

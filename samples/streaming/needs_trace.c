@@ -1,8 +1,9 @@
 #include "needs_trace.h"
 
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
+
+#include "../common/output_file.h"
+#include "../common/text.h"
 
 #define TILE_BYTES 65536u
 
@@ -68,18 +69,20 @@ bool needs_trace_begin(struct needs_trace *trace, const char *path, const struct
         size_t regions = (size_t)layout->feedbackWidth * layout->feedbackHeight;
         most = regions > most ? regions : most;
         if (!fits(layout)) {
-            fprintf(stderr, "%s: a texture is too large for this format\n", path);
+            text_say("%s: a texture is too large for this format", path);
             return false;
         }
     }
-    *trace = (struct needs_trace){.path = path, .runs = malloc(2 * most + 16)};
-    trace->file = trace->runs ? fopen(path, "wb") : NULL;
-    if (!trace->file) {
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    *trace = (struct needs_trace){.runs = malloc(2 * most + 16)};
+    if (!trace->runs)
+        fprintf(stderr, "out of memory\n");
+    trace->output = trace->runs ? output_file_begin(path) : NULL;
+    if (!trace->output) {
         free(trace->runs);
         *trace = (struct needs_trace){0};
         return false;
     }
+    trace->file = output_file_stream(trace->output);
     put_header(trace->file, needs->texture_count, frame_count, frame_microseconds);
     for (uint32_t i = 0; i < needs->texture_count; i++)
         put_texture(trace->file, &needs->textures[i].layout, i);
@@ -121,13 +124,9 @@ void needs_trace_add_frame(struct needs_trace *trace, const struct needs *needs,
     }
 }
 
-bool needs_trace_end(struct needs_trace *trace)
+bool needs_trace_end(struct needs_trace *trace, bool keep)
 {
-    bool written = true;
-    if (trace->file && (ferror(trace->file) | fclose(trace->file))) {
-        fprintf(stderr, "%s: could not be written\n", trace->path);
-        written = false;
-    }
+    bool written = !trace->output || output_file_end(trace->output, keep);
     free(trace->runs);
     *trace = (struct needs_trace){0};
     return written;

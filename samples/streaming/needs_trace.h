@@ -10,9 +10,9 @@
 #include "needs.h"
 
 struct needs_trace {
-    const char *path; ///< borrowed
-    FILE *file;       ///< NULL: nothing is written
-    uint8_t *runs;    ///< owned; room for an encoded map
+    struct output_file *output; ///< Owned. NULL: nothing is written.
+    FILE *file;                 ///< Of `output`.
+    uint8_t *runs;              ///< owned; room for an encoded map
 };
 
 /** Says on stderr what is wrong, as does needs_trace_end. `frame_count` frames have to follow. */
@@ -21,7 +21,8 @@ bool needs_trace_begin(struct needs_trace *trace, const char *path, const struct
 /** The maps of the frame that was added to `needs` last. */
 void needs_trace_add_frame(struct needs_trace *trace, const struct needs *needs,
                            uint64_t microseconds);
-/** False if something was not written. A zeroed struct is fine. */
-bool needs_trace_end(struct needs_trace *trace);
+/** The trace gets its name only now, if `keep` and all of it is written; otherwise it is removed.
+ *  False if something was not written or not kept. A zeroed struct is fine. */
+bool needs_trace_end(struct needs_trace *trace, bool keep);
 
 #endif /* SAMPLES_STREAMING_NEEDS_TRACE_H */

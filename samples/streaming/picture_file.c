@@ -10,14 +10,11 @@
 #include <sluice/exr.h>
 #include <sluice/ktx2.h>
 
-void picture_file_log(void *user_data, SluiceLogSeverity severity, const char *message)
-{
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
-}
+#include "../common/input.h"
+#include "../common/log.h"
+#include "../common/text.h"
 
-static const SluiceLogCallback to_stderr = {NULL, picture_file_log};
+static const SluiceLogCallback to_stderr = {NULL, log_say};
 
 static void say_nothing(exr_const_context_t context, exr_result_t code, const char *message)
 {
@@ -43,16 +40,17 @@ static bool exr_has_levels(const char *path)
     return tiled && levels != EXR_TILE_ONE_LEVEL;
 }
 
-bool picture_file_kind(const char *path, enum picture_kind *kind)
+SluiceResult picture_file_kind(const char *path, enum picture_kind *kind)
 {
     static const char store[] = "\x89SLS\r\n\x1A\n", ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
     char bytes[12] = {0};
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     if (file)
         (void)!fread(bytes, 1, sizeof bytes, file);
     bool failed = !file || ferror(file);
-    if (failed)
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    bool later = !file && (errno == EMFILE || errno == ENFILE);
+    if (failed && !later)
+        text_say("%s: %s", path, input_reason(errno));
     if (file)
         fclose(file);
     if (memcmp(bytes, store, 8) == 0)
@@ -63,7 +61,7 @@ bool picture_file_kind(const char *path, enum picture_kind *kind)
         *kind = PICTURE_DDS;
     else
         *kind = memcmp(bytes, ktx2, 12) == 0 ? PICTURE_KTX2 : PICTURE_OTHER;
-    return !failed;
+    return later ? SLUICE_NOT_READY : failed ? SLUICE_ERROR_IO : SLUICE_SUCCESS;
 }
 
 /** Half of the memory and bandwidth for what a screen cannot show. */
@@ -79,7 +77,8 @@ static SluiceFormat narrowed(SluiceFormat format)
 SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
                                      SluiceFormat *format)
 {
-    SluiceExrImageSourceCreateInfo create = {.pPath = path, .log = to_stderr};
+    SluiceExrImageSourceCreateInfo create = {
+        .pPath = path, .log = to_stderr, .maxMemorySize = UINT64_MAX}; /* no texel is read */
     SluiceImageSource *source = NULL;
     SluiceImageInfo info;
     *format = pixels == PIXEL_FORMAT_RGBA8 ? SLUICE_FORMAT_R8G8B8A8_SRGB
@@ -95,16 +94,18 @@ SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
     return result;
 }
 
-static SluiceResult open_exr(const char *path, enum pixel_format pixels, SluiceImageSource **source)
+static SluiceResult open_exr(const char *path, const struct picture_opening *opening,
+                             SluiceImageSource **source)
 {
-    SluiceExrImageSourceCreateInfo create = {.pPath = path, .log = to_stderr};
-    SluiceResult result = picture_file_exr_format(path, pixels, &create.format);
+    SluiceExrImageSourceCreateInfo create = {
+        .pPath = path, .log = to_stderr, .memoryBudget = opening->memory};
+    SluiceResult result = picture_file_exr_format(path, opening->pixels, &create.format);
     return result == SLUICE_SUCCESS ? sluiceCreateExrImageSource(&create, source) : result;
 }
 
 static SluiceResult lacking(const char *path, const char *what)
 {
-    fprintf(stderr, "%s: this build of Sluice was made without %s\n", path, what);
+    text_say("%s: this build of Sluice was made without %s", path, what);
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
@@ -125,7 +126,7 @@ static SluiceResult open_store(const char *path, SluiceStoreReadPool *pool,
 static SluiceFormat dds_color_format(const char *path, SluiceFormat format)
 {
     char bytes[88] = {0};
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     bool says = !file || fread(bytes, 1, sizeof bytes, file) != sizeof bytes ||
                 memcmp(bytes + 84, "DX10", 4) == 0;
     if (file)
@@ -177,7 +178,7 @@ SluiceResult picture_file_open(const char *path, enum picture_kind kind,
     switch (kind) {
     case PICTURE_STORE: result = open_store(path, opening->pool, source); break;
     case PICTURE_EXR:
-    case PICTURE_EXR_LEVEL_ZERO: result = open_exr(path, opening->pixels, source); break;
+    case PICTURE_EXR_LEVEL_ZERO: result = open_exr(path, opening, source); break;
     case PICTURE_DDS:
     case PICTURE_KTX2: result = open_container(path, kind == PICTURE_DDS, source); break;
     case PICTURE_OTHER:

@@ -2,6 +2,7 @@
 #ifndef SAMPLES_STREAMING_PICTURE_FILE_H
 #define SAMPLES_STREAMING_PICTURE_FILE_H
 
+#include <sluice/exr.h>
 #include <sluice/store.h>
 
 #include "../common/picture_names.h"
@@ -19,13 +20,19 @@ enum picture_kind {
     PICTURE_OTHER ///< for libvips
 };
 
-/** By the first bytes. Says on stderr why it failed. */
-bool picture_file_kind(const char *path, enum picture_kind *kind);
+/**
+ * By the first bytes. Errors: NOT_READY for want of file descriptors, not said; IO, also for a pipe
+ * or a device, said on stderr.
+ */
+SluiceResult picture_file_kind(const char *path, enum picture_kind *kind);
 
 /** What is read in place: neither stores of a build that has none, nor what only libvips reads. */
 struct picture_opening {
     enum pixel_format pixels;  ///< of OpenEXR files; others deliver what is in them
     SluiceStoreReadPool *pool; ///< for all stores; outlives them
+    /** For OpenEXR files without levels together; outlives them. NULL: each has the library's
+     *  default. */
+    SluiceExrMemoryBudget *memory;
 };
 
 /** Says on stderr why it failed. UNSUPPORTED for PICTURE_OTHER. */
@@ -36,8 +43,5 @@ SluiceResult picture_file_open(const char *path, enum picture_kind kind,
 /** What OpenEXR files are streamed as: never floats of 32 bits, which a screen cannot show. */
 SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
                                      SluiceFormat *format);
-
-/** Prints warnings and errors. */
-void picture_file_log(void *user_data, SluiceLogSeverity severity, const char *message);
 
 #endif /* SAMPLES_STREAMING_PICTURE_FILE_H */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "../common/files.h"
+#include "../common/text.h"
 #include "baked.h"
 #include "exposure.h"
 
@@ -18,8 +19,8 @@ static bool is_compressed(SluiceFormat format)
 
 static bool refuse(const char *path, const SluiceImageInfo *info, const char *why)
 {
-    fprintf(stderr, "%s: %u x %u texels of %s: %s\n", path, info->width, info->height,
-            sluiceFormatString(info->format), why);
+    text_say("%s: %u x %u texels of %s: %s", path, info->width, info->height,
+             sluiceFormatString(info->format), why);
     return false;
 }
 
@@ -82,17 +83,23 @@ static bool create_reliefs(struct picture_list *list)
         SluiceResult result = pattern_create_source(&picture->relief_pattern,
                                                     SLUICE_FORMAT_R8_UNORM, &picture->relief);
         if (result != SLUICE_SUCCESS) {
-            fprintf(stderr, "%s: no relief: %s\n", picture->path, sluiceResultString(result));
+            text_say("%s: no relief: %s", picture->path, sluiceResultString(result));
             return false;
         }
     }
     return true;
 }
 
+static const char *reason(SluiceResult result)
+{
+    return result == SLUICE_NOT_READY ? "too few file descriptors; ulimit -n allows more"
+                                      : sluiceResultString(result);
+}
+
 static bool open_all(const struct picture_path *paths, size_t count, enum pixel_format pixels,
                      const struct picture_limits *limits, struct picture_list *list)
 {
-    struct picture_opening opening = {pixels, list->pool};
+    struct picture_opening opening = {.pixels = pixels, .pool = list->pool, .memory = list->memory};
     for (size_t i = 0; i < count; i++) {
         struct picture *picture = &list->pictures[list->count];
         SluiceResult result = SLUICE_ERROR_IO;
@@ -102,7 +109,7 @@ static bool open_all(const struct picture_path *paths, size_t count, enum pixel_
                 list->count++;
                 continue;
             }
-            fprintf(stderr, "%s: left out: %s\n", paths[i].path, sluiceResultString(result));
+            text_say("%s: left out: %s", paths[i].path, reason(result));
             close_picture(picture);
         }
         list->refused++;
@@ -114,10 +121,11 @@ static bool open_all(const struct picture_path *paths, size_t count, enum pixel_
 
 static bool create_pool(struct picture_list *list)
 {
+    if (sluiceCreateExrMemoryBudget(0, NULL, &list->memory) != SLUICE_SUCCESS)
+        return false;
 #ifdef HAVE_STORE
     return sluiceCreateStoreReadPool(NULL, &list->pool) == SLUICE_SUCCESS;
 #else
-    (void)list;
     return true;
 #endif
 }
@@ -134,7 +142,10 @@ static bool open_files(const struct file_list *files, const struct settings *set
         fprintf(stderr, "out of memory\n");
     for (size_t i = 0; opened && i < count; i++) {
         paths[i].path = files->paths[i];
-        paths[i].refused = !picture_file_kind(paths[i].path, &paths[i].kind);
+        SluiceResult result = picture_file_kind(paths[i].path, &paths[i].kind);
+        paths[i].refused = result != SLUICE_SUCCESS;
+        if (result == SLUICE_NOT_READY)
+            text_say("%s: left out: %s", paths[i].path, reason(result));
     }
     opened = opened && baked_prepare(paths, count, settings->cache, pixels) &&
              open_all(paths, count, pixels, limits, list);
@@ -181,5 +192,6 @@ void pictures_close(struct picture_list *list)
 #ifdef HAVE_STORE
     sluiceDestroyStoreReadPool(list->pool);
 #endif
+    sluiceDestroyExrMemoryBudget(list->memory);
     *list = (struct picture_list){0};
 }

@@ -2,6 +2,7 @@
 #ifndef SAMPLES_STREAMING_PICTURES_H
 #define SAMPLES_STREAMING_PICTURES_H
 
+#include <sluice/exr.h>
 #include <sluice/store.h>
 
 #include "generate.h"
@@ -20,8 +21,9 @@ struct picture {
 struct picture_list {
     struct picture *pictures; ///< owned
     uint32_t count;
-    uint32_t refused;          ///< files that could not be opened; the reasons were printed
-    SluiceStoreReadPool *pool; ///< owned; that all stores share
+    uint32_t refused;              ///< files that could not be opened; the reasons were printed
+    SluiceStoreReadPool *pool;     ///< owned; that all stores share
+    SluiceExrMemoryBudget *memory; ///< owned; that all OpenEXR files without levels share
 };
 
 /** What the device can hold of one image. */

@@ -1,9 +1,10 @@
+#define _POSIX_C_SOURCE 200809L
 #include "reference.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <zlib.h>
 
@@ -97,12 +98,12 @@ static bool draw_frames(struct drawing *drawing)
             return false;
         progress_update(&progress, frame);
     }
-    drawing->content.device_memory = drawn.statistics.deviceMemorySize;
+    drawing->content.device_memory = drawn.statistics.tileMemorySize;
     progress_end(&progress);
     return true;
 }
 
-/** Draws into the file at `path`, which is incomplete if it fails. */
+/** Draws into a file for `path`, which is still to be kept. */
 static bool draw(const struct gallery *gallery, const char *path, struct drawing *drawing)
 {
     *drawing = (struct drawing){.gallery = gallery, .settings = gallery->settings};
@@ -119,7 +120,8 @@ static bool draw(const struct gallery *gallery, const char *path, struct drawing
     bool drawn = drawing->small && frame_file_create(path, size, &drawing->frames) &&
                  open_view(drawing) && draw_frames(drawing);
     close_view(drawing);
-    frame_file_close(&drawing->frames);
+    if (!drawn)
+        frame_file_close(&drawing->frames);
     free(drawing->small);
     return drawn;
 }
@@ -138,43 +140,45 @@ static bool is_undamaged(const struct frame_file *frames, uint32_t count, uint32
 }
 
 struct paths {
-    char text[4096], frames[4096], unfinished[4096];
+    char text[4096], frames[4096];
 };
 
-static bool open_kept(const struct settings *settings, const struct paths *paths, const char *key,
-                      struct reference *reference)
+static enum reference_match open_kept(const struct settings *settings, const struct paths *paths,
+                                      const char *key, struct reference *reference)
 {
     struct reference_content content;
     size_t size = 4 * (size_t)settings->size[0] * settings->size[1];
-    if (reference_key_compare(paths->text, key, &content) != REFERENCE_MATCHES)
-        return false;
+    enum reference_match match = reference_key_compare(paths->text, key, &content);
+    if (match == REFERENCE_MISSING && access(paths->frames, F_OK) == 0)
+        match = REFERENCE_FOREIGN;
+    if (match == REFERENCE_FOREIGN)
+        text_say("--reference: what is in %s was not written by this program; remove "
+                 "reference.txt and reference.frames there, or name another folder",
+                 settings->reference);
+    if (match != REFERENCE_MATCHES)
+        return match;
     if (frame_file_open(paths->frames, size, settings->frames, &reference->frames) &&
         is_undamaged(&reference->frames, settings->frames, content.checksum)) {
         reference->device_memory = content.device_memory;
-        return true;
+        return REFERENCE_MATCHES;
     }
     text_say("%s: damaged", paths->frames);
     reference_close(reference);
-    return false;
+    return REFERENCE_DIFFERS;
 }
 
-/** The text goes first and comes last, so that it vouches for the frames. */
+/** The text comes first: with its checksum, older frames beside it are found to be damaged. */
 static bool draw_anew(const struct gallery *gallery, const struct paths *paths, const char *key)
 {
     struct drawing *drawing = malloc(sizeof *drawing);
-    bool drawn = false;
     if (!drawing)
         fprintf(stderr, "out of memory\n");
-    else if (remove(paths->text) != 0 && errno != ENOENT)
-        text_say("%s: %s", paths->text, strerror(errno));
-    else if (draw(gallery, paths->unfinished, drawing)) {
-        drawn = rename(paths->unfinished, paths->frames) == 0;
-        if (!drawn)
-            text_say("%s: %s", paths->frames, strerror(errno));
-        drawn = drawn && reference_key_write(paths->text, key, &drawing->content);
+    bool drawn = drawing && draw(gallery, paths->frames, drawing);
+    if (drawn) {
+        drawn = reference_key_write(paths->text, key, &drawing->content);
+        drawn = drawn && frame_file_keep(&drawing->frames);
+        frame_file_close(&drawing->frames);
     }
-    if (!drawn)
-        remove(paths->unfinished);
     free(drawing);
     return drawn;
 }
@@ -185,22 +189,23 @@ bool reference_open(const struct gallery *gallery, struct reference *reference)
     struct paths paths;
     *reference = (struct reference){0};
     snprintf(paths.text, sizeof paths.text, "%s/reference.txt", settings->reference);
-    snprintf(paths.frames, sizeof paths.frames, "%s/reference.frames", settings->reference);
-    int length = snprintf(paths.unfinished, sizeof paths.unfinished, "%s/reference.frames.new",
-                          settings->reference);
-    if ((size_t)length >= sizeof paths.unfinished) {
+    int length =
+        snprintf(paths.frames, sizeof paths.frames, "%s/reference.frames", settings->reference);
+    if ((size_t)length >= sizeof paths.frames) {
         fprintf(stderr, "--reference: the folder's name is too long\n");
         return false;
     }
     char *key = reference_key_create(settings, &gallery->gpu, &gallery->pictures);
     if (!key)
         fprintf(stderr, "out of memory\n");
-    bool opened =
-        key && (open_kept(settings, &paths, key, reference) ||
-                (files_make_folders(settings->reference) && draw_anew(gallery, &paths, key) &&
-                 open_kept(settings, &paths, key, reference)));
+    enum reference_match match = REFERENCE_FOREIGN;
+    if (key)
+        match = open_kept(settings, &paths, key, reference);
+    if ((match == REFERENCE_MISSING || match == REFERENCE_DIFFERS) &&
+        files_make_folders(settings->reference) && draw_anew(gallery, &paths, key))
+        match = open_kept(settings, &paths, key, reference);
     free(key);
-    return opened;
+    return match == REFERENCE_MATCHES;
 }
 
 void reference_close(struct reference *reference)

@@ -1,16 +1,19 @@
 #define _POSIX_C_SOURCE 200809L
 #include "reference_key.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "../common/input.h"
+#include "../common/output_file.h"
 #include "../common/text.h"
 
 #define MAX_SIZE (16u << 20) ///< bytes of a text file that is looked at
+#define FIRST_WORDS "frames of the gallery with everything resident"
 
 /** Size and time, or nothing where there is no file. A line each, whatever the name. */
 static void write_picture(FILE *out, const struct picture *picture)
@@ -34,7 +37,7 @@ char *reference_key_create(const struct settings *settings, const struct gpu *gp
     FILE *out = open_memstream(&key, &size);
     if (!out)
         return NULL;
-    fprintf(out, "frames of the gallery with everything resident, version 1\ndevice: ");
+    fprintf(out, FIRST_WORDS ", version 1\ndevice: ");
     text_write(out, gpu->properties.deviceName);
     fprintf(out, "\ndriver: %u\n", gpu->properties.driverVersion);
     fprintf(out, "residency: %s\n", modes[gpu->modes[1]]);
@@ -58,7 +61,7 @@ char *reference_key_create(const struct settings *settings, const struct gpu *gp
 /** The whole file as a string to free; NULL if it cannot be read. */
 static char *read_text(const char *path)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     char *text = file ? malloc(MAX_SIZE + 1) : NULL;
     if (text) {
         size_t size = fread(text, 1, MAX_SIZE, file);
@@ -89,6 +92,13 @@ static void explain(const char *path, const char *text, const char *key)
     text_say("%s: is cut off", path);
 }
 
+/** Or the beginning of one: a text of an older version may have been cut off. */
+static bool is_of_this_program(const char *text)
+{
+    size_t length = strlen(text), whole = strlen(FIRST_WORDS);
+    return strncmp(text, FIRST_WORDS, length < whole ? length : whole) == 0;
+}
+
 enum reference_match reference_key_compare(const char *path, const char *key,
                                            struct reference_content *content)
 {
@@ -99,23 +109,16 @@ enum reference_match reference_key_compare(const char *path, const char *key,
         sscanf(text + length, "device-memory: %" SCNu64 "\nchecksum: %" SCNx32,
                &content->device_memory, &content->checksum) == 2)
         match = REFERENCE_MATCHES;
-    else if (text)
+    else if (text && is_of_this_program(text))
         explain(path, text, key);
+    else if (text || access(path, F_OK) == 0)
+        match = REFERENCE_FOREIGN;
     free(text);
     return match;
 }
 
 bool reference_key_write(const char *path, const char *key, const struct reference_content *content)
 {
-    char unfinished[4096];
-    snprintf(unfinished, sizeof unfinished, "%s.new", path);
-    FILE *file = fopen(unfinished, "wb");
-    bool written = file && fprintf(file, "%sdevice-memory: %" PRIu64 "\nchecksum: %08" PRIx32 "\n",
-                                   key, content->device_memory, content->checksum) > 0;
-    written = file && fclose(file) == 0 && written && rename(unfinished, path) == 0;
-    if (!written) {
-        text_say("%s: %s", path, strerror(errno));
-        remove(unfinished);
-    }
-    return written;
+    return output_file_print(path, "%sdevice-memory: %" PRIu64 "\nchecksum: %08" PRIx32 "\n", key,
+                             content->device_memory, content->checksum);
 }

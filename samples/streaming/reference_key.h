@@ -20,8 +20,9 @@ struct reference_content {
 
 enum reference_match {
     REFERENCE_MATCHES,
-    REFERENCE_MISSING, ///< or it cannot be read
+    REFERENCE_MISSING,
     REFERENCE_DIFFERS, ///< stderr says in what
+    REFERENCE_FOREIGN, ///< What is there was not written by reference_key_write, or cannot be read.
 };
 
 /** Compares the key with the text file at `path`. */

@@ -303,7 +303,8 @@ const struct renderer_surface *renderer_surface_of(const struct room_part *part,
     case ROOM_PLAIN: return NULL;
     case ROOM_FLOOR: return &surfaces[0];
     case ROOM_WALL: return &surfaces[1];
-    case ROOM_PICTURE: return &surfaces[2 + part->picture];
+    case ROOM_PICTURE:
+        return surfaces[2 + part->picture].missing ? NULL : &surfaces[2 + part->picture];
     }
     return NULL;
 }

@@ -35,6 +35,7 @@ struct renderer_surface {
     bool relief_feedback;               ///< writes feedback of its own
     float exposure, relief_scale;
     bool grey, painted;
+    bool missing; ///< left out: drawn like a plain part
 };
 
 /** `pass` of a target that is compatible with those drawn to. */

@@ -116,9 +116,12 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
          "feedback maps read back per frame", 1, 65536},
         {OPTION_UINT, "tiles-per-frame", "N", &s->tiles_per_frame,
          "tiles mapped and uploaded per frame at most", 1, 8192},
-        {OPTION_REAL, "timeout", "SECONDS", &s->timeout, "tiles not wanted for so long are let go",
-         0.001, 86400},
-        {OPTION_UINT, "standby", "N", &s->standby, "tiles kept although unwanted", 0, 4294967295.0},
+        {OPTION_REAL, "timeout", "SECONDS", &s->timeout,
+         "how long a tile stays requested after it was last seen", 0.001, 86400},
+        {OPTION_UINT, "standby", "N", &s->standby, "unrequested tiles kept in memory", 0,
+         4294967295.0},
+        {OPTION_UINT, "touched-tiles", "N", &s->touched_tiles,
+         "different tiles bound at most, in sparse mode; 0: the device's limit", 0, 4294967295.0},
         {OPTION_UINT, "heap-tiles", "N", &s->heap_tiles, "tiles of 64 KiB per heap", 1, 1048576},
         {OPTION_UINT, "max-heaps", "N", &s->max_heaps, "heaps at most; 0: no cap", 0, 65536},
         {OPTION_UINT, "budget", "MIB", &s->budget,
@@ -130,8 +133,9 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
         {OPTION_CHOICE, "texture-sets", "on|off", &s->texture_sets,
          "on: a picture's relief follows the picture's feedback;\noff: it writes its own"},
         {OPTION_UINT, "loads-in-flight", "N", &s->loads_in_flight,
-         "tiles being read or waiting for their upload at most; 0: 4 times\n--tiles-per-frame", 0,
-         65536},
+         "tiles being read or waiting for their upload at most, 2 or more;\n0: 4 times "
+         "--tiles-per-frame",
+         0, 65536},
         {OPTION_REAL, "fade", "SECONDS", &s->fade,
          "that a texel takes to become one level sharper; 0: at once", 0, 3600},
         {OPTION_REAL, "source-latency", "MS", &s->source_latency,
@@ -205,6 +209,11 @@ enum option_outcome settings_parse(int argc, char *const *argv, struct settings 
     }
     if (outcome == OPTIONS_RUN && s->needs_trace && s->needs == THREE_WAY_OFF) {
         fprintf(stderr, "--needs-trace: not with --needs off\n");
+        return OPTIONS_ERROR;
+    }
+    if (outcome == OPTIONS_RUN && s->loads_in_flight == 1) {
+        fprintf(stderr, "--loads-in-flight 1: wants 2 at least, or 0; a picture's coarsest levels "
+                        "are loaded at once\n");
         return OPTIONS_ERROR;
     }
     if (outcome == OPTIONS_RUN && !complete_reference(s))

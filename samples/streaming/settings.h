@@ -34,7 +34,7 @@ struct settings {
     bool lattice;
     uint32_t textures_per_frame, tiles_per_frame;
     double timeout; ///< seconds
-    uint32_t standby, heap_tiles, max_heaps, loader_threads;
+    uint32_t standby, heap_tiles, max_heaps, loader_threads, touched_tiles;
     uint32_t budget;  ///< MiB for tiles, 0: no cap; heap_tiles and max_heaps keep to it
     int texture_sets; ///< enum on_off
     uint32_t loads_in_flight;

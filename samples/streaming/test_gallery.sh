@@ -103,6 +103,15 @@ if [ "$status" -ne 77 ]; then
     check paged nonresident_reads 'v == 0'
     check paged checked_pixels 'v > 100000'
 fi
+# Where sparse mode bears only some pictures, these are shown and the others left out, with advice.
+walk crowded --residency sparse --touched-tiles 120 --frames 2 --rest-frames 0
+if [ "$status" -ne 77 ]; then
+    [ "$status" -eq 0 ] || { cat "$folder/crowded.log" >&2; failed=1; }
+    grep -q 'pictures are left out: .*--residency paged' "$folder/crowded.log" || {
+        cat "$folder/crowded.log" >&2
+        failed=1
+    }
+fi
 walk dense --residency dense --frames 40 --rest-frames 30 --compare
 [ "$status" -eq 0 ] || { cat "$folder/dense.log" >&2; failed=1; }
 check dense psnr_final_db 'v >= 60'

@@ -88,4 +88,8 @@ looks_closely() { walk 0 --images large.png --generate-scale 2 --size 320x180 "$
     [ "$(figure virtual_bytes)" -gt 20000000 ] && [ "$(figure tiles_failed)" = 0 ]
 fact tiles_keep_to_the_budget
 
+head -c 3000 in/a.png >cut.png && ! "$streaming" --images cut.png --generate-only --cache cut >out 2>err &&
+    grep -q '^cut.png: left out: SLUICE_ERROR_CORRUPT_DATA' err && ! grep -q WARNING err
+fact libvips_says_nothing_besides
+
 end_facts

@@ -5,32 +5,27 @@
 #include <string.h>
 
 #include "../common/clock.h"
+#include "../common/log.h"
+#include "../common/text.h"
 #include "view_needs.h"
 
 _Static_assert(PREDICT_SLOTS == VIEW_FRAMES_IN_FLIGHT, "one for each frame in flight");
 
 #define WAIT_NANOSECONDS 60000000000ull
 
-static void print_log(void *user_data, SluiceLogSeverity severity, const char *message)
-{
-    (void)user_data;
-    if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", message);
-}
-
 /** Prints "what: SLUICE_..." and returns false unless it is a success. */
 static bool check(SluiceResult result, const char *what)
 {
     if (result == SLUICE_SUCCESS)
         return true;
-    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    text_say("%s: %s", what, sluiceResultString(result));
     return false;
 }
 
 /** Floor, wall, and two of each picture. */
-static uint32_t max_texture_count(const struct view *view)
+uint32_t view_texture_count(const struct picture_list *pictures)
 {
-    return 2 + 2 * view->request.pictures->count;
+    return 2 + 2 * pictures->count;
 }
 
 static bool create_streamer(struct view *view)
@@ -47,9 +42,9 @@ static bool create_streamer(struct view *view)
         .queueFamilyIndex = gpu->family,
         .residencyMode = view->request.mode,
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
-        .log = {NULL, print_log},
+        .log = {NULL, log_say},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
-        .maxTextureCount = max_texture_count(view),
+        .maxTextureCount = view_texture_count(view->request.pictures),
         .maxRegionCount = VIEW_MAX_REGIONS,
         .texturesPerFrame = settings->textures_per_frame,
         .tilesPerFrame = settings->tiles_per_frame,
@@ -57,10 +52,13 @@ static bool create_streamer(struct view *view)
         .heapTileCapacity = settings->heap_tiles,
         .maxHeapCount = settings->max_heaps,
         .numExtraStandbyTiles = settings->standby,
+        .noStandbyTiles = settings->standby == 0,
+        .timeStampsPerSecond = 1000000, /* simulated time, see view_frame */
         .feedbackTimeout = (uint64_t)(settings->timeout * 1e6),
-        .retryDelay = 250000,
+        .newestFeedbackMapOnly = settings->timeout * 1e6 < 1,
         .maxLoadsInFlight = settings->loads_in_flight,
         .residencyFadeTime = (uint64_t)(settings->fade * 1e6),
+        .maxTouchedTiles = settings->touched_tiles,
     };
     if (view->request.everything) {
         info.mapEverything = true;
@@ -77,27 +75,36 @@ static bool create_streamer(struct view *view)
     return check(sluiceCreateVulkanStreamer(&info, &view->streamer), "sluiceCreateVulkanStreamer");
 }
 
-static bool add_texture(struct view *view, SluiceImageSource *source, SluiceTextureId primary,
-                        bool repeat, SluiceVulkanTexture *texture)
+static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
+                                SluiceTextureId primary, bool repeat, SluiceVulkanTexture *texture)
 {
     VkSamplerAddressMode mode =
         repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     SluiceVulkanTextureCreateInfo info = {.source = slowness_wrap(&view->slowness, source),
                                           .primaryId = primary,
                                           .addressModeU = mode,
-                                          .addressModeV = mode};
+                                          .addressModeV = mode,
+                                          .explicitAddressModes = true};
     SluiceResult result = info.source ? sluiceAddVulkanTexture(view->streamer, &info, texture)
                                       : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS) {
         view->texture_ids[view->texture_count] =
             (struct needs_id){texture->textureId, texture->tableIndex};
         view->sources[view->texture_count++] = info.source;
-        return true;
+        return result;
     }
     SluiceImageInfo image = {.pName = "a texture"};
     (void)sluiceGetImageInfo(source, &image);
-    fprintf(stderr, "%s: cannot be streamed: %s\n", image.pName, sluiceResultString(result));
-    return false;
+    text_say("%s: cannot be streamed: %s", image.pName, sluiceResultString(result));
+    return result;
+}
+
+/* A picture is not shown without its relief. */
+static void take_back(struct view *view, const SluiceVulkanTexture *texture)
+{
+    check(sluiceRemoveVulkanTexture(view->streamer, texture->textureId),
+          "sluiceRemoveVulkanTexture");
+    view->texture_count--;
 }
 
 bool view_allocate_sets(const struct view *view, VkDescriptorSetLayout layout, uint32_t count,
@@ -137,7 +144,7 @@ static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
                                  struct renderer_surface *surface)
 {
     SluiceVulkanTexture color;
-    if (!add_texture(view, source, SLUICE_NO_TEXTURE, true, &color))
+    if (add_texture(view, source, SLUICE_NO_TEXTURE, true, &color) != SLUICE_SUCCESS)
         return false;
     surface->color_index = surface->relief_index = color.tableIndex;
     surface->exposure = 1.0f;
@@ -146,15 +153,20 @@ static bool create_tiled_surface(struct view *view, SluiceImageSource *source,
     return true;
 }
 
-static bool create_picture_surface(struct view *view, const struct picture *picture,
-                                   struct renderer_surface *surface)
+static SluiceResult create_picture_surface(struct view *view, const struct picture *picture,
+                                           struct renderer_surface *surface)
 {
     bool sets = view->request.settings->texture_sets == SETTING_ON;
     SluiceVulkanTexture color, relief;
-    if (!add_texture(view, picture->color, SLUICE_NO_TEXTURE, false, &color) ||
-        !add_texture(view, picture->relief, sets ? color.textureId : SLUICE_NO_TEXTURE, false,
-                     &relief))
-        return false;
+    SluiceResult result = add_texture(view, picture->color, SLUICE_NO_TEXTURE, false, &color);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = add_texture(view, picture->relief, sets ? color.textureId : SLUICE_NO_TEXTURE, false,
+                         &relief);
+    if (result != SLUICE_SUCCESS) {
+        take_back(view, &color);
+        return result;
+    }
     surface->color_index = color.tableIndex;
     surface->relief_index = relief.tableIndex;
     surface->relief_feedback = !sets;
@@ -164,6 +176,35 @@ static bool create_picture_surface(struct view *view, const struct picture *pict
     surface->painted = true;
     renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
                                relief.imageView, false);
+    return SLUICE_SUCCESS;
+}
+
+static bool is_fatal(SluiceResult result)
+{
+    return result == SLUICE_ERROR_VULKAN || result == SLUICE_ERROR_DEVICE_LOST ||
+           result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+/* What the streamer has no room for stays plain, and so does what cannot be streamed. */
+static bool create_pictures(struct view *view)
+{
+    uint32_t count = view->request.pictures->count, left_out = 0;
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < count; i++) {
+        struct renderer_surface *surface = &view->surfaces[2 + i];
+        if (result != SLUICE_ERROR_LIMIT_EXCEEDED)
+            result = create_picture_surface(view, &view->request.pictures->pictures[i], surface);
+        if (is_fatal(result))
+            return false;
+        surface->missing = result != SLUICE_SUCCESS;
+        left_out += surface->missing;
+    }
+    if (left_out)
+        fprintf(stderr, "%u of %u pictures are left out%s\n", left_out, count,
+                result == SLUICE_ERROR_LIMIT_EXCEEDED &&
+                        view->request.mode == SLUICE_RESIDENCY_MODE_SPARSE
+                    ? ": this device bears no more in sparse mode; --residency paged shows more"
+                    : "");
     return true;
 }
 
@@ -172,8 +213,9 @@ static bool create_surfaces(struct view *view)
     const struct view_request *request = &view->request;
     uint32_t count = 2 + request->pictures->count;
     view->surfaces = calloc(count, sizeof *view->surfaces);
-    view->texture_ids = calloc(max_texture_count(view), sizeof *view->texture_ids);
-    view->sources = calloc(max_texture_count(view), sizeof(SluiceImageSource *));
+    view->texture_ids =
+        calloc(view_texture_count(view->request.pictures), sizeof *view->texture_ids);
+    view->sources = calloc(view_texture_count(view->request.pictures), sizeof(SluiceImageSource *));
     if (!view->surfaces || !view->texture_ids || !view->sources)
         return false;
     for (uint32_t i = 0; i < count; i++)
@@ -183,10 +225,7 @@ static bool create_surfaces(struct view *view)
     if (!create_tiled_surface(view, request->floor, &view->surfaces[0]) ||
         !create_tiled_surface(view, request->wall, &view->surfaces[1]))
         return false;
-    for (uint32_t i = 0; i < request->pictures->count; i++)
-        if (!create_picture_surface(view, &request->pictures->pictures[i], &view->surfaces[2 + i]))
-            return false;
-    return true;
+    return create_pictures(view);
 }
 
 static bool create_slot(struct view *view, struct view_slot *slot)
@@ -244,9 +283,10 @@ bool view_create(const struct view_request *request, const char *record_path, st
     *view = (struct view){.request = *request};
     bool created = create_streamer(view);
     /* Before the first texture, so that the recording is complete. */
+    const SluiceFileRecordingInfo recording = {.pPath = record_path, .log = {.pfnLog = log_say}};
     if (created && record_path)
-        created = check(sluiceBeginRecordingToFile(sluiceGetVulkanStreamerManager(view->streamer),
-                                                   record_path, NULL, &view->recorder),
+        created = check(sluiceBeginFileRecording(sluiceGetVulkanStreamerManager(view->streamer),
+                                                 &recording, &view->recorder),
                         record_path);
     if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view) &&
         view_needs_create(view) && create_prediction(view))
@@ -340,21 +380,31 @@ static void record_counting(const struct view *view, const struct view_slot *slo
                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-/* One frame of an application that streams; what is behind the last time stamp is no part of it. */
-static bool record_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
-                         SluiceStreamingFrame *frame, double *needs_seconds)
+static uint32_t first_query(const struct view *view)
 {
-    const struct view_request *request = &view->request;
-    static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
+    return 2 * (view->frame_index % VIEW_FRAMES_IN_FLIGHT);
+}
+
+/* From here on the frame is submitted, or abandoned. */
+static bool begin_frame(struct view *view, struct view_slot *slot, uint64_t time_stamp,
+                        SluiceStreamingFrame *frame)
+{
     VkCommandBuffer commands = slot->commands;
-    uint32_t query = 2 * (view->frame_index % VIEW_FRAMES_IN_FLIGHT);
+    uint32_t query = first_query(view);
     vkCmdResetQueryPool(commands, view->timestamps, query, 2);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, view->timestamps, query);
 
     /* Uploads what arrived and publishes it; its answers decide what the shaders may sample. */
-    if (!check(sluiceBeginStreamingFrame(view->streamer, commands, time_stamp, frame),
-               "sluiceBeginStreamingFrame"))
-        return false;
+    return check(sluiceBeginStreamingFrame(view->streamer, commands, time_stamp, frame),
+                 "sluiceBeginStreamingFrame");
+}
+
+/* One frame of an application that streams; what is behind the last time stamp is no part of it. */
+static bool record_frame(struct view *view, struct view_slot *slot, double *needs_seconds)
+{
+    const struct view_request *request = &view->request;
+    static const float background[4] = {0.02f, 0.02f, 0.02f, 1.0f};
+    VkCommandBuffer commands = slot->commands;
 
     /* Images that hold pages come and go in there; this slot's set is in no frame under way. */
     SluiceVulkanPages pages;
@@ -378,7 +428,7 @@ static bool record_frame(struct view *view, struct view_slot *slot, uint64_t tim
 
     target_copy_out(request->target, commands, slot->pixels.buffer);
     vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, view->timestamps,
-                        query + 1);
+                        first_query(view) + 1);
     double start = clock_seconds();
     if (request->needs)
         needs_pass_record(&view->needs, request->target, view->surfaces, &slot->needs, commands);
@@ -399,10 +449,12 @@ static bool submit(const struct view *view, struct view_slot *slot,
                          .pCommandBuffers = &slot->commands,
                          .signalSemaphoreCount = 1,
                          .pSignalSemaphores = &frame->semaphore};
+    if (!gpu_check(vkQueueSubmit(view->request.gpu->queue, 1, &info, VK_NULL_HANDLE),
+                   "vkQueueSubmit"))
+        return false;
     slot->semaphore = frame->semaphore;
     slot->signal_value = frame->signalValue;
-    return gpu_check(vkQueueSubmit(view->request.gpu->queue, 1, &info, VK_NULL_HANDLE),
-                     "vkQueueSubmit");
+    return true;
 }
 
 bool view_draw(struct view *view, const struct camera *camera, uint64_t time_stamp,
@@ -424,10 +476,14 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     SluiceStreamingFrame frame;
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
-        !record_frame(view, slot, time_stamp, &frame, &needs_seconds) ||
-        !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
-        !submit(view, slot, &frame))
+        !begin_frame(view, slot, time_stamp, &frame))
         return false;
+    if (!record_frame(view, slot, &needs_seconds) ||
+        !gpu_check(vkEndCommandBuffer(slot->commands), "vkEndCommandBuffer") ||
+        !submit(view, slot, &frame)) {
+        sluiceAbandonStreamingFrame(view->streamer, &frame); /* the next one uploads what it had */
+        return false;
+    }
     out->host_seconds = clock_seconds() - start - needs_seconds;
     sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
     view->frame_index++;

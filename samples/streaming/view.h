@@ -66,7 +66,11 @@ struct view {
     struct camera ahead;
 };
 
-/** Says on stderr what is wrong. `record_path` may be NULL. */
+struct picture_list;
+/** Textures of a view, all pictures included. */
+uint32_t view_texture_count(const struct picture_list *pictures);
+/** Says on stderr what is wrong. Pictures that cannot be streamed, or for which there is no room,
+ *  are left out. `record_path` may be NULL. */
 bool view_create(const struct view_request *request, const char *record_path, struct view *view);
 /** Ends the recording; a zeroed struct is fine. False if the recording could not be written. */
 bool view_destroy(struct view *view);

@@ -58,7 +58,18 @@ no_final_newline() {
     done
 }
 
-echo 1..9
+# A file imports another one of its folder if its source or its header includes that one's header.
+import_circles() {
+    local folder
+    for folder; do
+        files "lib/$folder/*.c" "lib/$folder/*.h" |
+            xargs grep -H -o -E "#include \"$folder/[a-z0-9_]+" |
+            sed -E "s,lib/$folder/([a-z0-9_]+)\.[ch]:#include \"$folder/,\\1 ," |
+            awk '$1 != $2' | tsort 2>&1 >/dev/null | sed "s,^tsort:,lib/$folder:,"
+    done
+}
+
+echo 1..11
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -69,6 +80,11 @@ search '(deb|archive|security|ports|snapshot|mirrors?|registry|proxy)\.[a-z0-9-]
     "${text[@]}" | report no_package_mirror_is_named
 search 'https?://' "${code[@]}" | grep -v -E '://(registry\.khronos\.org|[a-z]+\.example)/' |
     report code_names_no_host
+
+search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:blank:]]*\(|\bRAND_MAX\b' \
+    '*.c' '*.cpp' '*.h' | report random_numbers_are_the_same_on_every_machine
+
+import_circles residency core demand | report files_of_a_folder_do_not_import_in_circles
 
 if command -v shellcheck >/dev/null; then
     files '*.sh' '*.ci/run' | tr '\n' '\0' | xargs -0 shellcheck -x 2>&1 | report scripts_pass_shellcheck

@@ -22,11 +22,22 @@ fact any_name_will_do_and_is_one_line
 sha256sum a.png >before && ln a.png hard.png && ln -s a.png soft.png
 for output in a.png ./a.png hard.png soft.png; do
     run 1 a.png -o $output && grep -q 'a.png: the store would take its place' err || break
-done && sha256sum --quiet -c before && [ ! -e a.png.part ]
+done && sha256sum --quiet -c before && [ ! -e a.png.sluice-part ]
 fact a_picture_is_not_replaced_by_its_store
 
+cp a.png x.store.sluice-part && run 1 x.store.sluice-part -o x.store && grep -q 'x.store.sluice-part: the store would take its place' err &&
+    cmp a.png x.store.sluice-part && rm x.store.sluice-part
+fact a_picture_at_the_part_file_is_not_emptied
+
+echo older >locked.store && chmod 444 locked.store && ln -s a.png link.store && ln a.png planted.store.sluice-part
+run 1 large.png -o locked.store && grep -q 'locked.store: is there already and is read-only' err &&
+    [ "$(cat locked.store)" = older ] && run 1 large.png -o link.store && grep -q 'link.store: is a symbolic link' err &&
+    [ -L link.store ] && run 1 large.png -o planted.store && grep -q 'planted.store.sluice-part: has hard links' err &&
+    sha256sum --quiet -c before && [ -e planted.store.sluice-part ] && rm link.store planted.store.sluice-part
+fact what_was_there_stays_when_a_store_is_refused
+
 mkfifo pipe && mkdir -p folder/a.store
-run 1 a.png -o pipe && grep -q 'pipe: is there already and is no regular file' err && [ -p pipe ] && [ ! -e pipe.part ] &&
+run 1 a.png -o pipe && grep -q 'pipe: is there already and is no regular file' err && [ -p pipe ] && [ ! -e pipe.sluice-part ] &&
     run 1 a.png -o folder && grep -q 'a.store: is there already' err && [ -d folder/a.store ]
 fact what_is_no_file_is_not_replaced
 
@@ -34,7 +45,7 @@ run 1 a.png -o a.png/deep/a.store && grep -q 'cannot be made: Not a directory' e
 fact a_folder_that_cannot_be_made_is_named
 
 (ulimit -f 64 && run 1 large.png -o limited.store --threads 4) && [ "$(lines err)" -eq 1 ] &&
-    grep -q 'limited.store.part: at [0-9]*: File too large' err && [ ! -e limited.store ] && [ ! -e limited.store.part ]
+    grep -q 'limited.store.sluice-part: at [0-9]*: File too large' err && [ ! -e limited.store ] && [ ! -e limited.store.sluice-part ]
 fact a_disk_that_takes_no_more_is_an_error_that_leaves_nothing
 
 "$bake" large.png -o twice.store --force >out 2>err &
@@ -43,7 +54,7 @@ first=$!
 second=$?
 wait $first
 first=$?
-[ $((first + second)) -le 1 ] && run 0 --verify twice.store && [ ! -e twice.store.part ]
+[ $((first + second)) -le 1 ] && run 0 --verify twice.store && [ ! -e twice.store.sluice-part ]
 fact two_bakes_of_one_file_do_not_mix
 
 "$make" rgb 1 1 1 one.png && "$make" grey 1 65536 1 tall.png && "$make" rgba 65536 1 1 wide.png &&

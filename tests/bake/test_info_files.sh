@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# test_info_files.sh SLUICE_INFO SLUICE_BAKE MAKE_PICTURE COMPARE_PICTURES DDS: what sluice-info says of
-# files, and the pictures it makes of them. Prints TAP. DDS: a file of 44 x 20 texels, or "".
-info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(realpath "$4") dds=$5
+# test_info_files.sh SLUICE_INFO SLUICE_BAKE MAKE_PICTURE COMPARE_PICTURES DDS EXR: what sluice-info says of
+# files, and the pictures it makes of them. Prints TAP. DDS: a file of 44 x 20 texels, EXR: one of
+# 37 x 21 in scanlines, or "".
+info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(realpath "$4") dds=$5 exr=$6
 # shellcheck source=/dev/null
 . "$(dirname "${BASH_SOURCE[0]}")/facts.sh"
 # shellcheck disable=SC2034 # it is what run runs
@@ -32,6 +33,9 @@ fact names_of_sources_do_not_reach_the_terminal_raw
 run 0 a.store --png whole.png && "$compare" a.png whole.png
 fact level_0_is_the_picture
 
+run 0 a.store --memory 4K --png low.png && "$compare" a.png low.png
+fact a_picture_is_written_in_as_low_strips_as_the_memory_asks_for
+
 run 0 a.store --tile 2,1 --png tile.png && "$compare" a.png tile.png 256 128
 fact a_tile_is_a_part_of_it
 
@@ -54,10 +58,36 @@ echo nothing >text
 run 1 a.store text empty absent && [ "$(grep -c . err)" -eq 3 ] && grep -q '300 x 200' out
 fact files_that_are_none_are_errors_and_the_others_are_shown
 
+run 1 a.png && [ "$(grep -c . err)" -eq 1 ] && grep -q 'a.png: is not a tile store, OpenEXR, DDS or KTX2 file; sluice-bake' err
+fact a_picture_of_another_kind_is_named_so
+
 if [ -n "$dds" ]; then
     run 0 "$dds" && grep -q '44 x 20 texels, 6 levels' out && grep -q 'BC1' out &&
         run 1 "$dds" --png no.png && [ ! -e no.png ]
     fact it_knows_dds
+fi
+
+if [ -n "$exr" ]; then
+    run 0 "$exr" && grep -q '37 x 21 texels, 6 levels' out && grep -q 'held as *scanlines, 37 x 16 texels each, ZIP' out &&
+        grep -q 'channels *A, B, G, R' out && grep -q 'levels *are built.* 1 MiB' out && grep -q 'sluice-bake FILE -o DIR' out
+    fact it_says_how_an_exr_holds_its_texels
+
+    "$bake" "$exr" -o exr.store >out 2>err && run 0 exr.store --png stored.png &&
+        run 0 "$exr" --png direct.png && "$compare" stored.png direct.png
+    fact an_exr_without_levels_is_read_in_strips
+
+    # The same header for 16384 x 16384 texels: a hole has room for as many blocks of lines.
+    cp "$exr" big.exr && chmod u+w big.exr && truncate -s 2M big.exr
+    at=$(LC_ALL=C grep -abo -m1 dataWindow big.exr | head -n1 | cut -d: -f1)
+    printf '\0\0\0\0\0\0\0\0\377\77\0\0\377\77\0\0' | dd of=big.exr bs=1 seek=$((at + 21)) conv=notrunc 2>dd.log
+    run 0 big.exr && grep -q '16384 x 16384 texels, 15 levels' out && grep -q ' 2732 MiB' out &&
+        run 0 big.exr --json && grep -q '"chainSize": 28[0-9]\{8\},' out
+    fact it_says_what_is_in_a_large_exr_without_decoding_it
+
+    run 1 big.exr --level 3 --png no.png && grep -q 'big.exr: .* 2738 MiB .*sluice-bake FILE -o DIR' err &&
+        grep -q -e '--memory' err && [ ! -e no.png ] &&
+        run 2 big.exr --memory x && grep -q 'size like 512M' err
+    fact levels_that_take_too_much_memory_are_refused_with_a_way_out
 fi
 
 end_facts

@@ -97,6 +97,62 @@ static void files_from_elsewhere_are_read_in_strips(void **state)
     }
 }
 
+static SluiceStoreColorSpace color_space_of(const char *path)
+{
+    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceImageSource *source;
+    SluiceStoreInfo info;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    CHECK_OK(sluiceGetStoreInfo(source, &info));
+    sluiceDestroyImageSource(source);
+    return info.colorSpace;
+}
+
+/* Conversion itself has a test of its own: here is whether it is asked for. */
+static void colors_of_other_primaries_are_stored_as_those_of_rec709(void **state)
+{
+    (void)state;
+    enum { TEXELS = 37 * 21 };
+    static const struct {
+        SluiceBakeSettings settings;
+        bool keeps;
+        SluiceStoreColorSpace space;
+    } cases[] = {
+        {{0}, false, SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB},
+        {{.keepPrimaries = true}, true, SLUICE_STORE_COLOR_SPACE_UNDEFINED},
+        {{.normalMap = true}, true, SLUICE_STORE_COLOR_SPACE_UNDEFINED},
+    };
+    char path[1024], store[256];
+    own_file("mip_aces.exr", path);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct bake_folder folder;
+        uint32_t width, height;
+        static float expected[TEXELS][4];
+        bake_folder_init(&folder);
+        bake_folder_file(&folder, "out.store", store);
+        bake_picture_file(path, store, &cases[i].settings);
+        assert_int_equal(color_space_of(store), cases[i].space);
+        SluiceExrImageSourceCreateInfo create = {.pPath = path,
+                                                 .format = SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                                                 .keepPrimaries = cases[i].keeps};
+        SluiceImageSource *source;
+        SluiceImageRegion region = {.width = 37, .height = 21};
+        CHECK_OK(sluiceCreateExrImageSource(&create, &source));
+        CHECK_OK(sluiceReadImageRegion(source, &region, expected, 37 * 16));
+        sluiceDestroyImageSource(source);
+        float *baked = read_level(store, 0, &width, &height);
+        for (uint32_t t = 0; t < TEXELS; t++) {
+            float length = sqrtf(expected[t][0] * expected[t][0] + expected[t][1] * expected[t][1] +
+                                 expected[t][2] * expected[t][2]);
+            float scale = cases[i].settings.normalMap ? 1.0f / length : 1.0f;
+            for (int c = 0; c < 3; c++)
+                assert_true(fabsf(baked[4 * t + c] - expected[t][c] * scale) <= 0x1p-9f);
+        }
+        free(baked);
+        bake_folder_finish(&folder);
+    }
+}
+
 #ifdef HAVE_CONTAINER
 static SluiceFormat format_of(const char *path)
 {
@@ -144,11 +200,60 @@ static void block_compressed_levels_are_kept(void **state)
 #endif
 }
 
+struct liar {
+    SluiceImageSource base;
+    SluiceImageInfo info;
+};
+
+static SluiceResult lie(SluiceImageSource *source, SluiceImageInfo *info)
+{
+    *info = ((struct liar *)source)->info;
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult read_nothing(SluiceImageSource *source, const SluiceImageRegion *region,
+                                 void *texels, size_t row_pitch)
+{
+    (void)source, (void)region, (void)texels, (void)row_pitch;
+    return SLUICE_SUCCESS;
+}
+
+static void sources_whose_info_no_image_has_are_refused(void **state)
+{
+    (void)state;
+    static const SluiceImageSourceInterface interface = {lie, read_nothing, NULL, NULL};
+    static const SluiceImageInfo infos[] = {
+        {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
+        {16, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
+        {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
+        {16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
+        {16, 16, 0, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "no levels of blocks"},
+        {16, 16, 1, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "level 0 of blocks alone"},
+        {16, 16, 5, (SluiceFormat)99, "unknown format"},
+        {16, 16, 5, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "layers", UINT32_MAX},
+    };
+    struct bake_folder folder;
+    char store[256];
+    SluiceBaker *baker;
+    bake_folder_init(&folder);
+    bake_folder_file(&folder, "out.store", store);
+    CHECK_OK(sluiceCreateBaker(&(SluiceBakerCreateInfo){.threadCount = 1}, &baker));
+    for (size_t i = 0; i < sizeof infos / sizeof infos[0]; i++) {
+        struct liar liar = {{&interface}, infos[i]};
+        SluiceBakeInfo bake = {.source = &liar.base, .pOutputPath = store};
+        CHECK_RESULT(sluiceBakeFile(baker, &bake, NULL), SLUICE_ERROR_INVALID_ARGUMENT);
+    }
+    sluiceDestroyBaker(baker);
+    bake_folder_finish(&folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sources_whose_info_no_image_has_are_refused),
         cmocka_unit_test(tiled_files_are_read_in_strips),
         cmocka_unit_test(files_from_elsewhere_are_read_in_strips),
+        cmocka_unit_test(colors_of_other_primaries_are_stored_as_those_of_rec709),
         cmocka_unit_test(block_compressed_levels_are_kept),
     };
     return RUN_TESTS(tests);

@@ -16,7 +16,7 @@ start=$(date +%s%N)
 duration=$((($(date +%s%N) - start) / 1000000))
 wrong=0 killed=0 resumed=0 unfinished=0
 for ((i = 0; i < times; i++)); do
-    rm -f out.store out.store.part
+    rm -f out.store out.store.sluice-part
     "$bake" in.png -o out.store --threads 2 --compression none >/dev/null 2>&1 &
     pid=$!
     sleep "$(printf '0.%03d' $((RANDOM % (duration + 20) % 1000)))"
@@ -29,7 +29,7 @@ for ((i = 0; i < times; i++)); do
     "$bake" in.png -o out.store --threads 2 --compression none --json >second 2>&1 || unfinished=$((unfinished + 1))
     grep -q '"resumed_tiles": [1-9]' second && resumed=$((resumed + 1))
     cmp -s out.store whole.store || unfinished=$((unfinished + 1))
-    [ ! -e out.store.part ] || unfinished=$((unfinished + 1))
+    [ ! -e out.store.sluice-part ] || unfinished=$((unfinished + 1))
 done
 
 report() {

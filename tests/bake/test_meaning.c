@@ -323,19 +323,116 @@ static void numbers_that_are_none_become_some(void **state)
         CHECK_OK(sluiceCreateBaker(&create, &baker));
         CHECK_OK(sluiceBakeFile(baker, &info, &report));
         sluiceDestroyBaker(baker);
-        assert_int_equal(report.replacedTexelCount, f ? 5 : 6);
+        assert_int_equal(report.replacedTexelCount, f ? 4 : 6);
+        assert_int_equal(report.nanTexelCount, 2);
+        assert_int_equal(report.infiniteTexelCount, 2);
+        assert_int_equal(report.clampedTexelCount, f ? 0 : 2);
         float *level = read_level(fixture.out, 0, &width, &height);
-        const float expected[8][4] = {{0, 1, 2, 1},      {limit, 1, 2, 1}, {-limit, 1, 2, 1},
-                                      {far, 1, -far, 1}, {1, 1, 1, 0},     {limit, 1, 1, 1},
+        const float expected[8][4] = {{0, 1, 2, 1},      {limit, 1, 2, 1},
+                                      {-limit, 1, 2, 1}, {far, 1, -far, 1},
+                                      {1, 1, 1, 0},      {f ? FLT_MAX : limit, 1, 1, 1},
                                       {2, 2, 2, 1},      {3, 3, 3, 1}};
         assert_memory_equal(level, expected, sizeof expected);
         free(level);
         for (uint32_t l = 1; l < 4; l++) {
             level = read_level(fixture.out, l, &width, &height);
             for (uint32_t i = 0; i < 4 * width; i++)
-                assert_true(isfinite(level[i]) && fabsf(level[i]) <= limit);
+                assert_true(isfinite(level[i]) && (f || fabsf(level[i]) <= limit));
             free(level);
         }
+        bake_folder_finish(&fixture.folder);
+    }
+}
+
+/* Numbers of any size and sign, every third next to what a float holds at most. */
+static float extreme_number(uint32_t *random)
+{
+    static const float most[] = {FLT_MAX, 0x1.fp127f, 0x1.8p126f, 0x1p121f};
+    uint32_t bits = next_random(random);
+    float value = bits % 3 ? ldexpf((float)(bits >> 4), (int)(bits % 240) - 140)
+                           : most[bits / 3 % (sizeof most / sizeof most[0])];
+    return bits & 8 ? -value : value;
+}
+
+/* The mean of the area that texel `i` of the level below covers along one axis. */
+static long double mean_along(const float *values, uint32_t size, uint32_t i)
+{
+    uint32_t below = size > 1 ? size / 2 : 1;
+    long double first = (long double)i * size / below, end = (long double)(i + 1) * size / below;
+    long double sum = 0;
+    for (uint32_t k = (uint32_t)first; k < size && (long double)k < end; k++) {
+        long double from = first > k ? first : k, to = end < k + 1 ? end : k + 1;
+        sum += (to - from) * (long double)values[4 * (size_t)k];
+    }
+    return sum * below / size;
+}
+
+static long double mean_of_texel(const float *above, uint32_t width, uint32_t height, uint32_t x,
+                                 uint32_t y, uint32_t c, long double *size)
+{
+    uint32_t below = height > 1 ? height / 2 : 1;
+    long double first = (long double)y * height / below,
+                end = (long double)(y + 1) * height / below;
+    long double sum = 0;
+    *size = 0;
+    for (uint32_t k = (uint32_t)first; k < height && (long double)k < end; k++) {
+        long double from = first > k ? first : k, to = end < k + 1 ? end : k + 1;
+        const float *row = above + (size_t)k * width * 4 + c;
+        sum += (to - from) * mean_along(row, width, x);
+        for (uint32_t i = 0; i < width; i++)
+            *size = fmaxl(*size, fabsl((long double)row[4 * (size_t)i]));
+    }
+    return sum * below / height;
+}
+
+static void check_means_of_extremes(const char *path, uint32_t level_count)
+{
+    for (uint32_t l = 1; l < level_count; l++) {
+        uint32_t width, height, w, h;
+        float *above = read_level(path, l - 1, &width, &height),
+              *level = read_level(path, l, &w, &h);
+        for (uint32_t i = 0; i < 4 * w * h; i++) {
+            long double size;
+            long double mean =
+                mean_of_texel(above, width, height, i / 4 % w, i / 4 / w, i % 4, &size);
+            assert_true(isfinite(level[i]));
+            if (fabsl((long double)level[i] - mean) > size * 1e-6L + 1e-44L)
+                fail_msg("level %u value %u is %g, not %Lg", l, i, (double)level[i], mean);
+        }
+        free(above);
+        free(level);
+    }
+}
+
+static void finite_floats_are_kept_and_averaged_over_their_whole_range(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[][2] = {{16, 16}, {37, 21}, {7, 1}, {1, 9}};
+    for (size_t s = 0; s < 2 * (sizeof sizes / sizeof sizes[0]); s++) {
+        struct fixture fixture;
+        struct plain_source source;
+        uint32_t width = sizes[s / 2][0], height = sizes[s / 2][1], random = (uint32_t)s + 1;
+        float *texels = malloc((size_t)width * height * 16);
+        for (uint32_t i = 0; i < 4 * width * height; i++)
+            texels[i] = extreme_number(&random);
+        SluiceBakeSettings settings = {.filter = s % 2 ? SLUICE_BAKE_FILTER_KAISER
+                                                       : SLUICE_BAKE_FILTER_BOX};
+        fixture_init(&fixture);
+        plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, width, height, texels);
+        bake_source(&source.base, fixture.out, &settings);
+        uint32_t w, h, level_count = store_info(fixture.out).layout.mipLevelCount;
+        float *level = read_level(fixture.out, 0, &w, &h);
+        assert_memory_equal(level, texels, (size_t)width * height * 16);
+        free(level);
+        if (s % 2 == 0)
+            check_means_of_extremes(fixture.out, level_count);
+        for (uint32_t l = 1; l < level_count; l++) {
+            level = read_level(fixture.out, l, &w, &h);
+            for (uint32_t i = 0; i < 4 * w * h; i++)
+                assert_true(isfinite(level[i]));
+            free(level);
+        }
+        free(texels);
         bake_folder_finish(&fixture.folder);
     }
 }
@@ -352,6 +449,7 @@ int main(void)
         cmocka_unit_test(normals_keep_their_length),
         cmocka_unit_test(normals_that_cancel_point_up),
         cmocka_unit_test(numbers_that_are_none_become_some),
+        cmocka_unit_test(finite_floats_are_kept_and_averaged_over_their_whole_range),
     };
     return RUN_TESTS(tests);
 }

@@ -17,6 +17,9 @@ fact pictures_can_be_made
 run 0 in/a.png -o one.store && [ -s one.store ] && run 0 --verify one.store
 fact one_picture_becomes_one_file
 
+run 0 in/a.png -o made.d/ && [ -s made.d/a.store ]
+fact an_output_that_ends_in_a_slash_is_a_folder
+
 run 0 in -o out.d && [ "$(find out.d -type f | sort | tr '\n' ' ')" = \
     "out.d/a.store out.d/d.store out.d/sub/b.store out.d/sub/deep/c.store out.d/sub/e.store " ]
 fact folders_keep_their_structure
@@ -62,7 +65,7 @@ fact broken_pictures_do_not_stop_the_others
     grep -q 'in/empty.jpg: ..' err && grep -q 'in/absent.png: ..' err
 fact every_failure_names_the_file_and_the_reason
 
-[ ! -e out.d/cut.store ] && [ -z "$(find out.d -name '*.part')" ]
+[ ! -e out.d/cut.store ] && [ -z "$(find out.d -name '*.sluice-part')" ]
 fact broken_pictures_leave_nothing
 
 run 1 in -o out.d --wrap repeat --json && [ "$(count '^{.*}$' out)" -eq 8 ] &&
@@ -100,7 +103,21 @@ fact wrong_usage_is_refused_before_anything_is_done
 run 0 --help && grep -q 'usage: sluice-bake' out && grep -q '(box)' out && grep -q '(1G)' out
 fact help_gives_defaults
 
-run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*the limit is 1024 KiB' err && [ ! -e small.store ]
+run 1 in/a.png -o small.store --memory 1M && grep -q 'in/a.png: .*maxMemory is 1024 KiB' err && grep -q -e '--memory raises' err && [ ! -e small.store ]
 fact too_little_memory_is_an_error_that_says_so
+
+# Four texels of one float: 1, NaN, infinity, 2^100. sluice-bake stores one channel as 32-bit floats, or as it is told.
+printf 'Pf\n4 1\n-1.0\n\0\0\200\77\0\0\300\177\0\0\200\177\0\0\200\161' >odd.pfm
+run 0 odd.pfm -o float.store && grep -q 'odd.pfm: 1 texels held NaN, stored as 0; 1 texels held an infinity, stored as a finite number$' err &&
+    run 0 odd.pfm -o half.store --format r16f --json && grep -q 'odd.pfm: 1 texels held NaN.* infinity.*; 1 texels held a number beyond +-65504, stored as that$' err &&
+    grep -q '"replaced_texels": 3, "nan_texels": 1, "infinite_texels": 1, "clamped_texels": 1}' out
+fact it_says_which_numbers_were_replaced_and_by_what
+
+"$make" plain 4000 4000 0 'bomb.png[interlace,compression=1]' && "$make" plain 4000 4000 0 'bomb.jpg[interlace]' &&
+    "$make" plain 4000 4000 0 'plain.png[compression=1]' && run 0 plain.png -o plain.store --memory 64M --threads 1 --compression 1 &&
+    for ending in png jpg; do
+        run 1 bomb.$ending -o bomb.store --memory 64M --threads 1 && grep -q "bomb.$ending: .*unpacked as a whole; maxMemory is 65536 KiB" err || break
+    done && [ ! -e bomb.store ]
+fact what_is_unpacked_as_a_whole_counts_for_memory
 
 end_facts

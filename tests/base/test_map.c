@@ -2,9 +2,8 @@
 
 #include "base/alloc.h"
 #include "support/failing_allocator.h"
+#include "support/roll.h"
 #include "support/test.h"
-
-#include <stdlib.h>
 
 static void random_adds_and_removes_agree_with_an_array(void **state)
 {
@@ -16,10 +15,10 @@ static void random_adds_and_removes_agree_with_an_array(void **state)
     uint32_t oracle[KEYS];
     for (uint32_t i = 0; i < KEYS; i++)
         oracle[i] = SLC_MAP_NONE;
-    srand(3);
+    roll_seed(3);
     uint32_t count = 0;
     for (uint32_t step = 0; step < 100000; step++) {
-        uint32_t k = (uint32_t)rand() % KEYS;
+        uint32_t k = (uint32_t)roll() % KEYS;
         uint64_t key = slc_pair_key(k % 3, k / 3 * 1024); /* keys that differ in few bits */
         assert_int_equal(slc_map_get(&map, key), oracle[k]);
         if (oracle[k] != SLC_MAP_NONE) {

@@ -15,7 +15,7 @@ static void every_result_has_its_own_name(void **state)
             assert_string_not_equal(name, names[i]);
         names[count++] = name;
     }
-    assert_int_equal(count, 4 + 23);
+    assert_int_equal(count, 4 + 24);
 }
 
 int main(void)

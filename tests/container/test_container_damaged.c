@@ -4,9 +4,11 @@
 
 #include <sluice/dds.h>
 #include <sluice/ktx2.h>
+#include <sluice/loader.h>
 
 #include "container/container_checks.h"
 #include "support/failing_allocator.h"
+#include "support/few_descriptors.h"
 #include "support/test.h"
 
 #include <errno.h>
@@ -223,7 +225,7 @@ static void nothing_is_opened_before_it_is_asked_for(void **state)
         assert_int_equal(disk.count, 0);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
         CHECK_RESULT(read_everything(source), SLUICE_ERROR_FILE_NOT_FOUND);
-        assert_int_equal(tally.errors, 2);
+        assert_int_equal(tally.errors, 1);         /* which is said once */
         FILE *again = fopen(s.scratch.path, "wb"); /* files come and go */
         assert_int_equal(fwrite(s.file.bytes, 1, s.file.size, again), s.file.size);
         fclose(again);
@@ -296,6 +298,81 @@ static void every_failing_read_is_told_from_damage(void **state)
         assert_true(n > 5);
         sample_finish(&s);
     }
+}
+
+static void what_passes_by_itself_is_no_failure_of_the_file(void **state)
+{
+    (void)state;
+    static const struct {
+        int error;
+        SluiceResult result;
+    } cases[] = {{ENOMEM, SLUICE_ERROR_OUT_OF_HOST_MEMORY}, {EAGAIN, SLUICE_NOT_READY}};
+    for (int i = 0; i < 2; i++) {
+        struct sample s;
+        assert_true(sample_init(&s, DX10));
+        disk.count = 0;
+        disk.fail_at = 1;
+        disk.error = cases[i].error;
+        CHECK_RESULT(read_file(s.scratch.path, DX10), cases[i].result);
+        disk.fail_at = 0;
+        sample_finish(&s);
+    }
+}
+
+/* Reads of all sources through a loader; how many delivered. */
+static uint32_t load_all(SluiceTileLoader *loader, SluiceImageSource *const *sources,
+                         uint32_t count)
+{
+    static uint8_t texels[64][256];
+    const SluiceImageRegion last = {3, 0, 0, 1, 1, 0};
+    uint32_t delivered = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint64_t ticket;
+        void *to = texels[i];
+        SluiceTileRead read = {
+            .source = sources[i], .regionCount = 1, .pRegions = &last, .ppTexels = &to};
+        CHECK_OK(sluiceSubmitTileRead(loader, &read, &ticket));
+    }
+    sluiceWaitTileLoaderIdle(loader);
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceTileReadResult result;
+        uint32_t one = 1;
+        assert_true(sluiceCollectTileReads(loader, &one, &result) >= 0 && one == 1);
+        delivered += result.result == SLUICE_SUCCESS;
+        if (result.result != SLUICE_SUCCESS)
+            CHECK_RESULT(result.result, SLUICE_NOT_READY); /* of which none is permanent */
+    }
+    return delivered;
+}
+
+static void files_beyond_the_limit_of_descriptors_are_read_later(void **state)
+{
+    (void)state;
+    enum { COUNT = 30, ROOM = 5 };
+    struct sample s;
+    struct log_tally tally;
+    struct few_descriptors few;
+    SluiceImageSource *sources[COUNT];
+    SluiceTileLoader *loader;
+    const SluiceTileLoaderCreateInfo info = {.threadCount = 2, .retry = {2, 1, 1}};
+    assert_true(sample_init(&s, DX10));
+    for (uint32_t i = 0; i < COUNT; i++)
+        CHECK_OK(create(s.scratch.path, false, NULL, &tally, &sources[i]));
+    CHECK_OK(sluiceCreateTileLoader(&info, &loader));
+    few_descriptors_begin(&few, FEW_DESCRIPTORS_LIMIT / 4 + ROOM);
+    uint32_t first = load_all(loader, sources, COUNT);
+    uint32_t again = load_all(loader, sources, COUNT); /* those that are open stay so */
+    int output = dup(STDERR_FILENO);                   /* and others find room */
+    few_descriptors_end(&few);
+    assert_int_equal(first, ROOM);
+    assert_int_equal(again, ROOM);
+    assert_true(output >= 0);
+    close(output);
+    assert_int_equal(load_all(loader, sources, COUNT), COUNT);
+    sluiceDestroyTileLoader(loader);
+    for (uint32_t i = 0; i < COUNT; i++)
+        sluiceDestroyImageSource(sources[i]);
+    sample_finish(&s);
 }
 
 static void short_and_interrupted_reads_are_continued(void **state)
@@ -381,6 +458,8 @@ int main(void)
         cmocka_unit_test(short_and_interrupted_reads_are_continued),
         cmocka_unit_test(every_refused_allocation_is_survived),
         cmocka_unit_test(any_number_of_threads_may_open_and_read),
+        cmocka_unit_test(what_passes_by_itself_is_no_failure_of_the_file),
+        cmocka_unit_test(files_beyond_the_limit_of_descriptors_are_read_later),
     };
     return RUN_TESTS(tests);
 }

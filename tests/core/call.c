@@ -199,8 +199,8 @@ void call_print(FILE *file, const struct call *c)
                 c->config.numExtraStandbyTiles, c->config.maxHeapCount, c->config.maxLoadAttempts,
                 c->config.retryDelay);
     if (c->kind == CALL_SET_CONFIG)
-        fprintf(file, " misses %" PRIu32 " prefetch %" PRIu32, c->config.missesToForget,
-                c->config.prefetchLevels);
+        fprintf(file, " misses %" PRIu32 " prefetch %" PRIu32 " given up %" PRIu64,
+                c->config.missesToForget, c->config.prefetchLevels, c->config.givenUpRetryDelay);
     fprintf(file, " time %" PRIu64 " timeout %" PRIu64 " retire %" PRIu64 " room %" PRIu32, c->time,
             c->timeout, c->retire, c->room);
     fprintf(file, " keep %" PRIu32 " heap %" PRIu32 " tile %" PRIu32, c->keep, c->heap, c->tile);

@@ -234,6 +234,7 @@ static void make_config(struct call_sequence *s, struct call *call)
     config->missesToForget = choice_once_in(c, 3) ? 0 : choice_below(c, 6);
     config->prefetchLevels = choice_below(c, 4);
     config->retryDelay = delays[choice_below(c, COUNT_OF(delays))];
+    config->givenUpRetryDelay = delays[choice_below(c, COUNT_OF(delays))];
 }
 
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)

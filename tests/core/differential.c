@@ -193,6 +193,7 @@ static void compare_statistics(struct differential *d, const SluiceStreamedTextu
     COMPARE(failedTotal);
     COMPARE(restoredTotal);
     COMPARE(movedTotal);
+    COMPARE(givenUpRetriedTotal);
 #undef COMPARE
     if (a->hostMemorySize != d->allocator.live_bytes)
         fail(d, "statistics: hostMemorySize is %" PRIu64 ", expected %" PRIu64, a->hostMemorySize,
@@ -507,6 +508,9 @@ int differential_run(struct differential *d, struct choice choice, uint32_t call
 static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_BIAS_ABOVE_0] = "hand-outs with a global bias",
     [NAIVE_BIAS_LOWERED] = "global bias lowered",
+    [NAIVE_BIAS_WAITED] = "looks at the global bias that waited for maps",
+    [NAIVE_BIAS_TRIED_AGAIN] = "a global bias that failed tried again",
+    [NAIVE_BIAS_FAILED_AGAIN] = "failed again",
     [NAIVE_STARVED] = "became starved",
     [NAIVE_PASSED_OVER] = "requests passed over",
     [NAIVE_FORGOTTEN] = "textures forgotten",
@@ -522,6 +526,9 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_LONG_WAITED] = "displaced for a request of the next level that waited long",
     [NAIVE_DISPLACED_UNMAPPED] = "displaced and requested again",
     [NAIVE_DISPLACED_UNWANTED] = "displaced and no longer wanted",
+    [NAIVE_PROBED] = "textures probed for the tiles that they gave up",
+    [NAIVE_PROBED_EARLY] = "textures to be probed because another tile came",
+    [NAIVE_RETRIED_ALL] = "textures whose given-up tiles were all tried again",
 };
 
 void differential_print_coverage(const struct differential *d, FILE *file)

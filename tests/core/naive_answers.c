@@ -24,6 +24,7 @@ static SluiceResult check_tiles(const struct naive_texture *t, const struct call
 
 static void answer_mapped(struct naive_manager *n, struct naive_texture *t, struct naive_tile *tile)
 {
+    naive_note_success(n, t, tile->failures > 0);
     tile->failures = 0;
     t->minmip_stale = true;
     n->totals.mappedTotal++;
@@ -61,6 +62,7 @@ static void answer_failed(struct naive_manager *n, struct naive_texture *t, stru
     }
     tile->state = SLUICE_TILE_STATE_GIVEN_UP;
     tile->given_up_at = ++n->stamp;
+    naive_note_given_up(n, t);
     for (uint32_t i = 0; i < n->given_up_count; i++)
         if (n->given_up[i].texture == t->id && n->given_up[i].tile == (uint32_t)(tile - t->tiles))
             return; /* it is in the list */

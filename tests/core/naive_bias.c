@@ -24,24 +24,71 @@ static uint64_t wanted_limit(const struct naive_manager *n)
     return heaps == UINT64_MAX ? UINT64_MAX : 7 * heaps * n->capacity / 2;
 }
 
+static void fail(struct naive_manager *n, uint64_t limit)
+{
+    struct naive_bias *b = &n->bias;
+    if (b->value < b->floor) {
+        b->failed_trials = b->failed_trials < 12 ? b->failed_trials + 1 : 12;
+        n->events[NAIVE_BIAS_FAILED_AGAIN]++;
+    }
+    b->floor = b->value + 1;
+    b->failed_limit = limit;
+    b->scene_changed = false;
+}
+
 static void raise_bias(struct naive_bias *b, uint64_t wanted, uint64_t limit)
 {
-    b->failed_value = b->value;
-    b->failed_limit = limit;
+    const uint32_t old = b->value;
     b->demand = 0;
+    b->looks_since_raise = 0;
+    b->went_up = true;
     for (int i = 0; i < 16 && wanted > limit && b->value < MAX_BIAS; i++) {
         b->value++;
         wanted = wanted * 60097 / 65536;
     }
+    if (b->value > old) {
+        b->changes++;
+        b->looks_since_change = 0;
+    }
 }
 
-static bool may_lower_bias(const struct naive_bias *b, uint64_t wanted, uint64_t limit)
+static bool may_lower_bias(struct naive_manager *n, uint64_t wanted, uint64_t limit)
 {
+    const struct naive_bias *b = &n->bias;
     const uint64_t more = wanted + wanted / 8;
-    if (wanted <= limit / 4)
+    if (more > limit)
+        return false;
+    if (b->value > b->floor)
         return true;
-    return more <= limit &&
-           (b->value - 1 > b->failed_value || limit > b->failed_limit || more <= b->demand);
+    if (b->looks_since_raise + 1 < UINT64_C(1) << b->failed_trials)
+        return false;
+    const bool smaller = b->scene_changed && (4 * wanted <= limit || more <= b->demand);
+    n->events[NAIVE_BIAS_TRIED_AGAIN] += limit > b->failed_limit || smaller;
+    return limit > b->failed_limit || smaller;
+}
+
+/* Whether all that holds anything was merged with the present bias. */
+static bool demand_is_known(const struct naive_manager *n)
+{
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        if (n->textures[i] && naive_holds_anything(n->textures[i]) &&
+            n->textures[i]->merged_bias_changes != n->bias.changes)
+            return false;
+    return true;
+}
+
+void naive_note_change(struct naive_manager *n, struct naive_texture *t, const uint8_t *before,
+                       bool held_before)
+{
+    uint8_t *after = naive_alloc(t->layout.regularTileCount, 1);
+    naive_wishes(t, t->held, after);
+    bool differ = held_before != naive_holds_anything(t);
+    for (uint32_t i = 0; i < t->layout.regularTileCount && t->tiles[i].level == 0; i++)
+        differ |= t->merged_bias == n->bias.value && before[i] != after[i];
+    n->bias.scene_changed |= differ;
+    t->merged_bias = n->bias.value;
+    t->merged_bias_changes = n->bias.changes;
+    free(after);
 }
 
 static uint64_t count_displaced(const struct naive_manager *n)
@@ -75,14 +122,32 @@ void naive_look_at_bias(struct naive_manager *n)
     if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;
+    b->looks_since_change++;
+    b->looks_since_raise++;
+    if (b->looks_since_raise >= UINT64_C(8) << b->failed_trials)
+        b->failed_trials = 0;
+    const bool known = demand_is_known(n), overdue = b->looks_since_change >= 16;
     if (wanted > limit) {
+        if (b->went_up && !known && !overdue) {
+            n->events[NAIVE_BIAS_WAITED]++;
+            return;
+        }
+        if (known || !b->went_up)
+            fail(n, limit);
         raise_bias(b, wanted, limit);
+        return;
+    }
+    if (!known && !overdue) {
+        n->events[NAIVE_BIAS_WAITED]++;
         return;
     }
     if (b->demand == 0)
         b->demand = wanted;
-    if (may_lower_bias(b, wanted, limit)) {
+    if (may_lower_bias(n, wanted, limit)) {
         b->value--;
+        b->changes++;
+        b->looks_since_change = 0;
+        b->went_up = false;
         n->events[NAIVE_BIAS_LOWERED]++;
     }
 }

@@ -74,6 +74,7 @@ static SluiceResult remove_texture(struct naive_manager *n, const struct call *c
     for (uint32_t i = 0; i < t->layout.tileCount; i++)
         if (naive_has_slot(&t->tiles[i]))
             naive_retire_slot(n, &t->tiles[i], call->retire);
+    n->bias.scene_changed |= naive_holds_anything(t);
     free_texture(n, t);
     return SLUICE_SUCCESS;
 }

@@ -1,4 +1,4 @@
-/* Wanted tiles that make room: "Displacing" of docs/manager.md. */
+/* Wanted tiles that make room: "Displacing" of docs/manager-specification.md. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>

@@ -46,8 +46,13 @@ static void merge_map(struct naive_manager *n, struct naive_texture *t, uint8_t 
     if (naive_has_state(t) || asks_for_anything(t, asked)) {
         n->bias.maps++;
         n->round.maps++;
+        const bool held = naive_holds_anything(t);
+        uint8_t *wishes = naive_alloc(t->layout.regularTileCount, 1);
+        naive_wishes(t, t->held, wishes);
         naive_remember(n, t, asked, time, timeout);
         naive_apply_held(n, t);
+        naive_note_change(n, t, wishes, held);
+        free(wishes);
     }
     free(t->last_asked);
     t->last_asked = asked;

@@ -172,6 +172,7 @@ static void forget(struct naive_manager *n, struct naive_texture *t)
     memset(t->last_asked, SLUICE_MIP_UNTOUCHED, regions);
     memset(t->held, SLUICE_MIP_UNTOUCHED, regions);
     naive_apply_held(n, t);
+    n->bias.scene_changed = true;
     n->events[NAIVE_FORGOTTEN]++;
 }
 
@@ -341,7 +342,7 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     n->events[NAIVE_STARVED] += stopped && !n->starved;
     if (call->room)
         n->starved = stopped;
-    const uint32_t unserved = min_u32(count, call->room) - out->count;
+    const uint32_t unserved = count - out->count;
     result = out->count < count ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
     if (!only && n->config.prefetchLevels && out->count == count && prefetch(n, call, seen, out))
         result = SLUICE_INCOMPLETE;

@@ -1,7 +1,7 @@
 /**
- * The manager once more, written from docs/manager.md with loops over everything and no structure
- * that could go wrong: plain arrays, lists made by sorting all tiles. It
- * shares no code with lib/core. Memory that runs out ends the program.
+ * The manager once more, written from docs/manager-specification.md with loops over everything and
+ * no structure that could go wrong: plain arrays, lists made by sorting all tiles. It shares no
+ * code with lib/core. Memory that runs out ends the program.
  *
  * Two choices are not in the rules: which slot of which of several equally full heaps a tile gets,
  * and which moves defragmentation makes. These, new texture ids and the heap allocator's answers
@@ -35,6 +35,13 @@ struct naive_span {
     uint8_t *asked;      ///< per region: least `a`, or 255
 };
 
+enum naive_trouble {
+    NAIVE_TROUBLE_NONE = 0,
+    NAIVE_TROUBLE_RESTING,
+    NAIVE_TROUBLE_DUE,
+    NAIVE_TROUBLE_PROBED
+};
+
 struct naive_texture {
     SluiceTextureId id;
     SluiceStreamedTextureLayout layout;
@@ -49,12 +56,17 @@ struct naive_texture {
     uint8_t *last_wishes; ///< finest wishes of the regular tiles by last_asked
     uint64_t map_stamp;   ///< of its last map; 0: never had one
     uint64_t map_time, map_timeout, interval;
+    uint32_t merged_bias;         ///< of its last map
+    uint64_t merged_bias_changes; ///< bias.changes then
     SluiceTextureId primary;
     uint64_t follower_since;
     uint8_t *minmip;
     bool minmip_stale;
     uint64_t dirty_since; ///< 0: clean
     uint8_t *changed;     ///< per MinMip texel, since last listed
+    enum naive_trouble trouble;
+    uint64_t trouble_since, trouble_time; ///< stamp and time
+    bool retried_all;                     ///< since the last probe
 };
 
 enum naive_slot_use { NAIVE_SLOT_FREE = 0, NAIVE_SLOT_USED, NAIVE_SLOT_RETIRING };
@@ -78,7 +90,10 @@ struct naive_given_up {
 enum naive_event {
     NAIVE_BIAS_ABOVE_0, ///< after a call that hands out tiles
     NAIVE_BIAS_LOWERED,
-    NAIVE_STARVED, ///< became so
+    NAIVE_BIAS_WAITED,       ///< for maps that are due
+    NAIVE_BIAS_TRIED_AGAIN,  ///< a value that failed before
+    NAIVE_BIAS_FAILED_AGAIN, ///< below the floor
+    NAIVE_STARVED,           ///< became so
     NAIVE_PASSED_OVER,
     NAIVE_FORGOTTEN,
     NAIVE_PREFETCHED,
@@ -93,15 +108,23 @@ enum naive_event {
     NAIVE_LONG_WAITED,
     NAIVE_DISPLACED_UNMAPPED,
     NAIVE_DISPLACED_UNWANTED, ///< before they were unmapped
+    NAIVE_PROBED,             ///< a texture, for the tiles that it gave up
+    NAIVE_PROBED_EARLY,
+    NAIVE_RETRIED_ALL,
     NAIVE_EVENT_COUNT
 };
 
 struct naive_bias {
-    uint32_t value; ///< sixteenths of a level
-    uint32_t failed_value;
+    uint32_t value;   ///< sixteenths of a level
+    uint64_t maps;    ///< merged since the bias was looked at
+    uint64_t changes; ///< of the value, so far
+    uint64_t looks_since_change, looks_since_raise;
+    bool went_up;   ///< when it changed last
+    uint32_t floor; ///< values below it failed; 0: none
     uint64_t failed_limit;
     uint64_t demand; ///< 0: unknown
-    uint64_t maps;   ///< merged since the bias was looked at
+    bool scene_changed;
+    uint32_t failed_trials;
 };
 
 struct naive_round {
@@ -189,6 +212,9 @@ uint32_t naive_region_bias(const struct naive_manager *n, const struct naive_tex
 /** Textures that hold anything. */
 uint64_t naive_count_holding(const struct naive_manager *n);
 void naive_look_at_bias(struct naive_manager *n);
+/** A map was merged, or the history forgotten; `before` are the wishes and whether any was held. */
+void naive_note_change(struct naive_manager *n, struct naive_texture *t, const uint8_t *before,
+                       bool held_before);
 /** Of all slots of living heaps. */
 uint32_t naive_reserved(const struct naive_manager *n);
 /** A tile with its texture, to be sorted. */
@@ -223,6 +249,10 @@ SluiceResult naive_tiles_to_cancel(struct naive_manager *n, const struct call *c
                                    struct outcome *out);
 SluiceResult naive_tiles_to_unmap(struct naive_manager *n, const struct call *call,
                                   struct outcome *out);
+/** Requests what is due of the tiles that were given up. */
+void naive_probe_given_up(struct naive_manager *n);
+void naive_note_given_up(struct naive_manager *n, struct naive_texture *t);
+void naive_note_success(struct naive_manager *n, struct naive_texture *t, bool had_failed);
 SluiceResult naive_retry(struct naive_manager *n, const struct call *call);
 SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
                               const struct outcome *seen, struct outcome *out);

@@ -190,6 +190,7 @@ void naive_retry_due(struct naive_manager *n, uint64_t now)
         if ((int64_t)(now - refs[i].tile->due) >= 0)
             naive_request(n, refs[i].tile, 0);
     free(refs);
+    naive_probe_given_up(n);
 }
 
 SluiceResult naive_retry(struct naive_manager *n, const struct call *call)

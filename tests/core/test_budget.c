@@ -236,7 +236,7 @@ static void standby_is_evicted_oldest_first_as_many_as_needed(void **state)
     fixture_feed_region(&f, id, 0, 0, 1, 0);
     assert_int_equal(listed_for_unmapping(&f), 0);
     CHECK_RESULT(fixture_to_map_at_most(&f, id, 1), SLUICE_BUDGET_REACHED);
-    assert_int_equal(listed_for_unmapping(&f), 1); /* as many as there is room for */
+    assert_int_equal(listed_for_unmapping(&f), 3); /* as many as wait, whatever the room */
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
     assert_int_equal(listed_for_unmapping(&f), 3);
     CHECK_RESULT(fixture_to_map(&f, id), SLUICE_BUDGET_REACHED);
@@ -367,6 +367,26 @@ static void retire_values_going_backwards_are_refused(void **state)
     fixture_close(&f);
 }
 
+static void wants_last_for_the_whole_timeout_while_slots_are_short(void **state)
+{
+    (void)state;
+    struct fixture f;
+    const SluiceStreamedTextureDesc desc = full_chain(64, 64, 128, 128); /* one packed tile */
+    fixture_open(&f, 1, false);
+    f.heaps.limit = 1;
+    SluiceTextureId id = fixture_add(&f, &desc), waits = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, 0, 16);
+    fixture_load(&f);
+    for (uint64_t time = 4; time <= 16; time++) { /* earlier maps would join the first one */
+        fixture_feed(&f, waits, 0, time, 16);
+        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_BUDGET_REACHED);
+        fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 16);
+        SluiceTileState expected = time < 16 ? SLUICE_TILE_STATE_MAPPED : SLUICE_TILE_STATE_STANDBY;
+        assert_int_equal(fixture_state(&f, id, 0), expected);
+    }
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -381,6 +401,7 @@ int main(void)
         cmocka_unit_test(the_global_bias_goes_when_the_demand_does_whenever_that_is),
         cmocka_unit_test(standby_is_evicted_oldest_first_as_many_as_needed),
         cmocka_unit_test(a_thousand_wants_take_no_more_than_what_is_finer),
+        cmocka_unit_test(wants_last_for_the_whole_timeout_while_slots_are_short),
         cmocka_unit_test(a_slot_is_not_used_again_before_its_value_completed),
         cmocka_unit_test(slots_of_cancelled_loads_and_removed_textures_retire_too),
         cmocka_unit_test(values_that_completed_already_free_at_once),

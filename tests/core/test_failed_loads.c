@@ -1,5 +1,7 @@
 #include "core/fixture.h"
 
+#include <stdlib.h>
+
 /* A texture whose only tile is packed: one load at a time. */
 static SluiceTextureId add_one_tile(struct fixture *f)
 {
@@ -147,8 +149,6 @@ static void a_tile_given_up_is_listed_once(void **state)
     f.count = 2;
     CHECK_OK(sluiceGetGivenUpTiles(f.manager, &f.count, f.tiles));
     assert_int_equal(f.count, 0);
-    fixture_feed(&f, id, 0, 1000000, 1); /* it stays given up, however long */
-    CHECK_STATE(&f, id, 0, GIVEN_UP);
     fixture_close(&f);
 }
 
@@ -352,6 +352,211 @@ static void the_longest_delays_do_not_overflow(void **state)
     fixture_close(&f);
 }
 
+/* The configuration with which the facts about given-up tiles are shown: one attempt, 1000 rest. */
+static void rest_for_1000(struct fixture *f)
+{
+    const SluiceStreamedTextureManagerConfig config = {
+        .maxLoadAttempts = 1, .retryDelay = 10, .givenUpRetryDelay = 1000};
+    CHECK_OK(sluiceSetConfig(f->manager, &config));
+}
+
+static uint32_t fail_all(struct fixture *f, SluiceTextureId scope, uint64_t time)
+{
+    uint32_t failed = 0;
+    CHECK_OK(fixture_to_map(f, scope));
+    for (; failed < f->count; failed++)
+        fail_load(f, f->tiles[failed].textureId, f->tiles[failed].tileIndex, time);
+    return failed;
+}
+
+static void given_up_tiles_are_probed_and_follow_the_first_that_comes(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    rest_for_1000(&f);
+    SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
+    SluiceTextureId id = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, 0, 1);
+    uint32_t wanted = fail_all(&f, id, 0);
+    assert_int_equal(fixture_statistics(&f).givenUpTileCount, wanted);
+    uint64_t time = 0;
+    for (int round = 0; round < 3; round++) { /* nothing can be read: four reads in 1000 */
+        fixture_feed(&f, id, 0, time + 999, 1);
+        assert_int_equal(fail_all(&f, id, time + 999), 0);
+        time += 1000;
+        fixture_feed(&f, id, 0, time, 1);
+        assert_int_equal(fail_all(&f, id, time), 4);
+        assert_int_equal(fixture_statistics(&f).givenUpTileCount, wanted);
+    }
+    fixture_feed(&f, id, 0, time + 1000, 1); /* all is well again */
+    CHECK_OK(fixture_to_map(&f, id));
+    assert_int_equal(f.count, 4);
+    CHECK_OK(sluiceUpdateTilesMapping(f.manager, id, 1, &f.tiles[0].tileIndex));
+    assert_int_equal(fixture_statistics(&f).givenUpTileCount, 0);
+    for (uint32_t i = 1; i < 4; i++)
+        CHECK_OK(sluiceUpdateTilesMapping(f.manager, id, 1, &f.tiles[i].tileIndex));
+    fixture_load(&f);
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, wanted);
+    assert_int_equal(fixture_statistics(&f).givenUpRetriedTotal, 12 + wanted);
+    fixture_close(&f);
+}
+
+static void tiles_damaged_for_good_do_not_hide_those_that_come_back(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    rest_for_1000(&f);
+    SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
+    SluiceTextureId id = fixture_add(&f, &desc);
+    fixture_feed(&f, id, 0, 0, 1);
+    uint32_t wanted = fail_all(&f, id, 0), reads = 0;
+    for (uint64_t time = 1000; time < 40000; time += 100) { /* a third is damaged for good */
+        fixture_feed(&f, id, 0, time, 1);
+        CHECK_OK(fixture_to_map(&f, id));
+        reads += f.count;
+        for (uint32_t i = 0; i < f.count; i++) {
+            uint32_t tile = f.tiles[i].tileIndex;
+            if (tile % 3 == 0)
+                fail_load(&f, id, tile, time);
+            else
+                CHECK_OK(sluiceUpdateTilesMapping(f.manager, id, 1, &tile));
+        }
+    }
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, wanted - (wanted + 2) / 3);
+    assert_true(reads < 2 * wanted + 4 * 40);
+    fixture_close(&f);
+}
+
+static void another_tile_that_comes_is_a_sign_that_the_source_is_well(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    rest_for_1000(&f);
+    SluiceTextureId id = fixture_add_small(&f);
+    fixture_feed(&f, id, 1, 0, 1);
+    assert_true(fail_all(&f, id, 0) > 0);
+    for (uint64_t time = 124; time <= 125; time++) {
+        uint32_t other = 0;
+        fixture_feed(&f, id, 0, time, 1);
+        CHECK_OK(fixture_to_map(&f, id));
+        if (f.count == 0)
+            break;
+        other = f.tiles[0].tileIndex;
+        CHECK_OK(sluiceUpdateTilesMapping(f.manager, id, 1, &other));
+        fixture_feed(&f, id, 0, time, 1);
+        uint32_t left = fixture_statistics(&f).givenUpTileCount;
+        assert_true(time == 125 ? left == 0 : left > 0); /* an eighth of 1000 */
+        for (uint32_t i = 1; time == 124 && i < f.count; i++)
+            CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &f.tiles[i].tileIndex, 0));
+    }
+    fixture_close(&f);
+}
+
+/* 10 000 textures: a server that is gone is asked for 16 textures at a time, whatever the frames.
+ */
+static void probes_of_many_textures_are_bounded(void **state)
+{
+    (void)state;
+    enum { TEXTURES = 10000 };
+    struct fixture f;
+    fixture_open(&f, 256, false);
+    rest_for_1000(&f);
+    SluiceTextureId *ids = calloc(TEXTURES, sizeof *ids);
+    for (uint32_t i = 0; i < TEXTURES; i++) {
+        ids[i] = add_one_tile(&f);
+        fixture_feed(&f, ids[i], 0, 0, UINT64_MAX);
+    }
+    for (uint32_t i = 0; i < TEXTURES; i++)
+        assert_int_equal(fail_all(&f, ids[i], 0), 1);
+    for (uint64_t time = 1000; time < 1010; time++) {
+        fixture_feed(&f, ids[0], 0, time, UINT64_MAX);
+        assert_int_equal(fail_all(&f, SLUICE_ALL_TEXTURES, time), 16);
+    }
+    uint64_t time = 2000; /* the server is back */
+    for (; fixture_statistics(&f).givenUpTileCount > 0; time++) {
+        fixture_feed(&f, ids[0], 0, time, UINT64_MAX);
+        CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+        assert_true(f.count <= 16);
+        for (uint32_t i = 0; i < f.count; i++)
+            CHECK_OK(sluiceUpdateTilesMapping(f.manager, f.tiles[i].textureId, 1,
+                                              &f.tiles[i].tileIndex));
+    }
+    assert_int_equal(fixture_statistics(&f).mappedTileCount, TEXTURES);
+    free(ids);
+    fixture_close(&f);
+}
+
+static void packed_tiles_are_probed_together(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, true);
+    rest_for_1000(&f);
+    SluiceStreamedTextureDesc desc = full_chain(256, 256, 128, 128);
+    desc.packedTileCount = 9;
+    SluiceTextureId id = fixture_add(&f, &desc);
+    assert_int_equal(fail_all(&f, id, 0), 9);
+    fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1000, 1);
+    assert_int_equal(fail_all(&f, id, 1000), 9);
+    fixture_close(&f);
+}
+
+static void a_texture_that_is_removed_while_it_rests_is_not_probed(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    rest_for_1000(&f);
+    SluiceTextureId ids[3] = {add_one_tile(&f), add_one_tile(&f), add_one_tile(&f)};
+    for (int i = 0; i < 3; i++)
+        fixture_feed(&f, ids[i], 0, 0, UINT64_MAX);
+    assert_int_equal(fail_all(&f, SLUICE_ALL_TEXTURES, 0), 3);
+    CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[1], 0));
+    fixture_feed(&f, ids[0], 0, 1000, UINT64_MAX);
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    assert_int_equal(f.count, 2);
+    fixture_close(&f);
+}
+
+static void without_a_delay_given_up_tiles_wait_for_a_call(void **state)
+{
+    (void)state;
+    static const SluiceStreamedTextureManagerConfig configs[] = {
+        {.maxLoadAttempts = 1}, {.maxLoadAttempts = 1, .givenUpRetryDelay = UINT64_MAX}};
+    for (int i = 0; i < 2; i++) {
+        struct fixture f;
+        fixture_open(&f, 64, false);
+        CHECK_OK(sluiceSetConfig(f.manager, &configs[i]));
+        SluiceTextureId id = add_one_tile(&f);
+        fixture_feed(&f, id, 0, 0, UINT64_MAX);
+        assert_int_equal(fail_all(&f, id, 0), 1);
+        fixture_feed(&f, id, 0, UINT64_MAX / 4, UINT64_MAX);
+        CHECK_STATE(&f, id, 0, GIVEN_UP);
+        CHECK_OK(sluiceRetryFailedTiles(f.manager, id));
+        CHECK_STATE(&f, id, 0, REQUESTED);
+        fixture_close(&f);
+    }
+}
+
+static void the_default_delay_is_120_times_that_of_retries(void **state)
+{
+    (void)state;
+    struct fixture f;
+    fixture_open(&f, 64, false);
+    fixture_configure(&f, 0, 0, 1, 10);
+    SluiceTextureId id = add_one_tile(&f);
+    fixture_feed(&f, id, 0, 0, UINT64_MAX);
+    assert_int_equal(fail_all(&f, id, 0), 1);
+    fixture_feed(&f, id, 0, 1199, UINT64_MAX);
+    CHECK_STATE(&f, id, 0, GIVEN_UP);
+    fixture_feed(&f, id, 0, 1200, UINT64_MAX);
+    CHECK_STATE(&f, id, 0, REQUESTED);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -369,6 +574,14 @@ int main(void)
         cmocka_unit_test(a_region_stays_at_the_coarser_mip_of_what_loaded),
         cmocka_unit_test(the_longest_delays_do_not_overflow),
         cmocka_unit_test(all_that_is_given_up_is_listed_in_order),
+        cmocka_unit_test(given_up_tiles_are_probed_and_follow_the_first_that_comes),
+        cmocka_unit_test(tiles_damaged_for_good_do_not_hide_those_that_come_back),
+        cmocka_unit_test(another_tile_that_comes_is_a_sign_that_the_source_is_well),
+        cmocka_unit_test(probes_of_many_textures_are_bounded),
+        cmocka_unit_test(a_texture_that_is_removed_while_it_rests_is_not_probed),
+        cmocka_unit_test(without_a_delay_given_up_tiles_wait_for_a_call),
+        cmocka_unit_test(the_default_delay_is_120_times_that_of_retries),
+        cmocka_unit_test(packed_tiles_are_probed_together),
     };
     return RUN_TESTS(tests);
 }

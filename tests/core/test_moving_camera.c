@@ -159,6 +159,33 @@ static void after_a_cut_the_new_view_shows_its_coarse_levels_first(void **state)
     }
 }
 
+/* All of a view fits, but for the tiles of the last views in STANDBY. Every 60 frames the camera
+ * cuts, and all of the new view has to be there before the next cut, though a list holds 8 tiles.
+ */
+static void slots_are_reclaimed_for_all_that_waits_however_short_the_list(void **state)
+{
+    (void)state;
+    for (uint32_t retire = 2; retire <= 8; retire += 6) {
+        scene_open(&s, CAPACITY, 16);
+        s.config.numExtraStandbyTiles = 256;
+        scene_configure(&s);
+        s.loads_per_frame = 8;
+        s.retire_frames = retire;
+        for (uint32_t i = 0; i < 3; i++)
+            scene_add(&s, 2048, (struct scene_window){i, i, 6, 6, 0, 0});
+        for (uint32_t step = 0; step < 20; step++) {
+            for (uint32_t i = 0; i < 3; i++) {
+                s.textures[i].window.x = (step * 3 + i) % 10;
+                s.textures[i].window.y = (step * 5 + i) % 10;
+            }
+            scene_run(&s, 60);
+            assert_int_equal(fixture_statistics(&s.f).requestedTileCount, 0);
+            assert_int_equal(scene_mean_deficit(&s), 0);
+        }
+        scene_close(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +194,7 @@ int main(void)
         cmocka_unit_test(no_tile_is_loaded_before_all_that_are_coarser_over_it),
         cmocka_unit_test(coarse_tiles_of_all_textures_come_before_fine_ones),
         cmocka_unit_test(after_a_cut_the_new_view_shows_its_coarse_levels_first),
+        cmocka_unit_test(slots_are_reclaimed_for_all_that_waits_however_short_the_list),
     };
     return RUN_TESTS(tests);
 }

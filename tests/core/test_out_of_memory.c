@@ -253,6 +253,25 @@ static void give_heap(void *user, uint32_t id)
     (void)user, (void)id;
 }
 
+static void creating_a_locked_manager_without_memory_leaks_nothing(void **state)
+{
+    (void)state;
+    const bool locked = true;
+    struct failing_allocator memory;
+    SluiceStreamedTextureManagerCreateInfo info = {
+        .heapAllocator = {NULL, take_heap, give_heap},
+        .pAllocator = &memory.callbacks,
+        .heapTileCapacity = 256,
+        .tileSize = 65536,
+        .pLocked = &locked,
+    };
+    SluiceStreamedTextureManager *manager;
+    failing_allocator_init(&memory, 1); /* the manager, and nothing for its heaps */
+    CHECK_RESULT(sluiceCreateStreamedTextureManager(&info, &manager),
+                 SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+    assert_int_equal(memory.live_count, 0);
+}
+
 static void creation_survives_every_refused_allocation(void **state)
 {
     (void)state;
@@ -414,15 +433,50 @@ static void a_texture_that_is_too_large_leaves_nothing_behind(void **state)
     fixture_close(&f);
 }
 
+/* Two heaps of two slots are full and a fifth tile waits. Returns the heap that it gets when a tile
+ * of heap 0 and one of heap 1 have gone. */
+static uint32_t heap_of_the_fifth_tile(bool fails_before)
+{
+    struct fixture f;
+    SluiceTextureId ids[5];
+    const SluiceStreamedTextureDesc desc = full_chain(64, 64, 128, 128); /* one packed tile */
+    fixture_open(&f, 2, true);
+    for (uint32_t i = 0; i < 4; i++)
+        ids[i] = fixture_add(&f, &desc);
+    fixture_load(&f);
+    assert_int_equal(fixture_statistics(&f).heapCount, 2);
+    ids[4] = fixture_add(&f, &desc);
+    if (fails_before) {
+        f.memory.refuse_from = f.memory.calls;
+        CHECK_RESULT(fixture_to_map(&f, SLUICE_ALL_TEXTURES), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        f.memory.refuse_from = UINT64_MAX;
+    }
+    CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[0], 0));
+    CHECK_OK(sluiceRemoveStreamedTexture(f.manager, ids[2], 0));
+    CHECK_OK(fixture_to_map(&f, SLUICE_ALL_TEXTURES));
+    assert_true(LISTED(&f, ids[4], 0));
+    uint32_t heap = f.tiles[0].heapId;
+    fixture_close(&f);
+    return heap;
+}
+
+static void a_failed_hand_out_keeps_equal_heaps_in_order(void **state)
+{
+    (void)state;
+    assert_int_equal(heap_of_the_fifth_tile(true), heap_of_the_fifth_tile(false));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_call_survives_every_refused_allocation),
         cmocka_unit_test(creation_survives_every_refused_allocation),
+        cmocka_unit_test(creating_a_locked_manager_without_memory_leaks_nothing),
         cmocka_unit_test(a_heap_is_never_lost_for_lack_of_memory),
         cmocka_unit_test(a_displaced_tile_is_unmapped_once_there_is_memory_for_its_request),
         cmocka_unit_test(unmapping_ends_where_memory_does_and_goes_on_later),
         cmocka_unit_test(a_texture_that_is_too_large_leaves_nothing_behind),
+        cmocka_unit_test(a_failed_hand_out_keeps_equal_heaps_in_order),
     };
     return RUN_TESTS(tests);
 }

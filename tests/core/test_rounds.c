@@ -12,12 +12,12 @@ static SluiceTextureId add_square(struct fixture *f, uint32_t levels)
 }
 
 /* Every texture that holds something gets a map, then what can be is handed out: that is a round.
- */
-static bool displaced_in_round(struct fixture *f, SluiceTextureId fine, SluiceTextureId coarse,
-                               uint32_t level, uint64_t time)
+ * The fine texture's map shows level `seen`. */
+static bool displaced_in_round(struct fixture *f, SluiceTextureId fine, uint8_t seen,
+                               SluiceTextureId coarse, uint32_t level, uint64_t time)
 {
     uint32_t count = 0;
-    fixture_feed(f, fine, 0, time, 100);
+    fixture_feed(f, fine, seen, time, 100);
     if (coarse)
         fixture_feed(f, coarse, (uint8_t)level, time, 100);
     SluiceResult result = fixture_to_map(f, SLUICE_ALL_TEXTURES);
@@ -35,7 +35,7 @@ static uint32_t round_of_displacing(uint32_t level, uint32_t requested)
     f.heaps.limit = 1;
     SluiceTextureId fine = add_square(&f, 1), coarse = add_square(&f, level + 1);
     uint32_t round = 1;
-    while (!displaced_in_round(&f, fine, round < requested ? SLUICE_NO_TEXTURE : coarse, level,
+    while (!displaced_in_round(&f, fine, 0, round < requested ? SLUICE_NO_TEXTURE : coarse, level,
                                round)) {
         assert_int_equal(fixture_statistics(&f).mappedTileCount, FINE);
         assert_true(++round < 100);
@@ -66,12 +66,45 @@ static void one_level_is_after_four_rounds_that_end_with_a_fourth(void **state)
         assert_int_equal(round_of_displacing(1, requested), (requested + 3) / 4 * 4 + 4);
 }
 
+/* The same for tiles that their texture's maps do not show any more, but that are still wanted. */
+static uint32_t round_of_displacing_unseen(uint32_t level, uint32_t requested)
+{
+    struct fixture f;
+    fixture_open(&f, FINE, false);
+    f.heaps.limit = 1;
+    SluiceTextureId fine = add_square(&f, 1), other = add_square(&f, level + 1);
+    uint32_t round = 1;
+    for (; round < requested; round++)
+        assert_false(displaced_in_round(&f, fine, 0, SLUICE_NO_TEXTURE, level, round));
+    while (!displaced_in_round(&f, fine, SLUICE_MIP_UNTOUCHED, other, level, round))
+        assert_true(++round < 100);
+    fixture_close(&f);
+    return round;
+}
+
+static void an_unseen_tile_makes_room_for_a_coarser_level_at_once(void **state)
+{
+    (void)state;
+    for (uint32_t level = 1; level <= 3; level++)
+        for (uint32_t requested = 2; requested <= 12; requested++)
+            assert_int_equal(round_of_displacing_unseen(level, requested), requested);
+}
+
+static void an_unseen_tile_makes_room_for_its_own_level_after_a_whole_round(void **state)
+{
+    (void)state;
+    for (uint32_t requested = 2; requested <= 12; requested++)
+        assert_int_equal(round_of_displacing_unseen(0, requested), requested + 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_levels_are_worth_an_upload_at_once),
         cmocka_unit_test(two_levels_are_once_the_request_has_waited_for_a_whole_round),
         cmocka_unit_test(one_level_is_after_four_rounds_that_end_with_a_fourth),
+        cmocka_unit_test(an_unseen_tile_makes_room_for_a_coarser_level_at_once),
+        cmocka_unit_test(an_unseen_tile_makes_room_for_its_own_level_after_a_whole_round),
     };
     return RUN_TESTS(tests);
 }

@@ -4,7 +4,7 @@
  */
 #include "core/fixture.h"
 
-#include "core/internal.h"
+#include "core/lookup.h"
 
 #include <string.h>
 
@@ -242,7 +242,7 @@ static void check_twins(struct twins *t)
     t->biased += a.globalMipBias > 0;
     bool shared = false;
     for (uint32_t i = 0; i < MEMBERS; i++) {
-        struct slc_texture *texture;
+        struct slc_managed_texture *texture;
         CHECK_OK(slc_find_texture(t->set.manager, t->ids[i], &texture));
         shared |= texture->history && texture->history->users > 1;
     }

@@ -1,9 +1,9 @@
-#include "core/internal.h"
+#include "core/spares.h"
 
 #include "support/failing_allocator.h"
+#include "support/roll.h"
 #include "support/test.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define HEADER 32u /* of what is asked for at once */
@@ -23,10 +23,10 @@ static void blocks_have_the_size_asked_for_and_a_quarter_more_at_most(void **sta
 {
     (void)state;
     begin(UINT64_MAX);
-    srand(1);
+    roll_seed(1);
     for (uint32_t i = 0; i < 3000; i++) {
-        size_t size = i < 1100 ? i : (size_t)1 << rand() % 24;
-        size += i < 1100 ? 0 : (size_t)rand() % 3 - 1;
+        size_t size = i < 1100 ? i : (size_t)1 << roll() % 24;
+        size += i < 1100 ? 0 : (size_t)roll() % 3 - 1;
         void *block = slc_spares_take(&m, size);
         assert_non_null(block);
         memset(block, 0xAB, size);
@@ -66,15 +66,15 @@ static void an_eighth_more_is_held_than_was_in_use_at_once(void **state)
     size_t sizes[BLOCKS];
     uint64_t used = 1, most = 1;
     void *kept = slc_spares_take(&m, 500);
-    srand(2);
+    roll_seed(2);
     for (uint32_t i = 0; i < 40000; i++) {
-        uint32_t at = (uint32_t)rand() % BLOCKS;
+        uint32_t at = (uint32_t)roll() % BLOCKS;
         if (blocks[at]) {
             slc_spares_give(&m, blocks[at], sizes[at]);
             blocks[at] = NULL;
             used--;
         } else {
-            sizes[at] = 449 + (size_t)rand() % 64;
+            sizes[at] = 449 + (size_t)roll() % 64;
             blocks[at] = slc_spares_take(&m, sizes[at]);
             memset(blocks[at], (int)(at & 255), sizes[at]);
             most = ++used > most ? used : most;

@@ -1,4 +1,4 @@
-#include "core/tile_heap.h"
+#include "residency/tile_heap.h"
 
 #include "core/fixture.h"
 

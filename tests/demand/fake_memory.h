@@ -3,7 +3,7 @@
 #ifndef TESTS_DEMAND_FAKE_MEMORY_H
 #define TESTS_DEMAND_FAKE_MEMORY_H
 
-#include "demand/residency.h"
+#include "demand/page_residency.h"
 
 enum { FAKE_PLACES = 8192 };
 

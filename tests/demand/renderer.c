@@ -45,7 +45,7 @@ void renderer_init(struct renderer *r, uint64_t seed, uint32_t texture_count, ui
     }
 }
 
-void renderer_start(struct renderer *r, const struct slc_residency_create_info *info,
+void renderer_start(struct renderer *r, const struct slc_page_residency_create_info *info,
                     uint64_t limit, uint32_t memory_places, uint32_t chunk_size)
 {
     struct slc_page_memory memory = fake_page_memory(&r->memory);

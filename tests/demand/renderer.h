@@ -55,7 +55,7 @@ struct renderer {
 
 void renderer_init(struct renderer *r, uint64_t seed, uint32_t texture_count, uint32_t kinds);
 /** `limit` places of tiles; `memory_places` there really are. */
-void renderer_start(struct renderer *r, const struct slc_residency_create_info *info,
+void renderer_start(struct renderer *r, const struct slc_page_residency_create_info *info,
                     uint64_t limit, uint32_t memory_places, uint32_t chunk_size);
 void renderer_finish(struct renderer *r);
 void renderer_random_views(struct renderer *r, uint32_t count);

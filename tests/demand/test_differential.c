@@ -41,10 +41,10 @@ static void start(struct pair *p, uint64_t seed)
 {
     *p = (struct pair){.random = seed * 0x9E3779B97F4A7C15u + 1, .may_fail = seed % 3 == 0};
     failing_allocator_init(&p->allocator, UINT64_MAX);
-    const struct slc_residency_create_info info = {.cb = &p->allocator.callbacks,
-                                                   .class_count = NAIVE_CLASSES,
-                                                   .no_eviction = seed % 11 == 0,
-                                                   .no_lod_bias = seed % 2 == 0};
+    const struct slc_page_residency_create_info info = {.cb = &p->allocator.callbacks,
+                                                        .class_count = NAIVE_CLASSES,
+                                                        .no_eviction = seed % 11 == 0,
+                                                        .no_lod_bias = seed % 2 == 0};
     CHECK_OK(slc_residency_create(&info, &p->residency));
     p->naive.no_eviction = info.no_eviction;
     p->naive.no_lod_bias = info.no_lod_bias;

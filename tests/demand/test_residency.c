@@ -1,4 +1,4 @@
-#include "demand/residency.h"
+#include "demand/page_residency.h"
 
 #include "demand/fake_memory.h"
 #include "support/failing_allocator.h"
@@ -12,7 +12,7 @@ static struct slc_demand_residency *create(struct failing_allocator *a, uint64_t
                                            const struct slc_page_memory *memory)
 {
     struct slc_demand_residency *r;
-    const struct slc_residency_create_info info = {
+    const struct slc_page_residency_create_info info = {
         .cb = &a->callbacks, .class_count = 1, .no_lod_bias = true};
     failing_allocator_init(a, UINT64_MAX);
     CHECK_OK(slc_residency_create(&info, &r));
@@ -48,7 +48,7 @@ static void creation_survives_every_allocation_failure(void **state)
         struct failing_allocator a;
         failing_allocator_init(&a, n);
         struct slc_demand_residency *r;
-        const struct slc_residency_create_info info = {.cb = &a.callbacks, .class_count = 2};
+        const struct slc_page_residency_create_info info = {.cb = &a.callbacks, .class_count = 2};
         SluiceResult result = slc_residency_create(&info, &r);
         if (result == SLUICE_SUCCESS)
             slc_residency_destroy(r);

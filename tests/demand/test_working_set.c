@@ -22,7 +22,7 @@ static uint32_t tails_of_views(struct renderer *r)
 static uint32_t start(struct renderer *r, uint64_t seed, const struct setup *setup)
 {
     uint64_t random = seed * 77777u + 1;
-    const struct slc_residency_create_info info = {
+    const struct slc_page_residency_create_info info = {
         .class_count = 2, .no_eviction = setup->no_eviction, .no_lod_bias = setup->no_lod_bias};
     renderer_init(r, seed, 1 + random_below(&random, RENDERER_TEXTURES), setup->kinds);
     renderer_random_views(r, 1 + random_below(&random, RENDERER_VIEWS));
@@ -219,7 +219,7 @@ static void what_fits_is_sharp_and_loaded_once(void **state)
     (void)state;
     struct renderer *r = create_renderer();
     for (uint64_t seed = 1; seed <= 100; seed++) {
-        const struct slc_residency_create_info info = {.class_count = 2};
+        const struct slc_page_residency_create_info info = {.class_count = 2};
         renderer_init(r, seed, 1 + (uint32_t)seed % RENDERER_TEXTURES, 2);
         renderer_random_views(r, 1 + (uint32_t)seed % RENDERER_VIEWS);
         uint32_t need = renderer_need(r, 0, false) + renderer_need(r, 0, true), loads = 0;
@@ -243,7 +243,7 @@ static void tails_beyond_the_budget_are_refused(void **state)
 {
     (void)state;
     struct renderer *r = create_renderer();
-    const struct slc_residency_create_info info = {.class_count = 2};
+    const struct slc_page_residency_create_info info = {.class_count = 2};
     renderer_init(r, 5, RENDERER_TEXTURES, 1);
     r->view_count = RENDERER_TEXTURES;
     for (uint32_t i = 0; i < r->view_count; i++)

@@ -2,10 +2,10 @@
 
 #include "base/checked.h"
 #include "demand/tail_place.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define TEXEL_SIZE 4u
@@ -124,7 +124,7 @@ void demand_images_clear(struct demand_scene *s)
     for (uint32_t i = 0; i < LAYERS * tile_texels(s); i++)
         texels[i] = poison;
     for (uint32_t i = 0; i < LAYERS; i++) {
-        uint32_t j = (uint32_t)rand() % (i + 1);
+        uint32_t j = (uint32_t)roll() % (i + 1);
         s->layers[i] = s->layers[j];
         s->layers[j] = i;
     }

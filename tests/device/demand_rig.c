@@ -1,5 +1,6 @@
 #include "device/demand_rig.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/compute.h"
 
@@ -44,7 +45,7 @@ void *demand_rig_allocate(size_t count, size_t size)
 
 uint32_t demand_rig_random(uint32_t limit)
 {
-    return ((uint32_t)(rand() & 0x7FFF) << 15 | (uint32_t)(rand() & 0x7FFF)) % limit;
+    return ((uint32_t)(roll() & 0x7FFF) << 15 | (uint32_t)(roll() & 0x7FFF)) % limit;
 }
 
 void demand_rig_record_upload(const struct slc_vk *vk, VkCommandBuffer commands,

@@ -17,7 +17,7 @@ void demand_rig_limit_memory(struct slc_vk *vk, uint32_t count);
 /** Zeroed; fails the test where there is none. Freed with free. */
 void *demand_rig_allocate(size_t count, size_t size);
 
-/** Seeded with srand, 30 bits. */
+/** Seeded with roll_seed, 30 bits. */
 uint32_t demand_rig_random(uint32_t limit);
 
 /** All of `from` to `to`, with barriers before and after. */

@@ -105,6 +105,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct harness *h = user;
     h->log_count[severity]++;
+    snprintf(h->last_message, sizeof h->last_message, "%s", message);
     if (!h->quiet)
         fprintf(stderr, "# %s\n", message);
 }
@@ -234,6 +235,25 @@ static void record_samples(struct runner *r, VkCommandBuffer commands, uint32_t 
                           &barrier, 0, NULL, 0, NULL);
 }
 
+/* After its preparation, its samples or its end. False: no launch can be prepared. */
+static bool abandon_launch(struct runner *r, VkCommandBuffer commands, uint32_t at)
+{
+    struct harness *h = r->h;
+    const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    uint32_t length = h->abandoned_count % 3;
+    SluiceDemandLaunch launch;
+    if (sluicePrepareDemandLaunch(r->loader, commands, &launch) != SLUICE_SUCCESS)
+        return false;
+    if (length > 0)
+        record_samples(r, commands, at);
+    if (length > 1)
+        CHECK_OK(sluiceEndDemandLaunch(r->loader, commands));
+    CHECK_OK(sluiceAbandonDemandLaunch(r->loader, &launch));
+    assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
+    assert_int_equal(h->BeginCommandBuffer(commands, &begin), VK_SUCCESS);
+    return true;
+}
+
 SluiceResult runner_submit(struct runner *r)
 {
     struct harness *h = r->h;
@@ -243,6 +263,9 @@ SluiceResult runner_submit(struct runner *r)
     assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
     assert_int_equal(h->BeginCommandBuffer(commands, &begin), VK_SUCCESS);
     SluiceDemandLaunch launch;
+    while (harness_abandons(h))
+        if (!abandon_launch(r, commands, at))
+            break;
     SluiceResult result = sluicePrepareDemandLaunch(r->loader, commands, &launch);
     if (result == SLUICE_SUCCESS) {
         record_samples(r, commands, at);
@@ -336,11 +359,18 @@ static void close_image(void *user, SluiceImageSource *source)
 void runner_image_init(struct runner_image *image, SluiceFormat format, uint32_t width,
                        uint32_t height, uint32_t seed)
 {
+    runner_image_init_as(
+        image, &(SluiceImageInfo){.width = width, .height = height, .format = format}, seed);
+}
+
+void runner_image_init_as(struct runner_image *image, const SluiceImageInfo *info, uint32_t seed)
+{
     *image = (struct runner_image){.seed = seed * 40503u};
     snprintf(image->name, sizeof image->name, "image %u", seed);
     SluiceProceduralImage procedural = {image, texel};
-    SluiceImageInfo info = {width, height, 0, format, image->name};
-    CHECK_OK(sluiceCreateProceduralImageSource(&procedural, &info, NULL, &image->inner));
+    SluiceImageInfo named = *info;
+    named.pName = image->name;
+    CHECK_OK(sluiceCreateProceduralImageSource(&procedural, &named, NULL, &image->inner));
     fault_source_init(&image->source, image->inner);
     CHECK_OK(sluiceGetImageInfo(image->inner, &image->info));
 }

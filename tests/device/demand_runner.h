@@ -69,6 +69,8 @@ struct runner_image {
 
 void runner_image_init(struct runner_image *image, SluiceFormat format, uint32_t width,
                        uint32_t height, uint32_t seed);
+/** With the address modes of `info`, too. */
+void runner_image_init_as(struct runner_image *image, const SluiceImageInfo *info, uint32_t seed);
 void runner_image_finish(struct runner_image *image);
 /** Opened by callback. */
 SluiceDemandImage runner_image_desc(struct runner_image *image);

@@ -281,6 +281,8 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
         return no_device(h, "the device lacks an extension that this test is about");
     if (!create_device(h, &extras))
         return 1;
+    const char *abandon = getenv("SLUICE_ABANDON");
+    h->abandon_one_in = abandon ? (uint32_t)strtoul(abandon, NULL, 10) : 0;
     fprintf(stderr, "# %s, residency %s, validation %s\n", h->caps.deviceName, h->mode_name,
             h->validates ? "on" : "absent");
     return 0;
@@ -292,6 +294,10 @@ int harness_finish(struct harness *h, int status)
     if (h->device) {
         h->DeviceWaitIdle(h->device);
         h->DestroyCommandPool(h->device, h->pool, NULL);
+        for (uint32_t i = 0; i < HARNESS_PROBE_KINDS; i++)
+            h->DestroyPipeline(h->device, h->probe_pipelines[i], NULL);
+        for (uint32_t i = 0; i < HARNESS_PAINT_KINDS; i++)
+            h->DestroyPipeline(h->device, h->paint_pipelines[i], NULL);
         h->DestroyDevice(h->device, NULL);
     }
     if (h->messenger)
@@ -304,6 +310,16 @@ int harness_finish(struct harness *h, int status)
     /* The loader stays: drivers keep threads and thread-local data that outlive an unload badly. */
     *h = (struct harness){0};
     return status;
+}
+
+/* Time stamps count frames here, and defaults in seconds would hide what tests look for. */
+static void fill_times(SluiceVulkanStreamerCreateInfo *info)
+{
+    info->timeStampsPerSecond = 60;
+    info->newestFeedbackMapOnly = info->feedbackTimeout == 0;
+    info->noStandbyTiles = info->numExtraStandbyTiles == 0;
+    if (info->retryDelay == 0)
+        info->retryDelay = 1;
 }
 
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
@@ -319,6 +335,7 @@ void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
         info->residencyMode = h->mode;
     info->log = (SluiceLogCallback){h, on_log};
     info->framesInFlight = HARNESS_FRAMES;
+    fill_times(info);
 }
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,
@@ -373,6 +390,33 @@ static void wait_for(struct harness *h, VkSemaphore semaphore, uint64_t value)
     assert_int_equal(h->WaitSemaphores(h->device, &info, UINT64_MAX), VK_SUCCESS);
 }
 
+bool harness_abandons(struct harness *h)
+{
+    if (h->abandon_one_in == 0)
+        return false;
+    h->abandon_turn = h->abandon_turn * 1664525u + 1013904223u;
+    bool abandons = (h->abandon_turn >> 16) % h->abandon_one_in == 0;
+    h->abandoned_count += abandons;
+    return abandons;
+}
+
+/* After its begin, its commands or its end; the command buffer is begun again. */
+static void abandon_frame(struct harness *h, SluiceVulkanStreamer *streamer,
+                          VkCommandBuffer commands,
+                          void (*record)(void *user, VkCommandBuffer commands), void *user)
+{
+    SluiceStreamingFrame frame;
+    uint32_t length = h->abandoned_count % 3;
+    CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, h->time, &frame));
+    if (record && length > 0)
+        record(user, commands);
+    if (length > 1)
+        CHECK_OK(sluiceEndStreamingFrame(streamer, commands));
+    CHECK_OK(sluiceAbandonStreamingFrame(streamer, &frame));
+    assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
+    begin_commands(h, commands);
+}
+
 void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
                    void (*record)(void *user, VkCommandBuffer commands), void *user)
 {
@@ -382,7 +426,10 @@ void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
         wait_for(h, h->last[at].semaphore, h->last[at].signalValue);
     begin_commands(h, commands);
     SluiceStreamingFrame frame;
-    CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, ++h->time, &frame));
+    h->time++;
+    while (harness_abandons(h))
+        abandon_frame(h, streamer, commands, record, user);
+    CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, h->time, &frame));
     if (record)
         record(user, commands);
     CHECK_OK(sluiceEndStreamingFrame(streamer, commands));

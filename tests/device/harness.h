@@ -5,12 +5,15 @@
  * Environment: SLUICE_DEVICE picks a device by index or by a part of its name. SLUICE_RESIDENCY is
  * the mode that is tested: sparse, paged, dense or auto, which is the default. Without a device
  * that has Vulkan 1.2 and that mode a test program exits with status 77 and says why.
+ * SLUICE_ABANDON=n: one in n frames and launches is recorded and given up, and then begun again.
  */
 #ifndef TESTS_DEVICE_HARNESS_H
 #define TESTS_DEVICE_HARNESS_H
 
 #include <sluice/vulkan.h>
 
+#define HARNESS_PROBE_KINDS 16u
+#define HARNESS_PAINT_KINDS 32u
 #define HARNESS_FRAMES 3u
 
 /* clang-format off */
@@ -62,13 +65,18 @@ struct harness {
     bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
     bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
+    /** Shared by all probers and painters of a kind: to compile one takes longer than to run it. */
+    VkPipeline probe_pipelines[HARNESS_PROBE_KINDS], paint_pipelines[HARNESS_PAINT_KINDS];
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
     uint32_t frame_count;
     SluiceStreamingFrame last[HARNESS_FRAMES]; ///< that used each command buffer
     uint64_t time;                             ///< of the last frame; one more each frame
     uint32_t log_count[3];                     ///< messages of the library by severity
-    bool quiet;                                ///< expected failures are counted but not printed
+    char last_message[256];                    ///< of any severity
+    uint32_t abandon_one_in; ///< frames, launches that are recorded and given up before; 0: none
+    uint32_t abandon_turn, abandoned_count;
+    bool quiet; ///< expected failures are counted but not printed
 #define HARNESS_MEMBER(name) PFN_vk##name name;
     HARNESS_INSTANCE_FUNCTIONS(HARNESS_MEMBER)
     HARNESS_DEVICE_FUNCTIONS(HARNESS_MEMBER)
@@ -85,7 +93,8 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);
 
-/** Fills in handles, queues, the log, and the mode if that is AUTO; the rest stays. */
+/** Fills in handles, queues, the log, the mode if that is AUTO, and frames as the unit of time:
+ * then 0 is the newest map alone, no standby tiles, and a second try at once. The rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,
@@ -109,6 +118,9 @@ void harness_settle(struct harness *h, SluiceVulkanStreamer *streamer, uint32_t 
 /** Commands outside of frames, waited for. */
 void harness_run(struct harness *h, void (*record)(void *user, VkCommandBuffer commands),
                  void *user);
+
+/** True in one of abandon_one_in calls, always in the same ones. Counts them. */
+bool harness_abandons(struct harness *h);
 
 /** Fails the test if validation has said anything. */
 void harness_check_silence(const struct harness *h);

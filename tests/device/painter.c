@@ -60,7 +60,7 @@ static VkShaderModule fragment_module(const struct painter *p, enum painter_feed
     return module(h, picture_frag, sizeof picture_frag);
 }
 
-static void create_pipeline(struct painter *p, enum painter_feedback feedback)
+static VkPipeline create_pipeline(const struct painter *p, enum painter_feedback feedback)
 {
     struct harness *h = p->prober->h;
     struct prober_specialization specialization;
@@ -103,11 +103,26 @@ static void create_pipeline(struct painter *p, enum painter_feedback feedback)
                                          .pMultisampleState = &samples,
                                          .layout = p->prober->layout,
                                          .renderPass = p->pass};
+    VkPipeline pipeline;
     assert_int_equal(
-        h->CreateGraphicsPipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
+        h->CreateGraphicsPipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
         VK_SUCCESS);
     h->DestroyShaderModule(h->device, stages[0].module, NULL);
     h->DestroyShaderModule(h->device, stages[1].module, NULL);
+    return pipeline;
+}
+
+/* Layout and render pass that it was made with may be gone: those of each painter are defined
+ * alike. */
+static VkPipeline shared_pipeline(const struct painter *p, enum painter_feedback feedback)
+{
+    struct harness *h = p->prober->h;
+    uint32_t kind = (uint32_t)feedback << 3 | (p->prober->paged ? 1 : 0) |
+                    (p->prober->codes ? 2 : 0) | (h->min_lod ? 4 : 0);
+    assert_true(kind < HARNESS_PAINT_KINDS);
+    if (!h->paint_pipelines[kind])
+        h->paint_pipelines[kind] = create_pipeline(p, feedback);
+    return h->paint_pipelines[kind];
 }
 
 void painter_init_as(struct painter *p, struct prober *prober, struct probe_texture texture,
@@ -115,7 +130,7 @@ void painter_init_as(struct painter *p, struct prober *prober, struct probe_text
 {
     *p = (struct painter){.prober = prober, .texture = texture};
     create_target(p);
-    create_pipeline(p, feedback);
+    p->pipeline = shared_pipeline(p, feedback);
 }
 
 void painter_init(struct painter *p, struct prober *prober, struct probe_texture texture)
@@ -127,7 +142,6 @@ void painter_finish(struct painter *p)
 {
     struct harness *h = p->prober->h;
     assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
-    h->DestroyPipeline(h->device, p->pipeline, NULL);
     h->DestroyFramebuffer(h->device, p->framebuffer, NULL);
     h->DestroyRenderPass(h->device, p->pass, NULL);
 }

@@ -9,8 +9,8 @@ struct painter {
     struct probe_texture texture;
     VkRenderPass pass;
     VkFramebuffer framebuffer;
-    VkPipeline pipeline;
-    uint32_t frame; ///< counts; the seed and the phase of the lattice
+    VkPipeline pipeline; ///< the harness's
+    uint32_t frame;      ///< counts; the seed and the phase of the lattice
     bool lattice;
     uint32_t layer; ///< PAINTER_LAYER: that is drawn
 };

@@ -8,6 +8,8 @@
 #include "probe_min_lod_codes_comp.h"
 #include "probe_min_lod_comp.h"
 
+#include <assert.h>
+
 #define BUFFERS 5u
 #define BINDINGS 7u
 
@@ -113,7 +115,7 @@ const VkSpecializationInfo *prober_specialize(const struct prober *p,
     return &s->info;
 }
 
-static void create_pipeline(struct prober *p)
+static VkPipeline create_pipeline(const struct prober *p)
 {
     struct prober_specialization specialization;
     struct harness *h = p->h;
@@ -130,6 +132,7 @@ static void create_pipeline(struct prober *p)
         module_info.codeSize = codes ? sizeof probe_min_lod_codes_comp : sizeof probe_min_lod_comp;
         module_info.pCode = codes ? probe_min_lod_codes_comp : probe_min_lod_comp;
     }
+    VkPipeline pipeline;
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &module_info, NULL, &module), VK_SUCCESS);
     VkComputePipelineCreateInfo info = {
@@ -141,9 +144,22 @@ static void create_pipeline(struct prober *p)
                   .pSpecializationInfo = prober_specialize(p, &specialization)},
         .layout = p->layout};
     assert_int_equal(
-        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &p->pipeline),
+        h->CreateComputePipelines(h->device, VK_NULL_HANDLE, 1, &info, NULL, &pipeline),
         VK_SUCCESS);
     h->DestroyShaderModule(h->device, module, NULL);
+    return pipeline;
+}
+
+/* The layout that it was made with may be gone: that of each prober is defined alike. */
+static VkPipeline shared_pipeline(const struct prober *p)
+{
+    const struct harness *h = p->h;
+    uint32_t kind =
+        (p->paged ? 1 : 0) | (p->codes ? 2 : 0) | (h->page_loop ? 4 : 0) | (h->min_lod ? 8 : 0);
+    static_assert(HARNESS_PROBE_KINDS == 16, "four switches");
+    if (!h->probe_pipelines[kind])
+        p->h->probe_pipelines[kind] = create_pipeline(p);
+    return h->probe_pipelines[kind];
 }
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
@@ -160,7 +176,7 @@ void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *stre
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     create_layouts(p);
     create_page_sets(p);
-    create_pipeline(p);
+    p->pipeline = shared_pipeline(p);
 }
 
 void prober_finish(struct prober *p)
@@ -169,7 +185,6 @@ void prober_finish(struct prober *p)
     for (uint32_t i = 0; i < p->sampler_count; i++)
         h->DestroySampler(h->device, p->samplers[i], NULL);
     h->DestroyDescriptorPool(h->device, p->pool, NULL);
-    h->DestroyPipeline(h->device, p->pipeline, NULL);
     h->DestroyPipelineLayout(h->device, p->layout, NULL);
     h->DestroyDescriptorSetLayout(h->device, p->set_layout, NULL);
     h->DestroyDescriptorSetLayout(h->device, p->page_layout, NULL);

@@ -33,7 +33,7 @@ struct prober {
         uint64_t generation; ///< of the page views in it
     } pages[HARNESS_FRAMES];
     VkPipelineLayout layout;
-    VkPipeline pipeline;
+    VkPipeline pipeline; ///< the harness's
     VkDescriptorPool pool;
     VkSampler samplers[PROBE_MAX_SAMPLERS];
     struct {

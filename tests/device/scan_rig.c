@@ -1,5 +1,6 @@
 #include "device/scan_rig.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -126,7 +127,7 @@ static void record_scan(void *user, VkCommandBuffer commands)
     demand_rig_record_upload(&r->vk, commands, &r->sections, &r->scan.sections);
     /* by one workgroup or by several passes: nobody can tell */
     r->scan.section_count = 1;
-    r->scan.one_group_sections = rand() % 2 ? UINT32_MAX : 0;
+    r->scan.one_group_sections = roll() % 2 ? UINT32_MAX : 0;
     slc_demand_scan_record(&r->scan, &r->vk, commands, r->slot, r->page_end, r->capacity);
     demand_rig_record_download(&r->vk, commands, &r->scan.requests, &r->requests_after);
     demand_rig_record_download(&r->vk, commands, &r->scan.sections, &r->sections_after);

@@ -1,11 +1,11 @@
 #include "device/scene.h"
 
 #include "base/checked.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 void scene_init(struct scene *scene, struct harness *h, SluiceVulkanStreamerCreateInfo info)
@@ -77,7 +77,7 @@ const struct ProbeOutput *scene_outputs(const struct scene *scene, uint32_t text
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 void scene_aim(struct scene *scene, uint32_t index, uint32_t count, const struct scene_aim *aim)
@@ -91,7 +91,7 @@ void scene_aim(struct scene *scene, uint32_t index, uint32_t count, const struct
         double scale = exp2(aim->min_lod + draw() * (aim->max_lod - aim->min_lod));
         double ratio = aim->max_ratio > 0 ? 1 + draw() * (aim->max_ratio - 1) : 1;
         double angle = aim->max_ratio > 0 ? draw() * 6.2831853 : 0;
-        double skew = aim->max_ratio > 0 && rand() % 2 ? angle + draw() * 6.2831853 : angle;
+        double skew = aim->max_ratio > 0 && roll() % 2 ? angle + draw() * 6.2831853 : angle;
         inputs[i] = (struct ProbeInput){
             .uv = {(float)(aim->left + draw() * aim->width),
                    (float)(aim->top + draw() * aim->height)},

@@ -4,6 +4,7 @@
  */
 #include "device/suite.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -206,19 +207,19 @@ static void anisotropic_footprints_that_grow_with_a_bias_find_their_tiles(void *
  */
 static void add_skewed(struct suite *s)
 {
-    srand(71);
+    roll_seed(71);
     for (uint32_t i = 0; i < 8192; i++) {
         struct SluiceTextureEntry e = conform_entry(512, 512, 64, 64, suite_modes[i % SUITE_MODES]);
-        double angle = 6.2832 * rand() / RAND_MAX, turn = 0.3 * rand() / RAND_MAX;
-        double length = exp2(7.0 * rand() / RAND_MAX) / 512, ratio = exp2(2.0 * rand() / RAND_MAX);
+        double angle = 6.2832 * roll() / ROLL_MAX, turn = 0.3 * roll() / ROLL_MAX;
+        double length = exp2(7.0 * roll() / ROLL_MAX) / 512, ratio = exp2(2.0 * roll() / ROLL_MAX);
         struct ConformInput in = {
             .dx = {(float)(cos(angle) * length), (float)(sin(angle) * length)},
             .dy = {(float)(cos(angle + turn) * length * ratio),
                    (float)(sin(angle + turn) * length * ratio)},
-            .maxAnisotropy = (float)(1 << rand() % 5)};
-        double border = 64.0 * (rand() % 9) / 512,
-               away = 3 * length * (2.0 * rand() / RAND_MAX - 1);
-        suite_add(s, e, in, border + away, (double)rand() / RAND_MAX);
+            .maxAnisotropy = (float)(1 << roll() % 5)};
+        double border = 64.0 * (roll() % 9) / 512,
+               away = 3 * length * (2.0 * roll() / ROLL_MAX - 1);
+        suite_add(s, e, in, border + away, (double)roll() / ROLL_MAX);
     }
 }
 
@@ -341,16 +342,16 @@ static void tail_levels_are_marked_as_they_are(void **state)
 static void the_largest_textures_find_their_tiles(void **state)
 {
     struct suite *s = suite_begin(*state);
-    srand(72);
+    roll_seed(72);
     for (uint32_t i = 0; i < 300; i++) {
         struct SluiceTextureEntry e =
             conform_entry(16384, i % 3 ? 16384 : 16383, 128, 128, suite_modes[i % SUITE_MODES]);
-        struct ConformInput in = suite_level_input(&e, 15.0 * rand() / RAND_MAX);
-        in.maxAnisotropy = (float)(1 << rand() % 5);
-        in.dx[0] *= (float)(1 + rand() % 20);
-        double border = 128.0 * (rand() % 129) / 16384;
-        double away = exp2(16.0 * rand() / RAND_MAX) / 16384;
-        suite_add(s, e, in, rand() % 2 ? border + away : border - away, (double)rand() / RAND_MAX);
+        struct ConformInput in = suite_level_input(&e, 15.0 * roll() / ROLL_MAX);
+        in.maxAnisotropy = (float)(1 << roll() % 5);
+        in.dx[0] *= (float)(1 + roll() % 20);
+        double border = 128.0 * (roll() % 129) / 16384;
+        double away = exp2(16.0 * roll() / ROLL_MAX) / 16384;
+        suite_add(s, e, in, roll() % 2 ? border + away : border - away, (double)roll() / ROLL_MAX);
     }
     suite_end(s, "largest");
 }
@@ -358,16 +359,16 @@ static void the_largest_textures_find_their_tiles(void **state)
 /* Places and levels as a picture has them, not those that are hard. */
 static void add_ordinary(struct suite *s, float anisotropy)
 {
-    srand(73);
+    roll_seed(73);
     for (uint32_t i = 0; i < 4000; i++) {
         struct SluiceTextureEntry e = conform_entry(4096, 4096, 128, 128, 0);
-        double lod = 5.0 * rand() / RAND_MAX, angle = 6.2832 * rand() / RAND_MAX;
-        double ratio = anisotropy > 1 ? exp2(4.0 * rand() / RAND_MAX) : 1;
+        double lod = 5.0 * roll() / ROLL_MAX, angle = 6.2832 * roll() / ROLL_MAX;
+        double ratio = anisotropy > 1 ? exp2(4.0 * roll() / ROLL_MAX) : 1;
         double minor = exp2(lod) / 4096, major = minor * ratio;
         struct ConformInput in = {.dx = {(float)(cos(angle) * major), (float)(sin(angle) * major)},
                                   .dy = {(float)(-sin(angle) * minor), (float)(cos(angle) * minor)},
                                   .maxAnisotropy = anisotropy};
-        suite_add(s, e, in, (double)rand() / RAND_MAX, (double)rand() / RAND_MAX);
+        suite_add(s, e, in, (double)roll() / ROLL_MAX, (double)roll() / ROLL_MAX);
     }
 }
 

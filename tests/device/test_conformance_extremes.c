@@ -4,11 +4,11 @@
  */
 #include "device/suite.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const float specials[] = {
     0.0f,  -0.0f,     1e-45f, -1e-45f, 1e-38f,   FLT_MIN,  1e-20f,     0.5f,  0.999999f,
@@ -109,7 +109,7 @@ static void coordinates_far_outside_wrap_exactly(void **state)
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 /* A multiple of 2^-18, so that the differences between fragments are exact. */
@@ -121,20 +121,20 @@ static float rounded(double x)
 static void random_samples_find_their_tiles_in_all_stages(void **state)
 {
     struct suite *s = suite_begin(*state);
-    srand(91);
+    roll_seed(91);
     for (uint32_t i = 0; i < 40000; i++) {
         struct SluiceTextureEntry e =
             conform_entry(1 + (uint32_t)(exp2(draw() * 11)), 1 + (uint32_t)(exp2(draw() * 11)),
-                          32u << rand() % 4, 32u << rand() % 4, suite_modes[i % SUITE_MODES]);
-        e.addressModeV = suite_modes[(uint32_t)rand() % SUITE_MODES];
+                          32u << roll() % 4, 32u << roll() % 4, suite_modes[i % SUITE_MODES]);
+        e.addressModeV = suite_modes[(uint32_t)roll() % SUITE_MODES];
         double length = exp2(draw() * (e.mipLevelCount + 2) - 2), angle = draw() * 6.2832;
-        double ratio = rand() % 2 ? 1 : exp2(draw() * 6), turn = rand() % 2 ? 1.5708 : draw();
+        double ratio = roll() % 2 ? 1 : exp2(draw() * 6), turn = roll() % 2 ? 1.5708 : draw();
         struct ConformInput in = {.dx = {rounded(cos(angle) * length * ratio / e.width),
                                          rounded(sin(angle) * length * ratio / e.height)},
                                   .dy = {rounded(cos(angle + turn) * length / e.width),
                                          rounded(sin(angle + turn) * length / e.height)},
-                                  .lodBias = rand() % 3 ? 0 : (float)(draw() * 4 - 2),
-                                  .maxAnisotropy = rand() % 2 ? 1 : (float)(1 + draw() * 15),
+                                  .lodBias = roll() % 3 ? 0 : (float)(draw() * 4 - 2),
+                                  .maxAnisotropy = roll() % 2 ? 1 : (float)(1 + draw() * 15),
                                   .mode = i % 4 ? CONFORM_IMPLICIT : CONFORM_LOD,
                                   .lod = (float)(draw() * 14 - 2)};
         suite_add(s, e, in, (double)rounded(draw() * 3 - 1), (double)rounded(draw() * 3 - 1));

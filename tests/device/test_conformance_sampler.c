@@ -5,10 +5,10 @@
 #include "device/suite.h"
 #include "device/truth.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define SAMPLES 1536u
 
@@ -24,7 +24,7 @@ static struct comparison comparison;
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 /* A multiple of 2^-18, so that the differences between fragments are exact. */
@@ -35,12 +35,12 @@ static float rounded(double x)
 
 static double random_coordinate(uint32_t size, uint32_t region, double length)
 {
-    double border = (double)(rand() % (int)(size / region + 2)) * region / size;
-    switch (rand() % 4) {
+    double border = (double)(roll() % (int)(size / region + 2)) * region / size;
+    switch (roll() % 4) {
     case 0: return draw() * 3 - 1;
     case 1: return border + (draw() - 0.5) * length * 4;
     case 2: return border + (draw() - 0.5) * 2 / size;
-    default: return border + (rand() % 2 ? 0.5 : -0.5) * length;
+    default: return border + (roll() % 2 ? 0.5 : -0.5) * length;
     }
 }
 
@@ -48,13 +48,13 @@ static struct ConformInput random_input(const struct SluiceTextureEntry *e, floa
                                         bool biased)
 {
     double texels = exp2(draw() * (e->mipLevelCount + 1) - 1), angle = draw() * 6.2832;
-    double ratio = rand() % 2 ? exp2(draw() * 5) : 1;
-    double turn = rand() % 2 ? 1.5708 : draw() * draw() * 1.5708;
+    double ratio = roll() % 2 ? exp2(draw() * 5) : 1;
+    double turn = roll() % 2 ? 1.5708 : draw() * draw() * 1.5708;
     double x = texels / e->width, y = texels / e->height;
     struct ConformInput in = {
         .dx = {rounded(cos(angle) * x * ratio), rounded(sin(angle) * y * ratio)},
         .dy = {rounded(cos(angle + turn) * x), rounded(sin(angle + turn) * y)},
-        .lodBias = biased ? (float)(rand() % 33 - 16) / 8 : 0,
+        .lodBias = biased ? (float)(roll() % 33 - 16) / 8 : 0,
         .maxAnisotropy = anisotropy};
     in.uv[0] = rounded(random_coordinate(e->width, e->regionWidth, x * ratio));
     in.uv[1] = rounded(random_coordinate(e->height, e->regionHeight, y * ratio));
@@ -124,7 +124,7 @@ static void compare_all(struct harness *h, const char *what, enum conform_stage 
     struct comparison *c = &comparison;
     uint64_t needed[FILTERS] = {0}, excess[FILTERS] = {0};
     conform_init(&c->conform, h);
-    srand(81);
+    roll_seed(81);
     for (uint32_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         struct SluiceTextureEntry e =
             conform_entry(sizes[s][0], sizes[s][1], sizes[s][2], sizes[s][3], 0);

@@ -6,10 +6,10 @@
  */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define TEXTURES 16u
@@ -78,7 +78,7 @@ static const SluiceImageSourceInterface holed_interface = {get_info, read_region
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 /* No borders: their colour would look like texels that are not resident. */
@@ -89,7 +89,7 @@ static VkSamplerAddressMode address_mode(const struct harness *h)
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
         h->mirror_clamp ? VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
                         : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-    return modes[rand() % 4];
+    return modes[roll() % 4];
 }
 
 static void make_kinds(struct harness *h)
@@ -107,27 +107,27 @@ static void make_kinds(struct harness *h)
  * beside it. */
 static float coordinate(uint32_t size, double texels)
 {
-    if (rand() % 2)
+    if (roll() % 2)
         return (float)(draw() * 3 - 1);
-    uint32_t tile = 64u << rand() % 2;
+    uint32_t tile = 64u << roll() % 2;
     double corner = floor(draw() * size / (tile * texels) + 0.5) * tile * texels;
-    return (float)((corner + (draw() - 0.5) * (4 << rand() % 4) * texels) / size +
-                   (rand() % 4 ? 0 : rand() % 3 - 1));
+    return (float)((corner + (draw() - 0.5) * (4 << roll() % 4) * texels) / size +
+                   (roll() % 4 ? 0 : roll() % 3 - 1));
 }
 
 /* Magnified by up to 16 and up to the end of the chain; twice as long as anisotropy reaches. */
 static struct ProbeInput random_input(const struct kind *kind)
 {
     double texels = exp2(draw() * 10 - 4), angle = draw() * 6.2831853;
-    double ratio = rand() % 3 ? exp2(draw() * (kind->anisotropy > 1 ? 6 : 2)) : 1;
-    double turn = rand() % 3 ? 1.5707963 : draw() * 3;
-    angle = rand() % 2 ? angle : rand() % 4 * 1.5707963;
+    double ratio = roll() % 3 ? exp2(draw() * (kind->anisotropy > 1 ? 6 : 2)) : 1;
+    double turn = roll() % 3 ? 1.5707963 : draw() * 3;
+    angle = roll() % 2 ? angle : roll() % 4 * 1.5707963;
     double w = texels / kind->width, h = texels / kind->height;
     return (struct ProbeInput){
         .uv = {coordinate(kind->width, fmax(texels, 1)), coordinate(kind->height, fmax(texels, 1))},
         .dx = {(float)(cos(angle) * w * ratio), (float)(sin(angle) * h * ratio)},
         .dy = {(float)(cos(angle + turn) * w), (float)(sin(angle + turn) * h)},
-        .lodBias = rand() % 4 ? 0 : (float)(rand() % 17 - 8) / 4,
+        .lodBias = roll() % 4 ? 0 : (float)(roll() % 17 - 8) / 4,
         .maxAnisotropy = kind->anisotropy};
 }
 
@@ -139,7 +139,7 @@ static void aim_anywhere(struct scene *scene, bool no_feedback)
         struct ProbeInput *inputs = scene_inputs(scene, t);
         for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
             inputs[i] = random_input(&kinds[t]);
-        scene->textures[t].sample_count = no_feedback ? SCENE_SAMPLES : 1u << rand() % 6;
+        scene->textures[t].sample_count = no_feedback ? SCENE_SAMPLES : 1u << roll() % 6;
         scene->textures[t].no_feedback = no_feedback;
     }
 }
@@ -150,16 +150,16 @@ static void aim_at_islands(struct scene *scene, bool no_feedback)
 {
     static uint32_t column, row;
     if (!no_feedback) {
-        column = (uint32_t)rand() % 16;
-        row = (uint32_t)rand() % 16;
+        column = (uint32_t)roll() % 16;
+        row = (uint32_t)roll() % 16;
     }
     for (uint32_t t = 0; t < TEXTURES; t++) {
         struct ProbeInput *inputs = scene_inputs(scene, t);
         for (uint32_t i = 0; i < SCENE_SAMPLES; i++) {
-            bool along = rand() % 2;
+            bool along = roll() % 2;
             double texel = 1.0 / kinds[t].width, tile = 64 * texel;
             double minor = exp2(draw() * 2) * texel, major = minor * exp2(draw() * 6);
-            double edge = (rand() % 2 ? tile : 0) + (draw() - 0.5) * 64 * texel, at = tile * draw();
+            double edge = (roll() % 2 ? tile : 0) + (draw() - 0.5) * 64 * texel, at = tile * draw();
             inputs[i] =
                 (struct ProbeInput){.uv = {(float)(column * tile + (along ? at : edge)),
                                            (float)(row * tile + (along ? edge : at))},
@@ -215,7 +215,7 @@ static void draw_round(struct scene *scene, uint32_t round, aim_function *aim)
 {
     struct harness *h = scene->h;
     aim(scene, false);
-    harness_settle(h, scene->streamer, 1 + (uint32_t)rand() % 6, scene_record, scene);
+    harness_settle(h, scene->streamer, 1 + (uint32_t)roll() % 6, scene_record, scene);
     aim(scene, true);
     harness_settle(h, scene->streamer, 1, scene_record, scene);
     for (uint32_t t = 0; t < TEXTURES; t++)
@@ -355,14 +355,14 @@ static void make_islands(const struct harness *h)
 
 static void random_residency_shows_no_texel_that_is_not_there(void **state)
 {
-    srand(31);
+    roll_seed(31);
     make_kinds(*state);
     compare(*state, aim_anywhere);
 }
 
 static void random_residency_that_fades_shows_no_texel_that_is_not_there(void **state)
 {
-    srand(33);
+    roll_seed(33);
     make_kinds(*state);
     fade_time = 7;
     compare(*state, aim_anywhere);
@@ -375,7 +375,7 @@ static void residency_that_the_sampler_clamps_shows_no_texel_that_is_not_there(v
     if (!h->caps.shaderResourceMinLod)
         SKIP_TEST("the device has no shaderResourceMinLod");
     h->min_lod = true;
-    srand(34);
+    roll_seed(34);
     make_kinds(h);
     fade_time = 7;
     compare(h, aim_anywhere);
@@ -387,7 +387,7 @@ static void residency_that_the_sampler_clamps_shows_no_texel_that_is_not_there(v
 
 static void what_reaches_over_an_edge_of_residency_finds_it(void **state)
 {
-    srand(32);
+    roll_seed(32);
     make_islands(*state);
     compare(*state, aim_at_islands);
 }

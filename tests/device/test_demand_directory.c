@@ -3,11 +3,11 @@
 
 #include "demand_vulkan/scan.h"
 #include "support/failing_allocator.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include "base/alloc.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static SluiceAllocationCallbacks cb;
@@ -45,7 +45,7 @@ static void change_some(struct directory_rig *r, uint32_t count)
 static void the_device_shows_what_a_naive_table_shows(void **state)
 {
     static const uint32_t capacities[] = {1, 7, 63, 64, 500};
-    srand(81);
+    roll_seed(81);
     for (uint32_t i = 0; i < sizeof capacities / sizeof capacities[0]; i++) {
         struct directory_rig r;
         directory_rig_init(&r, *state, &cb, 1u << 14, capacities[i]);
@@ -99,7 +99,7 @@ static void fill_uses(struct directory_rig *r)
 static void used_bits_arrive_whoever_has_the_blocks_by_then(void **state)
 {
     struct directory_rig r;
-    srand(82);
+    roll_seed(82);
     directory_rig_init(&r, *state, &cb, 1u << 13, 90);
     uint32_t used = 0;
     for (uint32_t round = 0; round < 80; round++) {

@@ -73,6 +73,29 @@ static void an_image_that_cannot_be_opened_shows_its_failure_colour(void **state
     h.quiet = false;
 }
 
+static void a_failure_names_the_image_that_was_never_open(void **state)
+{
+    struct runner r;
+    struct runner_image image;
+    struct told told = {0};
+    const SluiceDemandLoaderCreateInfo info = quick_retries(&told);
+    (void)state;
+    h.quiet = true;
+    runner_init(&r, &h, &info);
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
+    image.open_result = SLUICE_ERROR_UNSUPPORTED;
+    SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
+    create.image.pName = "bricks.store";
+    SluiceDemandTextureId id;
+    CHECK_OK(sluiceCreateDemandTexture(r.loader, &create, &id));
+    runner_add_texel(&r, id, 300, 300, 0, 9, 9);
+    runner_load(&r, 9);
+    assert_memory_equal(h.last_message, "bricks.store cannot be used as a texture", 40);
+    runner_finish(&r);
+    runner_image_finish(&image);
+    h.quiet = false;
+}
+
 /* Its info is what the test says. */
 struct liar {
     SluiceImageSource base;
@@ -105,6 +128,8 @@ static void images_that_no_shader_could_sample_are_refused(void **state)
         {.info = {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"}},
         {.info = {(1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM, "too wide"}},
         {.info = {16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"}},
+        {.info = {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"}},
+        {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, "more layers than any array", UINT32_MAX}},
         {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, "layers", 2}},
         {.info = {16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"}},
         {.info = {16, 16, 5, (SluiceFormat)99, "unknown format"}},
@@ -284,6 +309,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_image_that_cannot_be_opened_shows_its_failure_colour),
+        cmocka_unit_test(a_failure_names_the_image_that_was_never_open),
         cmocka_unit_test(images_that_no_shader_could_sample_are_refused),
         cmocka_unit_test(a_tile_that_cannot_be_read_is_shown_by_coarser_ones),
         cmocka_unit_test(without_its_coarse_levels_a_texture_fails),

@@ -26,6 +26,46 @@ static void check_blurred(struct runner *r, struct runner_image *image, uint32_t
     runner_check_texel(r, sample, image, level, x >> level, y >> level);
 }
 
+static void a_new_loader_takes_little_staging_memory_and_more_when_it_reads(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image image;
+    runner_init(&r, &h, &(SluiceDemandLoaderCreateInfo){.memoryBudget = 40u << 20});
+    uint64_t little = runner_statistics(&r).hostVisibleMemorySize;
+    assert_true(little < 12u << 20); /* 1024 tiles in flight would take 64 MiB */
+    runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 0);
+    add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
+    runner_load(&r, 60);
+    SluiceDemandStatistics loaded = runner_statistics(&r);
+    assert_true(loaded.hostVisibleMemorySize >= little + (4u << 20));
+    assert_in_range(loaded.pageChunkCount, 1, 64);
+    assert_int_equal(loaded.pageChunkShortages, 0);
+    for (uint32_t i = 0; i < 110; i++)
+        runner_launch(&r);
+    assert_true(runner_statistics(&r).hostVisibleMemorySize == loaded.hostVisibleMemorySize);
+    for (uint32_t i = 0; i < 20; i++) /* 120 idle launches are over */
+        runner_launch(&r);
+    assert_true(runner_statistics(&r).hostVisibleMemorySize < little + (1u << 20));
+    runner_finish(&r);
+    runner_image_finish(&image);
+}
+
+static void a_loader_makes_the_staging_memory_that_it_is_asked_for(void **state)
+{
+    (void)state;
+    uint64_t sizes[2];
+    for (int i = 0; i < 2; i++) {
+        struct runner r;
+        const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 40u << 20,
+                                                   .minStagingSize = i ? UINT64_MAX : 0};
+        runner_init(&r, &h, &info);
+        sizes[i] = runner_statistics(&r).hostVisibleMemorySize;
+        runner_finish(&r);
+    }
+    assert_int_equal(sizes[1] - sizes[0], 60u << 20); /* 1024 tiles in flight, less 4 MiB */
+}
+
 static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **state)
 {
     (void)state;
@@ -221,6 +261,39 @@ static void formats_share_a_budget(void **state)
         assert_true(runner_all_resident(&r));
         assert_true(statistics.tileMemorySize <= info.memoryBudget);
     }
+    runner_finish(&r);
+    for (uint32_t i = 0; i < 2; i++)
+        runner_image_finish(&images[i]);
+}
+
+/* As many images of pages as formats: that of the second one comes when one of the first, whose
+ * tiles take all of them at first, has run empty. */
+static void formats_share_few_images_of_pages(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image images[2];
+    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 512u << 20, .maxPageChunkCount = 2};
+    h.quiet = true;
+    runner_init(&r, &h, &info);
+    assert_non_null(strstr(h.last_message, "at most 8 MiB of the memoryBudget"));
+    for (uint32_t i = 0; i < 2; i++) {
+        runner_image_init(&images[i],
+                          i ? SLUICE_FORMAT_R32G32B32A32_SFLOAT : SLUICE_FORMAT_R8G8B8A8_UNORM,
+                          SIZE, SIZE, i);
+        add_tiles(&r, runner_add_texture(&r, &images[i]), 0, TILES);
+    }
+    for (uint32_t i = 0; i < 60; i++) {
+        runner_launch(&r);
+        CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
+    }
+    assert_in_range(runner_load(&r, 60), 1, 59);
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    assert_true(runner_all_resident(&r));
+    assert_int_equal(statistics.pageChunkCount, 2);
+    assert_true(statistics.lodBias < 4);
+    assert_in_range(statistics.residentTileCount, 50, 2 * 64);
+    h.quiet = false;
     runner_finish(&r);
     for (uint32_t i = 0; i < 2; i++)
         runner_image_finish(&images[i]);
@@ -491,6 +564,8 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_new_loader_takes_little_staging_memory_and_more_when_it_reads),
+        cmocka_unit_test(a_loader_makes_the_staging_memory_that_it_is_asked_for),
         cmocka_unit_test(a_working_set_beyond_the_budget_ends_complete_and_blurrier),
         cmocka_unit_test(without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there),
         cmocka_unit_test(tiles_that_nobody_uses_make_room_and_come_back_unread),
@@ -498,6 +573,7 @@ int main(void)
         cmocka_unit_test(tiles_that_were_evicted_and_not_overwritten_need_no_read),
         cmocka_unit_test(without_eviction_what_is_there_stays),
         cmocka_unit_test(formats_share_a_budget),
+        cmocka_unit_test(formats_share_few_images_of_pages),
         cmocka_unit_test(preloaded_levels_are_there_before_they_are_sampled),
         cmocka_unit_test(what_finds_no_memory_is_left_out_of_a_preload),
         cmocka_unit_test(a_device_without_memory_is_a_smaller_budget),

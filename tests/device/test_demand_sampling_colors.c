@@ -4,10 +4,10 @@
 #include "device/demand_images.h"
 #include "device/demand_samples.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define STEP (1.0 / 255.0)
@@ -75,7 +75,7 @@ static void colors_are_those_of_the_filter(void **state)
 {
     uint32_t sure = 0;
     double worst = 0;
-    srand(11);
+    roll_seed(11);
     for (int round = 0; round < 6; round++)
         worst = fmax(worst, try_samplers(*state, DEMAND_SHADER_COMPUTE, false, &sure));
     print_message("# at most %.2f steps of 255 off, %u samples\n", worst / STEP, sure);
@@ -87,7 +87,7 @@ static void tails_of_compressed_formats_are_found_in_their_places(void **state)
 {
     struct demand_scene *scene = *state;
     uint32_t sure = 0;
-    srand(12);
+    roll_seed(12);
     demand_scene_reshape(scene, VK_FORMAT_R8G8B8A8_UNORM, 7, 6);
     assert_true(try_samplers(scene, DEMAND_SHADER_COMPUTE, true, &sure) < 2 * STEP);
     assert_true(try_samplers(scene, DEMAND_SHADER_COMPUTE, false, &sure) < 2 * STEP);
@@ -97,7 +97,7 @@ static void tails_of_compressed_formats_are_found_in_their_places(void **state)
 static void images_found_by_a_loop_are_those_found_by_an_index(void **state)
 {
     uint32_t sure = 0;
-    srand(13);
+    roll_seed(13);
     assert_true(try_samplers(*state, DEMAND_SHADER_LOOP, false, &sure) < 2 * STEP);
     assert_true(sure > DEMAND_SAMPLES / 2);
 }
@@ -113,7 +113,7 @@ static void describe(const struct DemandInput *in, uint32_t mode, int channel, d
  */
 static void make_whole(struct DemandInput *in, const struct demand_texture *t)
 {
-    double side = exp2(rand() % 8);
+    double side = exp2(roll() % 8);
     in->dx[0] = (float)(side / t->width);
     in->dy[1] = (float)(side / t->height);
     in->dx[1] = in->dy[0] = 0;
@@ -123,7 +123,7 @@ static void isotropic_samples_are_those_of_a_sampler(void **state)
 {
     struct demand_scene *scene = *state;
     double worst = 0;
-    srand(14);
+    roll_seed(14);
     for (uint32_t mode = 0; mode < (scene->h->mirror_clamp ? 5 : 4); mode++) {
         demand_scene_clear(scene);
         struct demand_texture t = {.width = 300,
@@ -192,7 +192,7 @@ static void check_grid_sample(struct demand_scene *scene, uint32_t grid, const u
 static void grids_show_their_textures_clamped_and_a_color_beyond(void **state)
 {
     struct demand_scene *scene = *state;
-    srand(15);
+    roll_seed(15);
     demand_scene_clear(scene);
     expectation = (struct demand_expectation){.scene = scene};
     uint32_t cells[6];

@@ -8,10 +8,10 @@
 
 #include "base/checked.h"
 #include "demand/tail_place.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define TILE_LOG2 7u
@@ -109,7 +109,7 @@ static void samples_ask_for_all_that_they_touch_and_no_more(void **state)
     struct demand_scene *scene = *state;
     static struct sets sets;
     static uint32_t first_page[DEMAND_SAMPLES + 1];
-    srand(1);
+    roll_seed(1);
     struct totals totals = {0};
     for (uint32_t round = 0; round < ROUNDS; round++) {
         enum demand_shader shader =
@@ -142,21 +142,21 @@ static void samples_ask_for_all_that_they_touch_and_no_more(void **state)
 static void lod_is_that_of_long_double(void **state)
 {
     struct demand_scene *scene = *state;
-    srand(2);
+    roll_seed(2);
     double worst = 0;
     for (int round = 0; round < 16; round++) {
         for (uint32_t i = 0; i < DEMAND_SAMPLES; i++) {
             struct DemandInput *in = &demand_inputs(scene)[i];
             double length = exp2(80 * demand_random() - 40), other = length;
-            if (rand() % 4)
+            if (roll() % 4)
                 other *= pow(10, 12 * demand_random() - 6);
             double angle = 6.2832 * demand_random();
-            double lean = rand() % 2 ? 6.2832 * demand_random() : 1.5708 + 1e-3 * demand_random();
+            double lean = roll() % 2 ? 6.2832 * demand_random() : 1.5708 + 1e-3 * demand_random();
             *in = (struct DemandInput){
                 .kind = DEMAND_FORMULA,
                 .dx = {(float)(length * cos(angle)), (float)(length * sin(angle))},
                 .dy = {(float)(other * cos(angle + lean)), (float)(other * sin(angle + lean))},
-                .lod = rand() % 4 ? 1 + (float)(63 * demand_random()) : 1};
+                .lod = roll() % 4 ? 1 + (float)(63 * demand_random()) : 1};
         }
         demand_scene_run(scene, DEMAND_SHADER_COMPUTE, DEMAND_SAMPLES);
         for (uint32_t i = 0; i < DEMAND_SAMPLES; i++) {

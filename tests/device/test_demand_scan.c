@@ -1,6 +1,7 @@
 /* The scan of requests against sorting on the host, bit by bit. */
 #include "device/scan_rig.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/compute.h"
 
@@ -55,7 +56,7 @@ static void request_some(struct scan_rig *r, uint32_t count)
 static void lists_are_sorted_by_age_rank_and_id(void **state)
 {
     static const uint32_t sizes[] = {1, 2, 4, 5, 31, 32, 33, 127, 128, 129, 1000, 4097};
-    srand(71);
+    roll_seed(71);
     for (uint32_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         struct scan_rig r;
         uint32_t most = sizes[i] < 20 ? sizes[i] * SECTION : 20000;
@@ -73,7 +74,7 @@ static void lists_are_sorted_by_age_rank_and_id(void **state)
 static void capacities_of_none_and_one_and_just_enough(void **state)
 {
     struct scan_rig r;
-    srand(72);
+    roll_seed(72);
     scan_rig_init(&r, *state, 50, 3001, 50 * SECTION);
     give_ranks(&r);
     for (uint32_t i = 0; i < 3000; i++)
@@ -91,7 +92,7 @@ static void capacities_of_none_and_one_and_just_enough(void **state)
 static void repeated_scans_lose_nothing_and_list_nothing_twice(void **state)
 {
     struct scan_rig r;
-    srand(73);
+    roll_seed(73);
     scan_rig_init(&r, *state, 300, 500, 300 * SECTION);
     give_ranks(&r);
     uint32_t requested = 0, listed = 0, round = 0;
@@ -180,7 +181,7 @@ static void flags_of_sections_without_requests_go_and_do_not_count(void **state)
 static void ranks_may_change_a_few_at_a_time(void **state)
 {
     struct scan_rig r;
-    srand(74);
+    roll_seed(74);
     scan_rig_init(&r, *state, 5003, 400, 100000);
     give_ranks(&r);
     for (uint32_t round = 0; round < 12; round++) {
@@ -220,7 +221,7 @@ static void forgotten_pages_are_not_listed(void **state)
 static void sixty_four_mi_pages_are_scanned_to_both_ends(void **state)
 {
     struct scan_rig r;
-    srand(75);
+    roll_seed(75);
     scan_rig_init(&r, *state, 65536, 1u << 18, 1u << 20);
     give_ranks(&r);
     for (uint32_t round = 0; round < 3; round++) {
@@ -237,7 +238,7 @@ static void sixty_four_mi_pages_are_scanned_to_both_ends(void **state)
 static void every_bit_of_sixty_four_mi_may_be_set(void **state)
 {
     struct scan_rig r;
-    srand(76);
+    roll_seed(76);
     scan_rig_init(&r, *state, 65536, 1u << 20, 1u << 20);
     give_ranks(&r);
     memset(r.requests.mapped, 0xFF, r.requests.size);

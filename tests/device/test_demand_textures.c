@@ -169,6 +169,42 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     runner_image_finish(&image);
 }
 
+/* Zero in a sampler is the mode that the image records; REPEAT where it records none. */
+static void address_modes_are_those_of_the_image_unless_they_are_explicit(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct runner_image clamped, plain;
+    SluiceDemandTextureId ids[3];
+    const SluiceImageInfo info = {.width = 512,
+                                  .height = 512,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .addressModeU = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  .addressModeV = SLUICE_IMAGE_ADDRESS_MODE_REPEAT};
+    runner_init(&r, &h, NULL);
+    runner_image_init_as(&clamped, &info, 5);
+    runner_image_init(&plain, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 6);
+    ids[0] = runner_add_texture(&r, &clamped);
+    ids[1] = runner_add_texture(&r, &plain);
+    SluiceDemandTextureCreateInfo repeats = {.image = runner_image_desc(&clamped),
+                                             .sampler = runner_nearest};
+    repeats.sampler.explicitAddressModes = true;
+    CHECK_OK(sluiceCreateDemandTexture(r.loader, &repeats, &ids[2]));
+    uint32_t told = h.log_count[SLUICE_LOG_WARNING];
+    for (uint32_t i = 0; i < 3; i++)
+        runner_add(&r, (struct RunnerInput){.kind = RUNNER_LOD,
+                                            .index = (uint32_t)ids[i],
+                                            .uv = {1 + 10.5f / 512, 1 + 20.5f / 512}});
+    runner_load(&r, 9);
+    runner_check_texel(&r, 0, &clamped, 0, 511, 20);
+    runner_check_texel(&r, 1, &plain, 0, 10, 20);
+    runner_check_texel(&r, 2, &clamped, 0, 10, 20);
+    assert_int_equal(h.log_count[SLUICE_LOG_WARNING], told + 1); /* of the explicit one */
+    runner_finish(&r);
+    runner_image_finish(&clamped);
+    runner_image_finish(&plain);
+}
+
 static void a_grid_shows_the_texture_of_each_cell(void **state)
 {
     (void)state;
@@ -412,6 +448,8 @@ static void launches_are_processed_once_and_in_order(void **state)
     assert_int_equal(r.requests.pendingCount, 1);
     CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &first, 0, &r.requests, NULL),
                  SLUICE_ERROR_INVALID_ARGUMENT);
+    /* Later tickets do not tell of what is pending now. */
+    CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 2, 2);
     runner_finish(&r);
@@ -428,6 +466,7 @@ int main(void)
         cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
         cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
         cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),
+        cmocka_unit_test(address_modes_are_those_of_the_image_unless_they_are_explicit),
         cmocka_unit_test(a_grid_shows_the_texture_of_each_cell),
         cmocka_unit_test(another_image_takes_a_textures_place_while_it_is_sampled),
         cmocka_unit_test(texels_that_changed_are_read_again),

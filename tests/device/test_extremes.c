@@ -4,11 +4,11 @@
  */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define TEXTURES 10u
@@ -59,9 +59,9 @@ static bool make_special(struct ProbeInput *in, uint32_t lane, uint32_t round)
         return false;
     float *slots[] = {&in->uv[0], &in->uv[1], &in->dx[0],  &in->dx[1],
                       &in->dy[0], &in->dy[1], &in->lodBias};
-    uint32_t count = rand() % 2 ? 1 : 1 + (uint32_t)rand() % 7;
+    uint32_t count = roll() % 2 ? 1 : 1 + (uint32_t)roll() % 7;
     while (count-- > 0)
-        *slots[rand() % 7] = specials[(uint32_t)rand() % SPECIALS];
+        *slots[roll() % 7] = specials[(uint32_t)roll() % SPECIALS];
     return true;
 }
 
@@ -116,7 +116,7 @@ static void arguments_of_any_value_sample_what_is_resident(void **state)
 {
     struct harness *h = *state;
     struct scene scene;
-    srand(71);
+    roll_seed(71);
     begin(&scene, h);
     uint32_t clamped = 0;
     for (uint32_t t = 0; t < TEXTURES; t++)

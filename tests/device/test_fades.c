@@ -5,6 +5,7 @@
  */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ static void begin(struct scene *scene, struct harness *h, uint64_t fade_time)
                                                 .tilesPerFrame = 64,
                                                 .residencyFadeTime = fade_time});
     const struct scene_aim aim = {-0.5, -0.5, 2, 2, -1, 3, 0, 0};
-    srand(51);
+    roll_seed(51);
     for (uint32_t t = 0; t < TEXTURES; t++) {
         const struct kind *k = &kinds[t];
         scene_add_as(scene, pattern_source(PATTERN_LEVEL, k->width, k->height, k->format), k->mode,
@@ -209,7 +210,7 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
                                                 .maxHeapCount = 4,
                                                 .texturesPerFrame = TEXTURES,
                                                 .residencyFadeTime = 6});
-    srand(52);
+    roll_seed(52);
     for (uint32_t t = 0; t < TEXTURES; t++)
         scene_add_as(
             &scene, pattern_source(PATTERN_LEVEL, kinds[t].width, kinds[t].height, kinds[t].format),
@@ -221,8 +222,8 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
             assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
             if (frame)
                 scene_check_levels(&scene);
-            uint32_t t = (uint32_t)rand() % TEXTURES;
-            double left = (double)rand() / RAND_MAX, top = (double)rand() / RAND_MAX;
+            uint32_t t = (uint32_t)roll() % TEXTURES;
+            double left = (double)roll() / ROLL_MAX, top = (double)roll() / ROLL_MAX;
             struct scene_aim aim = {left, top, 0.3, 0.3, -1, 3, kinds[t].anisotropy > 1 ? 20 : 3,
                                     0};
             scene_aim(&scene, t, 128, &aim);

@@ -2,11 +2,11 @@
 #include "device/pattern.h"
 #include "device/ray_tracer.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/shader_twins.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { SIZE = 2048, REGIONS_X = 16, REGIONS = REGIONS_X * REGIONS_X }; /* tiles of 128 x 128 */
@@ -47,7 +47,7 @@ static void stage_finish(struct stage *stage)
 
 static float draw(void)
 {
-    return (float)rand() / (float)RAND_MAX;
+    return (float)roll() / (float)ROLL_MAX;
 }
 
 static void expect(struct stage *stage, float u, float v, float width)
@@ -76,11 +76,11 @@ static void aim(struct stage *stage, uint32_t count)
     memset(stage->expected, SLUICE_MIP_UNTOUCHED, sizeof stage->expected);
     stage->writer.count = count;
     for (uint32_t i = 0; i < count; i++) {
-        float level = (float)(rand() % 4) + 0.6f;
+        float level = (float)(roll() % 4) + 0.6f;
         float width = exp2f(level) / (float)SIZE;
-        float u = ((float)(rand() % REGIONS_X) + 0.25f + 0.5f * draw()) / REGIONS_X;
-        float v = ((float)(rand() % REGIONS_X) + 0.25f + 0.5f * draw()) / REGIONS_X;
-        bool misses = rand() % 4 == 0;
+        float u = ((float)(roll() % REGIONS_X) + 0.25f + 0.5f * draw()) / REGIONS_X;
+        float v = ((float)(roll() % REGIONS_X) + 0.25f + 0.5f * draw()) / REGIONS_X;
+        bool misses = roll() % 4 == 0;
         writer_inputs(&stage->writer)[i] =
             (struct WriterInput){.uv = {misses ? u + 1.0f : u, v},
                                  .dx = {width / stage->tracer.cone_angle, 0},
@@ -93,7 +93,7 @@ static void aim(struct stage *stage, uint32_t count)
 static void a_closest_hit_shader_marks_what_its_ray_cone_covers(void **state)
 {
     static struct stage stage;
-    srand(81);
+    roll_seed(81);
     stage_init(&stage, *state);
     for (uint32_t round = 0; round < 5; round++) {
         aim(&stage, 20 + 10 * round);
@@ -109,7 +109,7 @@ static void a_closest_hit_shader_marks_what_its_ray_cone_covers(void **state)
 static void what_rays_hit_becomes_resident(void **state)
 {
     static struct stage stage;
-    srand(82);
+    roll_seed(82);
     stage_init(&stage, *state);
     aim(&stage, 60);
     harness_settle(stage.h, stage.streamer, 8, ray_tracer_record, &stage.tracer);

@@ -2,13 +2,13 @@
 #include "device/pattern.h"
 #include "device/writer.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <sluice/replay.h>
 #include <sluice/shared/texture_table.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { TEXTURES = 6, SIZE = 1024, REGIONS = 64 }; /* tiles of 128 x 128 */
@@ -37,9 +37,9 @@ static void stage_init(struct stage *stage, struct harness *h, SluiceVulkanStrea
                        enum writer_kind kind)
 {
     *stage = (struct stage){.h = h};
-    harness_fill(h, &info);
     info.loaderThreadCount = 1; /* reads arrive in the same order every time */
     info.feedbackTimeout = 1000;
+    harness_fill(h, &info);
     h->time = 0;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &stage->streamer));
     SluiceRecordWriter writer = {stage, write_bytes};
@@ -65,7 +65,7 @@ static void stage_finish(struct stage *stage)
 
 static float draw(void)
 {
-    return (float)rand() / (float)RAND_MAX;
+    return (float)roll() / (float)ROLL_MAX;
 }
 
 static void random_samples(struct stage *stage, uint32_t count, float max_lod)
@@ -77,8 +77,8 @@ static void random_samples(struct stage *stage, uint32_t count, float max_lod)
             (struct WriterInput){.uv = {draw(), draw()},
                                  .dx = {scale, 0},
                                  .dy = {0, scale * (1 + draw())},
-                                 .maxAnisotropy = rand() % 2 ? 1.0f : 4.0f,
-                                 .tableIndex = stage->textures[rand() % TEXTURES].tableIndex};
+                                 .maxAnisotropy = roll() % 2 ? 1.0f : 4.0f,
+                                 .tableIndex = stage->textures[roll() % TEXTURES].tableIndex};
     }
 }
 
@@ -100,9 +100,9 @@ static void level_bits_lead_to_the_same_recording_as_levels(void **state)
                                                         kind ? SLUICE_FEEDBACK_ENCODING_MASKS
                                                              : SLUICE_FEEDBACK_ENCODING_LEVELS},
                    kind ? WRITER_MASKS : WRITER_LEVELS);
-        srand(71);
+        roll_seed(71);
         for (uint32_t frame = 0; frame < 40; frame++) {
-            random_samples(stage, (uint32_t)rand() % 200, 9);
+            random_samples(stage, (uint32_t)roll() % 200, 9);
             harness_settle(stage->h, stage->streamer, 1, writer_record, &stage->writer);
         }
         SluiceVulkanStreamerStatistics stats;
@@ -132,7 +132,7 @@ static void only_those_whose_turn_it_is_write(void **state)
             &stage, *state,
             (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 2, .feedbackInTurns = in_turns},
             WRITER_IN_TURNS);
-        srand(72);
+        roll_seed(72);
         for (uint32_t frame = 1; frame <= 12; frame++) {
             random_samples(&stage, 1000, 5);
             harness_frame(stage.h, stage.streamer, true, writer_record, &stage.writer);
@@ -156,7 +156,7 @@ static void turns_delay_but_settle_to_the_same(void **state)
             &stage, *state,
             (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 1, .feedbackInTurns = in_turns},
             WRITER_IN_TURNS);
-        srand(73);
+        roll_seed(73);
         random_samples(&stage, 50, 3);
         harness_settle(stage.h, stage.streamer, 6 * TEXTURES, writer_record, &stage.writer);
         min_mips(&stage, maps[in_turns]);
@@ -174,7 +174,7 @@ static void record_and_replace(void *user, VkCommandBuffer commands)
 {
     struct stage *stage = user;
     writer_record(&stage->writer, commands);
-    uint32_t i = (uint32_t)rand() % TEXTURES;
+    uint32_t i = (uint32_t)roll() % TEXTURES;
     CHECK_OK(sluiceRemoveVulkanTexture(stage->streamer, stage->textures[i].textureId));
     SluiceVulkanTextureCreateInfo texture = {.source = stage->sources[i]};
     CHECK_OK(sluiceAddVulkanTexture(stage->streamer, &texture, &stage->textures[i]));
@@ -188,12 +188,12 @@ static void textures_that_come_and_go_inside_a_frame_keep_the_turns(void **state
         stage_init(&stage, *state,
                    (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 2, .feedbackInTurns = true},
                    WRITER_IN_TURNS);
-        srand(74);
+        roll_seed(74);
         for (uint32_t frame = 0; frame < 30 && replaced; frame++) {
             random_samples(&stage, 300, 4);
             harness_settle(stage.h, stage.streamer, 1, record_and_replace, &stage);
         }
-        srand(75);
+        roll_seed(75);
         random_samples(&stage, 50, 3);
         harness_settle(stage.h, stage.streamer, 6 * TEXTURES, writer_record, &stage.writer);
         min_mips(&stage, maps[replaced]);

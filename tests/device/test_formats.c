@@ -4,10 +4,10 @@
 
 #include "base/checked.h"
 #include "image/convert.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct fetch {
     struct scene *scene;
@@ -81,8 +81,8 @@ static void fetch_some(struct scene *scene, uint32_t index, uint32_t per_level)
         uint32_t width = slc_mip_size(info->width, level);
         uint32_t height = slc_mip_size(info->height, level);
         for (uint32_t i = 0; i < per_level; i++) {
-            uint32_t x = i ? (uint32_t)rand() % width : width - 1;
-            uint32_t y = i ? (uint32_t)rand() % height : height - 1;
+            uint32_t x = i ? (uint32_t)roll() % width : width - 1;
+            uint32_t y = i ? (uint32_t)roll() % height : height - 1;
             prober_inputs(&scene->prober)[fetch.count++] =
                 (struct ProbeInput){.uv = {(float)x, (float)y}, .lodBias = (float)level};
             if (fetch.count == PROBE_CAPACITY)
@@ -128,7 +128,7 @@ static void texels_of_every_format_are_as_in_the_source(void **state)
 {
     static const uint32_t sizes[][2] = {{1, 1},    {3, 2},     {64, 64},    {259, 131},
                                         {5, 1200}, {600, 300}, {1024, 512}, {1031, 517}};
-    srand(3);
+    roll_seed(3);
     check_formats(*state, sizes, sizes, sizeof sizes / sizeof sizes[0], 100);
 }
 
@@ -137,7 +137,7 @@ static void texels_of_every_elongated_format_are_as_in_the_source(void **state)
 {
     static const uint32_t wide[][2] = {{16384, 128}, {16380, 5}, {1, 16384}};
     static const uint32_t tall[][2] = {{128, 16384}, {5, 16380}, {16384, 1}};
-    srand(4);
+    roll_seed(4);
     check_formats(*state, tall, wide, 3, 60);
 }
 
@@ -146,7 +146,7 @@ static void compressed_textures_are_streamed_by_feedback(void **state)
 {
     struct scene scene;
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
-    srand(4);
+    roll_seed(4);
     const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
                                     SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC5_UNORM_BLOCK};
     const struct scene_aim corner = {0.1, 0.2, 0.2, 0.1, 0, 3, 0, 0};

@@ -1,10 +1,10 @@
 /* What only paged residency has: images of pages that come and go, and what finds pages in them. */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct scene_aim everything_fine = {0.01, 0.01, 0.98, 0.98, 0.2, 0.3, 0, 0};
@@ -13,7 +13,7 @@ static uint64_t device_memory(const struct scene *scene)
 {
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(scene->streamer, &stats);
-    return stats.deviceMemorySize;
+    return stats.tileMemorySize;
 }
 
 static uint64_t generation(const struct scene *scene)
@@ -97,7 +97,7 @@ static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
         h->page_loop = loop;
         struct scene scene;
         scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
-        srand(41);
+        roll_seed(41);
         for (uint32_t i = 0; i < 4; i++) {
             const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8_UNORM,
                                             SLUICE_FORMAT_R16_SFLOAT, SLUICE_FORMAT_R32_SFLOAT};
@@ -114,6 +114,35 @@ static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
     assert_memory_equal(outputs[0], outputs[1], sizeof outputs[0]);
 }
 
+/* Tiles of one format that nobody wants hold all pages: their image goes, and another one comes. */
+static void standby_tiles_make_room_for_those_of_another_format(void **state)
+{
+    struct harness *h = *state;
+    struct scene scene;
+    const struct scene_aim fine = {0, 0, 0.6, 0.6, 0.1, 0.2, 0, 0};
+    SluiceVulkanStreamerStatistics stats;
+    h->quiet = true; /* that pages are short */
+    scene_init(&scene, h,
+               (SluiceVulkanStreamerCreateInfo){
+                   .feedbackTimeout = 4, .maxPageChunkCount = 2, .numExtraStandbyTiles = 1024});
+    uint32_t first =
+        scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
+    uint32_t second = scene_add(
+        &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R16G16B16A16_SFLOAT));
+    scene_aim(&scene, first, 200, &fine);
+    scene_settle(&scene, 20);
+    assert_int_equal(scene_missing(&scene), 0);
+    sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
+    assert_int_equal(stats.pageChunkCount, 2); /* 65 to 128 tiles */
+    scene.textures[first].sample_count = 0;
+    scene_aim(&scene, second, 100, &fine);
+    scene_settle(&scene, 90);
+    assert_int_equal(scene_missing(&scene), 0);
+    scene_check_levels(&scene);
+    h->quiet = false;
+    scene_finish(&scene);
+}
+
 int main(void)
 {
     struct harness h;
@@ -127,6 +156,7 @@ int main(void)
     struct CMUnitTest tests[] = {
         cmocka_unit_test(memory_comes_back_when_no_tile_needs_it),
         cmocka_unit_test(pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels),
+        cmocka_unit_test(standby_tiles_make_room_for_those_of_another_format),
         cmocka_unit_test(pages_found_by_a_loop_are_those_found_by_an_index),
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

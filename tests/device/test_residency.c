@@ -2,14 +2,14 @@
 #include "device/scene.h"
 
 #include "support/fault_source.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 static struct scene_aim random_aim(float anisotropy)
@@ -24,8 +24,8 @@ static struct scene_aim random_aim(float anisotropy)
                             0};
     aim.min_lod = draw() * 5 - 1;
     aim.max_lod = aim.min_lod + draw() * 3;
-    aim.max_ratio = anisotropy > 1 ? 30 : rand() % 2 ? 3 : 0;
-    aim.bias = rand() % 4 ? 0.0f : (float)(draw() * 2 - 1);
+    aim.max_ratio = anisotropy > 1 ? 30 : roll() % 2 ? 3 : 0;
+    aim.bias = roll() % 4 ? 0.0f : (float)(draw() * 2 - 1);
     return aim;
 }
 
@@ -40,10 +40,10 @@ static uint32_t add_random(struct scene *scene, float anisotropy)
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
         scene->h->mirror_clamp ? VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE
                                : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
-    const uint32_t *size = sizes[rand() % 5];
+    const uint32_t *size = sizes[roll() % 5];
     uint32_t t =
-        scene_add_as(scene, pattern_source(PATTERN_LEVEL, size[0], size[1], formats[rand() % 4]),
-                     modes[rand() % 4], modes[rand() % 4], anisotropy, SLUICE_NO_TEXTURE);
+        scene_add_as(scene, pattern_source(PATTERN_LEVEL, size[0], size[1], formats[roll() % 4]),
+                     modes[roll() % 4], modes[roll() % 4], anisotropy, SLUICE_NO_TEXTURE);
     struct scene_aim aim = random_aim(anisotropy);
     scene_aim(scene, t, 128, &aim);
     return t;
@@ -61,7 +61,7 @@ static void churn(struct harness *h, float anisotropy, uint32_t frame_count)
     for (uint32_t i = 0; i < 8; i++)
         add_random(&scene, anisotropy);
     for (uint32_t frame = 0; frame < frame_count; frame++) {
-        uint32_t t = (uint32_t)rand() % 8;
+        uint32_t t = (uint32_t)roll() % 8;
         if (frame % 3 == 0) {
             /* inputs may only change while no frame reads them */
             assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
@@ -75,7 +75,7 @@ static void churn(struct harness *h, float anisotropy, uint32_t frame_count)
             scene_remove(&scene, t);
             add_random(&scene, anisotropy);
         }
-        harness_frame(h, scene.streamer, rand() % 4 == 0, scene_record, &scene);
+        harness_frame(h, scene.streamer, roll() % 4 == 0, scene_record, &scene);
     }
     assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
     scene_check_levels(&scene);
@@ -130,7 +130,7 @@ static void far_coordinates_touch_nothing_that_is_not_there(void **state)
 
 static void thousand_trilinear_frames_touch_nothing_that_is_not_there(void **state)
 {
-    srand(21);
+    roll_seed(21);
     churn(*state, 1.0f, 1000);
 }
 
@@ -139,7 +139,7 @@ static void anisotropic_frames_touch_nothing_that_is_not_there(void **state)
     struct harness *h = *state;
     if (!h->anisotropy)
         SKIP_TEST("the device has no anisotropic filtering");
-    srand(22);
+    roll_seed(22);
     churn(h, 16.0f, 400);
     churn(h, 2.0f, 200);
 }

@@ -3,6 +3,7 @@
 #include "device/resolve_oracle.h"
 
 #include "base/checked.h"
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/resolve.h"
 
@@ -241,11 +242,11 @@ static void take_some(struct rig *r)
 {
     r->item_count = 0;
     for (uint32_t i = 0; i < r->texture_count; i++)
-        if (rand() % 3)
+        if (roll() % 3)
             r->items[r->item_count++] =
-                (struct oracle_item){&r->textures[i], rand() % 16 ? 0u : SLUICE_RESOLVE_WHOLE};
+                (struct oracle_item){&r->textures[i], roll() % 16 ? 0u : SLUICE_RESOLVE_WHOLE};
     for (uint32_t i = r->item_count; i > 1; i--) { /* in any order */
-        uint32_t j = (uint32_t)rand() % i;
+        uint32_t j = (uint32_t)roll() % i;
         struct oracle_item item = r->items[i - 1];
         r->items[i - 1] = r->items[j];
         r->items[j] = item;
@@ -257,12 +258,12 @@ static void mark_some(struct rig *r)
 {
     for (uint32_t i = 0; i < r->texture_count; i++) {
         struct oracle_texture *t = &r->textures[i];
-        uint32_t kind = (uint32_t)rand() % 4, noise = kind == 0 ? 0 : kind == 1 ? 2 : t->count / 3;
+        uint32_t kind = (uint32_t)roll() % 4, noise = kind == 0 ? 0 : kind == 1 ? 2 : t->count / 3;
         for (uint32_t j = 0; j < t->count && kind != 3; j++)
             if (t->reported[j] != SLUICE_MIP_UNTOUCHED)
                 mark(r, t, j, t->reported[j]);
         for (uint32_t j = 0; j < noise; j++)
-            mark(r, t, (uint32_t)rand() % t->count, (uint8_t)(rand() % 16));
+            mark(r, t, (uint32_t)roll() % t->count, (uint8_t)(roll() % 16));
     }
 }
 
@@ -274,14 +275,14 @@ static uint32_t add_textures(struct rig *r, uint32_t count)
 {
     uint32_t next = 0;
     for (uint32_t i = 0; i < count; i++)
-        add_texture(r, &next, i < COUNTS ? counts[i] : 1 + (uint32_t)rand() % 400);
+        add_texture(r, &next, i < COUNTS ? counts[i] : 1 + (uint32_t)roll() % 400);
     return next;
 }
 
 static void changes_are_those_of_a_full_scan(struct harness *h, uint32_t encoding)
 {
     struct rig r;
-    srand(51);
+    roll_seed(51);
     rig_init(&r, h, encoding, 1u << 18, 300);
     add_textures(&r, 250);
     take_all(&r, 0);
@@ -316,14 +317,14 @@ static void changes_of_masks_are_those_of_a_full_scan(void **state)
 static void what_has_no_room_stays_and_comes_later(void **state)
 {
     struct rig r;
-    srand(52);
+    roll_seed(52);
     rig_init(&r, *state, SLUICE_FEEDBACK_LEVELS, 1u << 18, 100);
     add_textures(&r, 100);
     uint32_t left = 0, overflows = 0;
     for (uint32_t round = 0; round < 40; round++) {
         if (round < 20)
             mark_some(&r);
-        r.capacity = round < 20 ? (uint32_t)rand() % 20000 : 16384; /* in the end any one fits */
+        r.capacity = round < 20 ? (uint32_t)roll() % 20000 : 16384; /* in the end any one fits */
         take_all(&r, 0);
         if (round >= 20) /* as the streamer does: those that waited go first */
             for (uint32_t i = 0, at = left; i < r.texture_count; i++, at++)
@@ -348,7 +349,7 @@ static void what_has_no_room_stays_and_comes_later(void **state)
 static void a_new_texture_begins_untouched_where_an_old_one_was(void **state)
 {
     struct rig r;
-    srand(53);
+    roll_seed(53);
     rig_init(&r, *state, SLUICE_FEEDBACK_LEVELS, 1u << 14, 32);
     uint32_t next = 0;
     for (uint32_t i = 0; i < 32; i++)
@@ -357,8 +358,8 @@ static void a_new_texture_begins_untouched_where_an_old_one_was(void **state)
         mark_some(&r);
         take_some(&r);
         resolve_and_compare(&r);
-        struct oracle_texture *t = &r.textures[rand() % 32];
-        begin_texture(&r, t, t->first, 1 + (uint32_t)rand() % 512);
+        struct oracle_texture *t = &r.textures[roll() % 32];
+        begin_texture(&r, t, t->first, 1 + (uint32_t)roll() % 512);
     }
     rig_finish(&r);
 }
@@ -366,13 +367,13 @@ static void a_new_texture_begins_untouched_where_an_old_one_was(void **state)
 static void segments_fill_more_than_one_row_of_workgroups(void **state)
 {
     struct rig r;
-    srand(54);
+    roll_seed(54);
     rig_init(&r, *state, SLUICE_FEEDBACK_LEVELS, 130u << 16, 130);
     uint32_t next = 0;
     for (uint32_t i = 0; i < 130; i++)
         add_texture(&r, &next, 65536);
     for (uint32_t i = 0; i < 100000; i++)
-        mark(&r, &r.textures[rand() % 130], (uint32_t)rand() % 65536, (uint8_t)(rand() % 9));
+        mark(&r, &r.textures[roll() % 130], (uint32_t)roll() % 65536, (uint8_t)(roll() % 9));
     take_all(&r, 0);
     resolve_and_compare(&r);
     assert_true(r.resolve.segment_count > SLUICE_RESOLVE_ROW && r.data_count > 90000);
@@ -438,8 +439,8 @@ static double time_resolve(struct watch *w, uint32_t marks)
     double times[TIMED];
     for (uint32_t i = 0; i < TIMED; i++) {
         for (uint32_t j = 0; j < marks; j++)
-            mark(r, &r->textures[(uint32_t)rand() % r->texture_count], (uint32_t)rand() % 256,
-                 (uint8_t)(rand() % 9));
+            mark(r, &r->textures[(uint32_t)roll() % r->texture_count], (uint32_t)roll() % 256,
+                 (uint8_t)(roll() % 9));
         slc_resolve_begin(&r->resolve, 0);
         r->slot = 0;
         harness_run(r->h, record_timed, w);
@@ -460,7 +461,7 @@ static double time_resolve(struct watch *w, uint32_t marks)
 static void a_thousand_textures_are_resolved_and_timed(void **state)
 {
     struct rig r;
-    srand(55);
+    roll_seed(55);
     rig_init(&r, *state, SLUICE_FEEDBACK_LEVELS, 256000, 1000);
     uint32_t next = 0;
     for (uint32_t i = 0; i < 1000; i++)

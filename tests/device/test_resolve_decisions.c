@@ -1,6 +1,7 @@
 /* Whether changes or whole maps come back, and through how little room: the decisions follow. */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <sluice/replay.h>
@@ -48,18 +49,18 @@ static void add_one(struct scene *scene, uint32_t i)
 static void move(struct scene *scene, uint32_t frame)
 {
     for (uint32_t i = 0; i < TEXTURES; i++) {
-        if (frame % 3 == 2 && rand() % 2)
+        if (frame % 3 == 2 && roll() % 2)
             continue; /* rests: the same samples again */
-        struct scene_aim aim = {.left = (double)rand() / RAND_MAX,
+        struct scene_aim aim = {.left = (double)roll() / ROLL_MAX,
                                 .top = 0.01 * frame,
                                 .width = 0.4,
                                 .height = 0.3,
-                                .min_lod = rand() % 3,
+                                .min_lod = roll() % 3,
                                 .max_lod = 4};
-        scene_aim(scene, i, rand() % 5 ? 1 + (uint32_t)rand() % SCENE_SAMPLES : 0, &aim);
+        scene_aim(scene, i, roll() % 5 ? 1 + (uint32_t)roll() % SCENE_SAMPLES : 0, &aim);
     }
     if (frame % 10 == 9) {
-        uint32_t gone = (uint32_t)rand() % TEXTURES;
+        uint32_t gone = (uint32_t)roll() % TEXTURES;
         scene_remove(scene, gone);
         add_one(scene, gone); /* the first free place in the scene is the same */
     }
@@ -91,7 +92,7 @@ static void play(struct harness *h, struct run *run, SluiceVulkanStreamerCreateI
                                   &recorder));
     for (uint32_t i = 0; i < TEXTURES; i++)
         add_one(&scene, i);
-    srand(61);
+    roll_seed(61);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         move(&scene, frame);
         scene_settle(&scene, 1);

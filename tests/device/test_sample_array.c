@@ -3,13 +3,13 @@
 #include "device/conform.h"
 #include "device/painter.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include "array_comp.h"
 #include "array_min_lod_comp.h"
 #include "array_unpaged_comp.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define SAMPLES 4096u
@@ -93,9 +93,9 @@ static void draw_inputs(struct array_probe *p, const uint32_t size[2], float ani
 {
     struct ProbeInput *inputs = prober_inputs(&p->a.scene.prober);
     for (uint32_t i = 0; i < SAMPLES; i++) {
-        float texels = (float)(1u << rand() % 9) * 0.3f, numbers[6];
+        float texels = (float)(1u << roll() % 9) * 0.3f, numbers[6];
         for (uint32_t k = 0; k < 6; k++)
-            numbers[k] = (float)rand() / (float)RAND_MAX * 2 - 1;
+            numbers[k] = (float)roll() / (float)ROLL_MAX * 2 - 1;
         inputs[i] = (struct ProbeInput){
             .uv = {numbers[0] * 1.5f, numbers[1] * 1.5f},
             .dx = {numbers[2] * texels / (float)size[0], numbers[3] * texels / (float)size[1]},

@@ -1,9 +1,8 @@
 /* Textures of all kinds of sizes, in every residency mode. */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
-
-#include <stdlib.h>
 
 /* A corner and the opposite one, so that first and last tiles of the finest levels come. */
 static void aim_at_corners(struct scene *scene, uint32_t t, const SluiceImageInfo *info)
@@ -28,7 +27,7 @@ static void check_sizes(struct harness *h, const uint32_t (*sizes)[2], uint32_t 
     struct scene scene;
     scene_init(&scene, h,
                (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100, .tilesPerFrame = 64});
-    srand(5);
+    roll_seed(5);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t t =
             scene_add(&scene, pattern_source(PATTERN_LEVEL, sizes[i][0], sizes[i][1], format));

@@ -1,10 +1,10 @@
 /* What a device says of sparse images, and what it can bear of them. */
 #include "device/scene.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static SluiceVulkanStreamerCreateInfo sparse_info(void)
 {
@@ -75,7 +75,7 @@ static void textures_stay_coarse_where_no_more_tiles_are_borne(void **state)
     SluiceVulkanStreamerCreateInfo info = sparse_info();
     info.maxTouchedTiles = 40;
     scene_init(&scene, h, info);
-    srand(6);
+    roll_seed(6);
     h->quiet = true;
     const struct scene_aim everywhere = {0, 0, 1, 1, 0, 3, 0, 0};
     uint32_t t = scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, rgba8));
@@ -110,7 +110,7 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
     SluiceVulkanStreamerCreateInfo info = sparse_info();
     info.feedbackTimeout = 3;
     scene_init(&scene, *state, info);
-    srand(7);
+    roll_seed(7);
     uint32_t t = scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, rgba8));
     const struct scene_aim fine = {0, 0, 0.5, 0.5, 0, 0.5, 0, 0}, coarse = {0, 0, 1, 1, 3, 4, 0, 0};
     for (uint32_t round = 0; round < 4; round++) {

@@ -2,10 +2,10 @@
 #include "device/scene.h"
 
 #include "base/checked.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const SluiceFormat formats[] = {
@@ -23,7 +23,7 @@ static void settled_sample_shows_the_level_that_was_wanted(void **state)
     scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
-    srand(1);
+    roll_seed(1);
     scene_aim(&scene, t, SCENE_SAMPLES, &everywhere);
     scene_settle(&scene, 14);
     for (uint32_t i = 0; i < SCENE_SAMPLES; i++) {
@@ -153,7 +153,7 @@ static void settled_colours_are_those_of_a_resident_texture(void **state)
         scene_init(
             &scene, *state,
             (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .mapEverything = !streamed});
-        srand(2);
+        roll_seed(2);
         const uint32_t sizes[][2] = {{1024, 1024}, {1000, 600}, {777, 1311}, {2048, 100}};
         for (uint32_t i = 0; i < 12; i++) {
             float anisotropy = i % 3 == 2 ? 8.0f : 1.0f;
@@ -214,7 +214,7 @@ static void followers_get_what_their_primary_wants(void **state)
     uint32_t follower = scene_add_as(
         &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R16G16B16A16_SFLOAT), 0, 0,
         1, scene.textures[primary].texture.textureId);
-    srand(3);
+    roll_seed(3);
     const struct scene_aim aim = {0.1, 0.1, 0.35, 0.35, 0, 4, 0, 0};
     scene_aim(&scene, primary, SCENE_SAMPLES, &aim);
     memcpy(scene_inputs(&scene, follower), scene_inputs(&scene, primary),

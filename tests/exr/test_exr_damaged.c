@@ -8,9 +8,12 @@
 #include "exr/exr_paths.h"
 #include "support/test.h"
 
+#include <openexr.h>
+
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A file that the tests change, removed at the end. */
@@ -99,7 +102,33 @@ static bool is_answer_to_damage(SluiceResult result)
            result == SLUICE_ERROR_UNSUPPORTED;
 }
 
-static void every_damaged_file_gives_an_error_or_an_image(void **state)
+/* Files of the collection that are whole as far as they go, but of a kind that is not read. */
+static const char *const unsupported[] = {
+    "asan_heap-oob_7f178ac80539_109_519f88e9ededfff61f535d6c9eb25a85_exr",      /* its channels */
+    "asan_stack-oob_433d4f_436_bb29e6f88ad5f5b2f5f9b68a3655b1d8_exr",           /* DWA */
+    "memory_DOS_2.1",                                                           /* 2^26.6 x 1 */
+    "openexr_2.2.0_memory_allocation_error_3_exr",                              /* 2^29.9 x 1 */
+    "poc-c9457552c1c04ea0f98154bc433a5f5d0421a7e705e6f396aba4339568473435_min", /* Y, RY, BY */
+};
+
+static bool is_unsupported(const char *name)
+{
+    for (size_t i = 0; i < sizeof unsupported / sizeof unsupported[0]; i++)
+        if (strcmp(unsupported[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* Newer versions of OpenEXRCore read DWA, and mend what 3.1 calls damaged. */
+static bool is_core_3_1(void)
+{
+    int major, minor, patch;
+    const char *extra;
+    exr_get_library_version(&major, &minor, &patch, &extra);
+    return major == 3 && minor == 1;
+}
+
+static void every_damaged_file_is_refused_for_what_it_is(void **state)
 {
     (void)state;
     char folder[1024], path[2048];
@@ -113,7 +142,9 @@ static void every_damaged_file_gives_an_error_or_an_image(void **state)
             continue;
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
         SluiceResult result = read_all(path, SLUICE_FORMAT_UNDEFINED);
-        if (!is_answer_to_damage(result))
+        SluiceResult expected =
+            is_unsupported(entry->d_name) ? SLUICE_ERROR_UNSUPPORTED : SLUICE_ERROR_CORRUPT_DATA;
+        if (is_core_3_1() ? result != expected : !is_answer_to_damage(result))
             fail_msg("%s: %s", entry->d_name, sluiceResultString(result));
         count++;
     }
@@ -198,6 +229,31 @@ static void an_error_of_the_system_is_told_from_damage(void **state)
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_IO);
 }
 
+/* All of it is decoded for the first tile: what went wrong then must not be kept for good. */
+static void a_file_that_is_mended_is_decoded_again(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    scratch_init(&scratch, "scan_zip.exr");
+    size_t half = scratch.size / 2;
+    char *zeros = calloc(1, half);
+    SluiceExrImageSourceCreateInfo create = {.pPath = scratch.path};
+    SluiceImageSource *source;
+    SluiceImageInfo info;
+    CHECK_OK(sluiceCreateExrImageSource(&create, &source));
+    CHECK_OK(sluiceGetImageInfo(source, &info));
+    assert_int_equal(pwrite(scratch.descriptor, zeros, half, (off_t)half), half);
+    CHECK_RESULT(read_level(source, &info, 0), SLUICE_ERROR_CORRUPT_DATA);
+    CHECK_RESULT(read_level(source, &info, 0), SLUICE_ERROR_CORRUPT_DATA);
+    assert_int_equal(pwrite(scratch.descriptor, scratch.bytes + half, half, (off_t)half), half);
+    const struct timespec later[2] = {{2000000000, 0}, {2000000000, 0}}; /* a later clock tick */
+    assert_int_equal(futimens(scratch.descriptor, later), 0);
+    CHECK_OK(read_level(source, &info, 0));
+    sluiceDestroyImageSource(source);
+    free(zeros);
+    scratch_finish(&scratch);
+}
+
 /* A header alone that promises more than its file could hold. */
 static void absurd_sizes_are_refused_before_anything_is_allocated(void **state)
 {
@@ -235,12 +291,13 @@ static void absurd_sizes_are_refused_before_anything_is_allocated(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_damaged_file_gives_an_error_or_an_image),
+        cmocka_unit_test(every_damaged_file_is_refused_for_what_it_is),
         cmocka_unit_test(a_file_cut_at_any_byte_is_an_error),
         cmocka_unit_test(any_changed_byte_gives_an_error_or_an_image),
         cmocka_unit_test(a_file_that_shrinks_while_it_is_open_is_an_error),
         cmocka_unit_test(an_error_of_the_system_is_told_from_damage),
         cmocka_unit_test(absurd_sizes_are_refused_before_anything_is_allocated),
+        cmocka_unit_test(a_file_that_is_mended_is_decoded_again),
     };
     return RUN_TESTS(tests);
 }

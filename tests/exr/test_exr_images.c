@@ -157,16 +157,209 @@ static void every_image_opens_and_has_the_texels_a_plain_reader_finds(void **sta
     }
 }
 
-static void all_levels_of_all_images_can_be_read_as_bytes(void **state)
+/* IEC 61966-2-1: what a code from 0 to 255 stands for, and half codes between them. */
+static long double decode(long double code)
+{
+    long double v = code / 255;
+    return v <= 0.04045L ? v / 12.92L : powl((v + 0.055L) / 1.055L, 2.4L);
+}
+
+struct codes {
+    long double middle[256], lowest[256], highest[256]; ///< that round to a code
+};
+
+static const struct codes *srgb_codes(void)
+{
+    static struct codes codes;
+    for (int i = 0; codes.highest[255] == 0 && i < 256; i++) {
+        codes.middle[i] = decode(i);
+        codes.lowest[i] = i ? decode(i - 0.5L) : -INFINITY;
+        codes.highest[i] = i < 255 ? decode(i + 0.5L) : INFINITY;
+    }
+    return &codes;
+}
+
+/* Large levels are compared in every 13th row, which all phases of chunks and filters share. */
+static uint32_t row_step(const SluiceImageRegion *region)
+{
+    return region->height > 128 ? 13 : 1;
+}
+
+/* Whether a byte is what a value is encoded as; NaN is 0. Thresholds are floats in the library. */
+static bool is_code(long double value, uint8_t byte, bool is_alpha)
+{
+    const struct codes *codes = srgb_codes();
+    if (isnan(value))
+        return byte == 0;
+    if (is_alpha)
+        return fabsl(fminl(fmaxl(value, 0), 1) * 255 - byte) <= 0.5001L;
+    return value >= codes->lowest[byte] - fabsl(codes->lowest[byte]) * 1e-6L &&
+           value <= codes->highest[byte] * (1 + 1e-6L);
+}
+
+static long double channel_value(const struct plain_channel *channel, size_t at)
+{
+    float value;
+    if (channel->bytes == 2)
+        return (long double)slc_float_from_half(((const uint16_t *)channel->texels)[at]);
+    memcpy(&value, (const char *)channel->texels + 4 * at, 4);
+    return (long double)value;
+}
+
+/* A level that is in the file. */
+static void compare_bytes(const struct image *image, const SluiceImageRegion *region,
+                          const uint8_t *texels, const struct plain_level *level)
+{
+    static const char *const names[4] = {"R", "G", "B", "A"};
+    for (int c = 0; c < 4; c++) {
+        const struct plain_channel *channel = plain_exr_find(level, names[c]);
+        if (!channel && c < 3)
+            channel = plain_exr_find(level, "Y");
+        for (uint32_t i = 0; i < region->width * region->height; i++) {
+            if (i / region->width % row_step(region) != 0)
+                continue;
+            size_t at = (size_t)(i / region->width) * level->width + i % region->width;
+            long double value = channel ? channel_value(channel, at) : c == 3;
+            if (!is_code(value, texels[4 * (size_t)i + (size_t)c], c == 3))
+                fail_msg("%s level %u texel %u component %d: %u for %Lg", image->name,
+                         region->mipLevel, i, c, texels[4 * (size_t)i + (size_t)c], value);
+        }
+    }
+}
+
+/* A level in memory, as numbers. */
+struct numbers {
+    SluiceFormat format;
+    SluiceImageRegion region;
+    void *texels;
+};
+
+/* Not a number counts as 0. */
+static long double number_at(const struct numbers *n, uint32_t count, uint32_t x, uint32_t y,
+                             uint32_t c)
+{
+    size_t at = ((size_t)y * n->region.width + x) * count + c;
+    float value;
+    if (n->format == SLUICE_FORMAT_R8G8B8A8_SRGB) {
+        uint8_t byte = ((const uint8_t *)n->texels)[at];
+        return c == 3 ? byte / 255.0L : srgb_codes()->middle[byte];
+    }
+    if (n->format == SLUICE_FORMAT_R32_SFLOAT)
+        memcpy(&value, (const char *)n->texels + 4 * at, 4);
+    else
+        value = slc_float_from_half(((const uint16_t *)n->texels)[at]);
+    return isnan(value) ? 0 : (long double)value;
+}
+
+/* The texels that one texel below covers along an axis, and how much of each: at most three. */
+static uint32_t find_cover(uint32_t size, uint32_t i, long double weights[3])
+{
+    uint32_t below = size > 1 ? size / 2 : 1;
+    long double scale = (long double)size / below, first = i * scale, end = (i + 1) * scale;
+    uint32_t begin = (uint32_t)(first + 1e-9L);
+    for (uint32_t k = 0; k < 3; k++)
+        weights[k] = fmaxl(0, fminl(end, begin + k + 1) - fmaxl(first, begin + k)) / scale;
+    return begin;
+}
+
+/* `*size`: the mean of the magnitudes, which says how exact doubles are. */
+static long double mean_of(const struct numbers *above, uint32_t count, uint32_t x, uint32_t y,
+                           uint32_t c, long double *size)
+{
+    long double wx[3], wy[3], sum = 0;
+    *size = 0;
+    uint32_t first_x = find_cover(above->region.width, x, wx);
+    uint32_t first_y = find_cover(above->region.height, y, wy);
+    for (uint32_t j = 0; j < 3; j++)
+        for (uint32_t i = 0; i < 3; i++) {
+            if (wx[i] * wy[j] <= 1e-12L)
+                continue;
+            long double value = number_at(above, count, first_x + i, first_y + j, c);
+            sum += wx[i] * wy[j] * value;
+            *size += wx[i] * wy[j] * fabsl(value);
+        }
+    return sum;
+}
+
+/* Half of the distance between two halves there, and a little for double's own rounding. */
+static bool is_nearest_half(long double mean, long double value)
+{
+    mean = isnan(mean) ? 0 : fminl(fmaxl(mean, -65504), 65504);
+    int exponent = fabsl(mean) > 0x1p-14L ? ilogbl(mean) : -14;
+    return fabsl(value - mean) <= 0.501L * ldexpl(1, exponent - 10);
+}
+
+/* A level that was built: each texel is the mean of what the level above it holds. */
+static void compare_mean(const struct image *image, const struct numbers *above,
+                         const struct numbers *level)
+{
+    bool is_float = level->format == SLUICE_FORMAT_R32_SFLOAT;
+    uint32_t count =
+        level->format == RGBA16 || level->format == SLUICE_FORMAT_R8G8B8A8_SRGB ? 4 : 1;
+    for (uint32_t y = 0; y < level->region.height; y += row_step(&level->region))
+        for (uint32_t x = 0; x < level->region.width; x++)
+            for (uint32_t c = 0; c < count; c++) {
+                long double size, mean = mean_of(above, count, x, y, c, &size);
+                long double value = number_at(level, count, x, y, c);
+                size_t at = ((size_t)y * level->region.width + x) * count + c;
+                bool is_right = level->format == SLUICE_FORMAT_R8G8B8A8_SRGB
+                                    ? is_code(mean, ((const uint8_t *)level->texels)[at], c == 3)
+                                : is_float ? fabsl(value - mean) <= size * 1e-6L
+                                           : is_nearest_half(mean, value);
+                if (!is_right)
+                    fail_msg("%s as %s, level %u (%u, %u) component %u: %Lg, not %Lg", image->name,
+                             sluiceFormatString(level->format), level->region.mipLevel, x, y, c,
+                             value, mean);
+            }
+}
+
+static void compare_built_levels(const struct image *image, SluiceImageSource *source,
+                                 const SluiceImageInfo *info)
+{
+    struct numbers above = {info->format, whole_level(info, 0), NULL};
+    above.texels = read_region(source, info, &above.region);
+    for (uint32_t l = 1; l < info->mipLevelCount; l++) {
+        struct numbers level = {info->format, whole_level(info, l), NULL};
+        level.texels = read_region(source, info, &level.region);
+        compare_mean(image, &above, &level);
+        free(above.texels);
+        above = level;
+    }
+    free(above.texels);
+}
+
+static void levels_that_are_built_are_means_of_the_level_above(void **state)
 {
     (void)state;
     for (int i = 0; i < IMAGE_COUNT; i++) {
         SluiceImageInfo info;
+        if (images[i].has_levels)
+            continue;
+        SluiceImageSource *source = open_image(images[i].name, SLUICE_FORMAT_UNDEFINED, &info);
+        compare_built_levels(&images[i], source, &info);
+        sluiceDestroyImageSource(source);
+    }
+}
+
+static void all_levels_of_all_images_are_right_as_bytes(void **state)
+{
+    (void)state;
+    for (int i = 0; i < IMAGE_COUNT; i++) {
+        SluiceImageInfo info;
+        char path[1024];
         SluiceImageSource *source = open_image(images[i].name, SLUICE_FORMAT_R8G8B8A8_SRGB, &info);
-        for (uint32_t level = 0; level < info.mipLevelCount; level++) {
+        find_image(images[i].name, path);
+        for (uint32_t level = 0; level < (images[i].has_levels ? info.mipLevelCount : 1); level++) {
+            struct plain_level plain;
             SluiceImageRegion region = whole_level(&info, level);
-            free(read_region(source, &info, &region));
+            uint8_t *texels = read_region(source, &info, &region);
+            assert_true(plain_exr_read(path, (int)level, &plain));
+            compare_bytes(&images[i], &region, texels, &plain);
+            plain_exr_free(&plain);
+            free(texels);
         }
+        if (!images[i].has_levels)
+            compare_built_levels(&images[i], source, &info);
         sluiceDestroyImageSource(source);
     }
 }
@@ -265,7 +458,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_image_opens_and_has_the_texels_a_plain_reader_finds),
-        cmocka_unit_test(all_levels_of_all_images_can_be_read_as_bytes),
+        cmocka_unit_test(levels_that_are_built_are_means_of_the_level_above),
+        cmocka_unit_test(all_levels_of_all_images_are_right_as_bytes),
         cmocka_unit_test(all_half_values_keep_their_bits),
         cmocka_unit_test(all_half_values_convert_as_documented),
         cmocka_unit_test(nan_and_infinities_stay_in_level_0_and_nowhere_else),

@@ -56,11 +56,13 @@ static const struct kind kinds[] = {
     {"rip_down", 0, "RGBA", "hhhh", RIP, 37, 21},
     {"rip_up", 0, "RGBA", "hhhh", RIP, 21, 37, true},
     {"rip_wide", 0, "Y", "f", RIP, 70, 3},
+    {"scan_depth", 0, "RGB", "hhh", BUILT, 8, 4},     /* Z beside them */
+    {"mip_beside", 0, "RGBA", "hhhh", MIP, 37, 21},   /* AO.R, C, Q, Y, Z between them */
+    {"scan_grey_beside", 0, "Y", "h", BUILT, 37, 21}, /* id, Z */
     {"deep", SLUICE_ERROR_UNSUPPORTED},
     {"luminance_chroma", SLUICE_ERROR_UNSUPPORTED},
     {"subsampled", SLUICE_ERROR_UNSUPPORTED},
     {"scan_layered", SLUICE_ERROR_UNSUPPORTED},
-    {"scan_depth", SLUICE_ERROR_UNSUPPORTED},
 };
 
 enum { KIND_COUNT = sizeof kinds / sizeof kinds[0] };
@@ -322,7 +324,6 @@ static void refusals_name_the_file_the_reason_and_a_way_out(void **state)
         {"luminance_chroma.exr", "BY, RY, Y", "convert"},
         {"subsampled.exr", "channel Y is subsampled 2 x 2", "convert"},
         {"scan_layered.exr", "diffuse.B, diffuse.G, diffuse.R", "file of their own"},
-        {"scan_depth.exr", "B, G, R, Z", "file of their own"},
     };
     for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
         char path[1024];
@@ -336,6 +337,27 @@ static void refusals_name_the_file_the_reason_and_a_way_out(void **state)
             if (!strstr(message.text, expected[i][k]))
                 fail_msg("'%s' does not say '%s'", message.text, expected[i][k]);
     }
+}
+
+static void keep_news(void *user, SluiceLogSeverity severity, const char *text)
+{
+    struct message *message = user;
+    snprintf(message->text, sizeof message->text, "%s", text);
+    message->errors += severity != SLUICE_LOG_INFO;
+}
+
+static void channels_that_are_passed_over_are_named(void **state)
+{
+    (void)state;
+    char path[1024];
+    struct message message = {0};
+    SluiceImageSource *source;
+    SluiceExrImageSourceCreateInfo create = {.pPath = own_file("mip_beside.exr", path),
+                                             .log = {&message, keep_news}};
+    CHECK_OK(sluiceCreateExrImageSource(&create, &source));
+    assert_int_equal(message.errors, 0);
+    assert_non_null(strstr(message.text, "A, AO.R, B, C, G, Q, R, Y, Z; only RGBA are read"));
+    sluiceDestroyImageSource(source);
 }
 
 static void images_beyond_the_size_limit_are_refused(void **state)
@@ -380,6 +402,7 @@ int main(void)
         cmocka_unit_test(built_levels_are_those_of_the_same_texels_in_memory),
         cmocka_unit_test(random_rectangles_are_cut_from_the_whole_level),
         cmocka_unit_test(refusals_name_the_file_the_reason_and_a_way_out),
+        cmocka_unit_test(channels_that_are_passed_over_are_named),
         cmocka_unit_test(images_beyond_the_size_limit_are_refused),
         cmocka_unit_test(what_is_no_file_gets_its_own_result),
     };

@@ -19,6 +19,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 /* A folder of our own, so that what is left can be seen. */
@@ -287,6 +288,41 @@ static void stopping_leaves_what_was_there_before(void **state)
     folder_finish(&folder);
 }
 
+static bool kill_after_some(void *user, uint64_t done, uint64_t total)
+{
+    (void)user;
+    (void)total;
+    if (done > 50000)
+        raise(SIGKILL);
+    return true;
+}
+
+static void killed_writers_leave_one_part_file_that_the_next_takes_over(void **state)
+{
+    (void)state;
+    struct folder folder;
+    folder_init(&folder);
+    SluiceImageSource *source = create_source(300, 300, SLUICE_FORMAT_R8_UNORM, false);
+    SluiceExrWriteInfo info = {.pPath = folder.file};
+    for (int i = 0; i < 3; i++) {
+        int status;
+        pid_t child = fork();
+        if (child == 0) {
+            info.pfnProgress = kill_after_some;
+            sluiceWriteExrFile(&info, source);
+            _exit(1);
+        }
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(count_files(&folder), 1);
+    }
+    CHECK_OK(sluiceWriteExrFile(&info, source));
+    assert_int_equal(count_files(&folder), 1);
+    check_file(folder.file, source, "Y");
+    sluiceDestroyImageSource(source);
+    folder_finish(&folder);
+}
+
 static void failures_of_the_source_are_passed_on_and_leave_no_file(void **state)
 {
     (void)state;
@@ -413,6 +449,7 @@ int main(void)
         cmocka_unit_test(half_sources_keep_their_bits),
         cmocka_unit_test(progress_rises_to_the_total),
         cmocka_unit_test(stopping_leaves_what_was_there_before),
+        cmocka_unit_test(killed_writers_leave_one_part_file_that_the_next_takes_over),
         cmocka_unit_test(failures_of_the_source_are_passed_on_and_leave_no_file),
         cmocka_unit_test(a_full_disk_is_an_io_error_and_leaves_no_file),
         cmocka_unit_test(every_refused_allocation_is_a_result_and_leaves_nothing),

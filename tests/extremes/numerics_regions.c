@@ -135,6 +135,14 @@ static uint32_t mixed(uint64_t x, uint64_t y, uint64_t z)
     return (uint32_t)((h ^ h / 8192) * 0x297A2D39u % modulus);
 }
 
+/* As fragments have it, from here: a compiler that sees the half added might fold it into others.
+ */
+static void add_fragment_place(uint32_t *a)
+{
+    for (uint32_t axis = 0; axis < 2; axis++)
+        a[4 + axis] = extremes_bits_of((float)a[axis] + 0.5f);
+}
+
 static void make_select_random(uint64_t i, uint32_t *a)
 {
     uint32_t random = extremes_random(i);
@@ -148,6 +156,7 @@ static void make_select_random(uint64_t i, uint32_t *a)
     float any = i % 7 ? exp2f(-(float)(extremes_random(i + 3) % 24)) : extremes_float(i / 7);
     float near = i % 8 < 2 ? exact : nextafterf(exact, i % 8 < 4 ? 2.0f : -1.0f);
     a[3] = extremes_bits_of(i % 8 < 6 ? near : any);
+    add_fragment_place(a);
 }
 
 static void call_select_random(const uint32_t *a, uint32_t *r)
@@ -176,6 +185,7 @@ static void make_select_lattice(uint64_t i, uint32_t *a)
     a[0] = (uint32_t)(i % 64) / 8 + (i % 5 ? 0 : extremes_random(i / 64) >> 10 & ~7u);
     a[1] = (uint32_t)(i % 8) + (i % 3 ? 0 : extremes_random(i / 64 + 9) >> 10 & ~7u);
     a[2] = i % 2 ? (uint32_t)(i / 64) : extremes_random(i / 64);
+    add_fragment_place(a);
 }
 
 static void call_select_lattice(const uint32_t *a, uint32_t *r)

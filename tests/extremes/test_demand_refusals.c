@@ -193,8 +193,14 @@ static void questions_take_no_memory(void **state)
     open_life(&l);
     for (uint32_t step = 0; step < 6; step++)
         CHECK_OK(calls[step](&l));
+    const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    SluiceDemandLaunch launch;
+    assert_int_equal(h.DeviceWaitIdle(h.device), VK_SUCCESS);
+    assert_int_equal(h.BeginCommandBuffer(h.commands[0], &begin), VK_SUCCESS);
+    CHECK_OK(sluicePrepareDemandLaunch(l.r.loader, h.commands[0], &launch));
     uint64_t calls_before = l.memory.calls;
     l.memory.refuse_from = 0;
+    CHECK_OK(sluiceAbandonDemandLaunch(l.r.loader, &launch));
     SluiceDemandBuffers buffers;
     SluiceVulkanPages pages;
     SluiceDemandTicketStatus status;
@@ -208,6 +214,7 @@ static void questions_take_no_memory(void **state)
     assert_int_equal(l.memory.calls, calls_before);
     l.memory.refuse_from = UINT64_MAX;
     runner_finish(&l.r);
+    assert_int_equal(h.EndCommandBuffer(h.commands[0]), VK_SUCCESS);
     assert_int_equal(l.memory.live_count, 0);
     runner_image_finish(&l.image);
     runner_image_finish(&l.other);

@@ -2,7 +2,7 @@
 #include "core/sound.h"
 #include "extremes/note.h"
 
-#include "core/internal.h"
+#include "core/state.h"
 
 enum { FRAMES = 400 };
 

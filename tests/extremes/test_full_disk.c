@@ -101,7 +101,7 @@ static void a_bake_onto_a_full_disk_names_the_file_and_leaves_none(void **state)
     struct scene s;
     char part[300];
     scene_init(&s);
-    snprintf(part, sizeof part, "%s.part", s.path);
+    snprintf(part, sizeof part, "%s.sluice-part", s.path);
     const uint64_t size = s.report.outputSize, step = is_long_run ? 997 : size / 40;
     uint32_t cases = 0, wrong = 0;
     for (uint64_t room = 0;; room += step, cases++) {
@@ -229,7 +229,7 @@ static void a_recording_onto_a_full_disk_is_an_error_and_no_file(void **state)
     uint32_t cases = 0;
     bake_folder_init(&folder);
     bake_folder_file(&folder, "run.slrt", path);
-    snprintf(partial, sizeof partial, "%s.partial", path);
+    snprintf(partial, sizeof partial, "%s.sluice-part", path);
     for (rlim_t room = 0;; room += 211, cases++) {
         limit_files(room);
         SluiceResult result = record(path, NULL);

@@ -39,7 +39,7 @@ static void forget_texture(struct renderer *r)
 
 static void open_renderer(struct renderer *r, struct failing_allocator *memory)
 {
-    const struct slc_residency_create_info info = {.cb = &memory->callbacks, .class_count = 2};
+    const struct slc_page_residency_create_info info = {.cb = &memory->callbacks, .class_count = 2};
     failing_allocator_init(memory, UINT64_MAX);
     renderer_init(r, 7, TEXTURES, 3);
     r->slowest_load = 3;

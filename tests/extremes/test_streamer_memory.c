@@ -157,6 +157,9 @@ static void questions_take_no_memory(void **state)
         CHECK_OK(gallery_add(&g, 0));
         for (uint32_t frame = 0; frame < 5; frame++)
             CHECK_OK(gallery_frame(&g));
+        SluiceStreamingFrame frame;
+        CHECK_OK(
+            sluiceBeginStreamingFrame(g.streamer, fake_vulkan_commands(&g.fake), ++g.time, &frame));
         uint64_t calls = g.memory.calls;
         g.memory.refuse_from = 0;
         SluiceVulkanBuffers buffers;
@@ -165,9 +168,13 @@ static void questions_take_no_memory(void **state)
         sluiceGetVulkanBuffers(g.streamer, &buffers);
         sluiceGetVulkanPages(g.streamer, &pages);
         assert_int_equal(sluiceGetVulkanResidencyMode(g.streamer), modes[i]);
+        const SluiceVulkanDeviceCapabilities caps = {.sparse = true};
+        assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, modes[i], 0), modes[i]);
         assert_non_null(sluiceGetVulkanStreamerManager(g.streamer));
         CHECK_OK(sluiceGetVulkanReadStatistics(g.streamer, NULL, &reads));
+        CHECK_OK(sluiceRetryVulkanSource(g.streamer, NULL));
         assert_true(gallery_statistics(&g).manager.textureCount == 1);
+        CHECK_OK(sluiceAbandonStreamingFrame(g.streamer, &frame));
         CHECK_OK(sluiceWaitVulkanStreamerIdle(g.streamer));
         CHECK_OK(sluiceRemoveVulkanTexture(g.streamer, g.textures[0].textureId));
         assert_int_equal(g.memory.calls, calls);

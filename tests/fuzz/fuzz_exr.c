@@ -31,12 +31,15 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
 static void read_file(const char *path, SluiceFormat format)
 {
     SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .format = format, .maxImageSize = 1 << 26};
+        .pPath = path, .format = format, .maxImageSize = 1 << 26, .maxMemorySize = 1 << 28};
     SluiceImageSource *source;
     SluiceImageInfo info;
+    SluiceExrInfo exr;
     if (sluiceCreateExrImageSource(&create, &source) != SLUICE_SUCCESS)
         return;
-    if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS)
+    if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS ||
+        sluiceGetExrInfo(source, &exr) != SLUICE_SUCCESS ||
+        exr.chainSize + exr.readSize > create.maxMemorySize)
         abort();
     for (uint32_t level = 0; level < info.mipLevelCount; level++)
         read_level(source, &info, level);

@@ -115,13 +115,13 @@ static void read_file(const char *path, const char *part_path, bool finishes)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    char path[] = "/tmp/fuzz-store-XXXXXX", part_path[sizeof path + 5];
+    char path[] = "/tmp/fuzz-store-XXXXXX", part_path[sizeof path + sizeof ".sluice-part"];
     if (size < 1)
         return 0;
     uint8_t *copy = malloc(size);
     int descriptor = mkstemp(path);
     if (copy && descriptor >= 0) {
-        snprintf(part_path, sizeof part_path, "%s.part", path);
+        snprintf(part_path, sizeof part_path, "%s.sluice-part", path);
         memcpy(copy, data + 1, size - 1);
         if (data[0] & 1)
             naive_store_reseal(copy, size - 1);

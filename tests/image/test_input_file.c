@@ -4,10 +4,12 @@
 
 #include "base/alloc.h"
 #include "support/failing_allocator.h"
+#include "support/few_descriptors.h"
 #include "support/test.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { FILE_SIZE = 1000 };
@@ -123,6 +125,24 @@ static void a_file_is_opened_closed_and_opened_again(void **state)
     teardown(&f);
 }
 
+/* No writer ever comes: whoever waited for one would be a loader thread less. */
+static void pipes_and_devices_are_refused_without_waiting(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f);
+    unlink(f.path);
+    assert_int_equal(mkfifo(f.path, 0600), 0);
+    CHECK_RESULT(slc_input_file_open(&f.file), SLUICE_ERROR_IO);
+    assert_non_null(strstr(f.last, "is not a regular file"));
+    unlink(f.path);
+    assert_int_equal(symlink("/dev/zero", f.path), 0);
+    CHECK_RESULT(slc_input_file_open(&f.file), SLUICE_ERROR_IO);
+    assert_non_null(strstr(f.last, "is not a regular file"));
+    assert_int_equal(f.file.descriptor, -1);
+    teardown(&f);
+}
+
 static void nothing_is_left_of_what_was_never_begun(void **state)
 {
     (void)state;
@@ -149,14 +169,33 @@ static void words_of_a_file_become_printable(void **state)
     assert_string_equal(text, "");
 }
 
+static void a_file_that_found_no_descriptor_opens_later(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f);
+    struct few_descriptors few;
+    few_descriptors_begin(&few, 2);
+    SluiceResult result = slc_input_file_open(&f.file);
+    few_descriptors_end(&few);
+    CHECK_RESULT(result, SLUICE_NOT_READY);
+    CHECK_OK(slc_input_file_open(&f.file));
+    uint8_t byte = 0;
+    CHECK_OK(slc_input_file_read(&f.file, 7, &byte, 1));
+    assert_int_equal(byte, byte_at(7));
+    teardown(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bytes_inside_the_file_are_read_and_others_are_damage),
         cmocka_unit_test(what_is_there_is_read_up_to_the_end),
         cmocka_unit_test(a_file_is_opened_closed_and_opened_again),
+        cmocka_unit_test(pipes_and_devices_are_refused_without_waiting),
         cmocka_unit_test(nothing_is_left_of_what_was_never_begun),
         cmocka_unit_test(words_of_a_file_become_printable),
+        cmocka_unit_test(a_file_that_found_no_descriptor_opens_later),
     };
     return RUN_TESTS(tests);
 }

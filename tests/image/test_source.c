@@ -211,6 +211,61 @@ static void array_layers_are_the_sources_given(void **state)
         sluiceDestroyImageSource(layers[i]);
 }
 
+static void array_layers_must_say_what_an_image_can_be(void **state)
+{
+    (void)state;
+    const SluiceImageSourceInterface interface = {block_info, block_read, NULL};
+    const SluiceImageInfo bad[] = {
+        {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
+        {16, 0, 5, SLUICE_FORMAT_R8_UNORM, "no height"},
+        {(1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM, "too wide"},
+        {1, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
+        {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
+        {16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"},
+        {16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
+        {16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"},
+        {16, 16, 5, (SluiceFormat)SLUICE_FORMAT_COUNT, "unknown format"},
+        {16, 16, 5, (SluiceFormat)-1, "negative format"},
+    };
+    const SluiceImageInfo good[] = {{16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL, 0},
+                                    {1u << 20, 1, 21, SLUICE_FORMAT_R8_UNORM, NULL, 1},
+                                    {16, 16, 1, SLUICE_FORMAT_R8_UNORM, "level 0 alone", 1}};
+    struct block_source source = {.base = {&interface}};
+    SluiceImageSource *layers[] = {&source.base}, *array = NULL;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        source.info = bad[i];
+        CHECK_RESULT(sluiceCreateArrayImageSource(layers, 1, NULL, &array),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        assert_null(array);
+    }
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        source.info = good[i];
+        CHECK_OK(sluiceCreateArrayImageSource(layers, 1, NULL, &array));
+        sluiceDestroyImageSource(array);
+    }
+}
+
+static void sources_without_an_interface_are_refused(void **state)
+{
+    (void)state;
+    const SluiceImageSourceInterface nothing = {0};
+    const SluiceImageSourceInterface unreadable = {block_info, NULL, NULL};
+    struct block_source source = {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL}};
+    SluiceImageInfo info;
+    SluiceImageRegion region = {0, 0, 0, 1, 1};
+    char texel;
+    for (int i = 0; i < 2; i++) {
+        source.base.pInterface = i ? &nothing : NULL;
+        CHECK_RESULT(sluiceGetImageInfo(&source.base, &info), SLUICE_ERROR_NULL_POINTER);
+        CHECK_RESULT(sluiceReadImageRegion(&source.base, &region, &texel, 1),
+                     SLUICE_ERROR_NULL_POINTER);
+        sluiceDestroyImageSource(&source.base);
+    }
+    source.base.pInterface = &unreadable;
+    CHECK_RESULT(sluiceReadImageRegion(&source.base, &region, &texel, 1),
+                 SLUICE_ERROR_NULL_POINTER);
+}
+
 static void array_layers_must_be_alike(void **state)
 {
     (void)state;
@@ -297,6 +352,8 @@ int main(void)
         cmocka_unit_test(memory_levels_are_what_was_given_and_its_means),
         cmocka_unit_test(array_layers_are_the_sources_given),
         cmocka_unit_test(array_layers_must_be_alike),
+        cmocka_unit_test(array_layers_must_say_what_an_image_can_be),
+        cmocka_unit_test(sources_without_an_interface_are_refused),
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(null_pointers_are_refused),
     };

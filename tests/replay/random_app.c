@@ -267,6 +267,7 @@ static SluiceResult set_config(struct random_app *app)
         .retryDelay = random_app_below(app, 4),
         .missesToForget = random_app_below(app, 3),
         .prefetchLevels = random_app_below(app, 3),
+        .givenUpRetryDelay = one_in(app, 3) ? UINT64_MAX : random_app_below(app, 10),
     };
     return sluiceSetConfig(app->manager, one_in(app, 20) ? NULL : &config);
 }

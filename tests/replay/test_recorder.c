@@ -113,10 +113,10 @@ static void file_appears_when_the_recording_ends(void **state)
     CHECK_OK(sluiceBeginRecordingToFile(app.manager, path, NULL, &recorder));
     random_app_run(&app, 200);
     assert_false(exists(path));
-    assert_true(exists("test_recorder.trace.partial"));
+    assert_true(exists("test_recorder.trace.sluice-part"));
     CHECK_OK(sluiceEndRecording(recorder));
     assert_true(exists(path));
-    assert_false(exists("test_recorder.trace.partial"));
+    assert_false(exists("test_recorder.trace.sluice-part"));
     random_app_finish(&app);
     remove(path);
 }
@@ -141,7 +141,7 @@ static void file_of_a_failed_recording_stays_away(void **state)
             failed_late |= result != SLUICE_SUCCESS;
         }
         assert_true(exists(path) == (result == SLUICE_SUCCESS));
-        assert_false(exists("test_recorder_failed.trace.partial"));
+        assert_false(exists("test_recorder_failed.trace.sluice-part"));
         assert_int_equal(memory.live_bytes, 0);
         random_app_finish(&app);
         assert_true(n < 1000);
@@ -167,6 +167,136 @@ static void second_recorder_is_refused_and_leaves_the_file_of_the_first(void **s
     CHECK_OK(sluiceEndRecording(first));
     assert_true(exists(path));
     random_app_finish(&app);
+    remove(path);
+}
+
+static void take_message(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)severity;
+    snprintf(user, 256, "%s", message);
+}
+
+/* In SLUICERT all of it is there only with the end mark. */
+static void check_plays(const char *path)
+{
+    static char data[1 << 20];
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    const SluiceReplayInfo info = {.pData = data, .size = fread(data, 1, sizeof data, file)};
+    fclose(file);
+    SluiceReplayResult replayed;
+    CHECK_OK(sluiceReplay(&info, &replayed));
+    assert_int_equal(replayed.divergedEvent, 0);
+}
+
+static void two_recordings_to_one_path_are_one_whole_file_and_a_refusal(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder_busy.trace";
+    char told[256] = "";
+    const SluiceFileRecordingInfo info = {.pPath = path, .log = {told, take_message}};
+    struct random_app app, other;
+    SluiceRecorder *first, *second;
+    remove(path);
+    random_app_init(&app, 8, false);
+    random_app_init(&other, 9, false);
+    CHECK_OK(sluiceBeginFileRecording(app.manager, &info, &first));
+    random_app_run(&app, 200);
+    CHECK_RESULT(sluiceBeginFileRecording(other.manager, &info, &second), SLUICE_ERROR_BUSY);
+    assert_null(second);
+    assert_non_null(strstr(told, path));
+    assert_non_null(strstr(told, "another writer"));
+    random_app_run(&other, 200);
+    random_app_run(&app, 200);
+    CHECK_OK(sluiceEndRecording(first));
+    check_plays(path);
+    random_app_finish(&app);
+    random_app_finish(&other);
+    assert_false(exists("test_recorder_busy.trace.sluice-part"));
+    remove(path);
+}
+
+static void link_planted_at_the_part_file_is_not_written_through(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder_planted.trace",
+               *part = "test_recorder_planted.trace.sluice-part";
+    const char *victim = "test_recorder_planted.victim";
+    char told[256] = "", text[8] = {0};
+    const SluiceFileRecordingInfo info = {.pPath = path, .log = {told, take_message}};
+    struct random_app app;
+    SluiceRecorder *recorder;
+    remove(part);
+    FILE *file = fopen(victim, "wb");
+    fputs("older", file);
+    fclose(file);
+    assert_int_equal(symlink(victim, part), 0);
+    random_app_init(&app, 8, false);
+    CHECK_RESULT(sluiceBeginFileRecording(app.manager, &info, &recorder), SLUICE_ERROR_IO);
+    assert_non_null(strstr(told, part));
+    assert_false(exists(path));
+    assert_true(exists(part));
+    file = fopen(victim, "rb");
+    (void)!fread(text, 1, 7, file);
+    fclose(file);
+    assert_string_equal(text, "older");
+    random_app_finish(&app);
+    remove(part);
+    remove(victim);
+}
+
+static void failed_recording_names_its_file_and_the_reason(void **state)
+{
+    (void)state;
+    char told[256] = "";
+    SluiceFileRecordingInfo info = {.pPath = "no/such/folder/x.trace", .log = {told, take_message}};
+    struct random_app app;
+    SluiceRecorder *recorder;
+    random_app_init(&app, 1, false);
+    CHECK_RESULT(sluiceBeginFileRecording(app.manager, &info, &recorder), SLUICE_ERROR_IO);
+    assert_null(recorder);
+    assert_non_null(strstr(told, info.pPath));
+    assert_non_null(strstr(told, "No such file or directory"));
+    info.pPath = "."; /* a folder */
+    CHECK_RESULT(sluiceBeginFileRecording(app.manager, &info, &recorder), SLUICE_ERROR_IO);
+    assert_non_null(strstr(told, "is a folder"));
+    if (access("/dev/full", W_OK) == 0) {
+        info.pPath = "test_recorder.full"; /* a link, so that the machine's own is never at risk */
+        remove(info.pPath);
+        assert_int_equal(symlink("/dev/full", info.pPath), 0);
+        CHECK_RESULT(sluiceBeginFileRecording(app.manager, &info, &recorder), SLUICE_ERROR_IO);
+        assert_non_null(strstr(told, info.pPath));
+        assert_non_null(strstr(told, "No space left"));
+        assert_int_equal(remove(info.pPath), 0);
+    }
+    random_app_finish(&app);
+}
+
+static void failed_allocation_loses_the_recording_and_says_which(void **state)
+{
+    (void)state;
+    const char *path = "test_recorder_told.trace";
+    bool failed_late = false;
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
+        char told[256] = "";
+        struct random_app app;
+        struct failing_allocator memory;
+        SluiceRecorder *recorder;
+        failing_allocator_init(&memory, n);
+        const SluiceFileRecordingInfo info = {path, &memory.callbacks, {told, take_message}};
+        random_app_init(&app, 9, false);
+        result = sluiceBeginFileRecording(app.manager, &info, &recorder);
+        random_app_run(&app, 100);
+        if (recorder && (result = sluiceEndRecording(recorder)) != SLUICE_SUCCESS) {
+            failed_late = true;
+            assert_non_null(strstr(told, path));
+            assert_non_null(strstr(told, "OUT_OF_HOST_MEMORY"));
+        }
+        random_app_finish(&app);
+        assert_true(n < 1000);
+    }
+    assert_true(failed_late);
     remove(path);
 }
 
@@ -204,7 +334,7 @@ static void pipe_is_written_to_and_not_replaced(void **state)
     assert_int_equal(read(reader, magic, 4), 4);
     close(reader);
     assert_int_equal(remove(path), 0);
-    assert_false(exists("test_recorder.pipe.partial"));
+    assert_false(exists("test_recorder.pipe.sluice-part"));
 }
 
 static void wrong_arguments_are_refused(void **state)
@@ -249,6 +379,10 @@ int main(void)
         cmocka_unit_test(file_appears_when_the_recording_ends),
         cmocka_unit_test(file_of_a_failed_recording_stays_away),
         cmocka_unit_test(second_recorder_is_refused_and_leaves_the_file_of_the_first),
+        cmocka_unit_test(two_recordings_to_one_path_are_one_whole_file_and_a_refusal),
+        cmocka_unit_test(link_planted_at_the_part_file_is_not_written_through),
+        cmocka_unit_test(failed_recording_names_its_file_and_the_reason),
+        cmocka_unit_test(failed_allocation_loses_the_recording_and_says_which),
         cmocka_unit_test(path_that_cannot_be_written_is_an_error),
         cmocka_unit_test(pipe_is_written_to_and_not_replaced),
         cmocka_unit_test(wrong_arguments_are_refused),

@@ -29,13 +29,21 @@ status 0 "$replay" --help && grep -q 'timeout SECONDS.*(1)' "$folder/out"
 report help_names_defaults $?
 
 wrong=0
-for arguments in '' '--no-such-option x' 'a b' 'a --latency' 'a --latency -1' 'a --budget 0' \
+for arguments in '' '--no-such-option x' 'a b' 'a --latency' 'a --latency -1' 'a --tiles-per-frame 0' 'a --budget 5' '-- a b' \
     'a --latency 4294967296' 'a --timeout nan' 'a --timeout 0' 'a --dump --json' 'a --standby 1x' \
     'a --heap-tiles 1048577'; do
     # shellcheck disable=SC2086
     status 2 "$replay" $arguments && [ -s "$folder/err" ] || wrong=1
 done
 report wrong_usage_exits_with_2_and_says_why $wrong
+
+status 2 "$replay" "$trace" --budget 5 && grep -q -- '--budget is called --tiles-per-frame' "$folder/err" &&
+    status 0 "$replay" "$trace" --tiles-per-frame 5
+report tiles_per_frame_have_a_name_of_their_own $?
+
+cp "$trace" "$folder/--trace" &&
+    (tool=$(realpath "$replay") && cd "$folder" && status 0 "$tool" --json -- --trace)
+report names_that_look_like_options_follow_two_dashes $?
 
 status 0 "$replay" "$trace" && grep -q '^hash [0-9a-f]\{16\} events [0-9]*$' "$folder/out"
 report statistics_end_with_the_hash $?

@@ -10,6 +10,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define FRAMES 5
 
@@ -84,7 +85,8 @@ static void a_trace_holds_all_maps_of_all_frames(void **state)
         needs_rig_frame(&rig);
         needs_trace_add_frame(&written, &rig.needs, 16667 * (frame + 1));
     }
-    assert_true(needs_trace_end(&written));
+    assert_int_not_equal(access(path, F_OK), 0); /* not before it is whole */
+    assert_true(needs_trace_end(&written, true));
     needs_rig_close(&rig);
 
     size_t size;
@@ -108,6 +110,30 @@ static void a_trace_holds_all_maps_of_all_frames(void **state)
     remove(path);
 }
 
+static void a_trace_of_a_failed_walk_leaves_what_was_there(void **state)
+{
+    (void)state;
+    const char *path = "test_needs_trace_older.slt";
+    struct needs_rig rig;
+    struct needs_trace trace;
+    char text[16] = {0};
+    FILE *file = fopen(path, "w");
+    fputs("older", file);
+    fclose(file);
+    needs_rig_open(&rig, descs, TEXTURES);
+    assert_true(needs_trace_begin(&trace, path, &rig.needs, FRAMES, 16667));
+    needs_rig_frame(&rig);
+    needs_trace_add_frame(&trace, &rig.needs, 16667);
+    assert_false(needs_trace_end(&trace, false));
+    needs_rig_close(&rig);
+    file = fopen(path, "r");
+    (void)!fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    assert_string_equal(text, "older");
+    assert_int_not_equal(access("test_needs_trace_older.slt.sluice-part", F_OK), 0);
+    remove(path);
+}
+
 static void a_trace_that_cannot_be_opened_is_refused(void **state)
 {
     (void)state;
@@ -122,6 +148,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_holds_all_maps_of_all_frames),
+        cmocka_unit_test(a_trace_of_a_failed_walk_leaves_what_was_there),
         cmocka_unit_test(a_trace_that_cannot_be_opened_is_refused),
     };
     return RUN_TESTS(tests);

@@ -90,7 +90,8 @@ static void frames_come_back_in_any_order(void **state)
         memset(pixels, i + 1, sizeof pixels);
         assert_true(frame_file_write(&file, (uint32_t)i, pixels));
     }
-    frame_file_close(&file);
+    assert_int_not_equal(access(folder->file, F_OK), 0); /* not before it is whole */
+    assert_true(frame_file_keep(&file));
     assert_true(frame_file_open(folder->file, sizeof pixels, 5, &file));
     for (uint32_t i = 0; i < 5; i++) {
         assert_true(frame_file_read(&file, i, pixels));
@@ -110,13 +111,30 @@ static void files_of_another_size_are_not_opened(void **state)
     assert_false(frame_file_open(folder->file, sizeof pixels, 1, &file));
     assert_true(frame_file_create(folder->file, sizeof pixels, &file));
     assert_true(frame_file_write(&file, 2, pixels));
-    frame_file_close(&file);
+    assert_true(frame_file_keep(&file));
     assert_false(frame_file_open(folder->file, sizeof pixels, 2, &file));
     assert_false(frame_file_open(folder->file, sizeof pixels, 4, &file));
     assert_false(frame_file_open(folder->path, sizeof pixels, 3, &file));
     assert_false(file.is_open);
     assert_true(frame_file_open(folder->file, sizeof pixels, 3, &file));
     frame_file_close(&file);
+}
+
+static void frames_that_are_not_kept_leave_what_was_there(void **state)
+{
+    const struct folder *folder = *state; /* tear_down finds what is left */
+    struct frame_file file;
+    const uint8_t pixels[64] = {7};
+    FILE *older = fopen(folder->file, "w");
+    fputs("older", older);
+    fclose(older);
+    assert_true(frame_file_create(folder->file, sizeof pixels, &file));
+    assert_true(frame_file_write(&file, 0, pixels));
+    frame_file_close(&file);
+    assert_false(file.is_open);
+    struct stat status;
+    assert_int_equal(stat(folder->file, &status), 0);
+    assert_int_equal(status.st_size, 5);
 }
 
 static void scratch_files_leave_nothing(void **state)
@@ -255,6 +273,20 @@ static void text_that_is_cut_off_anywhere_does_not_match(void **state)
     }
 }
 
+static void text_of_somebody_else_is_told_apart(void **state)
+{
+    const struct folder *folder = *state;
+    struct scene scene;
+    init_scene(&scene, folder);
+    FILE *file = fopen(folder->key, "w");
+    fputs("shopping list\n", file);
+    fclose(file);
+    assert_int_equal(compare(&scene, folder->key), REFERENCE_FOREIGN);
+    assert_int_equal(remove(folder->key), 0);
+    assert_int_equal(mkdir(folder->key, 0777), 0);
+    assert_int_equal(compare(&scene, folder->key), REFERENCE_FOREIGN);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -263,12 +295,15 @@ int main(void)
         cmocka_unit_test(each_pixel_has_its_own_square),
         cmocka_unit_test_setup_teardown(frames_come_back_in_any_order, set_up, tear_down),
         cmocka_unit_test_setup_teardown(files_of_another_size_are_not_opened, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(frames_that_are_not_kept_leave_what_was_there, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(scratch_files_leave_nothing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_same_settings_match, set_up, tear_down),
         cmocka_unit_test_setup_teardown(whatever_changes_the_frames_differs, set_up, tear_down),
         cmocka_unit_test_setup_teardown(pictures_that_were_written_again_differ, set_up, tear_down),
         cmocka_unit_test_setup_teardown(text_that_is_cut_off_anywhere_does_not_match, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(text_of_somebody_else_is_told_apart, set_up, tear_down),
     };
     supersample_init(&tables);
     return RUN_TESTS(tests);

@@ -16,7 +16,7 @@ void scratch_init(struct scratch *scratch)
     strcpy(scratch->folder, "/tmp/sluice-store-XXXXXX");
     assert_non_null(mkdtemp(scratch->folder));
     snprintf(scratch->path, sizeof scratch->path, "%s/a.store", scratch->folder);
-    snprintf(scratch->part_path, sizeof scratch->part_path, "%s.part", scratch->path);
+    snprintf(scratch->part_path, sizeof scratch->part_path, "%s.sluice-part", scratch->path);
 }
 
 void scratch_finish(struct scratch *scratch)

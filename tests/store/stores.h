@@ -10,7 +10,7 @@
 struct scratch {
     char folder[64];
     char path[96];       ///< in it, .store
-    char part_path[104]; ///< .store.part
+    char part_path[112]; ///< .store.sluice-part
 };
 
 void scratch_init(struct scratch *scratch);

@@ -3,9 +3,11 @@
 
 #include "store/stores.h"
 #include "store/victim.h"
+#include "support/few_descriptors.h"
 #include "support/test.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 static SluiceResult read_first_tile(SluiceImageSource *source)
@@ -127,6 +129,67 @@ static void what_is_no_file_is_not_opened(void **state)
     scratch_finish(&scratch);
 }
 
+static void a_store_that_found_no_descriptor_opens_later(void **state)
+{
+    (void)state;
+    struct victim victim;
+    victim_init(&victim, 3);
+    struct messages messages;
+    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
+                                               .log = messages_log(&messages)};
+    SluiceImageSource *source = NULL;
+    struct few_descriptors few;
+    few_descriptors_begin(&few, 2); /* which are kept for outputs */
+    SluiceResult result = sluiceCreateStoreImageSource(&create, &source);
+    few_descriptors_end(&few);
+    CHECK_RESULT(result, SLUICE_NOT_READY);
+    assert_null(source);
+    assert_int_equal(messages.errors, 1);
+    assert_non_null(strstr(messages.last, "Too many open files"));
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    CHECK_OK(read_first_tile(source));
+    sluiceDestroyImageSource(source);
+    victim_finish(&victim);
+}
+
+/* Loaders read what fails again and again. */
+static void faults_of_a_file_are_logged_once_each_and_not_all_of_hundreds(void **state)
+{
+    (void)state;
+    struct scratch scratch;
+    struct messages messages;
+    scratch_init(&scratch);
+    SluiceStoreCreateInfo info = {.pPath = scratch.path,
+                                  .width = 2560,
+                                  .height = 1280,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    CHECK_OK(write_store(&info, PICTURE_NOISE)); /* 200 tiles of level 0 */
+    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path,
+                                               .log = messages_log(&messages)};
+    SluiceImageSource *source;
+    SluiceStoreInfo store;
+    CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
+    CHECK_OK(sluiceGetStoreInfo(source, &store));
+    size_t size;
+    unsigned char *bytes = read_bytes(scratch.path, &size);
+    for (size_t at = size / 4; at < size; at += 1000)
+        bytes[at] ^= 1;
+    write_bytes(scratch.path, bytes, size);
+    uint32_t failed = 0;
+    for (uint32_t again = 0; again < 4; again++)
+        for (uint32_t i = 0; i < 200; i++) {
+            static unsigned char texels[65536];
+            SluiceImageRegion region = {0, i % 20 * 128, i / 20 * 128, 128, 128, 0};
+            failed += sluiceReadImageRegion(source, &region, texels, 512) < 0;
+        }
+    assert_true(failed > 4 * 100);
+    assert_in_range(messages.errors, 2, 16);
+    assert_non_null(strstr(messages.last, "counted, not logged"));
+    sluiceDestroyImageSource(source);
+    free(bytes);
+    scratch_finish(&scratch);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +198,8 @@ int main(void)
         cmocka_unit_test(a_file_that_is_written_over_while_it_is_open_gives_an_error),
         cmocka_unit_test(raw_tiles_are_checked_once_or_each_time),
         cmocka_unit_test(what_is_no_file_is_not_opened),
+        cmocka_unit_test(a_store_that_found_no_descriptor_opens_later),
+        cmocka_unit_test(faults_of_a_file_are_logged_once_each_and_not_all_of_hundreds),
     };
     return RUN_TESTS(tests);
 }

@@ -283,7 +283,7 @@ static void a_second_writer_is_refused_until_the_first_is_gone(void **state)
     SluiceStoreCreateInfo other = info;
     other.flags = 0;
     other.log = messages_log(&messages);
-    CHECK_RESULT(sluiceCreateStoreWriter(&other, &second), SLUICE_ERROR_IO);
+    CHECK_RESULT(sluiceCreateStoreWriter(&other, &second), SLUICE_ERROR_BUSY);
     assert_non_null(strstr(messages.last, "another writer"));
     assert_null(second);
     CHECK_OK(write_tiles(first, &info, PICTURE_MIXED, UINT64_MAX)); /* nothing happened to it */

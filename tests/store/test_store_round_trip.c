@@ -163,6 +163,8 @@ static void what_a_file_says_of_itself_comes_back(void **state)
     assert_int_equal(image.height, 130);
     assert_int_equal(image.mipLevelCount, 9);
     assert_int_equal(image.arrayLayerCount, 2);
+    assert_int_equal(image.addressModeU, info.addressModeU + SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
+    assert_int_equal(image.addressModeV, info.addressModeV + SLUICE_IMAGE_ADDRESS_MODE_REPEAT);
     assert_int_equal(image.format, SLUICE_FORMAT_R8_UNORM);
     assert_string_equal(image.pName, scratch.path);
     sluiceDestroyImageSource(source);

@@ -252,6 +252,66 @@ static uint32_t next_random(uint32_t *seed)
     return *seed >> 8;
 }
 
+/* One repeat leaves 10 % of doubt; less memory then does not excuse a worse picture. */
+static void what_a_rule_names_is_never_worse_than_the_base(void **state)
+{
+    static const double means[][METRIC_COUNT] = {
+        {0.100, 100, 10}, /* the base */
+        {0.107, 40, 10},  /* as good within the doubt, and smaller */
+        {0.080, 190, 10}, /* surely better for more memory */
+        {0.086, 105, 10}, /* as good as that one, and smaller */
+    };
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 2);
+    rig.sweep.repeats = 1;
+    for (uint32_t i = 0; i < 4; i++) /* metrics one after another, as there is one repeat */
+        for (int m = 0; m < METRIC_COUNT; m++)
+            (&rig.measured[i][0][0])[m] = means[i][m];
+    expect(&rig, 0, 1, 1);
+    rig.points[2] = rig.points[3] = rig.points[1];
+    for (uint32_t i = 2; i < 4; i++)
+        rig.points[i].measured = &rig.measured[i][0][0];
+    rig.sweep.point_count = 4;
+    expect(&rig, 3, 1, 1);
+}
+
+/* Whatever is measured, and however often. */
+static void no_recommendation_is_below_the_base_in_its_own_figure(void **state)
+{
+    static const int goals[RECOMMEND_COUNT] = {QUALITY, MEMORY, MEMORY};
+    uint32_t seed = 3;
+    (void)state;
+    for (int round = 0; round < 500; round++) {
+        double means[MOST_POINTS][METRIC_COUNT];
+        struct rig rig;
+        for (uint32_t i = 0; i < 8; i++)
+            for (int m = 0; m < METRIC_COUNT; m++)
+                means[i][m] = 1.0 + 0.01 * (next_random(&seed) % 30);
+        init(&rig, (const double(*)[METRIC_COUNT])means, 8);
+        recommend(&rig.sweep, &roles, rig.recommendations);
+        for (int r = 0; r < RECOMMEND_COUNT; r++)
+            assert_true(means[rig.recommendations[r].point][goals[r]] <= means[0][goals[r]]);
+        recommend_finish(rig.recommendations);
+    }
+}
+
+static void rules_say_what_equal_means(void **state)
+{
+    static const double means[][METRIC_COUNT] = {{0.1, 100, 10}};
+    struct rig rig;
+    (void)state;
+    init(&rig, means, 1);
+    recommend(&rig.sweep, &roles, rig.recommendations);
+    assert_non_null(strstr(rig.recommendations[0].rule, "equal: less than 1 % apart"));
+    assert_non_null(strstr(rig.recommendations[0].rule, "never more than the base's"));
+    recommend_finish(rig.recommendations);
+    rig.sweep.repeats = 1;
+    recommend(&rig.sweep, &roles, rig.recommendations);
+    assert_non_null(strstr(rig.recommendations[0].rule, "equal: less than 10 % apart"));
+    recommend_finish(rig.recommendations);
+}
+
 static bool is_dominated(const double (*means)[METRIC_COUNT], uint32_t count, uint32_t point)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -324,6 +384,9 @@ int main(void)
         cmocka_unit_test(what_nobody_chooses_is_not_recommended),
         cmocka_unit_test(decibels_are_compared_as_errors),
         cmocka_unit_test(without_a_picture_metric_nothing_is_recommended),
+        cmocka_unit_test(what_a_rule_names_is_never_worse_than_the_base),
+        cmocka_unit_test(no_recommendation_is_below_the_base_in_its_own_figure),
+        cmocka_unit_test(rules_say_what_equal_means),
         cmocka_unit_test(what_is_recommended_is_never_dominated),
         cmocka_unit_test(noise_within_the_intervals_does_not_change_them),
     };

@@ -54,6 +54,9 @@ status 0 sweep --results a --sweep budget=8,16 --sweep probability=1/4 --repeats
     [ "$(wc -l <log)" = 12 ] && [ "$(wc -l <a/points.csv)" = 5 ] && [ "$(wc -l <a/runs.csv)" = 13 ]
 report each_point_is_run_as_often_as_asked $?
 
+[ "$(tail -n 1 out)" = 'The page, with plots and pictures: a/page.html' ]
+report the_last_line_names_the_page $?
+
 [ "$(cell a/points.csv 1,budget resident_bytes_peak)" = 8388608 ] &&
     [ "$(cell a/points.csv 1,budget resident_bytes_peak_half_width)" = 0 ] &&
     [ "$(cell a/points.csv 1,budget resident_bytes_peak_delta)" = -96468992 ] &&
@@ -112,9 +115,29 @@ status 1 "$tool" page nowhere && grep -q nowhere err
 report folder_without_a_sweep_has_no_page $?
 
 status 0 sweep --results moved --sweep budget=8 --repeats 1 --fresh &&
-    [ "$(wc -l <log)" = 17 ] && [ "$(find moved/runs -mindepth 1 -maxdepth 1 | wc -l)" = 2 ]
+    [ "$(wc -l <log)" = 17 ] && [ "$(find moved/runs -mindepth 1 -maxdepth 1 -type d | wc -l)" = 2 ]
 report fresh_forgets_the_runs $?
 
+# What lies in the folder is of three kinds: marked as the tool's own, of an older version, of others.
+mkdir -p theirs/runs theirs/reference && echo precious | tee theirs/runs/photo theirs/reference/photo >theirs/libraries.txt
+: >log
+status 1 sweep --results theirs --sweep budget=8 --repeats 1 --fresh &&
+    grep -q 'theirs/runs: has no file made-by-sluice-tradeoff.txt.*another folder with --results' err &&
+    [ ! -s log ] && [ "$(cat theirs/runs/photo theirs/reference/photo)" = "$(printf 'precious\nprecious')" ]
+report fresh_leaves_folders_that_it_has_not_made $?
+
+status 0 sweep --results theirs --sweep budget=8 --repeats 1 && [ "$(wc -l <log)" = 2 ] &&
+    status 0 sweep --results theirs --sweep budget=8 --repeats 1 && [ "$(wc -l <log)" = 2 ] &&
+    [ "$(cat theirs/runs/photo theirs/libraries.txt)" = "$(printf 'precious\nprecious')" ] &&
+    status 1 sweep --results theirs --fresh && [ "$(cat theirs/reference/photo)" = precious ]
+report folders_without_a_mark_are_used_but_never_removed $?
+
+mkdir tables && echo precious >tables/points.csv
+status 1 sweep --results tables --repeats 1 && grep -q 'tables/points.csv is not of a sweep' err &&
+    [ "$(cat tables/points.csv)" = precious ] && [ ! -e tables/runs ]
+report tables_of_somebody_else_are_not_replaced $?
+
+: >log
 sed 's/999/998/; $a# another build' "$scene" >scene2
 chmod +x scene2
 : >log
@@ -217,12 +240,17 @@ report one_sweep_at_a_time_in_a_folder $?
 kill -TERM $pid
 wait $pid
 [ $? = 130 ] && grep -q 'the same command goes on' err2 && [ ! -e h/points.csv ] &&
-    [ -z "$(find h/runs -mindepth 1)" ] && ! pgrep -f "^sleep $nap" >/dev/null
+    [ -z "$(find h/runs -mindepth 1 -type d)" ] && ! pgrep -f "^sleep $nap" >/dev/null
 report an_interruption_ends_what_was_started_and_keeps_the_rest $?
 
 status 0 sweep --results i --sweep name='a b,it'\''s' --repeats 1 --jobs 2 -- --generate-scale 9 &&
     grep -q "^1,name a b,done" i/points.csv && [ "$(wc -l <i/runs.csv)" = 4 ]
 report several_jobs_measure_the_same $?
+
+escape=$(printf '\033')
+status 0 sweep --results j --base "name=${escape}[31mred" --sweep "name=${escape}[1mbold" --repeats 1 &&
+    grep -q 'x1b\[1mbold' out && ! grep -q "$escape" out err
+report values_are_printed_plainly $?
 
 status 1 sweep --results i --sweep name=a --repeats 1 -- --budget 9 &&
     grep -q -- '--budget is a setting: --base budget=VALUE' err
@@ -277,10 +305,20 @@ status 0 "$tool" trace needs.trace --results j --sweep budget=2,16 --repeats 2 &
     [ "$(cell j/points.csv 1,budget resident_bytes_peak)" -le 2097152 ]
 report a_trace_is_played_without_a_program $?
 
+cp needs.trace j/runs/needs.trace && cp needs.trace before
+status 1 "$tool" trace j/runs/needs.trace --results j --fresh && grep -q 'fresh would remove it' err &&
+    cmp before j/runs/needs.trace && rm j/runs/needs.trace && [ -s j/points.csv ]
+report fresh_does_not_remove_the_trace_that_it_is_to_play $?
+
+mkdir p && ln needs.trace p/frames.csv
+status 1 "$tool" play needs.trace --output p && grep -q 'p/frames.csv: would replace a file that is read' err &&
+    cmp before needs.trace && cmp before p/frames.csv
+report a_trace_is_not_replaced_by_its_own_table $?
+
 # Of 86 tiles 32 fit at 2 MiB, so that some regions stay coarser for good; at 16 MiB none does.
 awk -v a="$(cell j/points.csv 1,budget clairvoyant_levels_too_coarse)" \
     -v b="$(cell j/points.csv 2,budget clairvoyant_levels_too_coarse)" 'BEGIN { exit !(a > b && b >= 0) }' &&
-    [ "$(find j/clairvoyant -type f | wc -l)" = 3 ]
+    [ "$(find j/clairvoyant -name '*.jsonl' | wc -l)" = 3 ]
 report a_policy_that_knows_the_trace_is_asked_once_per_budget $?
 
 # The later loads arrive the more frames lack them.
@@ -292,7 +330,7 @@ report the_policy_waits_for_loads_as_long_as_the_point $?
 export SCENE_RECORDING=$recording SCENE_NEEDS=$folder/needs.trace
 status 0 sweep --results l --sweep budget=16 --sweep probability=1/4 --repeats 2 &&
     [ "$(cell l/points.csv 0,base clairvoyant_tiles)" = 86 ] &&
-    [ "$(find l/clairvoyant -type f | wc -l)" = 2 ] &&
+    [ "$(find l/clairvoyant -name '*.jsonl' | wc -l)" = 2 ] &&
     awk -v v="$(cell l/points.csv 0,base core_us_per_frame)" 'BEGIN { exit !(v > 0) }' &&
     status 0 "$tool" page l --json && grep -q '"clairvoyant_tiles", "value": 86, .*"point": "budget 16"' out
 report recordings_of_first_runs_are_played $?

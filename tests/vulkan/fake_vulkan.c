@@ -15,6 +15,7 @@ struct fake_object {
     uint64_t size;
     void *memory;
     VkImage image; ///< of a view
+    bool general;  ///< the layout of an image
 };
 
 /* All dispatchable handles are the device itself. */
@@ -143,10 +144,15 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
                                                VkQueueFamilyProperties *families)
 {
     (void)device;
-    *count = 1;
-    families[0] = (VkQueueFamilyProperties){
-        .queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT,
-        .queueCount = 1};
+    static const VkQueueFlags all[FAKE_FAMILIES] = {
+        [0] = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT,
+        [FAKE_TRANSFER_FAMILY] = VK_QUEUE_TRANSFER_BIT,
+        [FAKE_SPARSE_FAMILY] = VK_QUEUE_TRANSFER_BIT | VK_QUEUE_SPARSE_BINDING_BIT,
+        [FAKE_COMPUTE_FAMILY] = VK_QUEUE_COMPUTE_BIT};
+    uint32_t room = families ? *count : 0;
+    *count = FAKE_FAMILIES;
+    for (uint32_t i = 0; i < room && i < FAKE_FAMILIES; i++)
+        families[i] = (VkQueueFamilyProperties){.queueFlags = all[i], .queueCount = 1};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_format_features(VkPhysicalDevice device, VkFormat format,
@@ -268,6 +274,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
     (void)cb;
     struct fake_vulkan *fake = fake_of(device);
     if (fake->memory_limit && fake->live_memory + info->allocationSize > fake->memory_limit)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (fake->refused_size == info->allocationSize)
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     struct fake_object *object = make(fake, info->allocationSize);
     fake->live_memory += info->allocationSize;
@@ -420,9 +428,9 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
                                                 VkImage image, VkImageLayout layout, uint32_t count,
                                                 const VkBufferImageCopy *regions)
 {
-    (void)layout;
     struct fake_vulkan *fake = fake_of(commands);
     assert_false(fake->published);
+    assert_true(layout == VK_IMAGE_LAYOUT_GENERAL && OBJECT(image)->general);
     for (uint32_t i = 0; i < count; i++) {
         assert_true(fake->copy_count < FAKE_EVENTS);
         struct fake_copy *copy = &fake->copies[fake->copy_count++];
@@ -540,6 +548,7 @@ static VKAPI_ATTR void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer
 {
     (void)from, (void)to, (void)count, (void)regions;
     fake_of(commands)->published = true;
+    fake_of(commands)->copy_calls++;
 }
 
 /* The rest leaves no trace here. */
@@ -597,8 +606,31 @@ static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, VkPipelineSt
                                           const VkBufferMemoryBarrier *buffers,
                                           uint32_t image_count, const VkImageMemoryBarrier *images)
 {
-    (void)commands, (void)from, (void)to, (void)flags, (void)memory_count, (void)memory;
-    (void)buffer_count, (void)buffers, (void)image_count, (void)images;
+    (void)from, (void)to, (void)flags, (void)memory_count, (void)memory;
+    (void)buffer_count, (void)buffers;
+    struct fake_vulkan *fake = fake_of(commands);
+    for (uint32_t i = 0; i < image_count; i++) {
+        struct fake_object *image = OBJECT(images[i].image);
+        assert_true(images[i].newLayout == VK_IMAGE_LAYOUT_GENERAL);
+        if (!image->general && fake->general_count < FAKE_EVENTS)
+            fake->general[fake->general_count++] = image;
+        image->general = true;
+    }
+}
+
+void fake_vulkan_mark(struct fake_vulkan *fake)
+{
+    fake->general_count = 0;
+    for (int i = 0; i < 2; i++)
+        memcpy(fake->watches[i].marked, fake->watches[i].words, sizeof fake->watches[i].words);
+}
+
+void fake_vulkan_undo(struct fake_vulkan *fake)
+{
+    while (fake->general_count)
+        fake->general[--fake->general_count]->general = false;
+    for (int i = 0; i < 2; i++)
+        memcpy(fake->watches[i].words, fake->watches[i].marked, sizeof fake->watches[i].words);
 }
 
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device,
@@ -676,15 +708,15 @@ static PFN_vkVoidFunction find(const char *name)
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_function(VkDevice device,
                                                                     const char *name)
 {
-    (void)device;
-    return find(name);
+    const char *missing = fake_of(device)->missing;
+    return missing && strcmp(missing, name) == 0 ? NULL : find(name);
 }
 
 static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_function(VkInstance instance,
                                                                       const char *name)
 {
-    (void)instance;
-    return find(name);
+    const char *missing = fake_of(instance)->missing;
+    return missing && strcmp(missing, name) == 0 ? NULL : find(name);
 }
 
 VkImage fake_vulkan_image_of(VkImageView view)
@@ -699,6 +731,13 @@ void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *
     info->device = (VkDevice)(void *)fake;
     info->pfnGetInstanceProcAddr = get_instance_function;
     info->sparseQueue = (VkQueue)(void *)fake;
+    if (info->timeStampsPerSecond)
+        return;
+    info->timeStampsPerSecond = 60;
+    info->newestFeedbackMapOnly = info->feedbackTimeout == 0;
+    info->noStandbyTiles = info->numExtraStandbyTiles == 0;
+    if (info->retryDelay == 0)
+        info->retryDelay = 1;
 }
 
 VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake)

@@ -16,6 +16,12 @@
 #define FAKE_EVENTS 4096u
 #define FAKE_WORDS 65536u
 
+/** Queue families: 0 does everything. */
+#define FAKE_FAMILIES 4u
+#define FAKE_TRANSFER_FAMILY 1u ///< nothing else
+#define FAKE_SPARSE_FAMILY 2u   ///< binds, does not compute
+#define FAKE_COMPUTE_FAMILY 3u  ///< does not bind
+
 /** One page; merged runs are taken apart. */
 struct fake_bind {
     VkImage image;
@@ -47,7 +53,12 @@ struct fake_vulkan {
     VkImage destroyed_images[FAKE_EVENTS];
     VkDeviceMemory freed_memories[FAKE_EVENTS];
     uint32_t bind_count, copy_count, destroyed_count, freed_count, bind_calls;
-    bool published; ///< copies to images are over: MinMip maps were copied
+    bool published;      ///< copies to images are over: MinMip maps were copied
+    uint64_t copy_calls; ///< of MinMip maps, in all
+
+    /** What fake_vulkan_undo takes back: as it was at the last fake_vulkan_mark. */
+    struct fake_object *general[FAKE_EVENTS]; ///< images that got their layout since
+    uint32_t general_count;
 
     /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
     uint64_t calls, failing_call;
@@ -55,12 +66,16 @@ struct fake_vulkan {
     bool fails_on;         ///< and so do all later ones, vkDeviceWaitIdle among them
     uint64_t layer_size;   ///< bytes of a layer of an image; 0: 16 MiB for all layers together
     uint64_t memory_limit; ///< bytes that the device has; 0: as many as are asked for
+    uint64_t refused_size; ///< allocations of so many bytes fail; 0: none
 
     /** Buffers that the test set, and what was filled in and updated there. */
     struct fake_watch {
         VkBuffer buffer;
         uint32_t words[FAKE_WORDS];
+        uint32_t marked[FAKE_WORDS];
     } watches[2];
+
+    const char *missing; ///< function that neither instance nor device has; NULL: none
 
     uint64_t live_objects; ///< created and not destroyed
     uint64_t live_memory;  ///< bytes
@@ -76,8 +91,14 @@ struct fake_vulkan {
     uint32_t dispatch_count;
 };
 
+/** Fills in handles. Where timeStampsPerSecond is 0, time stamps count frames, and 0 is the newest
+ *  map alone, no standby tiles, and a second try at once. */
 void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);
 VkImage fake_vulkan_image_of(VkImageView view);
 VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake);
+/** Commands that were recorded between these calls are never submitted: layouts and watched buffers
+ *  are as they were. */
+void fake_vulkan_mark(struct fake_vulkan *fake);
+void fake_vulkan_undo(struct fake_vulkan *fake);
 
 #endif /* TESTS_VULKAN_FAKE_VULKAN_H */

@@ -1,8 +1,7 @@
 /* What lies around each region of a MinMip map, against a look at every neighbour. */
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/around.h"
-
-#include <stdlib.h>
 
 #define MOST 40u
 
@@ -36,7 +35,7 @@ static void check_map(uint32_t width, uint32_t height, uint32_t radius, uint32_t
     static uint16_t texels[MOST * MOST], scratch[2 * (MOST + SLC_MAX_AROUND) + 1];
     static uint32_t words[MOST + 1];
     for (uint32_t i = 0; i < width * height; i++)
-        texels[i] = (uint16_t)(rand() % 4 ? rand() % 3 : rand());
+        texels[i] = (uint16_t)(roll() % 4 ? roll() % 3 : roll());
     struct slc_around a = {texels, width, height, radius, wraps & 1, wraps >> 1 & 1};
     scratch[2 * (width + radius)] = 0x5A5A;
     for (uint32_t y = 0; y < height; y++) {
@@ -54,7 +53,7 @@ static void check_map(uint32_t width, uint32_t height, uint32_t radius, uint32_t
 static void words_hold_the_largest_texel_around(void **state)
 {
     (void)state;
-    srand(1);
+    roll_seed(1);
     for (uint32_t wraps = 0; wraps < 4; wraps++)
         for (uint32_t radius = 1; radius <= SLC_MAX_AROUND; radius++) {
             for (uint32_t height = 1; height <= 6; height++)

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "support/failing_allocator.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -119,17 +120,17 @@ static void full_list_refuses(void **state)
 static void random_changes_end_in_the_same_page_table_as_one_by_one(void **state)
 {
     struct slc_bind_list *list = &((struct fixture *)*state)->list;
-    srand(7);
+    roll_seed(7);
     for (int round = 0; round < 300; round++) {
         int64_t wanted[IMAGES][LEVELS][SIZE][SIZE], got[IMAGES][LEVELS][SIZE][SIZE];
         memset(wanted, 0x7F, sizeof wanted);
         memset(got, 0x7F, sizeof got);
         slc_bind_list_clear(list);
-        for (int i = rand() % 200; i >= 0; i--) {
-            uint32_t image = (uint32_t)rand() % IMAGES, level = (uint32_t)rand() % LEVELS;
-            uint32_t x = (uint32_t)rand() % SIZE, y = (uint32_t)rand() % SIZE;
-            uint32_t heap = rand() % 3 ? (uint32_t)rand() % 2 : SLC_UNBIND;
-            uint32_t slot = rand() % 2 ? x : (uint32_t)rand() % 50;
+        for (int i = roll() % 200; i >= 0; i--) {
+            uint32_t image = (uint32_t)roll() % IMAGES, level = (uint32_t)roll() % LEVELS;
+            uint32_t x = (uint32_t)roll() % SIZE, y = (uint32_t)roll() % SIZE;
+            uint32_t heap = roll() % 3 ? (uint32_t)roll() % 2 : SLC_UNBIND;
+            uint32_t slot = roll() % 2 ? x : (uint32_t)roll() % 50;
             assert_true(slc_bind_list_put(list, image, place(level, x, y), heap, slot));
             wanted[image][level][y][x] = heap == SLC_UNBIND ? -1 : (int64_t)heap << 32 | slot;
         }

@@ -18,7 +18,7 @@ static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t
 {
     (void)device;
     *count = driver.family_count;
-    for (uint32_t i = 0; i < driver.family_count; i++)
+    for (uint32_t i = 0; families && i < driver.family_count; i++)
         families[i] =
             (VkQueueFamilyProperties){.queueFlags = driver.families[i], .queueCount = i + 1};
 }
@@ -128,6 +128,26 @@ static void software_devices_bear_few_tiles_and_their_codes_are_not_trusted(void
     assert_false(ask().residencyCodesExact);
 }
 
+static void auto_is_paged_where_a_software_device_cannot_bear_the_textures(void **state)
+{
+    (void)state;
+    const SluiceResidencyMode any = SLUICE_RESIDENCY_MODE_AUTO;
+    SluiceVulkanDeviceCapabilities caps = {.sparse = true};
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, any, 1u << 20),
+                     SLUICE_RESIDENCY_MODE_SPARSE);
+    caps.maxTouchedTiles = 49147;
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, any, 0), SLUICE_RESIDENCY_MODE_SPARSE);
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, any, 3071),
+                     SLUICE_RESIDENCY_MODE_SPARSE);
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, any, 3072),
+                     SLUICE_RESIDENCY_MODE_PAGED);
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, SLUICE_RESIDENCY_MODE_SPARSE, 5000),
+                     SLUICE_RESIDENCY_MODE_SPARSE);
+    caps.sparse = false;
+    assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, any, 1), SLUICE_RESIDENCY_MODE_PAGED);
+    assert_int_equal(sluiceChooseVulkanResidencyMode(NULL, any, 1), any);
+}
+
 static void time_stamps_need_queues_that_write_them(void **state)
 {
     (void)state;
@@ -167,6 +187,7 @@ int main(void)
         TEST(queue_that_does_nothing_else_binds),
         TEST(streaming_needs_every_feature_and_vulkan_1_2),
         TEST(software_devices_bear_few_tiles_and_their_codes_are_not_trusted),
+        TEST(auto_is_paged_where_a_software_device_cannot_bear_the_textures),
         TEST(time_stamps_need_queues_that_write_them),
         TEST(largest_device_local_heap_is_told),
         TEST(memory_is_device_local_although_another_type_comes_first),

@@ -1,8 +1,7 @@
 #include "vulkan/fade.h"
 
+#include "support/roll.h"
 #include "support/test.h"
-
-#include <stdlib.h>
 
 static void the_clock_gives_the_steps_that_are_due_and_keeps_the_rest(void **state)
 {
@@ -56,10 +55,10 @@ static void texels_sink_by_steps_and_rise_at_once(void **state)
 static void texels_never_allow_what_is_not_resident(void **state)
 {
     (void)state;
-    srand(41);
+    roll_seed(41);
     for (uint32_t i = 0; i < 100000; i++) {
-        uint8_t level = (uint8_t)(rand() % 4 ? rand() % 21 : 255);
-        uint16_t before = (uint16_t)rand(), texel = before, steps = (uint16_t)(rand() % 2000);
+        uint8_t level = (uint8_t)(roll() % 4 ? roll() % 21 : 255);
+        uint16_t before = (uint16_t)roll(), texel = before, steps = (uint16_t)(roll() % 2000);
         bool moves = slc_fade_row(&level, &texel, 1, steps);
         assert_true(texel >= slc_settled_texel(level));
         assert_int_equal(moves, texel != slc_settled_texel(level));

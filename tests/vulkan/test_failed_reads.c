@@ -8,11 +8,12 @@
 
 enum { SIZE = 512, TILES = SIZE / FAKE_TILE, LOADER_ATTEMPTS = 3, MANAGER_ATTEMPTS = 5 };
 
-/* Two tiles of level 0 cannot be read for as long as it is broken. */
+/* Two tiles of level 0 cannot be read for as long as it is broken; all of level 0 while there is an
+ * outage; nothing is ready while it is absent. */
 struct broken_source {
     SluiceImageSource base;
     SluiceImageSource *inner;
-    atomic_bool is_broken;
+    atomic_bool is_broken, is_out, is_absent;
     atomic_uint refused[TILES][TILES];
 };
 
@@ -31,7 +32,10 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
 {
     struct broken_source *source = (struct broken_source *)base;
     uint32_t x = region->x / FAKE_TILE, y = region->y / FAKE_TILE;
-    if (region->mipLevel == 0 && is_lost(x, y) && atomic_load(&source->is_broken)) {
+    bool is_lost_now = is_lost(x, y) && atomic_load(&source->is_broken);
+    if (atomic_load(&source->is_absent))
+        return SLUICE_NOT_READY;
+    if (region->mipLevel == 0 && (is_lost_now || atomic_load(&source->is_out))) {
         atomic_fetch_add(&source->refused[y][x], 1);
         return SLUICE_ERROR_IO;
     }
@@ -64,28 +68,32 @@ struct fixture {
     SluiceVulkanStreamer *streamer;
     SluiceVulkanTexture texture;
     uint64_t time;
-    uint32_t warnings;
-    uint32_t lost_copies; ///< of texels to the tiles that cannot be read
+    uint32_t warnings, recoveries;
+    uint32_t loads_in_flight; ///< set before setup; 0: the default
+    uint32_t lost_copies;     ///< of texels to the tiles that cannot be read
 };
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct fixture *f = user;
+    f->recoveries += severity == SLUICE_LOG_INFO && strstr(message, "can be read again") != NULL;
     if (severity != SLUICE_LOG_WARNING)
         return;
     f->warnings++;
-    assert_non_null(strstr(message, "broken picture: level 0, tile ("));
-    assert_non_null(strstr(message, "SLUICE_ERROR_IO"));
+    assert_non_null(strstr(message, f->warnings % 2 ? "broken picture: read failed: SLUICE_"
+                                                    : "broken picture: "));
+    assert_non_null(strstr(message, f->warnings % 2 ? "retrying in" : "Retrying every"));
 }
 
-static void setup(struct fixture *f, SluiceResidencyMode mode)
+static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_t rest)
 {
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo image_info = {.width = SIZE,
                                   .height = SIZE,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                   .pName = "broken picture"};
-    *f = (struct fixture){.fake = {.tail_page_count = 1, .want = want_all}};
+    *f = (struct fixture){.loads_in_flight = f->loads_in_flight,
+                          .fake = {.tail_page_count = 1, .want = want_all}};
     f->source.base.pInterface = &broken_interface;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &image_info, NULL, &f->source.inner));
     SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 2,
@@ -94,12 +102,19 @@ static void setup(struct fixture *f, SluiceResidencyMode mode)
                                            .feedbackTimeout = 1u << 30,
                                            .retryDelay = 1,
                                            .readRetry = {LOADER_ATTEMPTS, 1, 1},
-                                           .log = {f, on_log}};
+                                           .log = {f, on_log},
+                                           .maxLoadsInFlight = f->loads_in_flight,
+                                           .givenUpRetryDelay = rest};
     fake_vulkan_fill(&f->fake, &info);
     info.residencyMode = mode;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &f->streamer));
     SluiceVulkanTextureCreateInfo texture_info = {.source = &f->source.base};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &texture_info, &f->texture));
+}
+
+static void setup(struct fixture *f, SluiceResidencyMode mode)
+{
+    setup_with_rest(f, mode, UINT64_C(1) << 40);
 }
 
 static void teardown(struct fixture *f)
@@ -173,7 +188,8 @@ static void check_counts(struct fixture *f)
     assert_int_equal(reads.retriedCount, 2 * MANAGER_ATTEMPTS * (LOADER_ATTEMPTS - 1));
     assert_int_equal(reads.byteCount, stats.bytesRead);
     assert_memory_equal(&reads, &all, sizeof all); /* there is one source */
-    assert_int_equal(f->warnings, 2 * MANAGER_ATTEMPTS);
+    assert_int_equal(f->warnings, 2);              /* that reads fail, and that they are given up */
+    assert_int_equal(f->recoveries, 0);
     for (uint32_t y = 0; y < TILES; y++)
         for (uint32_t x = 0; x < TILES; x++)
             assert_int_equal(f->source.refused[y][x],
@@ -201,7 +217,8 @@ static void check_story(SluiceResidencyMode mode)
     check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
     if (mode == SLUICE_RESIDENCY_MODE_SPARSE)
         assert_int_equal(f.lost_copies, 2);
-    assert_int_equal(f.warnings, 2 * MANAGER_ATTEMPTS);
+    assert_int_equal(f.warnings, 2);
+    assert_int_equal(f.recoveries, 1);
     teardown(&f);
 }
 
@@ -220,15 +237,116 @@ static void tiles_that_fail_for_a_while_come_by_themselves(void **state)
     static struct fixture f; /* large */
     setup(&f, SLUICE_RESIDENCY_MODE_SPARSE);
     f.source.is_broken = true;
-    while (f.warnings < 4)
+    SluiceVulkanStreamerStatistics stats = {0};
+    while (stats.tilesFailed < 4) {
         run_frames(&f, 1);
+        sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
+    }
     f.source.is_broken = false;
     run_frames(&f, 10);
     check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
+    sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
+    assert_true(stats.tilesFailed >= 4 && stats.tilesFailed <= 6); /* two may be under way */
+    assert_int_equal(f.warnings, 1);
+    assert_int_equal(f.recoveries, 1);
+    assert_int_equal(stats.manager.givenUpTileCount, 0);
+    teardown(&f);
+}
+
+static uint32_t count_refused(const struct fixture *f)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < TILES * TILES; i++)
+        count += f->source.refused[i / TILES][i % TILES];
+    return count;
+}
+
+/* Longer than all attempts, and nobody calls anything: four reads an interval, and then all. */
+static void after_an_outage_every_tile_comes_by_itself(void **state)
+{
+    (void)state;
+    static const SluiceResidencyMode modes[] = {
+        SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
+    for (int m = 0; m < 3; m++) {
+        static struct fixture f; /* large */
+        setup_with_rest(&f, modes[m], 50 * 1000);
+        f.source.is_out = true;
+        run_frames(&f, 30);
+        uint32_t first = count_refused(&f);
+        assert_int_equal(first, TILES * TILES * MANAGER_ATTEMPTS * LOADER_ATTEMPTS);
+        run_frames(&f, 200);
+        assert_true(count_refused(&f) > first);
+        assert_true(count_refused(&f) <= first + 5 * 4 * LOADER_ATTEMPTS);
+        assert_int_equal(f.warnings, 2);
+        f.source.is_out = false;
+        run_frames(&f, 60);
+        check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
+        assert_int_equal(f.warnings, 2);
+        assert_int_equal(f.recoveries, 1);
+        teardown(&f);
+    }
+}
+
+static void a_source_that_is_said_to_be_well_is_read_at_once(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    setup(&f, SLUICE_RESIDENCY_MODE_PAGED);
+    f.source.is_out = true;
+    run_frames(&f, 30);
+    f.source.is_out = false;
+    CHECK_RESULT(sluiceRetryVulkanSource(NULL, NULL), SLUICE_ERROR_NULL_POINTER);
+    CHECK_OK(sluiceRetryVulkanSource(f.streamer, f.source.inner)); /* of no texture */
+    run_frames(&f, 5);
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(f.streamer, &stats);
-    assert_int_equal(stats.tilesFailed, f.warnings);
-    assert_int_equal(stats.manager.givenUpTileCount, 0);
+    assert_int_equal(stats.manager.givenUpTileCount, TILES * TILES);
+    CHECK_OK(sluiceRetryVulkanSource(f.streamer, &f.source.base));
+    run_frames(&f, 5);
+    check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
+    teardown(&f);
+}
+
+/* A flapping source is not two lines for each of its turns. */
+static void messages_of_a_source_that_comes_and_goes_are_bounded(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    setup_with_rest(&f, SLUICE_RESIDENCY_MODE_PAGED, 1000 * 1000);
+    for (uint32_t i = 0; i < 50; i++) {
+        f.source.is_broken = i % 2 == 0;
+        CHECK_OK(sluiceRetryVulkanSource(f.streamer, NULL));
+        run_frames(&f, 3);
+        SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+        CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
+    }
+    assert_true(f.warnings <= 2);
+    assert_true(f.recoveries <= 1);
+    teardown(&f);
+}
+
+/* Textures that are not ready must not hold every staging slot: others could not be loaded. */
+static void sources_that_are_not_ready_leave_room_for_others(void **state)
+{
+    (void)state;
+    static struct fixture f; /* large */
+    static struct broken_source other;
+    f.loads_in_flight = 8;
+    setup(&f, SLUICE_RESIDENCY_MODE_PAGED);
+    run_frames(&f, 1); /* coarse levels are there */
+    f.source.is_absent = true;
+    other = (struct broken_source){.base.pInterface = &broken_interface, .inner = f.source.inner};
+    SluiceVulkanTexture second;
+    SluiceVulkanTextureCreateInfo info = {.source = &other.base};
+    run_frames(&f, 5);
+    CHECK_OK(sluiceAddVulkanTexture(f.streamer, &info, &second));
+    run_frames(&f, 20);
+    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+    for (uint32_t i = 0; i < TILES * TILES; i++) {
+        SluiceTileState tile_state;
+        CHECK_OK(sluiceGetTileState(manager, second.textureId, i, &tile_state, NULL));
+        assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
+    }
     teardown(&f);
 }
 
@@ -262,6 +380,10 @@ int main(void)
         cmocka_unit_test(tiles_that_are_given_up_stay_coarser_until_they_are_asked_for_again),
         cmocka_unit_test(tiles_that_fail_for_a_while_come_by_themselves),
         cmocka_unit_test(statistics_of_a_removed_texture_are_forgotten),
+        cmocka_unit_test(after_an_outage_every_tile_comes_by_itself),
+        cmocka_unit_test(a_source_that_is_said_to_be_well_is_read_at_once),
+        cmocka_unit_test(messages_of_a_source_that_comes_and_goes_are_bounded),
+        cmocka_unit_test(sources_that_are_not_ready_leave_room_for_others),
     };
     return RUN_TESTS(tests);
 }

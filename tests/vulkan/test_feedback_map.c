@@ -1,10 +1,10 @@
 /* The host's copy of a feedback map follows the results of resolves, and notices damage. */
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/feedback_map.h"
 
 #include <sluice/shared/texture_table.h>
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_REGIONS = 1000 };
@@ -33,9 +33,9 @@ static struct SluiceResolveResult change(struct fixture *f, uint32_t change_coun
 {
     struct SluiceResolveResult result = {.state = SLUICE_RESOLVED_CHANGES};
     for (uint32_t i = 0; i < f->map.region_count && result.count < change_count; i++) {
-        if ((uint32_t)rand() % f->map.region_count >= change_count)
+        if ((uint32_t)roll() % f->map.region_count >= change_count)
             continue;
-        f->truth[i] = rand() % 3 ? (uint8_t)(rand() % 15) : SLUICE_MIP_UNTOUCHED;
+        f->truth[i] = roll() % 3 ? (uint8_t)(roll() % 15) : SLUICE_MIP_UNTOUCHED;
         f->data[result.count++] = i << 8 | f->truth[i];
     }
     result.checksum = checksum(f);
@@ -46,8 +46,8 @@ static struct SluiceResolveResult whole(struct fixture *f)
 {
     uint32_t count = f->map.region_count;
     for (uint32_t i = 0; i < count; i++)
-        if (rand() % 2)
-            f->truth[i] = (uint8_t)(rand() % 15);
+        if (roll() % 2)
+            f->truth[i] = (uint8_t)(roll() % 15);
     memset(f->data, 0, sizeof f->data);
     for (uint32_t i = 0; i < count; i++)
         f->data[i / 4] |= (uint32_t)f->truth[i] << 8 * (i % 4);
@@ -58,14 +58,14 @@ static void a_map_follows_changes_and_whole_maps(void **state)
 {
     (void)state;
     static struct fixture f;
-    srand(7);
+    roll_seed(7);
     const uint32_t counts[] = {1, 2, 3, 4, 5, 63, 256, 999, MAX_REGIONS};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
         begin(&f, counts[c]);
         assert_int_equal(f.map.checksum, 0);
         for (int round = 0; round < 200; round++) {
             struct SluiceResolveResult result =
-                rand() % 3 ? change(&f, 1 + (uint32_t)rand() % counts[c]) : whole(&f);
+                roll() % 3 ? change(&f, 1 + (uint32_t)roll() % counts[c]) : whole(&f);
             assert_true(slc_feedback_map_update(&f.map, &result, f.data));
             assert_memory_equal(f.levels, f.truth, counts[c]);
         }
@@ -76,12 +76,12 @@ static void any_wrong_level_is_noticed(void **state)
 {
     (void)state;
     static struct fixture f;
-    srand(8);
+    roll_seed(8);
     for (int round = 0; round < 1000; round++) {
-        begin(&f, 1 + (uint32_t)rand() % MAX_REGIONS);
+        begin(&f, 1 + (uint32_t)roll() % MAX_REGIONS);
         struct SluiceResolveResult result = whole(&f);
-        uint32_t region = (uint32_t)rand() % f.map.region_count;
-        f.data[region / 4] ^= (1u + (uint32_t)rand() % 255) << 8 * (region % 4);
+        uint32_t region = (uint32_t)roll() % f.map.region_count;
+        f.data[region / 4] ^= (1u + (uint32_t)roll() % 255) << 8 * (region % 4);
         assert_false(slc_feedback_map_update(&f.map, &result, f.data));
     }
 }
@@ -90,7 +90,7 @@ static void a_missed_list_is_noticed_and_a_whole_map_repairs_it(void **state)
 {
     (void)state;
     static struct fixture f;
-    srand(9);
+    roll_seed(9);
     begin(&f, 100);
     f.truth[17] = 3; /* never told */
     struct SluiceResolveResult result = {SLUICE_RESOLVED_CHANGES, 0, 0, checksum(&f)};

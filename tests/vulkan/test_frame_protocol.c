@@ -8,12 +8,12 @@
  */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
+enum { TEXTURES = 4, MAX_TILES = 512, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
 
 struct tile {
     VkDeviceMemory memory; ///< VK_NULL_HANDLE: unbound
@@ -39,6 +39,10 @@ struct model {
     SluiceVulkanStreamer *streamer;
     struct texture textures[2 * TEXTURES]; ///< removed ones stay until their image is gone
     uint64_t frame;
+    uint64_t submitted;        ///< frames up to this one are
+    bool abandoned[HISTORY];   ///< by frame
+    uint32_t abandon_one_in;   ///< frames; 0: none
+    uint32_t abandoned_in_all; ///< frames
     uint32_t heaps_freed, added;
     uint32_t window; ///< seed of what the camera sees
 };
@@ -67,7 +71,7 @@ static void model_add(struct model *m)
         i++;
     if (i == 2 * TEXTURES)
         return; /* the removed ones are not gone yet */
-    const uint32_t *size = sizes[rand() % 5];
+    const uint32_t *size = sizes[roll() % 5];
     struct texture *t = &m->textures[i];
     m->added++;
     *t = (struct texture){.used = true};
@@ -219,44 +223,129 @@ static uint32_t take_visible(struct model *m)
     return count;
 }
 
-static uint64_t advance(uint64_t value, uint64_t end)
+static uint32_t frames_under_way(const struct model *m)
 {
-    return value + (uint64_t)rand() % (end - value + 1);
+    uint32_t count = 0;
+    for (uint64_t f = m->fake.frame_value + 1; f <= m->frame; f++)
+        count += !m->abandoned[f % HISTORY];
+    return count;
 }
 
-static uint32_t model_frame(struct model *m, uint64_t time)
+/* The timeline never stands at an abandoned frame. */
+static uint64_t advance_frames(const struct model *m, uint64_t value)
+{
+    while (value > m->fake.frame_value && m->abandoned[value % HISTORY])
+        value--;
+    return value;
+}
+
+static bool is_visible(const struct model *m, const struct fake_copy *copy)
+{
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++) {
+        const struct texture *t = &m->textures[i];
+        if (t->used && t->texture.image == copy->image)
+            return copy->level >= t->layout.desc.regularMipCount ||
+                   t->visible[m->frame % HISTORY][tile_index(t, copy->level, copy->x, copy->y)];
+    }
+    return false;
+}
+
+/* What is copied is shown: nothing is copied to where another tile may be by now. */
+static void check_copies_are_shown(const struct model *m)
+{
+    for (uint32_t i = 0; i < m->fake.copy_count; i++)
+        assert_true(is_visible(m, &m->fake.copies[i]));
+}
+
+/* The last frames, one or several, whose commands were undone. */
+static void abandon(struct model *m, const SluiceStreamingFrame *first)
+{
+    CHECK_OK(sluiceAbandonStreamingFrame(m->streamer, first));
+    CHECK_RESULT(sluiceAbandonStreamingFrame(m->streamer, first), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(&m->fake)),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    for (uint64_t f = first->frameIndex; f <= m->frame; f++) {
+        m->abandoned[f % HISTORY] = true;
+        m->abandoned_in_all++;
+    }
+}
+
+static uint64_t advance(uint64_t value, uint64_t end)
+{
+    return value + (uint64_t)roll() % (end - value + 1);
+}
+
+static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *frame)
 {
     struct fake_vulkan *fake = &m->fake;
     fake->bind_count = fake->copy_count = fake->destroyed_count = 0;
     fake->freed_count = fake->bind_calls = 0;
     fake->published = false;
-    fake->frame_value = advance(fake->frame_value, m->frame);
-    if (rand() % 4 == 0) /* slow at times, so that batches pile up */
+    fake->frame_value = advance_frames(
+        m, advance(fake->frame_value, m->frame < m->submitted ? m->frame : m->submitted));
+    if (roll() % 4 == 0) /* slow at times, so that batches pile up */
         fake->bind_value = advance(fake->bind_value, fake->submitted_bind_value);
-    if (rand() % 2)
+    if (roll() % 2)
         CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
-    SluiceStreamingFrame frame;
     SluiceResult result =
-        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, &frame);
+        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame);
     if (result == SLUICE_NOT_READY) {
-        assert_int_equal(m->frame - fake->frame_value, FRAMES_IN_FLIGHT);
-        return 0;
+        assert_int_equal(frames_under_way(m), FRAMES_IN_FLIGHT);
+        return result;
     }
     CHECK_OK(result);
-    fake->frame_semaphore = frame.semaphore;
-    m->frame = frame.frameIndex;
+    fake->frame_semaphore = frame->semaphore;
+    assert_int_equal(frame->frameIndex, m->frame + 1);
+    m->frame = frame->frameIndex;
+    m->abandoned[m->frame % HISTORY] = false;
+    for (uint32_t i = 0; i < 2 * TEXTURES; i++) /* those that are abandoned show nothing */
+        memset(m->textures[i].visible[m->frame % HISTORY], 0, MAX_TILES * sizeof(bool));
     take_destroyed(m);
     take_freed(m); /* before the binds of this frame */
     take_binds(m);
+    CHECK_RESULT(sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    return result;
+}
+
+/* One to three frames that are begun, most of them ended, and given up together. */
+static void abandoned_frames(struct model *m, uint64_t time)
+{
+    SluiceStreamingFrame first, frame;
+    fake_vulkan_mark(&m->fake);
+    m->submitted = m->frame;
+    if (begin(m, time, &first) != SLUICE_SUCCESS) {
+        m->submitted = UINT64_MAX;
+        return;
+    }
+    for (uint32_t more = (uint32_t)roll() % 3; roll() % 4; more--) {
+        CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(&m->fake)));
+        if (more == 0 || begin(m, time, &frame) != SLUICE_SUCCESS)
+            break;
+    }
+    fake_vulkan_undo(&m->fake);
+    m->submitted = UINT64_MAX;
+    abandon(m, &first);
+}
+
+static uint32_t model_frame(struct model *m, uint64_t time)
+{
+    SluiceStreamingFrame frame;
+    while (m->abandon_one_in && m->frame + 4 - m->fake.frame_value < HISTORY &&
+           roll() % m->abandon_one_in == 0)
+        abandoned_frames(m, time);
+    if (begin(m, time, &frame) != SLUICE_SUCCESS)
+        return 0;
     take_copies(m);
     uint32_t visible = take_visible(m);
-    CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(fake)));
+    check_copies_are_shown(m);
+    CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(&m->fake)));
     return visible;
 }
 
 static void remove_any(struct model *m)
 {
-    struct texture *t = &m->textures[rand() % (2 * TEXTURES)];
+    struct texture *t = &m->textures[roll() % (2 * TEXTURES)];
     if (!t->used)
         return;
     CHECK_OK(sluiceRemoveVulkanTexture(m->streamer, t->texture.textureId));
@@ -280,15 +369,17 @@ static void release_heaps(struct model *m)
 
 static uint64_t freed_in_all;
 
-static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
-                uint32_t heaps, unsigned seed)
+static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
+                           uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
 {
     static struct model model; /* large */
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = tail_page_count,
                                  .metadata_size = metadata_size,
                                  .want = want,
-                                 .user = m}};
+                                 .user = m},
+                        .submitted = UINT64_MAX,
+                        .abandon_one_in = abandon_one_in};
     SluiceVulkanStreamerCreateInfo info = {.framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
@@ -300,14 +391,14 @@ static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_
                                            .maxRegionCount = 1 << 14};
     fake_vulkan_fill(&m->fake, &info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
-    srand(seed);
+    roll_seed(seed);
     for (int i = 0; i < TEXTURES; i++)
         model_add(m);
     uint64_t shown = 0;
     for (uint64_t step = 1; step <= 1500; step++) {
         /* back and forth: tiles are wanted again just after they were given up */
         if (step % 3 == 0)
-            m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
+            m->window = (uint32_t)roll() % (step % 500 < 250 ? 2 : 40);
         if (step % 50 == 0)
             remove_any(m);
         if (step % 7 == 0)
@@ -321,6 +412,8 @@ static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
     assert_true(stats.tilesRevived > 100);
+    assert_true(!abandon_one_in || m->abandoned_in_all > 500);
+    assert_in_range(m->fake.frame_value, 1000, m->frame); /* the timeline went on */
     /* once each, but for those that came last */
     assert_in_range(m->fake.metadata_binds, metadata_size ? m->added - 2 * TEXTURES : 0,
                     metadata_size ? m->added : 0);
@@ -332,6 +425,19 @@ static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_
     assert_int_equal(m->fake.live_memory, 0);
     for (uint32_t i = 0; i < 2 * TEXTURES; i++)
         sluiceDestroyImageSource(m->textures[i].source);
+}
+
+static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
+                uint32_t heaps, unsigned seed)
+{
+    run_abandoning(tail_page_count, metadata_size, heap_capacity, heaps, seed, 0);
+}
+
+static void promises_hold_where_frames_are_abandoned(void **state)
+{
+    (void)state;
+    run_abandoning(0, 0, 64, 6, 46, 3);
+    run_abandoning(2, 196608, 32, 3, 47, 2);
 }
 
 /* Which run empties a heap depends on the loader's threads. */
@@ -456,6 +562,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_a_tail_of_many_pages_and_little_memory),
         cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
         cmocka_unit_test(promises_hold_with_room_for_everything),
+        cmocka_unit_test(promises_hold_where_frames_are_abandoned),
         cmocka_unit_test(heaps_were_freed_in_some_run),
         cmocka_unit_test(layers_of_an_array_bind_tails_and_metadata_of_their_own),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),

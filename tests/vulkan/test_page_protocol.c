@@ -8,14 +8,14 @@
  */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <sluice/shared/texture_table.h>
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { TEXTURES = 6, CHUNKS = 8, LAYERS = 256, HISTORY = 8, FRAMES_IN_FLIGHT = 6 };
+enum { TEXTURES = 6, CHUNKS = 8, LAYERS = 256, HISTORY = 64, FRAMES_IN_FLIGHT = 6 };
 
 struct texture {
     uint32_t number; ///< 0: not used; in its texels
@@ -33,6 +33,9 @@ struct model {
     uint32_t numbers[256], old_count; ///< numbers: what sources paint
     uint32_t next_number;
     uint64_t frame;
+    uint32_t abandon_one_in, abandoned_in_all; ///< frames; 0: none
+    uint64_t submitted;                        ///< frames up to this one are
+    bool abandoned[HISTORY];
     uint32_t window;
     VkImage shown[HISTORY][CHUNKS]; ///< by frame
     struct {
@@ -86,7 +89,7 @@ static void model_add(struct model *m)
         t++;
     if (t == m->textures + TEXTURES || m->next_number == 255)
         return;
-    const uint32_t *size = sizes[rand() % 4];
+    const uint32_t *size = sizes[roll() % 4];
     *t = (struct texture){.number = ++m->next_number, .first_word = UINT32_MAX};
     m->numbers[t->number] = t->number;
     SluiceProceduralImage image = {&m->numbers[t->number], texel};
@@ -180,24 +183,71 @@ static uint32_t check_shown(struct model *m)
     return count;
 }
 
-static uint32_t model_frame(struct model *m, uint64_t time)
+/* The timeline never stands at an abandoned frame. */
+static uint64_t advance(const struct model *m)
+{
+    uint64_t now = m->fake.frame_value, end = m->frame < m->submitted ? m->frame : m->submitted;
+    uint64_t value = now + (uint64_t)roll() % (end - now + 1);
+    while (value > now && m->abandoned[value % HISTORY])
+        value--;
+    return value;
+}
+
+static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *frame)
 {
     struct fake_vulkan *fake = &m->fake;
     fake->copy_count = fake->destroyed_count = 0;
     fake->published = false;
-    fake->frame_value += (uint64_t)rand() % (m->frame - fake->frame_value + 1);
-    if (rand() % 2)
+    fake->frame_value = advance(m);
+    if (roll() % 2)
         CHECK_OK(sluiceWaitVulkanStreamerIdle(m->streamer)); /* for the reads */
-    SluiceStreamingFrame frame;
     SluiceResult result =
-        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, &frame);
+        sluiceBeginStreamingFrame(m->streamer, fake_vulkan_commands(fake), time, frame);
     if (result == SLUICE_NOT_READY)
-        return 0;
+        return result;
     CHECK_OK(result);
-    fake->frame_semaphore = frame.semaphore;
-    m->frame = frame.frameIndex;
+    fake->frame_semaphore = frame->semaphore;
+    m->frame = frame->frameIndex;
+    m->abandoned[m->frame % HISTORY] = false;
     take_destroyed(m);
     take_views(m);
+    return result;
+}
+
+/* One to three frames that are begun, most of them ended, and given up together. */
+static void abandoned_frames(struct model *m, uint64_t time)
+{
+    SluiceStreamingFrame first, frame;
+    fake_vulkan_mark(&m->fake);
+    m->submitted = m->frame;
+    if (begin(m, time, &first) != SLUICE_SUCCESS) {
+        m->submitted = UINT64_MAX;
+        return;
+    }
+    for (uint32_t more = (uint32_t)roll() % 3; roll() % 4; more--) {
+        CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(&m->fake)));
+        if (more == 0 || begin(m, time, &frame) != SLUICE_SUCCESS)
+            break;
+    }
+    fake_vulkan_undo(&m->fake);
+    m->submitted = UINT64_MAX;
+    CHECK_OK(sluiceAbandonStreamingFrame(m->streamer, &first));
+    for (uint64_t f = first.frameIndex; f <= m->frame; f++) {
+        m->abandoned[f % HISTORY] = true;
+        memset(m->shown[f % HISTORY], 0, sizeof m->shown[f % HISTORY]); /* nobody binds them */
+        m->abandoned_in_all++;
+    }
+}
+
+static uint32_t model_frame(struct model *m, uint64_t time)
+{
+    struct fake_vulkan *fake = &m->fake;
+    SluiceStreamingFrame frame;
+    while (m->abandon_one_in && m->frame + 4 - fake->frame_value < HISTORY &&
+           roll() % m->abandon_one_in == 0)
+        abandoned_frames(m, time);
+    if (begin(m, time, &frame) != SLUICE_SUCCESS)
+        return 0;
     take_copies(m);
     uint32_t shown = check_shown(m);
     CHECK_OK(sluiceEndStreamingFrame(m->streamer, fake_vulkan_commands(fake)));
@@ -208,9 +258,9 @@ static uint32_t model_frame(struct model *m, uint64_t time)
 static void model_step(struct model *m, uint64_t step)
 {
     if (step % 3 == 0)
-        m->window = (uint32_t)rand() % (step % 500 < 250 ? 2 : 40);
+        m->window = (uint32_t)roll() % (step % 500 < 250 ? 2 : 40);
     if (step % 40 == 0)
-        model_remove(m, &m->textures[rand() % TEXTURES]);
+        model_remove(m, &m->textures[roll() % TEXTURES]);
     if (step % 600 == 0)
         for (uint32_t i = 0; i < TEXTURES; i++)
             model_remove(m, &m->textures[i]);
@@ -218,11 +268,13 @@ static void model_step(struct model *m, uint64_t step)
         model_add(m);
 }
 
-static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
+static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
 {
     static struct model model; /* large */
     struct model *m = &model;
-    *m = (struct model){.fake = {.want = want, .user = m}};
+    *m = (struct model){.fake = {.want = want, .user = m},
+                        .submitted = UINT64_MAX,
+                        .abandon_one_in = abandon_one_in};
     SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                            .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
@@ -239,7 +291,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
     sluiceGetVulkanBuffers(m->streamer, &buffers);
     m->fake.watches[0].buffer = buffers.pageTable;
     m->fake.watches[1].buffer = buffers.textureTable;
-    srand(seed);
+    roll_seed(seed);
     uint64_t shown = 0, generation;
     for (uint64_t step = 1; step <= 2000; step++) {
         model_step(m, step);
@@ -254,6 +306,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.tilesRevived > 500);
     assert_true(generation >= 6); /* images came, went, and came again */
+    assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     m->fake.destroyed_count = 0;
     sluiceDestroyVulkanStreamer(m->streamer);
     assert_int_equal(m->fake.live_objects, 0);
@@ -267,13 +320,20 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed)
 static void promises_hold_with_little_memory(void **state)
 {
     (void)state;
-    run(32, 3, 51);
+    run(32, 3, 51, 0);
 }
 
 static void promises_hold_with_room_for_everything(void **state)
 {
     (void)state;
-    run(256, 0, 52);
+    run(256, 0, 52, 0);
+}
+
+static void promises_hold_where_frames_are_abandoned(void **state)
+{
+    (void)state;
+    run(32, 3, 53, 2);
+    run(256, 0, 54, 3);
 }
 
 int main(void)
@@ -281,6 +341,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(promises_hold_with_little_memory),
         cmocka_unit_test(promises_hold_with_room_for_everything),
+        cmocka_unit_test(promises_hold_where_frames_are_abandoned),
     };
     return RUN_TESTS(tests);
 }

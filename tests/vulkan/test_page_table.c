@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "support/failing_allocator.h"
+#include "support/roll.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -268,17 +269,17 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
             m.device[i][x] = -1;
     int pages[IMAGES][COLUMNS];
     uint32_t revived = 0;
-    srand(11);
+    roll_seed(11);
     for (int step = 0; step < 50000; step++) {
-        uint32_t image = (uint32_t)rand() % IMAGES, x = (uint32_t)rand() % COLUMNS;
-        uint32_t page = (uint32_t)rand() % (HEAPS * HEAP);
+        uint32_t image = (uint32_t)roll() % IMAGES, x = (uint32_t)roll() % COLUMNS;
+        uint32_t page = (uint32_t)roll() % (HEAPS * HEAP);
         if (m.live[image][x]) {
             slc_page_table_give_up(&f->table, image, at(x));
             m.live[image][x] = false;
             m.taken[pages[image][x]] = false;
         } else if (!m.taken[page] && f->list.count < CAPACITY - 2) {
             uint32_t count = f->list.count;
-            if (rand() % 2 &&
+            if (roll() % 2 &&
                 slc_page_table_revive(&f->table, image, at(x), page / HEAP, page % HEAP)) {
                 assert_int_equal(f->list.count, count);
                 revived++;
@@ -288,7 +289,7 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
             m.live[image][x] = m.taken[page] = true;
             pages[image][x] = (int)page;
         }
-        if (rand() % 12 == 0)
+        if (roll() % 12 == 0)
             execute(f, &m);
         for (uint32_t i = 0; i < IMAGES && f->list.count == 0; i++)
             for (uint32_t c = 0; c < COLUMNS; c++)

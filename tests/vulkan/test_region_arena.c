@@ -1,9 +1,9 @@
 #include "vulkan/region_arena.h"
 
 #include "base/alloc.h"
+#include "support/roll.h"
 #include "support/test.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { SIZE = 1000, RANGES = 40 };
@@ -20,16 +20,16 @@ static void random_ranges_never_overlap_and_all_room_comes_back(void **state)
     CHECK_OK(slc_region_arena_init(&arena, &cb, SIZE, RANGES));
     uint8_t used[SIZE] = {0};
     struct range ranges[RANGES] = {{0, 0}};
-    srand(5);
+    roll_seed(5);
     for (int step = 0; step < 20000; step++) {
-        struct range *r = &ranges[rand() % RANGES];
+        struct range *r = &ranges[roll() % RANGES];
         if (r->count) {
             slc_region_arena_give(&arena, r->first, r->count);
             memset(used + r->first, 0, r->count);
             r->count = 0;
             continue;
         }
-        uint32_t count = 1 + (uint32_t)rand() % 80;
+        uint32_t count = 1 + (uint32_t)roll() % 80;
         if (!slc_region_arena_take(&arena, count, &r->first))
             continue;
         r->count = count;

@@ -2,15 +2,15 @@
 #include "vulkan/shader_twins.h"
 
 #include "base/checked.h"
+#include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/texture_entry.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static double draw(void)
 {
-    return (double)rand() / RAND_MAX;
+    return (double)roll() / ROLL_MAX;
 }
 
 static void every_pixel_is_on_the_lattice_once_in_any_64_frames(void **state)
@@ -220,14 +220,14 @@ static bool axis_is_covered(double u, uint32_t size, uint32_t tile, uint32_t lev
 static double random_coordinate(uint32_t size, uint32_t tile)
 {
     double u;
-    switch (rand() % 5) {
+    switch (roll() % 5) {
     case 0: u = draw(); break;
-    case 1: u = (rand() % (int)(size / tile + 2)) * (double)tile / size; break; /* tile border */
-    case 2: u = rand() % 2; break;                                              /* image border */
+    case 1: u = (roll() % (int)(size / tile + 2)) * (double)tile / size; break; /* tile border */
+    case 2: u = roll() % 2; break;                                              /* image border */
     case 3: u = draw() * 6 - 3; break;
-    default: u = (rand() % (int)size + 0.5) / size; break; /* texel centre */
+    default: u = (roll() % (int)size + 0.5) / size; break; /* texel centre */
     }
-    return u + (draw() - 0.5) * (rand() % 3) / size;
+    return u + (draw() - 0.5) * (roll() % 3) / size;
 }
 
 /* required <= marked, with every level that the sampler may choose and taps along the long axis. */
@@ -236,9 +236,9 @@ static void check_random_samples(uint32_t width, uint32_t height, uint32_t tile_
 {
     struct SluiceTextureEntry e = entry(width, height, tile_width, tile_height);
     for (int i = 0; i < samples; i++) {
-        e.addressModeU = (uint32_t)rand() % 5;
-        e.addressModeV = (uint32_t)rand() % 5;
-        float anisotropy = rand() % 2 ? 1.0f : 8.0f, bias = (float)(rand() % 3 - 1) * 0.7f;
+        e.addressModeU = (uint32_t)roll() % 5;
+        e.addressModeV = (uint32_t)roll() % 5;
+        float anisotropy = roll() % 2 ? 1.0f : 8.0f, bias = (float)(roll() % 3 - 1) * 0.7f;
         double scale = exp2(draw() * (e.mipLevelCount + 1) - 1), angle = draw() * 6.283;
         double ratio = 1 + draw() * 12;
         struct slc_twin_vec2 uv = {(float)random_coordinate(width, tile_width),
@@ -272,7 +272,7 @@ static void check_random_samples(uint32_t width, uint32_t height, uint32_t tile_
 static void what_a_sample_may_touch_is_marked(void **state)
 {
     (void)state;
-    srand(11);
+    roll_seed(11);
     check_random_samples(1024, 1024, 128, 128, 40000);
     check_random_samples(1000, 1000, 128, 128, 40000);
     check_random_samples(1025, 513, 128, 128, 40000);

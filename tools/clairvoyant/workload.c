@@ -71,13 +71,6 @@ static uint32_t add_node(struct builder *b, const struct node *node)
     return b->node_count++;
 }
 
-static bool same_shape(const SluiceStreamedTextureDesc *a, const SluiceStreamedTextureDesc *b)
-{
-    return a->width == b->width && a->height == b->height && a->tileWidth == b->tileWidth &&
-           a->tileHeight == b->tileHeight && a->mipLevelCount == b->mipLevelCount &&
-           a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount;
-}
-
 static bool usable(const SluiceStreamedTextureLayout *t)
 {
     return t->desc.packedTileCount && t->desc.tileWidth % t->desc.feedbackRegionWidth == 0 &&
@@ -102,7 +95,7 @@ static bool find_sets(struct builder *b)
             b->sets[b->set_count++] = (struct set_state){i, 0, NEVER, NEVER, NULL, NULL};
         uint32_t set = b->set_count - 1;
         if (b->set_count == 0 || primary != b->sets[set].texture ||
-            !same_shape(&textures[i].layout.desc, &textures[primary].layout.desc) ||
+            !feedback_trace_same_shape(&textures[i].layout.desc, &textures[primary].layout.desc) ||
             !usable(&textures[i].layout)) {
             fprintf(stderr,
                     "texture %u: sets must stand together, be of one shape and have packed tiles, "

@@ -1,9 +1,14 @@
 #include "feedback_trace.h"
 
+#include "../../samples/common/input.h"
+#include "../../samples/common/text.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define MAX_SIZE ((uint64_t)4 << 30) ///< bytes of a trace; more would take the machine's memory
 
 enum { HEADER_SIZE = 64, TEXTURE_SIZE = 40, FRAME_SIZE = 12, MAP_SIZE = 8, TILE_BYTES = 65536 };
 
@@ -216,34 +221,16 @@ static void check_frames(struct feedback_trace *t)
         fail(t, t->at, "there is more behind the last frame");
 }
 
-/** By reading on, not by asking for the size, so that pipes work. */
-static bool read_stream(struct feedback_trace *t, FILE *stream)
-{
-    size_t room = 0;
-    for (;;) {
-        if (t->size == room) {
-            room = room ? 2 * room : 65536;
-            uint8_t *bigger = room > t->size ? realloc(t->data, room) : NULL;
-            if (!bigger) {
-                errno = ENOMEM;
-                return false;
-            }
-            t->data = bigger;
-        }
-        size_t got = fread(t->data + t->size, 1, room - t->size, stream);
-        t->size += got;
-        if (got == 0)
-            return !ferror(stream);
-    }
-}
-
+/* Also from /dev/fd/N. */
 static bool read_file(struct feedback_trace *t, const char *path)
 {
-    FILE *stream = fopen(path, "rb");
-    bool done = stream && read_stream(t, stream);
+    char *data = NULL;
+    FILE *stream = input_open_stream(path);
+    bool done = stream && input_read_rest(stream, MAX_SIZE, &data, &t->size);
     int error = errno;
     if (stream)
         fclose(stream);
+    t->data = (uint8_t *)data;
     errno = error;
     return done;
 }
@@ -258,9 +245,9 @@ bool feedback_trace_open(struct feedback_trace *t, const char *path)
         feedback_trace_rewind(t);
     }
     if (!done)
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
+        text_say("%s: %s", path, input_reason(errno));
     else if (t->why)
-        fprintf(stderr, "%s: %s (at byte %zu)\n", path, t->why, t->why_at);
+        text_say("%s: %s (at byte %zu)", path, t->why, t->why_at);
     if (done && !t->why)
         return true;
     feedback_trace_close(t);
@@ -273,4 +260,12 @@ void feedback_trace_close(struct feedback_trace *t)
     free(t->map);
     free(t->data);
     *t = (struct feedback_trace){0};
+}
+
+bool feedback_trace_same_shape(const SluiceStreamedTextureDesc *a,
+                               const SluiceStreamedTextureDesc *b)
+{
+    return a->width == b->width && a->height == b->height && a->tileWidth == b->tileWidth &&
+           a->tileHeight == b->tileHeight && a->mipLevelCount == b->mipLevelCount &&
+           a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount;
 }

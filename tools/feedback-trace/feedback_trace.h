@@ -43,4 +43,8 @@ void feedback_trace_next_frame(struct feedback_trace *trace, uint64_t *micros, u
 /** The next map, [feedbackHeight][feedbackWidth]; it stays until the next call. */
 const uint8_t *feedback_trace_next_map(struct feedback_trace *trace, uint32_t *texture);
 
+/** Whether both have the same tiles, so that one can follow the other's feedback. */
+bool feedback_trace_same_shape(const SluiceStreamedTextureDesc *a,
+                               const SluiceStreamedTextureDesc *b);
+
 #endif /* FEEDBACK_TRACE_H */

@@ -1,9 +1,11 @@
 /* Makes tile stores of pictures. */
 #define _XOPEN_SOURCE 700
 
+#include "descriptors.h"
 #include "find.h"
 #include "options.h"
 #include "report.h"
+#include "text.h"
 #include "verify.h"
 
 #include <signal.h>
@@ -52,6 +54,7 @@ int main(int argc, char **argv)
 {
     struct options options;
     int status = OK;
+    descriptors_raise();
     signal(SIGXFSZ, SIG_IGN);       /* files that may not grow are an error like a full disk */
     setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     if (!parse_options(&options, argc, argv))
@@ -62,9 +65,5 @@ int main(int argc, char **argv)
         status = verify_files(options.inputs, options.input_count, options.json) ? OK : FAILED;
     else
         status = bake(&options);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "sluice-bake: cannot write the answer\n");
-        return FAILED;
-    }
-    return status;
+    return text_flush("sluice-bake: ") ? status : FAILED;
 }

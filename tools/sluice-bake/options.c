@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include "text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +46,7 @@ static const struct name alphas[] = {{"auto", SLUICE_BAKE_ALPHA_AUTO},
 
 static bool wrong(const char *option, const char *expected, const char *value)
 {
-    fprintf(stderr, "sluice-bake: %s takes %s, not '%s'\n", option, expected, value);
+    text_say("sluice-bake: %s takes %s, not '%s'", option, expected, value);
     return false;
 }
 
@@ -181,6 +183,8 @@ static bool parse_flag(struct options *o, const char *option)
         o->settings.transfer = SLUICE_BAKE_TRANSFER_LINEAR;
     else if (strcmp(option, "--normal") == 0)
         o->settings.normalMap = true;
+    else if (strcmp(option, "--keep-primaries") == 0)
+        o->settings.keepPrimaries = true;
     else if (strcmp(option, "--force") == 0)
         o->force = true;
     else if (strcmp(option, "--verify") == 0)
@@ -190,7 +194,7 @@ static bool parse_flag(struct options *o, const char *option)
     else if (strcmp(option, "--help") == 0 || strcmp(option, "-h") == 0)
         o->help = true;
     else {
-        fprintf(stderr, "sluice-bake: there is no option %s; --help says more\n", option);
+        text_say("sluice-bake: there is no option %s; --help says more", option);
         return false;
     }
     return true;
@@ -206,7 +210,7 @@ static bool is_complete(const struct options *o)
     else if (o->settings.normalMap && o->settings.transfer == SLUICE_BAKE_TRANSFER_SRGB)
         missing = "--normal or --srgb, not both";
     if (missing)
-        fprintf(stderr, "sluice-bake: %s; --help says more\n", missing);
+        text_say("sluice-bake: %s; --help says more", missing);
     return !missing;
 }
 
@@ -222,7 +226,7 @@ bool parse_options(struct options *o, int argc, char **argv)
             only_names = true;
         } else if (takes_value(word)) {
             if (++i == argc || !*argv[i]) {
-                fprintf(stderr, "sluice-bake: %s needs a value\n", word);
+                text_say("sluice-bake: %s needs a value", word);
                 return false;
             }
             if (!parse_value(o, word, argv[i]))
@@ -242,7 +246,8 @@ void print_help(void)
         "\n"
         "Makes tile stores of pictures: anything that libvips reads, OpenEXR, DDS, KTX2, larger\n"
         "than memory, too. IN is a picture or a folder, which is searched for pictures and keeps\n"
-        "its structure under DIR. OUT is a file if IN is one picture and OUT is no folder.\n"
+        "its structure under DIR. OUT is a file if IN is one picture and OUT is no folder and\n"
+        "does not end in a slash.\n"
         "What was made from the same file with the same settings is left alone.\n"
         "\n"
         "  -o OUT|DIR            where to (required)\n"
@@ -254,6 +259,8 @@ void print_help(void)
         "  --srgb, --linear      what the numbers are (sRGB for integers of two channels or more,\n"
         "                        linear for one channel, floats and normal maps)\n"
         "  --normal              a normal map: levels keep vectors of length 1 (no)\n"
+        "  --keep-primaries      colors of OpenEXR files as they are, not converted to Rec. 709 "
+        "(no)\n"
         "  --alpha NAME          straight or premultiplied; the latter, too, if it is no coverage\n"
         "                        (straight, for OpenEXR premultiplied)\n"
         "  --cutout ALPHA        keep the share of texels with at least this alpha in all levels;\n"

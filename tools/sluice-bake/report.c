@@ -66,8 +66,11 @@ static void print_object(const struct bake_job *job)
            r->width, r->height, r->mipLevelCount, r->arrayLayerCount,
            sluiceFormatString(r->format));
     printf(", \"input_size\": %" PRIu64 ", \"output_size\": %" PRIu64 ", \"memory\": %" PRIu64
-           ", \"resumed_tiles\": %" PRIu64 ", \"replaced_texels\": %" PRIu64 "}\n",
-           job->size, r->outputSize, r->memorySize, r->resumedTileCount, r->replacedTexelCount);
+           ", \"resumed_tiles\": %" PRIu64 ", \"replaced_texels\": %" PRIu64
+           ", \"nan_texels\": %" PRIu64 ", \"infinite_texels\": %" PRIu64
+           ", \"clamped_texels\": %" PRIu64 "}\n",
+           job->size, r->outputSize, r->memorySize, r->resumedTileCount, r->replacedTexelCount,
+           r->nanTexelCount, r->infiniteTexelCount, r->clampedTexelCount);
 }
 
 static void print_totals(const struct bake_job *jobs, size_t count)
@@ -84,13 +87,32 @@ static void print_totals(const struct bake_job *jobs, size_t count)
            counts[UNCHANGED], counts[FAILED], size_text(in, in_text), size_text(out, out_text));
 }
 
+/* "3 texels held NaN, stored as 0; ..." */
+static void print_replaced(const char *input, const SluiceBakeReport *r)
+{
+    const struct {
+        uint64_t count;
+        const char *what;
+    } kinds[] = {
+        {r->nanTexelCount, "held NaN, stored as 0"},
+        {r->infiniteTexelCount, "held an infinity, stored as a finite number"},
+        {r->clampedTexelCount, "held a number beyond +-65504, stored as that"},
+    };
+    char text[256] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+        if (kinds[i].count)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%" PRIu64 " texels %s",
+                                     used ? "; " : "", kinds[i].count, kinds[i].what);
+    if (used)
+        text_say("sluice-bake: %s: %s", input, text);
+}
+
 static void print_remarks(const struct bake_job *job)
 {
     const char *why = reason(job);
     if (status_of(job) != FAILED) {
-        if (job->report.replacedTexelCount)
-            text_say("sluice-bake: %s: %" PRIu64 " texels held no finite number", job->input,
-                     job->report.replacedTexelCount);
+        print_replaced(job->input, &job->report);
     } else if (strncmp(why, job->input, strlen(job->input)) == 0) {
         text_say("sluice-bake: %s", why);
     } else {
@@ -101,16 +123,20 @@ static void print_remarks(const struct bake_job *job)
 size_t print_outcomes(const struct bake_job *jobs, size_t count, bool json)
 {
     size_t failed = 0;
+    bool lacks_memory = false;
     if (!json)
         printf("%-9s  %13s  %-20s  %9s  %9s  %s\n", "", "texels", "format", "in", "out", "store");
     for (size_t i = 0; i < count; i++) {
         failed += status_of(&jobs[i]) == FAILED;
+        lacks_memory |= jobs[i].is_done && jobs[i].result == SLUICE_ERROR_LIMIT_EXCEEDED;
         print_remarks(&jobs[i]);
         if (json)
             print_object(&jobs[i]);
         else
             print_row(&jobs[i]);
     }
+    if (lacks_memory)
+        text_say("sluice-bake: --memory raises the limit");
     if (!json)
         print_totals(jobs, count);
     return failed;

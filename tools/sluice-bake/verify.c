@@ -3,6 +3,7 @@
 #include "verify.h"
 
 #include "files.h"
+#include "log.h"
 #include "text.h"
 
 #include <sluice/store.h>
@@ -13,9 +14,10 @@
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
+    static char speaker[] = "sluice-bake: ";
     (void)user;
     if (severity == SLUICE_LOG_ERROR)
-        text_say("sluice-bake: %s", message);
+        log_say(speaker, severity, message);
 }
 
 static void print_object(const char *path, SluiceResult result, const SluiceStoreReport *report)
@@ -70,6 +72,7 @@ bool verify_files(char **paths, int count, bool json)
     bool all_are_whole = collect(paths, count, &list);
     for (size_t i = 0; i < list.count; i++)
         all_are_whole = verify(list.paths[i], json) && all_are_whole;
+    log_finish();
     all_are_whole = all_are_whole && list.unreadable_count == 0;
     if (list.count == 0 && list.unreadable_count == 0) {
         fprintf(stderr, "sluice-bake: there is no store to verify\n");

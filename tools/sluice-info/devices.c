@@ -1,5 +1,8 @@
 #include "devices.h"
 
+#include "no_vulkan.h"
+#include "text.h"
+
 #include <dlfcn.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +26,10 @@ static bool create_instance(struct devices *d)
     if (result == VK_SUCCESS)
         return true;
     d->instance = VK_NULL_HANDLE;
-    fprintf(stderr, "sluice-info: no Vulkan driver is installed (vkCreateInstance: %d)\n", result);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+        text_say("sluice-info: %s", NO_VULKAN_DRIVER);
+    else
+        text_say("sluice-info: Vulkan does not start (vkCreateInstance: %d)", result);
     return false;
 }
 
@@ -34,7 +40,7 @@ bool open_devices(struct devices *d)
     if (d->library)
         *(void **)&d->get = dlsym(d->library, "vkGetInstanceProcAddr"); /* as POSIX shows it */
     if (!d->get) {
-        fprintf(stderr, "sluice-info: the Vulkan loader is not installed: %s\n", dlerror());
+        text_say("sluice-info: the Vulkan loader is not installed: %s", dlerror());
         return false;
     }
     if (!create_instance(d))
@@ -45,8 +51,7 @@ bool open_devices(struct devices *d)
     VkResult result = enumerate(d->instance, &d->count, d->devices);
     if (result >= 0 && d->count > 0)
         return true;
-    fprintf(stderr, "sluice-info: there is no Vulkan device (vkEnumeratePhysicalDevices: %d)\n",
-            result);
+    text_say("sluice-info: %s", NO_VULKAN_DRIVER);
     close_devices(d);
     return false;
 }
@@ -118,8 +123,7 @@ bool ask_device(const struct devices *d, uint32_t index, uint32_t width, uint32_
     SluiceResult result = sluiceGetVulkanDeviceCapabilities(d->instance, d->devices[index], d->get,
                                                             &report->capabilities);
     if (result != SLUICE_SUCCESS) {
-        fprintf(stderr, "sluice-info: device %u does not answer: %s\n", index,
-                sluiceResultString(result));
+        text_say("sluice-info: device %u does not answer: %s", index, sluiceResultString(result));
         return false;
     }
     VkDevice device = create_device(d, report);

@@ -2,6 +2,8 @@
  */
 #include "show.h"
 
+#include "text.h"
+
 #include <stdio.h>
 
 static int show_files(const struct options *options)
@@ -27,9 +29,5 @@ int main(int argc, char **argv)
         status = show_files(&options);
     else
         status = show_devices(&options);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "sluice-info: cannot write the answer\n");
-        return NOT_SHOWN;
-    }
-    return status;
+    return text_flush("sluice-info: ") ? status : NOT_SHOWN;
 }

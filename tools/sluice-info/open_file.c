@@ -1,5 +1,6 @@
 #include "open_file.h"
 
+#include "input.h"
 #include "text.h"
 
 #include <errno.h>
@@ -29,13 +30,13 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 
 static bool read_start(const char *path, char bytes[12])
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     memset(bytes, 0, 12);
     if (file)
         (void)!fread(bytes, 1, 12, file);
     bool failed = !file || ferror(file);
     if (failed)
-        text_say("sluice-info: %s: %s", path, strerror(errno));
+        text_say("sluice-info: %s: %s", path, input_reason(errno));
     if (file)
         fclose(file);
     return !failed;
@@ -54,36 +55,46 @@ static SluiceResult open_store(struct texture_file *file, const char *path, Slui
 #endif
 }
 
-static SluiceResult open_exr(struct texture_file *file, const char *path, SluiceLogCallback log)
+static SluiceResult open_exr(struct texture_file *file, const char *path,
+                             const struct texture_opening *opening, SluiceLogCallback log)
 {
 #ifdef HAVE_EXR
-    SluiceExrImageSourceCreateInfo info = {.pPath = path, .log = log};
+    SluiceExrImageSourceCreateInfo info = {.pPath = path,
+                                           .log = log,
+                                           .maxImageSize = UINT64_MAX,
+                                           .levelZeroAlone = opening->level_zero_alone,
+                                           .maxMemorySize = opening->memory};
     file->kind = "OpenEXR";
-    return sluiceCreateExrImageSource(&info, &file->source);
+    SluiceResult result = sluiceCreateExrImageSource(&info, &file->source);
+    if (result == SLUICE_ERROR_LIMIT_EXCEEDED)
+        text_say("sluice-info: --memory raises the limit");
+    return result;
 #else
-    (void)file, (void)path, (void)log;
+    (void)file, (void)path, (void)opening, (void)log;
     return SLUICE_ERROR_UNSUPPORTED;
 #endif
 }
 
 static SluiceResult open_container(struct texture_file *file, const char *path, bool is_dds,
-                                   SluiceLogCallback log)
+                                   const struct texture_opening *opening, SluiceLogCallback log)
 {
 #ifdef HAVE_CONTAINER
     SluiceDdsImageSourceCreateInfo dds = {.pPath = path, .log = log};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .log = log};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {
+        .pPath = path, .log = log, .maxCacheSize = opening->memory};
     file->kind = is_dds ? "DDS" : "KTX2";
     return is_dds ? sluiceCreateDdsImageSource(&dds, &file->source)
                   : sluiceCreateKtx2ImageSource(&ktx2, &file->source);
 #else
-    (void)file, (void)path, (void)is_dds, (void)log;
+    (void)file, (void)path, (void)is_dds, (void)opening, (void)log;
     return SLUICE_ERROR_UNSUPPORTED;
 #endif
 }
 
-bool open_texture_file(struct texture_file *file, const char *path)
+bool open_texture_file(struct texture_file *file, const char *path,
+                       const struct texture_opening *opening)
 {
-    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n";
+    static const char ktx2[] = "\xABKTX 20\xBB\r\n\x1A\n", store[] = "\x89SLS\r\n\x1A\n";
     char start[12];
     SluiceLogCallback log = {file, on_log};
     SluiceResult result;
@@ -91,11 +102,17 @@ bool open_texture_file(struct texture_file *file, const char *path)
     if (!read_start(path, start))
         return false;
     if (memcmp(start, "\x76\x2F\x31\x01", 4) == 0)
-        result = open_exr(file, path, log);
+        result = open_exr(file, path, opening, log);
     else if (memcmp(start, "DDS ", 4) == 0 || memcmp(start, ktx2, 12) == 0)
-        result = open_container(file, path, start[0] == 'D', log);
-    else
+        result = open_container(file, path, start[0] == 'D', opening, log);
+    else if (memcmp(start, store, 8) == 0)
         result = open_store(file, path, log);
+    else {
+        text_say("sluice-info: %s: is not a tile store, OpenEXR, DDS or KTX2 file; sluice-bake "
+                 "makes tile stores of other pictures",
+                 path);
+        return false;
+    }
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(file->source, &file->image);
     if (result == SLUICE_SUCCESS)

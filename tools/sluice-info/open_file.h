@@ -12,8 +12,18 @@ struct texture_file {
     bool has_spoken; ///< the library has said what is wrong
 };
 
+/** What a file is opened for. */
+struct texture_opening {
+    /** Bytes that reading may take; UINT64_MAX where no texels are read. */
+    uint64_t memory;
+    /** Nothing but level 0 is read. Files without levels are not read as a whole then, and have one
+     *  level. */
+    bool level_zero_alone;
+};
+
 /** Says on standard error what is wrong. The struct stays where it is until it is closed. */
-bool open_texture_file(struct texture_file *file, const char *path);
+bool open_texture_file(struct texture_file *file, const char *path,
+                       const struct texture_opening *opening);
 void close_texture_file(struct texture_file *file);
 
 #endif /* TOOLS_SLUICE_INFO_OPEN_FILE_H */

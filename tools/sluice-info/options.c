@@ -1,10 +1,12 @@
 #include "options.h"
 
+#include "text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const struct options defaults = {.width = 4096, .height = 4096};
+static const struct options defaults = {.width = 4096, .height = 4096, .memory = (uint64_t)1 << 30};
 
 static bool parse_size(const char *text, uint32_t *width, uint32_t *height)
 {
@@ -37,7 +39,7 @@ static bool parse_level(struct options *o, const char *value)
     const char *rest;
     if (parse_number(value, '\0', &o->level, &rest) && o->level < 32)
         return true;
-    fprintf(stderr, "sluice-info: --level takes a number below 32, not '%s'\n", value);
+    text_say("sluice-info: --level takes a number below 32, not '%s'", value);
     return false;
 }
 
@@ -47,13 +49,30 @@ static bool parse_tile(struct options *o, const char *value)
     o->has_tile =
         parse_number(value, ',', &o->tile_x, &rest) && parse_number(rest, '\0', &o->tile_y, &rest);
     if (!o->has_tile)
-        fprintf(stderr, "sluice-info: --tile takes COLUMN,ROW, not '%s'\n", value);
+        text_say("sluice-info: --tile takes COLUMN,ROW, not '%s'", value);
     return o->has_tile;
+}
+
+/* MiB, or with a letter of another unit, as sluice-bake takes it. */
+static bool parse_memory(struct options *o, const char *value)
+{
+    char *end;
+    uint32_t shift = 20;
+    unsigned long long number = strtoull(value, &end, 10);
+    bool is_number = *value >= '0' && *value <= '9' && number > 0 && number <= 1ull << 33;
+    if (is_number && (*end == 'K' || *end == 'M' || *end == 'G'))
+        shift = *end == 'K' ? 10 : *end == 'M' ? 20 : 30, end++;
+    o->memory = (uint64_t)number << shift;
+    if (is_number && *end == '\0')
+        return true;
+    text_say("sluice-info: --memory takes a size like 512M or 2G, not '%s'", value);
+    return false;
 }
 
 static bool takes_value(const char *name)
 {
-    static const char *const names[] = {"--device", "--image", "--level", "--tile", "--png"};
+    static const char *const names[] = {"--device", "--image", "--level",
+                                        "--tile",   "--png",   "--memory"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (strcmp(name, names[i]) == 0)
             return true;
@@ -70,14 +89,14 @@ static bool is_consistent(const struct options *o)
     else if (o->file_count && (o->device || o->list))
         wrong = "files or devices, not both";
     if (wrong)
-        fprintf(stderr, "sluice-info: %s; --help says more\n", wrong);
+        text_say("sluice-info: %s; --help says more", wrong);
     return !wrong;
 }
 
 static bool parse_value(struct options *o, const char *name, const char *value)
 {
     if (!value || !*value) {
-        fprintf(stderr, "sluice-info: %s needs a value\n", name);
+        text_say("sluice-info: %s needs a value", name);
         return false;
     }
     if (strcmp(name, "--device") == 0) {
@@ -92,23 +111,27 @@ static bool parse_value(struct options *o, const char *name, const char *value)
         return parse_level(o, value);
     if (strcmp(name, "--tile") == 0)
         return parse_tile(o, value);
+    if (strcmp(name, "--memory") == 0)
+        return parse_memory(o, value);
     if (parse_size(value, &o->width, &o->height))
         return true;
-    fprintf(stderr, "sluice-info: --image takes WIDTHxHEIGHT, each from 1 to 1048576, not '%s'\n",
-            value);
+    text_say("sluice-info: --image takes WIDTHxHEIGHT, each from 1 to 1048576, not '%s'", value);
     return false;
 }
 
 bool parse_options(struct options *o, int argc, char **argv)
 {
+    bool only_names = false;
     *o = defaults;
     o->files = argv + 1;
     for (int i = 1; i < argc; i++) {
         const char *name = argv[i];
-        if (strcmp(name, "--device") == 0 && (i + 1 == argc || argv[i + 1][0] == '-')) {
-            o->list = true;
-        } else if (name[0] != '-') {
+        if (only_names || name[0] != '-') {
             o->files[o->file_count++] = argv[i];
+        } else if (strcmp(name, "--") == 0) {
+            only_names = true;
+        } else if (strcmp(name, "--device") == 0 && (i + 1 == argc || argv[i + 1][0] == '-')) {
+            o->list = true;
         } else if (takes_value(name)) {
             i++;
             if (!parse_value(o, name, i < argc ? argv[i] : NULL))
@@ -118,7 +141,7 @@ bool parse_options(struct options *o, int argc, char **argv)
         } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
             o->help = true;
         } else {
-            fprintf(stderr, "sluice-info: there is no option %s; --help says more\n", name);
+            text_say("sluice-info: there is no option %s; --help says more", name);
             return false;
         }
     }
@@ -138,10 +161,12 @@ void print_help(void)
         "  --png OUT            write a level as a picture; floats are clamped and sRGB-encoded\n"
         "  --level N            which (0)\n"
         "  --tile X,Y           only this 64 KiB tile of it: column and row (the whole level)\n"
+        "  --memory SIZE        for the picture and for reading its file, like 512M or 2G (%uG)\n"
         "  --device INDEX|NAME  one device, by its number or a part of its name (all)\n"
         "  --device             only the devices' numbers and names\n"
         "  --image WxH          size of the image whose layout is shown (%ux%u)\n"
         "  --json               one JSON object per line and file or device\n"
+        "  --                   what follows are files, also if they begin with -\n"
         "  --help               this text\n"
         "\n"
         "Of each format of a device: whether it can be streamed, sampled and filtered; the tile "
@@ -154,5 +179,5 @@ void print_help(void)
         "\n"
         "Exit status: 0 all is shown; 1 a file cannot be read or written, there is no Vulkan, no\n"
         "device or none of that name; 2 wrong usage.\n",
-        defaults.width, defaults.height);
+        (unsigned)(defaults.memory >> 30), defaults.width, defaults.height);
 }

@@ -12,6 +12,7 @@ struct options {
     uint32_t level;
     bool has_tile; ///< a tile of it, or all of it
     uint32_t tile_x, tile_y;
+    uint64_t memory;        ///< bytes that a picture and the reading of its file may take
     const char *device;     ///< number or a part of the name; NULL: all
     uint32_t width, height; ///< of the image whose layout is shown
     bool list, json, help;

@@ -2,6 +2,7 @@
 
 #include "devices.h"
 #include "report.h"
+#include "text.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -41,7 +42,7 @@ static int print_devices(const struct devices *devices, const struct options *op
     if (shown)
         return ALL_SHOWN;
     if (options->device) {
-        fprintf(stderr, "sluice-info: no device is called '%s'; there are\n", options->device);
+        text_say("sluice-info: no device is called '%s'; there are", options->device);
         print_names(devices, stderr);
     }
     return NOT_SHOWN;

@@ -6,12 +6,16 @@
 #include "text.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <time.h>
 
 #ifdef HAVE_STORE
 #include <sluice/store.h>
+#endif
+#ifdef HAVE_EXR
+#include <sluice/exr.h>
 #endif
 
 static uint32_t level_size(uint32_t size, uint32_t level)
@@ -34,12 +38,14 @@ static uint64_t texel_size(const SluiceImageInfo *image)
     return size * (image->arrayLayerCount ? image->arrayLayerCount : 1);
 }
 
-#ifdef HAVE_STORE
+#if defined(HAVE_STORE) || defined(HAVE_EXR)
 static const char *name_of(const char *const *names, unsigned count, unsigned value)
 {
     return value < count ? names[value] : "unknown";
 }
+#endif
 
+#ifdef HAVE_STORE
 static const char *const spaces[] = {"undefined", "sRGB", "linear sRGB", "linear Rec. 2020",
                                      "ACEScg"};
 static const char *const meanings[] = {"colour", "colour, straight alpha", "colour, premultiplied",
@@ -118,6 +124,74 @@ static void show_what_is_in_a_store(const struct texture_file *file, bool json)
 #endif
 }
 
+#ifdef HAVE_EXR
+static const char *const storages[] = {"scanlines", "tiles", "tiles, mip-mapped",
+                                       "tiles, rip-mapped"};
+
+static uint64_t mib(uint64_t size)
+{
+    return (size + (1 << 20) - 1) >> 20;
+}
+
+static void print_exr(const SluiceExrInfo *e)
+{
+    printf("  held as                 %s, %u x %u texels each, %s\n",
+           name_of(storages, 4, e->storage), e->chunkWidth, e->chunkHeight, e->pCompression);
+    printf("  channels                %s\n", e->pChannels);
+    if (e->hasChromaticities) {
+        const float *c = e->chromaticities;
+        printf("  primaries               %g %g, %g %g, %g %g, white %g %g%s\n", (double)c[0],
+               (double)c[1], (double)c[2], (double)c[3], (double)c[4], (double)c[5], (double)c[6],
+               (double)c[7], e->convertsPrimaries ? "; read as those of Rec. 709" : "");
+    }
+    if (e->chainSize)
+        printf("  levels                  are built by whoever reads them: %" PRIu64
+               " MiB of memory;\n"
+               "                          sluice-bake FILE -o DIR makes a file that has them\n",
+               mib(e->chainSize));
+}
+
+/* JSON has no words for what is no finite number. */
+static void write_number(const char *before, float value)
+{
+    if (isfinite(value))
+        printf("%s%.9g", before, (double)value);
+    else
+        printf("%snull", before);
+}
+
+static void print_exr_json(const SluiceExrInfo *e)
+{
+    printf(", \"storage\": \"%s\", \"chunkWidth\": %u, \"chunkHeight\": %u"
+           ", \"compression\": \"%s\", \"channels\": ",
+           name_of(storages, 4, e->storage), e->chunkWidth, e->chunkHeight, e->pCompression);
+    text_write_json(stdout, e->pChannels);
+    printf(", \"chainSize\": %" PRIu64 ", \"readSize\": %" PRIu64, e->chainSize, e->readSize);
+    if (!e->hasChromaticities)
+        return;
+    printf(", \"convertsPrimaries\": %s, \"chromaticities\": [",
+           e->convertsPrimaries ? "true" : "false");
+    for (int i = 0; i < 8; i++)
+        write_number(i ? ", " : "", e->chromaticities[i]);
+    printf("]");
+}
+#endif
+
+static void show_what_is_in_an_exr(const struct texture_file *file, bool json)
+{
+#ifdef HAVE_EXR
+    SluiceExrInfo info;
+    if (sluiceGetExrInfo(file->source, &info) != SLUICE_SUCCESS)
+        return;
+    if (json)
+        print_exr_json(&info);
+    else
+        print_exr(&info);
+#else
+    (void)file, (void)json;
+#endif
+}
+
 static void print_file(const struct texture_file *file, const char *path)
 {
     const SluiceImageInfo *image = &file->image;
@@ -130,6 +204,7 @@ static void print_file(const struct texture_file *file, const char *path)
     printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
     printf("  file                    %" PRIu64 " bytes\n", file_size(path));
     show_what_is_in_a_store(file, false);
+    show_what_is_in_an_exr(file, false);
 }
 
 static void print_file_json(const struct texture_file *file, const char *path)
@@ -144,13 +219,15 @@ static void print_file_json(const struct texture_file *file, const char *path)
            image->arrayLayerCount ? image->arrayLayerCount : 1, sluiceFormatString(image->format),
            texel_size(image), file_size(path));
     show_what_is_in_a_store(file, true);
+    show_what_is_in_an_exr(file, true);
     printf("}\n");
 }
 
 int show_file(const struct options *options, const char *path)
 {
+    const struct texture_opening opening = {.memory = UINT64_MAX}; /* no texel is read */
     struct texture_file file;
-    if (!open_texture_file(&file, path))
+    if (!open_texture_file(&file, path, &opening))
         return NOT_SHOWN;
     if (options->json)
         print_file_json(&file, path);

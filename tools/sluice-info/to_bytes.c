@@ -1,6 +1,7 @@
 #include "to_bytes.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* Bytes per channel: 1, 2 or 4; 0 if the format has no plain channels. */
@@ -44,6 +45,23 @@ static uint8_t quantise(double value, bool encode)
     return value >= 1.0 ? 255 : (uint8_t)(255.0 * value + 0.5);
 }
 
+/* Large pictures have more texels than there are halves. [alpha or not][half] */
+struct half_bytes {
+    bool is_filled;
+    uint8_t bytes[2][65536];
+};
+
+static uint8_t half_to_byte(uint16_t half, bool is_alpha)
+{
+    static struct half_bytes table;
+    for (uint32_t i = 0; !table.is_filled && i < 65536; i++) {
+        table.bytes[0][i] = quantise(half_value((uint16_t)i), true);
+        table.bytes[1][i] = quantise(half_value((uint16_t)i), false);
+    }
+    table.is_filled = true;
+    return table.bytes[is_alpha][half];
+}
+
 static uint8_t channel_to_byte(uint32_t size, const char *channel, bool is_alpha)
 {
     uint16_t half;
@@ -52,7 +70,7 @@ static uint8_t channel_to_byte(uint32_t size, const char *channel, bool is_alpha
         return (uint8_t)*channel;
     if (size == 2) {
         memcpy(&half, channel, 2);
-        return quantise(half_value(half), !is_alpha);
+        return half_to_byte(half, is_alpha);
     }
     memcpy(&value, channel, 4);
     return quantise((double)value, !is_alpha);

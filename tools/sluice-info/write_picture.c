@@ -1,17 +1,13 @@
 #include "show.h"
 
 #include "open_file.h"
+#include "output_file.h"
+#include "png_rows.h"
 #include "text.h"
 #include "to_bytes.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-#ifdef HAVE_PNG
-#include <png.h>
-#endif
 
 /* More than this is no picture to look at. */
 #define MAX_TEXELS ((uint64_t)1 << 28)
@@ -58,58 +54,89 @@ static bool find_region(const struct options *o, const SluiceImageInfo *image,
     return true;
 }
 
-static bool write_png(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height)
+/* Rows that are read at once: few enough for half of the memory. */
+static uint32_t strip_height(const struct options *options, const SluiceImageRegion *region,
+                             SluiceFormat format)
 {
-#ifdef HAVE_PNG
-    png_image image = {.version = PNG_IMAGE_VERSION, .width = width, .height = height};
-    image.format = PNG_FORMAT_RGBA;
-    if (png_image_write_to_file(&image, path, 0, rgba, 0, NULL))
-        return true;
-    fail(path, image.message[0] ? image.message : strerror(errno));
-    remove(path);
-    return false;
-#else
-    (void)rgba, (void)width, (void)height;
-    return fail(path, "this build writes no PNG files");
-#endif
+    uint64_t row = (uint64_t)region->width * (sluiceFormatTexelSize(format) + 4);
+    uint32_t height = 64;
+    while (height > 1 && height * row > options->memory / 2)
+        height /= 2;
+    return least(height, region->height);
 }
 
-static bool write_region(const struct texture_file *file, const char *in,
-                         const SluiceImageRegion *region, const char *out)
+/* What one strip takes on its way. */
+struct strip {
+    uint32_t height;
+    char *texels;
+    uint8_t *rgba;
+};
+
+/* Blocks of lines and tiles begin at multiples of their height, so that most are decoded once. */
+static bool write_rows(struct texture_file *file, const char *in, const SluiceImageRegion *region,
+                       const struct strip *strip, struct png_rows *rows)
 {
     SluiceFormat format = file->image.format;
-    size_t count = (size_t)region->width * region->height;
-    char *texels = malloc(count * sluiceFormatTexelSize(format));
-    uint8_t *rgba = malloc(4 * count);
-    bool done = false;
-    if (!texels || !rgba) {
-        fail(in, "out of memory");
-    } else {
-        SluiceResult result = sluiceReadImageRegion(
-            file->source, region, texels, (size_t)region->width * sluiceFormatTexelSize(format));
-        if (result == SLUICE_SUCCESS) {
-            texels_to_bytes(format, texels, rgba, count);
-            done = write_png(out, rgba, region->width, region->height);
-        } else if (!file->has_spoken) {
-            fail(in, sluiceResultString(result));
-        }
+    size_t pitch = (size_t)region->width * sluiceFormatTexelSize(format);
+    uint32_t end = region->y + region->height;
+    for (uint32_t y = region->y; y < end;) {
+        SluiceImageRegion part = *region;
+        part.y = y;
+        part.height = least(strip->height - y % strip->height, end - y);
+        SluiceResult result = sluiceReadImageRegion(file->source, &part, strip->texels, pitch);
+        if (result != SLUICE_SUCCESS)
+            return file->has_spoken ? false : fail(in, sluiceResultString(result));
+        texels_to_bytes(format, strip->texels, strip->rgba, (size_t)part.width * part.height);
+        if (!png_rows_write(rows, strip->rgba, part.height))
+            return false;
+        y += part.height;
     }
-    free(texels);
-    free(rgba);
+    return true;
+}
+
+static bool write_strips(struct texture_file *file, const struct options *options,
+                         const SluiceImageRegion *region, const struct strip *strip)
+{
+    struct output_file *out = output_file_begin(options->png);
+    if (!out)
+        return false;
+    struct png_rows *rows =
+        png_rows_begin(output_file_stream(out), options->png, region->width, region->height);
+    bool done = rows && write_rows(file, options->files[0], region, strip, rows);
+    done = png_rows_end(rows, done);
+    return output_file_end(out, done);
+}
+
+static bool write_region(const struct options *options, struct texture_file *file,
+                         const SluiceImageRegion *region)
+{
+    struct strip strip = {.height = strip_height(options, region, file->image.format)};
+    size_t count = (size_t)region->width * strip.height;
+    strip.texels = malloc(count * sluiceFormatTexelSize(file->image.format));
+    strip.rgba = malloc(4 * count);
+    bool done = strip.texels && strip.rgba ? write_strips(file, options, region, &strip)
+                                           : fail(options->files[0], "out of memory");
+    free(strip.texels);
+    free(strip.rgba);
     return done;
 }
 
 int write_picture(const struct options *options)
 {
+    const struct texture_opening opening = {.memory = options->memory,
+                                            .level_zero_alone = options->level == 0};
     struct texture_file file;
     SluiceImageRegion region;
-    if (!open_texture_file(&file, options->files[0]))
+    output_set_speaker("sluice-info: ");
+    if (!output_add_input(options->files[0]))
+        return NOT_SHOWN;
+    if (!open_texture_file(&file, options->files[0], &opening))
         return NOT_SHOWN;
     bool done = false;
     if (!can_become_bytes(file.image.format))
         fail(options->files[0], "its format cannot be shown as a picture");
     else if (find_region(options, &file.image, &region))
-        done = write_region(&file, options->files[0], &region, options->png);
+        done = write_region(options, &file, &region);
     close_texture_file(&file);
     return done ? ALL_SHOWN : NOT_SHOWN;
 }

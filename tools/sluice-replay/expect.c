@@ -1,6 +1,8 @@
 #include "expect.h"
 
-#include "file.h"
+#include "../../samples/common/input.h"
+#include "../../samples/common/text.h"
+#include "trace.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -31,12 +33,24 @@ static char *next_line(struct expectation *e)
     return NULL;
 }
 
-bool expectation_open(struct expectation *e, const char *path)
+static void say_difference(const struct expectation *e, size_t number, const char *expected,
+                           const char *got)
 {
-    size_t size;
+    text_say("sluice-replay: %s:%zu differs", e->path, number);
+    text_say("  expected: %s", expected);
+    text_say("  got:      %s", got);
+}
+
+bool expectation_open(struct expectation *e, const char *path, uint64_t memory)
+{
     *e = (struct expectation){.path = path};
-    if (!read_file(path, &e->text, &size)) {
-        fprintf(stderr, "sluice-replay: %s: %s\n", path, strerror(errno));
+    FILE *stream = input_open_stream(path);
+    bool done = stream && input_read_rest(stream, memory, &e->text, &e->size);
+    int error = errno;
+    if (stream)
+        fclose(stream);
+    if (!done) {
+        say_unread(path, error, memory);
         return false;
     }
     e->next = e->text;
@@ -55,8 +69,8 @@ void expectation_line(struct expectation *e, const char *line)
     if (expected && strcmp(expected, line) == 0)
         return;
     e->differs = true;
-    fprintf(stderr, "sluice-replay: %s:%zu differs\n  expected: %s\n  got:      %s\n", e->path,
-            expected ? e->number : e->number + 1, expected ? expected : "(end of file)", line);
+    say_difference(e, expected ? e->number : e->number + 1, expected ? expected : "(end of file)",
+                   line);
 }
 
 bool expectation_close(struct expectation *e)
@@ -64,8 +78,7 @@ bool expectation_close(struct expectation *e)
     const char *left = e->differs ? NULL : next_line(e);
     if (left) {
         e->differs = true;
-        fprintf(stderr, "sluice-replay: %s:%zu differs\n  expected: %s\n  got:      (end)\n",
-                e->path, e->number, left);
+        say_difference(e, e->number, left, "(end)");
     }
     free(e->text);
     e->text = NULL;

@@ -1,8 +1,12 @@
 /* Plays a trace and prints what a manager decides: see --help and docs/replay.md. */
 #include "expect.h"
-#include "file.h"
 #include "options.h"
 #include "report.h"
+#include "trace.h"
+
+#include "../../samples/common/input.h"
+#include "../../samples/common/output_file.h"
+#include "../../samples/common/text.h"
 
 #include <sluice/replay.h>
 
@@ -54,13 +58,19 @@ static void take_line(void *user, const char *line)
 static void log_message(void *user, SluiceLogSeverity severity, const char *message)
 {
     if (severity >= SLUICE_LOG_WARNING)
-        fprintf(stderr, "%s: %s\n", (const char *)user, message);
+        text_say("%s: %s", (const char *)user, message);
+}
+
+static uint64_t memory_of(const struct options *o)
+{
+    return (uint64_t)o->memory_mib << 20;
 }
 
 static SluiceResult replay(const struct options *o, const char *data, size_t size,
                            struct output *output, SluiceReplayResult *result)
 {
-    struct limited_memory memory = {(uint64_t)o->memory_mib << 20};
+    size_t expected = output->expectation ? output->expectation->size : 0;
+    struct limited_memory memory = {memory_of(o) - expected - size};
     const SluiceAllocationCallbacks callbacks = {&memory, allocate, release};
     /* The log's user pointer is not const; it is only printed. */
     const SluiceReplayInfo info = {
@@ -73,7 +83,7 @@ static SluiceResult replay(const struct options *o, const char *data, size_t siz
         .heapTileCapacity = o->heap_tiles,
         .maxHeapCount = o->max_heaps,
         .standbyTileCount = o->standby,
-        .tilesPerFrame = o->budget,
+        .tilesPerFrame = o->tiles_per_frame,
         .latency = o->latency,
         .timeoutMicros = o->timeout_micros,
         .pRecordPath = o->record,
@@ -86,20 +96,19 @@ static bool run(const struct options *o, struct expectation *expectation)
 {
     char *data;
     size_t size;
-    if (!read_file(o->trace, &data, &size)) {
-        fprintf(stderr, "sluice-replay: %s: %s\n", o->trace, strerror(errno));
+    size_t expected = expectation ? expectation->size : 0;
+    if (!read_trace(o->trace, memory_of(o) - expected, &data, &size))
         return false;
-    }
     struct output output = {o->dump, expectation};
     SluiceReplayResult result = {0};
     SluiceResult status = replay(o, data, size, &output, &result);
     free(data);
     if (status != SLUICE_SUCCESS) {
-        fprintf(stderr, "sluice-replay: %s: %s", o->trace, sluiceResultString(status));
+        char where[32] = "";
         if (status == SLUICE_ERROR_CORRUPT_DATA)
-            fprintf(stderr, " at byte %" PRIu64, result.errorOffset);
-        fprintf(stderr, " after %" PRIu64 " events, hash %016" PRIx64 "\n", result.eventCount,
-                result.decisionHash);
+            snprintf(where, sizeof where, " at byte %" PRIu64, result.errorOffset);
+        text_say("sluice-replay: %s: %s%s after %" PRIu64 " events, hash %016" PRIx64, o->trace,
+                 sluiceResultString(status), where, result.eventCount, result.decisionHash);
         if (expectation) /* what is missing in the dump follows from this */
             expectation->differs = true;
         return false;
@@ -111,6 +120,13 @@ static bool run(const struct options *o, struct expectation *expectation)
     return result.divergedEvent == 0;
 }
 
+static bool record_spares_inputs(const struct options *o)
+{
+    return output_add_input(input_stream_path(o->trace)) &&
+           (!o->expect || output_add_input(input_stream_path(o->expect))) &&
+           (!o->record || output_spares_inputs(o->record));
+}
+
 int main(int argc, char **argv)
 {
     struct options o;
@@ -118,17 +134,18 @@ int main(int argc, char **argv)
         return 2;
     if (o.help) {
         print_help();
-        return 0;
+        return text_flush("sluice-replay: ") ? 0 : 1;
     }
     struct expectation expectation;
-    if (o.expect && !expectation_open(&expectation, o.expect))
+    output_set_speaker("sluice-replay: ");
+    if (!record_spares_inputs(&o))
+        return 1;
+    if (o.expect && !expectation_open(&expectation, o.expect, memory_of(&o)))
         return 1;
     bool good = run(&o, o.expect ? &expectation : NULL);
     if (o.expect && !expectation_close(&expectation))
         good = false;
-    if (fflush(stdout) != 0) {
-        fprintf(stderr, "sluice-replay: cannot write: %s\n", strerror(errno));
+    if (!text_flush("sluice-replay: "))
         good = false;
-    }
     return good ? 0 : 1;
 }

@@ -10,7 +10,7 @@ struct options {
     const char *expect; ///< NULL: nothing is compared
     const char *record; ///< NULL: nothing is recorded
     bool dump, json, help;
-    uint32_t heap_tiles, max_heaps, standby, budget, latency;
+    uint32_t heap_tiles, max_heaps, standby, tiles_per_frame, latency;
     uint64_t timeout_micros;
     uint32_t memory_mib;
 };

@@ -15,6 +15,7 @@
 #endif
 
 #include "../../samples/common/clock.h"
+#include "../../samples/common/input.h"
 #include "memory.h"
 
 #define MOST_OUTPUT (64 << 20) ///< bytes of standard output, and of standard error
@@ -62,7 +63,7 @@ static void become(const struct child_info *info, const int files[3])
 
 bool child_begin(const struct child_info *info, struct child *child)
 {
-    const int write_flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+    const int write_flags = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC;
     int files[3] = {open("/dev/null", O_RDONLY | O_CLOEXEC), open(info->out, write_flags, 0666),
                     open(info->error, write_flags, 0666)};
     *child = (struct child){.info = *info, .started = clock_seconds()};
@@ -134,7 +135,7 @@ enum child_state child_wait(struct child *child, int *status)
 static void last_line(const char *path, char *line, size_t size)
 {
     char text[2 * LONGEST_REASON + 1];
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     line[0] = '\0';
     if (!file)
         return;

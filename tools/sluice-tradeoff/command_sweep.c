@@ -1,11 +1,14 @@
+#define _XOPEN_SOURCE 700
 #include "commands.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../../samples/common/files.h"
+#include "../../samples/common/output_file.h"
 #include "../../samples/common/text.h"
 #include "folders.h"
 #include "foresight.h"
@@ -46,6 +49,8 @@ static int show_results(struct session *s)
         table_print_json(&s->runs, recommendations, RECOMMEND_COUNT);
     else
         table_print(&s->sweep, &metrics, recommendations, RECOMMEND_COUNT);
+    if (good && !s->options.json)
+        printf("\nThe page, with plots and pictures: %s/page.html\n", s->options.results);
     recommend_finish(recommendations);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         text_say("sluice-tradeoff: cannot write: %s", strerror(errno));
@@ -56,26 +61,63 @@ static int show_results(struct session *s)
     return good ? TRADEOFF_DONE : TRADEOFF_FAILED;
 }
 
-static bool forget(const char *results)
+/* Whether the trace that is to be played lies in a folder that would be removed. */
+static bool holds_trace(const char *folder, const char *trace)
+{
+    char *whole = realpath(folder, NULL), *file = trace ? realpath(trace, NULL) : NULL;
+    size_t length = whole ? strlen(whole) : 0;
+    bool holds = whole && file && strncmp(file, whole, length) == 0 && file[length] == '/';
+    if (holds)
+        text_say("sluice-tradeoff: %s: --fresh would remove it with %s; copy it elsewhere first",
+                 trace, folder);
+    free(whole);
+    free(file);
+    return holds;
+}
+
+/* All or none. */
+static bool forget(const struct options *o)
 {
     static const char *const names[] = {"runs", "reference", "clairvoyant"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        char *path = memory_text("%s/%s", results, names[i]);
-        bool removed = folders_remove(path);
-        if (!removed)
-            text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
-        free(path);
-        if (!removed)
-            return false;
+    enum { COUNT = sizeof names / sizeof *names };
+    char *paths[COUNT];
+    bool may = true, gone = true;
+    for (size_t i = 0; i < COUNT; i++) {
+        paths[i] = memory_text("%s/%s", o->results, names[i]);
+        may = may && folders_may_forget(paths[i]) && !holds_trace(paths[i], o->trace);
     }
-    return true;
+    for (size_t i = 0; i < COUNT; i++) {
+        gone = may && gone && folders_forget(paths[i]);
+        free(paths[i]);
+    }
+    return gone;
+}
+
+/* What a sweep writes at its end is there, but not what it writes before. */
+static bool is_of_somebody_else(const char *results)
+{
+    static const char *const names[] = {"points.csv", "runs.csv", "page.html", "machine.txt"};
+    char *words = memory_text("%s/sweep.words", results);
+    bool is_own = access(words, F_OK) == 0, has = false;
+    free(words);
+    for (size_t i = 0; i < sizeof names / sizeof *names && !is_own && !has; i++) {
+        char *path = memory_text("%s/%s", results, names[i]);
+        has = access(path, F_OK) == 0;
+        if (has)
+            text_say("sluice-tradeoff: %s is not of a sweep and would be replaced; name another "
+                     "folder with --results",
+                     path);
+        free(path);
+    }
+    return has;
 }
 
 /* The results folder is this process's alone from here on. */
 static bool prepare_folder(const struct options *o)
 {
     char *runs = memory_text("%s/runs", o->results);
-    bool ready = files_make_folders(o->results);
+    bool ready = files_make_folders(o->results) && !is_of_somebody_else(o->results) &&
+                 (!o->trace || output_add_input(o->trace));
     if (ready && !folders_lock(o->results)) {
         ready = false;
         if (errno == EACCES || errno == EAGAIN)
@@ -83,9 +125,20 @@ static bool prepare_folder(const struct options *o)
         else
             text_say("sluice-tradeoff: %s: %s", o->results, strerror(errno));
     }
-    ready = ready && (!o->fresh || forget(o->results)) && files_make_folders(runs);
+    ready = ready && (!o->fresh || forget(o)) && folders_make_own(runs);
     free(runs);
     return ready;
+}
+
+/* Marked before the scene's program writes into it. */
+static bool make_reference(const struct session *s)
+{
+    if (!program_has_option(&s->program, "reference"))
+        return true;
+    char *path = memory_text("%s/reference", s->options.results);
+    bool made = folders_make_own(path);
+    free(path);
+    return made;
 }
 
 static int interrupted(void)
@@ -127,12 +180,13 @@ int command_sweep(int argc, char **argv)
     enum options_outcome outcome = options_parse_sweep(argc, argv, &s.options);
     char *own_path = program_own_path(argv[0]);
     child_watch_interruptions();
+    output_set_speaker("sluice-tradeoff: ");
     if (outcome != SWEEP_OPTIONS_RUN) {
         status = outcome == SWEEP_OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
     } else if (prepare_folder(&s.options)) {
         s.sweep.command_line = join_words(argc, argv);
-        if (session_open(&s, own_path, false) && session_remember(s.options.results, argc, argv) &&
-            run_names_write(&s.runs))
+        if (session_open(&s, own_path, false) && make_reference(&s) &&
+            session_remember(s.options.results, argc, argv) && run_names_write(&s.runs))
             status = make_runs(&s, own_path);
     }
     session_close(&s);
@@ -159,12 +213,19 @@ int command_page(int argc, char **argv)
 {
     struct session s = {0};
     struct text_list words = {0};
+    bool named = argc > 2 && strcmp(argv[1], "--") == 0;
+    if (named) {
+        argv[1] = argv[0];
+        argc--;
+        argv++;
+    }
     bool json = argc > 2 && strcmp(argv[argc - 1], "--json") == 0;
-    if (argc != (json ? 3 : 2) || argv[1][0] == '-') {
+    if (argc != (json ? 3 : 2) || (argv[1][0] == '-' && !named)) {
         text_say("usage: sluice-tradeoff page RESULTS [--json]");
         return TRADEOFF_USAGE;
     }
     char *own_path = program_own_path(argv[0]);
+    output_set_speaker("sluice-tradeoff: ");
     int status = session_recall(argv[1], &words) ? show_again(&s, &words, own_path, argv[1], json)
                                                  : TRADEOFF_FAILED;
     session_close(&s);

@@ -7,9 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../samples/common/files.h"
+#include "../../samples/common/output_file.h"
 #include "../../samples/common/text.h"
 #include "../sluice-replay/file.h"
+#include "folders.h"
 #include "help_text.h"
 
 #define ROUNDS "100" ///< of the search; more hardly change what it finds
@@ -78,12 +79,22 @@ static bool make_question(const struct runs *runs, uint32_t point, struct questi
     return true;
 }
 
-/* The answer gets its name when it is complete. */
-static void ask(const struct question *question, double limit)
+static void keep_answer(const char *path, const char *answer)
+{
+    size_t size;
+    char *text;
+    if (read_file(path, &text, &size))
+        output_file_print(answer, "%s", text);
+    else
+        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+    free(text);
+}
+
+static void ask(const struct question *question, double limit, const char *folder)
 {
     struct text_list arguments = {0};
-    char *partial = memory_text("%s.partial", question->answer);
-    char *error = memory_text("%s.log", question->answer);
+    char *out = memory_text("%s/answer.jsonl", folder);
+    char *error = memory_text("%s/messages.txt", folder);
     struct child child;
     int status = 0;
     text_list_add(&arguments, question->own_path);
@@ -91,21 +102,27 @@ static void ask(const struct question *question, double limit)
     text_list_add(&arguments, question->trace);
     text_list_add_parts(&arguments, "--clairvoyant --json --rounds " ROUNDS, ' ');
     text_list_add_all(&arguments, &question->bounds);
-    const struct child_info info = {arguments.items, partial, error, limit, NULL};
+    const struct child_info info = {arguments.items, out, error, limit, NULL};
     if (!child_begin(&info, &child)) {
-        text_say("sluice-tradeoff: %s: %s", partial, strerror(errno));
+        text_say("sluice-tradeoff: %s: %s", out, strerror(errno));
     } else if (child_wait(&child, &status) == CHILD_DONE) {
-        rename(partial, question->answer);
+        keep_answer(out, question->answer);
     } else if (!child_is_interrupted()) {
         char *reason = child_reason(&child, status);
         text_say("%s, clairvoyant: %s", question->trace, reason);
         free(reason);
     }
-    unlink(partial);
-    unlink(error);
-    free(partial);
+    free(out);
     free(error);
     text_list_finish(&arguments);
+}
+
+static void ask_anew(const struct runs *runs, const struct question *question)
+{
+    char *scratch = folders_make_scratch(runs->results);
+    if (scratch)
+        ask(question, runs->options->run_limit, scratch);
+    folders_remove_scratch(scratch);
 }
 
 static void add_answer(struct runs *runs, uint32_t point, const char *path)
@@ -130,8 +147,8 @@ void foresight_add(struct runs *runs, const char *own_path, bool recall)
         struct question question = {.own_path = own_path};
         if (runs->items[point].state == SWEEP_DONE && make_question(runs, point, &question)) {
             if (!recall && access(question.answer, F_OK) != 0 && !child_is_interrupted() &&
-                files_make_folders(folder))
-                ask(&question, runs->options->run_limit);
+                folders_make_own(folder))
+                ask_anew(runs, &question);
             add_answer(runs, point, question.answer);
         }
         text_list_finish(&question.bounds);

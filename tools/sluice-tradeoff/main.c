@@ -2,6 +2,8 @@
 #include "commands.h"
 #include "play.h"
 
+#include "../../samples/common/text.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -14,7 +16,7 @@ static const struct command {
     {"play", play_main},
 };
 
-int main(int argc, char **argv)
+static int run(int argc, char **argv)
 {
     for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++)
         if (strcmp(argv[1], commands[i].name) == 0) {
@@ -22,4 +24,10 @@ int main(int argc, char **argv)
             return commands[i].run(argc - 1, argv + 1);
         }
     return command_sweep(argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+    int status = run(argc, argv);
+    return text_flush("sluice-tradeoff: ") || status != TRADEOFF_DONE ? status : TRADEOFF_FAILED;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../samples/common/input.h"
 #include "../../samples/common/text.h"
 
 #define DEFAULT_RESULTS "tradeoff-out"
@@ -52,7 +53,7 @@ static void print_help(void)
         "Runs\n"
         "  --results DIR        where everything is written [" DEFAULT_RESULTS "]\n"
         "  --fresh              forget the runs that are there\n"
-        "  --program PATH       what draws the scene [found beside this tool]\n"
+        "  --program PATH       what draws the scene [as built or installed with this tool]\n"
         "  --run-limit SECONDS  for a run; longer ones fail [%g]\n"
         "  --jobs N             runs at a time; more than one disturb each other's times [1]\n"
         "  --json               figures as JSON lines on stdout instead of a table\n"
@@ -148,9 +149,9 @@ static bool take_word(struct options *o, const char *word)
 /* Better said once, before anything is run. */
 static bool is_readable(const char *path)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path);
     if (!file) {
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+        text_say("sluice-tradeoff: %s: %s", path, input_reason(errno));
         return false;
     }
     fclose(file);

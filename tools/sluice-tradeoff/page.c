@@ -1,9 +1,9 @@
 #include "page.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "output_file.h"
 #include "page_choose.h"
 #include "page_json.h"
 #include "page_pictures.h"
@@ -80,38 +80,14 @@ static bool fill_file(struct page *page)
     return filled;
 }
 
-/* Written beside its place first, so that a page is whole or is not there. */
-static bool write_file(struct page *page, const char *part_path, const char *path)
-{
-    page->file = fopen(part_path, "wb");
-    if (!page->file) {
-        text_say("%s: %s", part_path, strerror(errno));
-        return false;
-    }
-    bool filled = fill_file(page), written = !ferror(page->file);
-    written = fclose(page->file) == 0 && written;
-    if (filled && (!written || rename(part_path, path) != 0)) {
-        text_say("%s: %s", path, strerror(errno));
-        filled = false;
-    }
-    if (!filled)
-        remove(part_path);
-    return filled;
-}
-
 bool page_write(const struct sweep *sweep, const struct sweep_recommendation *recommendations,
                 uint32_t count, const char *path)
 {
     struct page page = {
         .sweep = sweep, .recommendations = recommendations, .recommendation_count = count};
-    size_t size = strlen(path) + sizeof ".part";
-    char *part_path = malloc(size);
-    if (!part_path) {
-        text_say("the page could not be made: out of memory");
+    struct output_file *output = output_file_begin(path);
+    if (!output)
         return false;
-    }
-    snprintf(part_path, size, "%s.part", path);
-    bool written = write_file(&page, part_path, path);
-    free(part_path);
-    return written;
+    page.file = output_file_stream(output);
+    return output_file_end(output, fill_file(&page));
 }

@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "page_frames.h"
 
+#include "input.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +29,7 @@ static FILE *open_file(const char *folder, const char *name, size_t *size,
     else if (info.st_size > (off_t)PAGE_FILE_SIZE_MAX)
         snprintf(reason, PAGE_REASON_SIZE, "%s is larger than %u MiB", name,
                  PAGE_FILE_SIZE_MAX >> 20);
-    else if (!(file = fopen(path, "rb")))
+    else if (!(file = input_open(path)))
         snprintf(reason, PAGE_REASON_SIZE, "%s: %s", name, strerror(errno));
     *size = file ? (size_t)info.st_size : 0;
     *result = file ? PAGE_READ : PAGE_LEFT_OUT;

@@ -1,5 +1,8 @@
 #include "play.h"
 
+#include "../../samples/common/input.h"
+#include "../../samples/common/output_file.h"
+#include "../../samples/common/text.h"
 #include "play_figures.h"
 
 #include <clairvoyant.h>
@@ -71,13 +74,14 @@ int play_print(int argc, char **argv, FILE *out)
     case PLAY_WRONG: return 2;
     case PLAY_RUN: break;
     }
-    if (!feedback_trace_open(&trace, options.trace))
+    if (!output_add_input(input_stream_path(options.trace)) ||
+        !feedback_trace_open(&trace, options.trace))
         return 1;
     const struct play_printer printer = {out, options.json};
     bool done = play(&printer, &options, &trace);
     feedback_trace_close(&trace);
     if (fflush(out) != 0) {
-        fprintf(stderr, "play: cannot write: %s\n", strerror(errno));
+        text_say("play: cannot write: %s", strerror(errno));
         done = false;
     }
     return done ? 0 : 1;

@@ -1,11 +1,15 @@
 #include "play_figures.h"
 
+#include "../../samples/common/text.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+#include "../../samples/common/output_file.h"
 
 #define TILE 65536.0
 
@@ -185,12 +189,12 @@ bool play_write_frames(const struct play_loop *l, const char *folder)
 {
     char path[4200];
     snprintf(path, sizeof path, "%s/frames.csv", folder);
-    FILE *file = make_folders(folder) ? fopen(path, "w") : NULL;
-    if (file)
-        write_rows(l, file);
-    bool done = file && !ferror(file);
-    done = (!file || fclose(file) == 0) && done;
-    if (!done)
-        fprintf(stderr, "%s: %s\n", path, strerror(errno));
-    return done;
+    if (!make_folders(folder)) {
+        text_say("%s: %s", folder, strerror(errno));
+        return false;
+    }
+    struct output_file *output = output_file_begin(path);
+    if (output)
+        write_rows(l, output_file_stream(output));
+    return output_file_end(output, true);
 }

@@ -2,6 +2,8 @@
 
 #include "play_loop.h"
 
+#include "../../samples/common/text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,7 @@
 static bool check(SluiceResult result, const char *call)
 {
     if (result < 0)
-        fprintf(stderr, "%s: %s\n", call, sluiceResultString(result));
+        text_say("%s: %s", call, sluiceResultString(result));
     return result >= 0;
 }
 

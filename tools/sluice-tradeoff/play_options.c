@@ -1,5 +1,7 @@
 #include "play_options.h"
 
+#include "../../samples/common/text.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +43,7 @@ static void list_options(struct play_options *o, struct option options[OPTION_CO
         {"max-heaps", "N", "heaps at most; 0: any number", .number = &o->max_heaps, .most = any},
         {"budget", "MIB", "instead: memory for all heaps; 0: any amount", .number = &o->budget,
          .most = 1 << 24},
-        {"standby", "N", "tiles kept although unwanted", .number = &o->standby, .most = any},
+        {"standby", "N", "unrequested tiles kept in memory", .number = &o->standby, .most = any},
         {"prefetch-levels", "N", "coarsest levels loaded when nothing is requested",
          .number = &o->prefetch_levels, .most = 32},
         {"tiles-per-frame", "N", "loads answered per frame at most", .number = &o->tiles_per_frame,
@@ -49,8 +51,8 @@ static void list_options(struct play_options *o, struct option options[OPTION_CO
         {"latency", "FRAMES", "from handed out to answered", .number = &o->latency, .most = 999},
         {"loads-in-flight", "N", "at most; 0: tiles-per-frame * (latency + 1)",
          .number = &o->loads_in_flight, .most = 1 << 30},
-        {"timeout", "SECONDS", "until what is no longer sampled lapses", .real = &o->timeout,
-         .least = 1e-6, .most = 1e9},
+        {"timeout", "SECONDS", "how long a region stays requested after it was last seen",
+         .real = &o->timeout, .least = 1e-6, .most = 1e9},
         {"misses-to-forget", "N", "maps that have to miss a region beside; 0: learned",
          .number = &o->misses_to_forget, .most = any},
         {"mip-bias", "LEVELS", "added to what maps ask for, a whole number", .real = &o->mip_bias,
@@ -131,8 +133,8 @@ static bool parse_value(const struct option *option, const char *text)
     bool whole = option->number != NULL || strcmp(option->name, "mip-bias") == 0;
     if (!parse_number(text, &value) || value < option->least || value > option->most ||
         (whole && value != floor(value))) {
-        fprintf(stderr, "play: --%s takes a%s number from %.10g to %.10g, not '%s'\n", option->name,
-                whole ? " whole" : "", option->least, option->most, text);
+        text_say("play: --%s takes a%s number from %.10g to %.10g, not '%s'", option->name,
+                 whole ? " whole" : "", option->least, option->most, text);
         return false;
     }
     if (option->number)
@@ -147,7 +149,7 @@ static const struct option *find_option(const struct option *options, const char
     for (int i = 0; strncmp(argument, "--", 2) == 0 && i < OPTION_COUNT; i++)
         if (strcmp(options[i].name, argument + 2) == 0)
             return &options[i];
-    fprintf(stderr, "play: there is no option %s\n", argument);
+    text_say("play: there is no option %s", argument);
     return NULL;
 }
 
@@ -155,10 +157,15 @@ static bool parse_all(struct play_options *o, int argc, char **argv, bool *help)
 {
     struct option options[OPTION_COUNT];
     list_options(o, options);
+    bool only_names = false;
     for (int i = 1; i < argc; i++) {
-        if (argv[i][0] != '-') {
+        if (!only_names && strcmp(argv[i], "--") == 0) {
+            only_names = true;
+            continue;
+        }
+        if (only_names || argv[i][0] != '-' || argv[i][1] == '\0') {
             if (o->trace)
-                fprintf(stderr, "play: one trace at a time, not also '%s'\n", argv[i]);
+                text_say("play: one trace at a time, not also '%s'", argv[i]);
             if (o->trace)
                 return false;
             o->trace = argv[i];
@@ -168,7 +175,7 @@ static bool parse_all(struct play_options *o, int argc, char **argv, bool *help)
         if (!option)
             return false;
         if (option->unit && ++i == argc)
-            fprintf(stderr, "play: --%s needs a value\n", option->name);
+            text_say("play: --%s needs a value", option->name);
         if (option->unit && (i == argc || !parse_value(option, argv[i])))
             return false;
         if (option->flag)

@@ -1,5 +1,7 @@
 #include "play_view.h"
 
+#include "../../samples/common/text.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,19 +12,12 @@ static uint32_t least(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-static bool same_shape(const SluiceStreamedTextureDesc *a, const SluiceStreamedTextureDesc *b)
-{
-    return a->width == b->width && a->height == b->height && a->tileWidth == b->tileWidth &&
-           a->tileHeight == b->tileHeight && a->mipLevelCount == b->mipLevelCount &&
-           a->regularMipCount == b->regularMipCount && a->packedTileCount == b->packedTileCount;
-}
-
 static bool count_members(struct view *v)
 {
     for (uint32_t i = 0; i < v->trace->texture_count; i++) {
         const struct feedback_texture *t = &v->trace->textures[i];
         v->textures[t->primary].member_count++;
-        if (same_shape(&t->layout.desc, &v->trace->textures[t->primary].layout.desc))
+        if (feedback_trace_same_shape(&t->layout.desc, &v->trace->textures[t->primary].layout.desc))
             continue;
         fprintf(stderr, "texture %u is of another shape than texture %u, which it follows\n", i,
                 t->primary);
@@ -218,7 +213,7 @@ bool view_add_map(struct view *v, const SluiceStreamedTextureManager *manager, S
     const size_t pitch = l->minMipWidth, size = pitch * l->minMipHeight;
     SluiceResult result = sluiceWriteMinMipData(manager, id, pitch, size, v->min_mip);
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "sluiceWriteMinMipData: %s\n", sluiceResultString(result));
+        text_say("sluiceWriteMinMipData: %s", sluiceResultString(result));
     else
         see_map(v, t, l, map, frame);
     return result == SLUICE_SUCCESS;

@@ -8,9 +8,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../../samples/common/input.h"
+#include "../../samples/common/output_file.h"
 #include "../../samples/common/text.h"
 #include "../sluice-replay/file.h"
 #include "child.h"
+#include "folders.h"
 #include "help_text.h"
 
 #define LONGEST_PATH 4096
@@ -34,24 +37,26 @@ char *program_own_path(const char *argv0)
     return memory_copy_text(path);
 }
 
-char *program_find(const char *own_path, const char *relative, const char *installed)
+char *program_find(const char *own_path, const char *relative, const char *name)
 {
     const char *slash = strrchr(own_path, '/');
     int length = slash ? (int)(slash - own_path) : 1;
     const char *folder = slash ? own_path : ".";
     char *in_build_tree = memory_text("%.*s/%s", length, folder, relative);
-    char *beside = memory_text("%.*s/%s", length, folder, installed);
+    char *installed = SAMPLES_FROM_BIN[0] == '/'
+                          ? memory_text("%s/%s", SAMPLES_FROM_BIN, name)
+                          : memory_text("%.*s/%s/%s", length, folder, SAMPLES_FROM_BIN, name);
     char *found = access(in_build_tree, X_OK) == 0 ? in_build_tree
-                  : access(beside, X_OK) == 0      ? beside
+                  : access(installed, X_OK) == 0   ? installed
                                                    : NULL;
     if (found != in_build_tree)
         free(in_build_tree);
-    if (found != beside)
-        free(beside);
+    if (found != installed)
+        free(installed);
     return found;
 }
 
-/* Runs it with --help; the output goes to `path`. */
+/* Runs it with --help in a folder of its own, which `path` is in. */
 static bool ask_help(const struct program *program, const char *path, char *environment)
 {
     struct text_list arguments = {0};
@@ -70,7 +75,6 @@ static bool ask_help(const struct program *program, const char *path, char *envi
         text_say("sluice-tradeoff: %s --help: %s", program->arguments.items[0], reason);
         free(reason);
     }
-    unlink(error);
     free(error);
     text_list_finish(&arguments);
     return done;
@@ -118,7 +122,6 @@ static bool find_build(struct program *program, const char *folder)
         hash_file(program->arguments.items[i], &program->build); /* a trace, if there is one */
     if (read && ask_help(program, list_path, trace))
         hash_libraries(list_path, &program->build);
-    unlink(list_path);
     free(list_path);
     return read;
 }
@@ -132,25 +135,26 @@ static bool read_help(struct program *program, const char *path)
     return false;
 }
 
-static bool write_build(const struct program *program, const char *path)
+/* What the program says to --help, in `folder`; kept in the results for program_recall. */
+static bool keep_help(struct program *program, const char *folder, const char *results)
 {
-    FILE *file = fopen(path, "w");
-    bool written = file && fprintf(file, "%016" PRIx64 "\n", program->build) > 0;
-    if (file)
-        written = fclose(file) == 0 && written;
-    if (!written)
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
-    return written;
+    char *answer = memory_text("%s/help.txt", folder);
+    char *help = memory_text("%s/program-help.txt", results);
+    char *build = memory_text("%s/program-build.txt", results);
+    bool kept = ask_help(program, answer, NULL) && read_help(program, answer) &&
+                output_file_print(help, "%s", program->help) &&
+                output_file_print(build, "%016" PRIx64 "\n", program->build);
+    free(build);
+    free(help);
+    free(answer);
+    return kept;
 }
 
-bool program_ask(struct program *program, const char *folder)
+bool program_ask(struct program *program, const char *results)
 {
-    char *help_path = memory_text("%s/program-help.txt", folder);
-    char *build_path = memory_text("%s/program-build.txt", folder);
-    bool asked = find_build(program, folder) && ask_help(program, help_path, NULL) &&
-                 read_help(program, help_path) && write_build(program, build_path);
-    free(build_path);
-    free(help_path);
+    char *folder = folders_make_scratch(results);
+    bool asked = folder && find_build(program, folder) && keep_help(program, folder, results);
+    folders_remove_scratch(folder);
     return asked;
 }
 
@@ -158,7 +162,7 @@ bool program_recall(struct program *program, const char *folder)
 {
     char *help_path = memory_text("%s/program-help.txt", folder);
     char *build_path = memory_text("%s/program-build.txt", folder);
-    FILE *file = fopen(build_path, "r");
+    FILE *file = input_open(build_path);
     bool recalled = file && fscanf(file, "%16" SCNx64, &program->build) == 1;
     if (file)
         fclose(file);

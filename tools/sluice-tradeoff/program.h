@@ -21,16 +21,17 @@ uint64_t program_hash(uint64_t hash, const void *bytes, size_t size);
 /** The path of this tool's own executable; to be freed. `argv0` where the system does not say. */
 char *program_own_path(const char *argv0);
 /**
- * Finds `relative` in the build tree that the tool is in, or `installed` beside it. NULL if neither
- * is there; to be freed.
+ * Finds `relative` in the build tree that the tool is in, or `name` in the installed folder of the
+ * samples, SAMPLES_FROM_BIN: relative to the tool's folder, or absolute. NULL if neither is there;
+ * to be freed.
  */
-char *program_find(const char *own_path, const char *relative, const char *installed);
+char *program_find(const char *own_path, const char *relative, const char *name);
 
 /**
- * Asks the program, whose `arguments` are set, for its help, which is kept in `folder`, and for its
- * build. False if it cannot be started or has no help, said on stderr.
+ * Asks the program, whose `arguments` are set, for its help, which is kept in `results`, and for
+ * its build. `results`/runs exists. False if it cannot be started or has no help, said on stderr.
  */
-bool program_ask(struct program *program, const char *folder);
+bool program_ask(struct program *program, const char *results);
 /** The same from what `folder` keeps of an earlier sweep, without the program. */
 bool program_recall(struct program *program, const char *folder);
 

@@ -159,13 +159,15 @@ static void keep_least(struct chooser *c, int metric)
         c->candidates[i] = c->candidates[i] && !surely_less(c, (uint32_t)best, i, metric);
 }
 
-/* The best by the first metric; of those that are equal in it by the next. */
+/* The best by the first metric, in which no candidate is worse than the base: points that count as
+ * equal may still differ by the whole doubt. Of those equal in it the best by the next metric. */
 static int64_t choose(struct chooser *c, const struct bound bounds[2], const int order[3])
 {
     const struct sweep *sweep = c->sweep;
+    const struct bound goal = {order[0], 1.0};
     for (uint32_t i = 0; i < sweep->point_count; i++)
-        c->candidates[i] = is_measured(c, i) && !is_beaten(c, i) && keeps_to(c, i, &bounds[0]) &&
-                           keeps_to(c, i, &bounds[1]);
+        c->candidates[i] = is_measured(c, i) && !is_beaten(c, i) && keeps_to(c, i, &goal) &&
+                           keeps_to(c, i, &bounds[0]) && keeps_to(c, i, &bounds[1]);
     for (int i = 0; i < 3; i++)
         keep_least(c, order[i]);
     if (c->candidates[sweep->base])
@@ -202,12 +204,22 @@ static char *write_bound(const struct chooser *c, const struct bound *bound, con
     return text;
 }
 
+/* What surely_less leaves undecided. */
+static const char *equality(const struct chooser *c)
+{
+    return c->sweep->repeats < 2
+               ? "equal: less than 10 % apart, as there is one repeat"
+               : "equal: less than 1 % apart, or less than the repeats let one tell apart";
+}
+
 static char *write_rule(const struct chooser *c, int goal, int then, const struct bound bounds[2])
 {
     char *first = write_name(c, goal), *second = write_name(c, then);
     char *one = write_bound(c, &bounds[0], ", with ");
     char *two = write_bound(c, &bounds[1], *one ? " and " : ", with ");
-    char *rule = memory_text("least %s%s%s; of equals the least %s", first, one, two, second);
+    char *rule =
+        memory_text("least %s, never more than the base's%s%s; of equals the least %s (%s)", first,
+                    one, two, second, equality(c));
     free(first);
     free(second);
     free(one);

@@ -12,13 +12,15 @@ struct recommend_metrics {
 };
 
 /**
- * Quality, balanced and small memory, by the rules that are written into `recommendations`, over
- * the points that were measured and that no other beats: no worse in any of the three metrics and
- * surely better in one. All is compared repeat by repeat. A bound is kept to if the median of the
- * repeats does. A point is surely better if it is so by more than 1 % and by more than the 95 %
- * confidence interval of the differences, or by more than 10 % where it was
- * measured once: of points that are equally good the cheapest is taken,
- * then the base, then the first.
+ * Chooses quality, balanced and small memory by the rules that are written into `recommendations`.
+ *
+ * Candidates are the points that were measured and that no other point beats: no worse in any of
+ * the three metrics and surely better in one. A candidate is never worse than the base in the
+ * metric that its rule names first. All is compared repeat by repeat: a bound is kept to if the
+ * median of the repeats does. A point is surely better if it is so by more than 1 % and by more
+ * than the 95 % confidence interval of the differences, or by more than 10 % where it was measured
+ * once. Two points are equal in a metric if neither is surely better. Of equal points the cheapest
+ * is taken, then the base, then the first.
  *
  * Without quality and memory there are no recommendations (every point is -1). The rules are to be
  * freed with recommend_finish.

@@ -1,6 +1,5 @@
 #include "results.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +7,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "../../samples/common/output_file.h"
 #include "../../samples/common/text.h"
 #include "../sluice-replay/file.h"
 #include "statistics.h"
@@ -153,12 +153,7 @@ bool results_remember_machine(const struct runs *runs)
         text_say(
             "sluice-tradeoff: these runs are of several devices or drivers: --fresh makes them "
             "anew");
-    FILE *file = fopen(path, "w");
-    bool written = file && fprintf(file, "%s\n", line) > 0;
-    if (file)
-        written = (fclose(file) == 0) & written;
-    if (!written)
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+    bool written = output_file_print(path, "%s\n", line);
     free(line);
     free(path);
     return written;

@@ -1,12 +1,11 @@
 #include "results.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/text.h"
+#include "../../samples/common/output_file.h"
 
 /* RFC 4180: quoted where need be, quotes doubled. */
 static void put_cell(FILE *file, const char *text)
@@ -48,30 +47,6 @@ static const char *state_name(enum sweep_state state)
     return "";
 }
 
-/* The file gets its name when it is complete. */
-static FILE *begin_file(const char *path)
-{
-    char *partial = memory_text("%s.partial", path);
-    FILE *file = fopen(partial, "w");
-    if (!file)
-        text_say("sluice-tradeoff: %s: %s", partial, strerror(errno));
-    free(partial);
-    return file;
-}
-
-static bool end_file(FILE *file, const char *path)
-{
-    char *partial = memory_text("%s.partial", path);
-    bool written = !ferror(file);
-    written = (fclose(file) == 0) & written && rename(partial, path) == 0;
-    if (!written) {
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
-        remove(partial);
-    }
-    free(partial);
-    return written;
-}
-
 static void put_settings(FILE *file, const struct sweep *sweep, const struct sweep_point *point)
 {
     for (uint32_t i = 0; i < sweep->setting_count; i++)
@@ -92,9 +67,10 @@ static void put_points_header(FILE *file, const struct sweep *sweep)
 
 bool results_write_points(const struct sweep *sweep, const char *path)
 {
-    FILE *file = begin_file(path);
-    if (!file)
+    struct output_file *output = output_file_begin(path);
+    if (!output)
         return false;
+    FILE *file = output_file_stream(output);
     put_points_header(file, sweep);
     for (uint32_t i = 0; i < sweep->point_count; i++) {
         const struct sweep_point *point = &sweep->points[i];
@@ -112,15 +88,16 @@ bool results_write_points(const struct sweep *sweep, const char *path)
         }
         fputc('\n', file);
     }
-    return end_file(file, path);
+    return output_file_end(output, true);
 }
 
 bool results_write_runs(const struct runs *runs, const char *path)
 {
     const struct sweep *sweep = runs->sweep;
-    FILE *file = begin_file(path);
-    if (!file)
+    struct output_file *output = output_file_begin(path);
+    if (!output)
         return false;
+    FILE *file = output_file_stream(output);
     fputs("point,label,repeat,state,reason,folder", file);
     put_settings(file, sweep, NULL);
     for (uint32_t m = 0; m < sweep->metric_count; m++)
@@ -139,5 +116,5 @@ bool results_write_runs(const struct runs *runs, const char *path)
             put_number(file, figures_value(&run->figures, sweep->metrics[m].name));
         fputc('\n', file);
     }
-    return end_file(file, path);
+    return output_file_end(output, true);
 }

@@ -1,30 +1,24 @@
 /* A line per run: "3 budget-16-r4-0123456789abcdef budget 16", the repeat from 0. */
 #include "run_names.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/text.h"
+#include "../../samples/common/output_file.h"
 #include "../sluice-replay/file.h"
 
 bool run_names_write(const struct runs *runs)
 {
     char *path = memory_text("%s/sweep.runs", runs->results);
-    FILE *file = fopen(path, "w");
-    bool written = file != NULL;
-    for (uint32_t i = 0; i < runs->count && written; i++) {
+    struct output_file *output = output_file_begin(path);
+    for (uint32_t i = 0; i < runs->count && output; i++) {
         const struct run *run = &runs->items[i];
-        written = fprintf(file, "%u %s %s\n", run->repeat, run->key,
-                          runs->sweep->points[run->point].label) > 0;
+        fprintf(output_file_stream(output), "%u %s %s\n", run->repeat, run->key,
+                runs->sweep->points[run->point].label);
     }
-    if (file)
-        written = (fclose(file) == 0) & written;
-    if (!written)
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
     free(path);
-    return written;
+    return output_file_end(output, true);
 }
 
 char *run_names_read(const char *results)

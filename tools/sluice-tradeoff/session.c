@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../samples/common/output_file.h"
 #include "../../samples/common/text.h"
 #include "../sluice-replay/file.h"
 #include "plan.h"
@@ -19,8 +20,8 @@ static bool find_program(struct session *s, const char *own_path, bool recall)
     } else if (scene->program) {
         char *path = program_find(own_path, scene->program, scene->installed);
         if (!path && !recall) {
-            text_say("sluice-tradeoff: %s is not beside this tool, neither in a build tree nor "
-                     "installed: build the samples, or name it with --program",
+            text_say("sluice-tradeoff: %s was neither built nor installed with this tool: "
+                     "build the samples, or name it with --program",
                      scene->installed);
             return false;
         }
@@ -116,16 +117,11 @@ void session_close(struct session *s)
 bool session_remember(const char *results, int argc, char *const *argv)
 {
     char *path = memory_text("%s/sweep.words", results);
-    FILE *file = fopen(path, "wb");
-    bool written = file != NULL;
-    for (int i = 0; i < argc && written; i++)
-        written = fwrite(argv[i], strlen(argv[i]) + 1, 1, file) == 1;
-    if (file)
-        written = (fclose(file) == 0) & written;
-    if (!written)
-        text_say("sluice-tradeoff: %s: %s", path, strerror(errno));
+    struct output_file *output = output_file_begin(path);
+    for (int i = 0; i < argc && output; i++)
+        fwrite(argv[i], strlen(argv[i]) + 1, 1, output_file_stream(output));
     free(path);
-    return written;
+    return output_file_end(output, true);
 }
 
 bool session_recall(const char *results, struct text_list *arguments)

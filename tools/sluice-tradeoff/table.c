@@ -69,6 +69,13 @@ static void print_header(const struct sweep *sweep, const int *columns, uint32_t
     printf("\n");
 }
 
+/* Values come from the command line. */
+static void print_label(const char *label, int width)
+{
+    text_write(stdout, label);
+    printf("%*s", width > (int)strlen(label) ? width - (int)strlen(label) : 0, "");
+}
+
 void table_print(const struct sweep *sweep, const struct recommend_metrics *metrics,
                  const struct sweep_recommendation *recommendations, uint32_t count)
 {
@@ -77,7 +84,7 @@ void table_print(const struct sweep *sweep, const struct recommend_metrics *metr
     print_header(sweep, columns, column_count, width);
     for (uint32_t i = 0; i < sweep->point_count; i++) {
         const struct sweep_point *point = &sweep->points[i];
-        printf("%-*s", width, point->label);
+        print_label(point->label, width);
         for (uint32_t c = 0; c < column_count && point->state == SWEEP_DONE; c++)
             print_estimate(&sweep->metrics[columns[c]], &point->estimates[columns[c]]);
         if (point->state != SWEEP_DONE) {
@@ -87,11 +94,12 @@ void table_print(const struct sweep *sweep, const struct recommend_metrics *metr
         printf("\n");
     }
     printf("\n");
-    for (uint32_t i = 0; i < count; i++)
-        printf("%-13s %s\n%-13s (%s)\n", recommendations[i].name,
-               recommendations[i].point < 0 ? "none"
-                                            : sweep->points[recommendations[i].point].label,
-               "", recommendations[i].rule);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct sweep_recommendation *r = &recommendations[i];
+        printf("%-13s ", r->name);
+        text_write(stdout, r->point < 0 ? "none" : sweep->points[r->point].label);
+        printf("\n%-13s (%s)\n", "", r->rule);
+    }
 }
 
 static void print_count(const char *name, double value, const char *unit)

@@ -1,24 +1,24 @@
 /*
- * What an includer must define before the first of Sluice's files, because buffers are his:
+ * Macros to define before you include any of Sluice's files, because the buffers are yours:
  *
  *     #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]  // SluiceTextureEntry, read
  *     #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]           // uint, read
  *     #define SLUICE_FEEDBACK_WORD(i) feedback.words[i]        // uint, read and written
  *
- * The blocks are std430 storage buffers, see sluiceGetVulkanBuffers. SLUICE_FEEDBACK_WORD is needed
- * by feedback.glsl only, SLUICE_MIN_MIP_WORD by sample.glsl and residency.glsl. "shared/texture_table.h"
- * may be included before the blocks are declared.
+ * The blocks are std430 storage buffers (sluiceGetVulkanBuffers). Only feedback.glsl needs
+ * SLUICE_FEEDBACK_WORD; only sample.glsl and residency.glsl need SLUICE_MIN_MIP_WORD. You may
+ * include "shared/texture_table.h" before you declare the blocks.
  *
- * For paged residency, and shaders that serve all modes:
+ * For paged mode, and for shaders that serve all modes:
  *
  *     #define SLUICE_PAGED true                                // or false, or a constant_id constant
  *     #define SLUICE_PAGE_TABLE_WORD(i) pageTable.words[i]     // uint, read
  *     #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]   // sampler2DArray: SluiceVulkanPages
  *
- * where `pages` has SluiceVulkanPages.viewCount elements or fewer, if that many are ever used, and
- * GL_EXT_nonuniform_qualifier is enabled. Without the feature for it define SLUICE_PAGE_LOOP, as the
- * number of elements, and index without nonuniformEXT. Without SLUICE_PAGED nothing of this is
- * needed, and the shader is for the other modes alone.
+ * `pages` has SluiceVulkanPages.viewCount elements, or fewer if no more are ever used.
+ * GL_EXT_nonuniform_qualifier must be enabled. Without that device feature define SLUICE_PAGE_LOOP
+ * as the number of elements, and index without nonuniformEXT. Without SLUICE_PAGED none of these is
+ * needed; the shader then serves the other modes only.
  */
 #ifndef SLUICE_BUFFERS_GLSL
 #define SLUICE_BUFFERS_GLSL

@@ -1,42 +1,42 @@
 /*
- * Samples textures that are loaded on demand: returns a colour, and whether all that it is made of was
- * resident. What was not has been asked for, all of it in one invocation, and is there in a later
- * launch. No texel is touched that is not resident. C interface: sluice/demand.h.
+ * Samples textures that are loaded on demand. Returns a color, and whether everything that it is
+ * made of was resident. Missing pages are requested, all of them in one invocation, and become
+ * resident for a later launch. Never touches a texel that is not resident. C interface:
+ * sluice/demand.h.
  *
  *     bool resident;
  *     vec4 color = sluiceDemandGrad(index, uv, dx, dy, resident);
  *     if (!resident) // keep the ray, and trace it again in the next launch
  *
- * `index`, of a texture or a grid, are the low 32 bits of a SluiceDemandTextureId; it may differ from
- * invocation to invocation. Everything is compiled where it is called, and is long: call one function,
- * in one place. All functions may be called in any stage and anywhere in it: they take no
- * derivatives. Address modes, filters, anisotropy and LOD bias are the texture's; the bias of the
- * loader, while memory is short, is added. Without a reason to be resident or not:
+ * `index`, of a texture or a grid, is the low 32 bits of a SluiceDemandTextureId. It may differ
+ * between invocations. The functions are long, and compiled where they are called: call one
+ * function, in one place. All functions may be called in any stage and any control flow, because
+ * they take no derivatives. Address modes, filters, anisotropy and LOD bias are the texture's.
+ * While memory is short, the loader's LOD bias is added. Special cases:
  *
- *     a texture that nobody has opened      (0, 0, 0, 0), not resident; asks for it to be opened
- *     one that cannot be opened             its failureColor, resident
- *     LOD at or beyond the last level       the colour of the last level, and of the border around it;
- *                                           no page is looked up
- *     derivatives that are infinite or NaN  the same
- *     a LOD that is NaN                     the same
+ *     texture not opened yet                (0, 0, 0, 0), not resident; requests that it be opened
+ *     texture that cannot be opened         its failureColor, resident
+ *     LOD at or beyond the last level       color of the last level and its border; no page is read
+ *     derivatives that are infinite or NaN  color of the last level and its border
+ *     LOD that is NaN                       color of the last level and its border
  *     uv not finite, or beyond 1e33         as at (0, 0)
- *     a tile that will never be there       the next coarser level instead, resident
+ *     tile that will never be resident      the next coarser level, resident
  *
- * Grids: texture floor(uv) of the grid at uv - floor(uv), clamped to its edge, whatever its address
- * modes are. Derivatives are those of uv, so in units of one texture.
+ * Grids: texture floor(uv) of the grid is sampled at uv - floor(uv), clamped to its edge whatever
+ * its address modes are. Derivatives are those of uv, in units of one texture.
  *
- * What an includer must define before, besides what demand_pages.glsl wants:
+ * Macros to define before you include it, in addition to those of demand_pages.glsl:
  *
  *     #define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]     // SluiceDemandTexture, read
  *     #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]   // sampler2DArray: sluiceGetDemandPages
  *
- * and SLUICE_PAGE_LOOP where arrays cannot be indexed so, see buffers.glsl. With
+ * Define SLUICE_PAGE_LOOP if arrays cannot be indexed like that (buffers.glsl). With
  *
  *     #define SLUICE_DEMAND_PREVIEW true                       // or a constant_id constant
  *
- * what is missing is replaced by the finest coarser level that is there, or by the colour of the
- * last level: samples still say that they are not resident, and ask for what they miss. Needs
- * GL_EXT_control_flow_attributes, a matter of the compiler alone.
+ * missing levels are replaced by the finest coarser level that is resident, or by the color of the
+ * last level. Samples still return not resident, and request what they miss. Requires
+ * GL_EXT_control_flow_attributes, an extension of the compiler only.
  */
 #ifndef SLUICE_DEMAND_GLSL
 #define SLUICE_DEMAND_GLSL
@@ -46,10 +46,10 @@
 
 #define SLUICE_DEMAND_MAX_ANISOTROPY 64.0
 
-/* Coarser than any level, but finite. */
+/* LOD that is coarser than any level, but finite. */
 #define SLUICE_DEMAND_NO_LOD 256.0
 
-/** A coordinate near the texture that shows the same; only whole periods are taken away. */
+/** Returns an equivalent coordinate near the texture, by subtracting whole periods. */
 float sluiceNearCoordinate(float coordinate, uint addressMode)
 {
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT || addressMode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT)
@@ -57,15 +57,19 @@ float sluiceNearCoordinate(float coordinate, uint addressMode)
     return coordinate;
 }
 
-/** The first weights of a cubic B-spline, of texels -1 and 0; `t` from texel 0 to 1. */
+/**
+ * Returns the weights of a cubic B-spline for texels -1 and 0. `t` runs from texel 0 to texel 1.
+ */
 vec2 sluiceSplineWeights(float t)
 {
     float back = 1.0 - t;
     return vec2(back * back * back, 3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0;
 }
 
-/** One axis of a bicubic sample: half of it (the first or the other) is a linear one, at x, that has
- *  the weight y. */
+/**
+ * Returns one half of an axis of a bicubic sample as a linear sample: coordinate x, weight y.
+ * `second` selects the half.
+ */
 vec2 sluiceSplineHalf(float coordinate, float n, bool second)
 {
     float at = clamp(coordinate, -1.0e9, 1.0e9) * n - 0.5; /* beyond, nothing changes */
@@ -75,8 +79,10 @@ vec2 sluiceSplineHalf(float coordinate, float n, bool second)
     return vec2((low + (second ? 1.5 : -0.5) + w.y / sum) / n, sum);
 }
 
-/** Part 0 to 3 of a bicubic sample of level 0 is a bilinear one; returns where, and `weight` times
- *  its own. */
+/**
+ * Returns the coordinate of part 0 to 3 of a bicubic sample of level 0, a bilinear sample.
+ * Multiplies `weight` by its weight.
+ */
 vec2 sluiceCubicPart(SluiceDemandState s, vec2 uv, uint part, inout float weight)
 {
     vec2 x = sluiceSplineHalf(uv.x, float(s.size.x), (part & 1u) != 0u);
@@ -85,7 +91,7 @@ vec2 sluiceCubicPart(SluiceDemandState s, vec2 uv, uint part, inout float weight
     return vec2(x.x, y.x);
 }
 
-/** All bilinear samples of one sample. Bicubic ones are of level 0 alone. */
+/** Sums all bilinear samples of one sample. Only samples of level 0 are bicubic. */
 vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, bool cubic)
 {
     vec4 sum = vec4(0.0);
@@ -107,7 +113,7 @@ vec4 sluiceSumDemand(inout SluiceDemandState s, SluicePagedTaps taps, vec2 uv, b
     return sum * step;
 }
 
-/** Finds a texture in a grid; false: there is none at `uv`. */
+/** Finds the texture of a grid at `uv`. False if there is none. */
 bool sluiceFindInGrid(inout uint index, inout vec2 uv)
 {
     uvec2 size = uvec2(SLUICE_DEMAND_TEXTURE(index).width, SLUICE_DEMAND_TEXTURE(index).height);
@@ -123,7 +129,7 @@ bool sluiceFindInGrid(inout uint index, inout vec2 uv)
     return true;
 }
 
-/** Whether the texture is open, and has pages; else `color` is its sample. */
+/** Returns whether the texture is open and has pages. If false, `color` is the sample. */
 bool sluiceOpenDemand(uint index, inout vec2 uv, out SluiceDemandState s, out vec4 color)
 {
     s.resident = true;
@@ -161,7 +167,10 @@ float sluiceDemandLodBias(uint index)
            uintBitsToFloat(SLUICE_DEMAND_LEVEL_WORD(SLUICE_DEMAND_PARAMETER_LOD_BIAS));
 }
 
-/** At `lod`, bias included, with derivatives that hold all bias and up to `maxTaps` in a row. */
+/**
+ * Samples at `lod`, bias included. `dx` and `dy` include all LOD bias. A row has up to `maxTaps`
+ * samples.
+ */
 vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, float lod,
                         float maxTaps, bool cubic)
 {
@@ -187,10 +196,11 @@ vec4 sluiceSampleDemand(inout SluiceDemandState s, vec2 uv, vec2 dx, vec2 dy, fl
 }
 
 /**
- * The LOD of a sample with derivatives in texels of level 0, without bias: log2 of the shorter axis
- * of the ellipse that they span, or of the longer derivative divided by `maxAnisotropy`, whichever is
- * longer. Exact to 1e-4 for all derivatives whose sum is a normal number; SLUICE_DEMAND_NO_LOD for
- * those that are infinite or NaN.
+ * Returns the LOD without bias. Derivatives are in texels of level 0.
+ *
+ * It is log2 of the longer of two lengths: the short axis of the ellipse that the derivatives span,
+ * and the longer derivative divided by `maxAnisotropy`. Exact to 1e-4 if the sum of the derivatives
+ * is a normal number. SLUICE_DEMAND_NO_LOD if they are infinite or NaN.
  */
 float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
 {
@@ -212,7 +222,7 @@ float sluiceDemandComputeLod(vec2 dx, vec2 dy, float maxAnisotropy)
     return 0.5 * log2(max(minor2, 1.0e-12)) + float(exponent);
 }
 
-/** All ways to sample in one: at `lod`, or at that of the derivatives. */
+/** Samples in any way: at `lod`, or at the LOD of the derivatives. */
 vec4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, float lod, bool cubic,
                         out bool resident)
 {
@@ -231,23 +241,23 @@ vec4 sluiceDemandSample(uint index, vec2 uv, vec2 dx, vec2 dy, bool atLod, float
     return color;
 }
 
-/** With derivatives of `uv` per pixel, as textureGrad: trilinear, or anisotropic. */
+/** Samples with derivatives of `uv` per pixel, like textureGrad: trilinear or anisotropic. */
 vec4 sluiceDemandGrad(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     return sluiceDemandSample(index, uv, dx, dy, false, 0.0, false, resident);
 }
 
 /**
- * As sluiceDemandGrad, but where the texture is magnified it is filtered by a bicubic B-spline, which
- * is smooth and does not go through the texels. Up to level 1 it becomes trilinear bit by bit, and
- * is so from there on. The texture's filter inside a level does not count.
+ * Samples like sluiceDemandGrad, with a bicubic B-spline where the texture is magnified. The spline
+ * is smooth and does not interpolate the texels. It blends gradually into the trilinear filter,
+ * which applies from level 1 on. The texture's filter within a level is ignored.
  */
 vec4 sluiceDemandCubic(uint index, vec2 uv, vec2 dx, vec2 dy, out bool resident)
 {
     return sluiceDemandSample(index, uv, dx, dy, false, 0.0, true, resident);
 }
 
-/** At a level of detail, to which both biases are added, as textureLod: without anisotropy. */
+/** Samples at `lod` plus both LOD biases, like textureLod: without anisotropy. */
 vec4 sluiceDemandLod(uint index, vec2 uv, float lod, out bool resident)
 {
     return sluiceDemandSample(index, uv, vec2(0.0), vec2(0.0), true, lod, false, resident);

@@ -1,8 +1,8 @@
 /*
- * Pages of demand loading: looks one up, or asks for it. Textures are demand.glsl's, which includes
- * this; shaders that only use resources of their own need no more than this file.
+ * Pages of demand loading: looks up a page, or requests it. demand.glsl includes this file for
+ * textures; shaders that use only resources of their own need no other file.
  *
- * What an includer must define before, because buffers are his:
+ * Macros to define before you include it, because the buffers are yours:
  *
  *     #define SLUICE_DEMAND_LEVEL_WORD(i) levels.words[i]         // uint, read
  *     #define SLUICE_DEMAND_DIRECTORY_WORD(i) directory.words[i]  // uint, read
@@ -11,10 +11,9 @@
  *     #define SLUICE_DEMAND_REQUEST_WORD(i) requests.words[i]     // uint, read and written
  *     #define SLUICE_DEMAND_SECTION_WORD(i) sections.words[i]     // uint, read and written
  *
- * The blocks are std430 storage buffers, see SluiceDemandBuffers; those that are read alone may be
- * declared readonly. "shared/demand.h" may be included before they are declared. Any stage; in
- * fragment shaders the feature fragmentStoresAndAtomics is needed, and vertexPipelineStoresAndAtomics
- * in those before.
+ * The blocks are std430 storage buffers (SluiceDemandBuffers). Those that are only read may be
+ * readonly. You may include "shared/demand.h" before you declare them. Any stage. Fragment shaders
+ * require the feature fragmentStoresAndAtomics, earlier stages vertexPipelineStoresAndAtomics.
  */
 #ifndef SLUICE_DEMAND_PAGES_GLSL
 #define SLUICE_DEMAND_PAGES_GLSL
@@ -22,8 +21,8 @@
 #include "shared/demand.h"
 
 /**
- * Asks for a page: sets its bit, and that of its section. A bit that is set already costs a load and
- * nothing more, so thousands of invocations may miss the same page.
+ * Requests a page: sets its bit, and that of its section. If the bit is already set, this costs one
+ * load, so thousands of invocations may miss the same page.
  */
 void sluiceRequestDemandPage(uint page)
 {
@@ -39,8 +38,8 @@ void sluiceRequestDemandPage(uint page)
 }
 
 /**
- * Whether a page is resident; if so its word is word `at` of the blocks, and has been read. It counts
- * as used from now on.
+ * Returns whether a page is resident, and marks it as used. If it is resident, `word` is its word
+ * and `at` the index of that word in the blocks.
  */
 bool sluiceFindDemandPage(uint page, out uint at, out uint word)
 {
@@ -62,9 +61,10 @@ bool sluiceFindDemandPage(uint page, out uint at, out uint word)
 }
 
 /**
- * The value of a page of a resource: its low 32 bits, then its high ones. False where it is not
- * there; then it has been asked for, and `value` is 0. `page` is the resource's first page plus the
- * number of the page in it, which must be below pageCount.
+ * Gets the value of a page of a resource: its low 32 bits, then its high 32 bits. Returns false if
+ * the page is not resident; it is then requested, and `value` is 0.
+ *
+ * `page` is the resource's first page plus the page's index, which must be below pageCount.
  */
 bool sluiceMapOrRequest(uint page, out uvec2 value)
 {

@@ -1,11 +1,11 @@
 /*
- * One bilinear sample of one level of a texture that is loaded on demand: the part of demand.glsl that
- * meets pages. Only that includes it.
+ * Takes one bilinear sample of one level of a texture that is loaded on demand. The part of
+ * demand.glsl that reads pages; only demand.glsl includes it.
  */
 #ifndef SLUICE_DEMAND_TEXELS_GLSL
 #define SLUICE_DEMAND_TEXELS_GLSL
 
-/* Unrolled, the long ways would be three times as long; they are seldom taken. */
+/* Unrolled, the long paths would be three times as long. They are rarely taken. */
 #extension GL_EXT_control_flow_attributes : require
 
 #include "demand_pages.glsl"
@@ -15,7 +15,7 @@
 #define SLUICE_DEMAND_PREVIEW false
 #endif
 
-/** What a sample knows: a texture that is open, without colours, and what it has met. */
+/** State of a sample: the open texture without its colors, and the result so far. */
 struct SluiceDemandState {
     uint index;
     uvec2 size;
@@ -40,7 +40,7 @@ uvec2 sluiceDemandModes(uint shape)
                  bitfieldExtract(shape, SLUICE_DEMAND_MODE_V_SHIFT, 3));
 }
 
-/** log2 of a tile's width and height. */
+/** Returns log2 of a tile's width and height. */
 ivec2 sluiceDemandTileShift(uint shape)
 {
     return ivec2(bitfieldExtract(shape, 0, 5),
@@ -48,8 +48,8 @@ ivec2 sluiceDemandTileShift(uint shape)
 }
 
 /**
- * Where level `k` of a tail begins, in texels; 0 is the first level without tiles of its own. C twin:
- * slc_demand_tail_place.
+ * Returns where level `k` of a mip tail begins, in texels. 0 is the first level without tiles of
+ * its own. C twin: slc_demand_tail_place.
  */
 ivec2 sluiceDemandTailPlace(uint shape, uint k)
 {
@@ -67,7 +67,7 @@ vec4 sluiceDemandBaseColor(uint index)
                 SLUICE_DEMAND_TEXTURE(index).baseColor[2], SLUICE_DEMAND_TEXTURE(index).baseColor[3]);
 }
 
-/** Of a border only the components count that the format has. */
+/** Returns the border color, limited to the components of the format. */
 vec4 sluiceDemandBorder(SluiceDemandState s)
 {
     uint count = bitfieldExtract(s.shape, SLUICE_DEMAND_COMPONENTS_SHIFT, 3);
@@ -77,7 +77,10 @@ vec4 sluiceDemandBorder(SluiceDemandState s)
                 count > 3u ? SLUICE_DEMAND_TEXTURE(s.index).borderColor[3] : 1.0);
 }
 
-/** The word of a tile's page; if that is SLUICE_PAGE_NONE and `ask`, it has been asked for. */
+/**
+ * Returns the word of a tile's page. If it is SLUICE_PAGE_NONE and `ask` is true, the page is
+ * requested.
+ */
 uint sluiceFindDemandTile(inout SluiceDemandState s, uint page, bool ask)
 {
     if (page == s.page)
@@ -95,7 +98,7 @@ uint sluiceFindDemandTile(inout SluiceDemandState s, uint page, bool ask)
     return word;
 }
 
-/** The tiles of a level. Those of the tail begin at `origin` of the one that they share. */
+/** Tiles of a level. Levels of the mip tail begin at `origin` of the tile that they share. */
 struct SluiceDemandLevel {
     ivec2 size, origin;
     uint firstPage;
@@ -120,9 +123,9 @@ SluiceDemandLevel sluiceReadDemandLevel(SluiceDemandState s, uint level)
 }
 
 /**
- * The four texels of a bilinear sample one by one: across borders of tiles and of the texture. All are
- * looked up, whatever is missing; `worst` is the greatest of their words. A texel of no weight is not
- * looked at.
+ * Fetches the four texels of a bilinear sample one by one, across borders of tiles and of the
+ * texture. All are looked up, even if one is missing. `worst` is the greatest of their words.
+ * Texels of weight 0 are skipped.
  */
 vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool last, SluicePageAxis x,
                         SluicePageAxis y, bool ask, out uint worst)
@@ -154,7 +157,7 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
     return sum;
 }
 
-/** Two texels that are one have no weight to share. */
+/** Returns an axis of a bilinear sample. The weight is 0 if both texels are the same. */
 SluicePageAxis sluiceDemandAxis(float coordinate, uint addressMode, int size, bool nearest)
 {
     coordinate = sluiceFoldOntoPages(coordinate, addressMode, float(size));
@@ -165,7 +168,10 @@ SluicePageAxis sluiceDemandAxis(float coordinate, uint addressMode, int size, bo
     return axis;
 }
 
-/** A bilinear sample of one level; a colour only if `worst` is below SLUICE_DEMAND_PAGE_REFUSED. */
+/**
+ * Returns a bilinear sample of one level. Valid only if `worst` is below
+ * SLUICE_DEMAND_PAGE_REFUSED.
+ */
 vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool ask, out uint worst)
 {
     SluiceDemandLevel l = sluiceReadDemandLevel(s, level);
@@ -190,8 +196,9 @@ vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool a
 }
 
 /**
- * The same, or of a coarser level: where tiles will never be there, and in a preview where they are
- * missing. Coarser levels that only stand in are not asked for, but for the tail, which serves all.
+ * Returns a bilinear sample of `level`, or of a coarser level: where tiles will never be resident,
+ * and in a preview where they are missing. Coarser levels that only stand in are not requested,
+ * except the mip tail.
  */
 vec4 sluiceDemandTexels(inout SluiceDemandState s, uint level, vec2 uv)
 {
@@ -208,7 +215,7 @@ vec4 sluiceDemandTexels(inout SluiceDemandState s, uint level, vec2 uv)
                 return vec4(0.0);
             ask = false;
         }
-        /* the last level is always there: a colour of the texture */
+        /* the last level is always resident: a color of the texture */
         level = level < regular ? level + 1u : sluiceDemandLastLevel(s.shape);
     }
 }

@@ -1,23 +1,24 @@
 /*
- * Writes down which level a sample wants, whether it is resident or not.
+ * Records the level that a sample wants, whether it is resident or not.
  *
- * Select few pixels first (stochastic.glsl), and take the derivatives before that branch; behind it
- * only if all of a quad takes it. Then sluiceWriteQuadFeedback shares the work among its pixels:
+ * Select few pixels first (stochastic.glsl). Take derivatives before that branch, or inside it if
+ * whole quads take the branch. sluiceWriteQuadFeedback then shares the work among the pixels of a
+ * quad:
  *
  *     vec2 dx = dFdx(uv), dy = dFdy(uv);
  *     if (sluiceSelectRandomFragmentQuad(gl_FragCoord.xy, seed, 1.0 / 16.0))
  *         sluiceWriteQuadFeedback(tableIndex, uv, dx, dy, 0.0, 8.0, uvec2(gl_FragCoord.xy), seed);
  *
- * A texture set writes once, with the primary's index. In compute and ray tracing shaders the
- * derivatives are whatever the caller knows: of ray cones, for instance.
+ * For a texture set, write once, with the primary's index. In compute and ray tracing shaders pass
+ * your own derivatives, for instance of ray cones.
  *
- * To be defined before this file, besides what buffers.glsl says:
+ * Optional definitions before this file, in addition to those of buffers.glsl:
  *
  *     #define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_MASKS  // as the streamer's; default: LEVELS
  *     #define SLUICE_FEEDBACK_TURN_WORD(i) turns.words[i]     // uint, read; default: all take part
  *
- * The second one leaves out textures that are not resolved in this frame, at the cost of one load:
- * see SluiceVulkanStreamerCreateInfo.feedbackInTurns.
+ * The second one skips textures that are not resolved in this frame, at the cost of one load. See
+ * SluiceVulkanStreamerCreateInfo.feedbackInTurns.
  */
 #ifndef SLUICE_FEEDBACK_GLSL
 #define SLUICE_FEEDBACK_GLSL
@@ -31,7 +32,7 @@
 #define SLUICE_FEEDBACK_ENCODING SLUICE_FEEDBACK_LEVELS
 #endif
 
-/** What the feedback buffer says of the region `at`. */
+/** Reads the feedback of region `at`. */
 uint sluiceReadFeedback(uint at)
 {
 #if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
@@ -41,7 +42,10 @@ uint sluiceReadFeedback(uint at)
 #endif
 }
 
-/** The same, unless `known`, what was read there, says as much: loads are far cheaper than atomics. */
+/**
+ * Marks region `at`, unless `known`, the value read there, includes the mark: loads are cheaper
+ * than atomics.
+ */
 void sluiceMarkUnlessKnown(uint at, uint level, uint known)
 {
 #if SLUICE_FEEDBACK_ENCODING == SLUICE_FEEDBACK_MASKS
@@ -54,7 +58,7 @@ void sluiceMarkUnlessKnown(uint at, uint level, uint known)
 #endif
 }
 
-/** `at` is the number of the region in the feedback buffer. */
+/** Marks a region. `at` is its index in the feedback buffer. */
 void sluiceMarkRegionAt(uint at, uint level)
 {
     sluiceMarkUnlessKnown(at, level, sluiceReadFeedback(at));
@@ -65,7 +69,7 @@ void sluiceMarkRegion(SluiceTextureEntry entry, uint x, uint y, uint level)
     sluiceMarkRegionAt(entry.feedbackOffset + y * entry.regionCountX + x, level);
 }
 
-/** Whether what is written for this texture in this frame is asked for. */
+/** Returns whether feedback of this texture is read back in this frame. */
 bool sluiceTakesPart(uint tableIndex)
 {
 #ifdef SLUICE_FEEDBACK_TURN_WORD
@@ -75,7 +79,10 @@ bool sluiceTakesPart(uint tableIndex)
 #endif
 }
 
-/** Each tile of `level` and coarser ones that a footprint lies over; the map begins at `first`. */
+/**
+ * Marks every tile of `level` and coarser levels that a footprint covers. The map begins at
+ * `first`.
+ */
 void sluiceMarkFootprint(uint first, SluiceGrid grid, SluiceFootprint footprint, uint level)
 {
     uvec2 step = uvec2(
@@ -95,7 +102,10 @@ void sluiceMarkFootprint(uint first, SluiceGrid grid, SluiceFootprint footprint,
     }
 }
 
-/** The region of a place in texels, at most a size outside, of a texture of SLUICE_SHAPE_QUICK. */
+/**
+ * Returns the region of a texel coordinate, at most one image size outside. For textures of
+ * SLUICE_SHAPE_QUICK.
+ */
 uvec2 sluiceCornerRegion(SluiceGrid grid, vec2 texel)
 {
     if ((grid.shape & SLUICE_SHAPE_REPEATS) == 0u)
@@ -103,7 +113,7 @@ uvec2 sluiceCornerRegion(SluiceGrid grid, vec2 texel)
     return uvec2(ivec2(floor(texel)) >> ivec2(sluiceRegionShift(grid))) & grid.last;
 }
 
-/** Marks the corners of a box of texels, of a texture of SLUICE_SHAPE_QUICK. */
+/** Marks the corners of a box of texels. For textures of SLUICE_SHAPE_QUICK. */
 void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint level)
 {
     uvec2 from = sluiceCornerRegion(grid, low), to = sluiceCornerRegion(grid, high);
@@ -123,14 +133,17 @@ void sluiceMarkCorners(uint first, SluiceGrid grid, vec2 low, vec2 high, uint le
         sluiceMarkUnlessKnown(lower + to.x, level, across);
 }
 
-/** How far the box of a sample reaches, in texels, of a texture of SLUICE_SHAPE_QUICK. */
+/** Returns how far the box of a sample reaches, in texels. For textures of SLUICE_SHAPE_QUICK. */
 vec2 sluiceBoxReach(SluiceGrid grid, vec2 halfBox, uint coarsest)
 {
     float texel = uintBitsToFloat((coarsest + 127u) << 23u); /* 2 to the power of it */
     return halfBox + SLUICE_APRON * min(vec2(texel), grid.size);
 }
 
-/** Whether a box's corners are in all tiles of `level` that it lies over. One of `halfBox` 0 is small. */
+/**
+ * Returns whether the corners of a box touch every tile of `level` that the box covers. A `halfBox`
+ * of 0 is small.
+ */
 bool sluiceCornersAreAll(SluiceGrid grid, vec2 halfBox, vec2 reach, uint level)
 {
     if ((grid.shape & SLUICE_SHAPE_QUICK) == 0u)
@@ -139,13 +152,13 @@ bool sluiceCornersAreAll(SluiceGrid grid, vec2 halfBox, vec2 reach, uint level)
            all(lessThanEqual(2.0 * reach, sluiceRegionSize(grid) * exp2(float(level))));
 }
 
-/** Where a sample lies, in texels: inside the image if that repeats. */
+/** Returns the position of a sample in texels; inside the image if the texture repeats. */
 vec2 sluiceQuickTexel(SluiceGrid grid, vec2 uv)
 {
     return ((grid.shape & SLUICE_SHAPE_REPEATS) != 0u ? uv - floor(uv) : uv) * grid.size;
 }
 
-/** What a sample of `level` to `coarsest` touches. */
+/** Marks all regions that a sample of `level` to `coarsest` touches. */
 void sluiceMarkBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest)
 {
     vec2 reach = sluiceBoxReach(grid, halfBox, coarsest);
@@ -158,8 +171,10 @@ void sluiceMarkBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint leve
 }
 
 /**
- * The same for derivatives. Some devices read levels up to `widest`, which they would take without
- * anisotropy, and which reach further: docs/feedback.md. `dx` and `dy` in texels.
+ * Marks all regions that a sample with derivatives touches. `dx` and `dy` are in texels.
+ *
+ * Some devices read levels up to `widest`, the level without anisotropy, which reach further
+ * (docs/feedback.md).
  */
 void sluiceMarkSample(uint tableIndex, SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, uint level, uint coarsest, uint widest)
@@ -171,7 +186,7 @@ void sluiceMarkSample(uint tableIndex, SluiceGrid grid, vec2 uv, vec2 dx, vec2 d
         sluiceMarkBox(first, grid, uv, halfBox, coarsest + 1u, widest);
 }
 
-/** The finest, the coarsest and the widest level of a sample; derivatives in texels. */
+/** Returns the finest, coarsest and widest level of a sample. Derivatives are in texels. */
 uvec3 sluiceMarkedLevels(SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
@@ -183,9 +198,10 @@ uvec3 sluiceMarkedLevels(SluiceGrid grid, vec2 uv, vec2 dx, vec2 dy, float lodBi
 
 /**
  * Marks every region that a sample at `uv` touches with the finest level that it may touch there.
- * `dx` and `dy` are the derivatives of `uv` per pixel; bias and anisotropy as the sample has them
- * (1: none). `uv` and derivatives that are not finite, and a bias that is NaN, mark the coarsest level
- * alone. Never writes outside the texture's own map. Helper invocations write nothing.
+ *
+ * `dx` and `dy` are the derivatives of `uv` per pixel. Pass LOD bias and anisotropy of the sample
+ * (1: none). If `uv` or a derivative is not finite, or the bias is NaN, only the coarsest level is
+ * marked. Never writes outside the texture's own map. Helper invocations write nothing.
  */
 void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
@@ -200,7 +216,10 @@ void sluiceWriteFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
                      levels.z);
 }
 
-/** Marks one corner of the box of a sample of `level` to `coarsest`; false if it is no such box. */
+/**
+ * Marks one corner of the box of a sample of `level` to `coarsest`. False if the sample has no such
+ * box.
+ */
 bool sluiceMarkCorner(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint level, uint coarsest,
                       vec2 direction)
 {
@@ -213,13 +232,14 @@ bool sluiceMarkCorner(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint l
 }
 
 /**
- * The same for the pixels of 2x2 quads that are selected together (sluiceSelectRandomQuad and its
- * like): each of the four marks another corner of its footprint, so all of them cost little more than
- * the writes of one. `pixel` tells which, and the two low bits of `frameSeed` turn the corners around,
- * so that what one corner of one pixel reaches is marked, too, by one in four of the frames that select
- * it. Footprints that are no simple boxes are marked as a whole.
+ * Writes feedback like sluiceWriteFeedback, for 2x2 quads whose pixels are selected together
+ * (sluiceSelectRandomQuad and similar). Each pixel marks another corner of its footprint, so four
+ * pixels cost little more than one.
  *
- * For probabilities near 1 sluiceWriteFeedback marks the same at once.
+ * `pixel` selects the corner. The two low bits of `frameSeed` rotate the corners: what only one
+ * corner of one pixel reaches is marked in one of four frames that select it. Footprints that are
+ * not simple boxes are marked completely. For probabilities near 1 use sluiceWriteFeedback, which
+ * marks everything at once.
  */
 void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                              float maxAnisotropy, uvec2 pixel, uint frameSeed)
@@ -241,7 +261,10 @@ void sluiceWriteQuadFeedback(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float l
                          levels.z);
 }
 
-/** The same for textureLod: the level is given, and there is no anisotropy. NaN is the coarsest. */
+/**
+ * Writes feedback of textureLod: the level is `lod`, without anisotropy. NaN marks the coarsest
+ * level.
+ */
 void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
 {
     if (!sluiceTakesPart(tableIndex))
@@ -254,16 +277,16 @@ void sluiceWriteFeedbackLod(uint tableIndex, vec2 uv, float lod)
 }
 
 #ifdef SLUICE_FEEDBACK_QUERY
-/* How far two evaluations of the same level of detail may lie apart: a step of its fraction. */
+/* Largest difference of two evaluations of one LOD: a step of its fraction. */
 #define SLUICE_QUERY_MARGIN (1.0 / 256.0)
 
 /**
- * The level that the device itself says it will take, for sluiceWriteFeedbackQueried: neither
- * clamped nor rounded. Fragment shaders only, in uniform control flow, and best before any branch.
+ * Returns the LOD that the device will use, for sluiceWriteFeedbackQueried; neither clamped nor
+ * rounded. Fragment shaders only, in uniform control flow, best before any branch.
  *
- * Where the pixels of a quad disagree the finest of a pixel and its two neighbours counts. Mostly
- * they agree, and the differences are there for compilers: a query that only a branch uses must not
- * be moved into that branch, where the neighbours are missing.
+ * If the pixels of a quad disagree, the finest of a pixel and its two neighbors counts. The
+ * differences also keep compilers from moving the query into a branch, where the neighbors are
+ * missing.
  */
 float sluiceQueryLod(sampler2D tex, vec2 uv)
 {
@@ -273,15 +296,17 @@ float sluiceQueryLod(sampler2D tex, vec2 uv)
 }
 
 /**
- * The same as sluiceWriteFeedback with the level that the device itself says it will take, for
- * comparison: it needs no margin for other formulas, but a texture and derivatives, so that it costs
- * every pixel what sluiceWriteFeedback costs the selected ones. `lod` is what sluiceQueryLod
- * said before the pixel was selected, with the whole texture that is streamed and the sampler that
- * it is sampled with. In paged residency no device takes the level: there it is the computed one.
+ * Writes feedback like sluiceWriteFeedback, with the LOD that the device reports. For comparison.
  * Define SLUICE_FEEDBACK_QUERY to have it.
  *
- * With anisotropy the finer of this level and the computed one counts: where derivatives exceed
- * maxAnisotropy, a widely used driver names levels half of its logarithm coarser than it samples.
+ * It needs no margin for other LOD formulas, but it needs a texture and derivatives, so every pixel
+ * pays for it and not only the selected ones. `lod` is the result of sluiceQueryLod before the
+ * selection, with the whole streamed texture and its sampler. In paged mode the computed LOD is
+ * used.
+ *
+ * With anisotropy the finer of reported and computed LOD counts: if the ratio of derivatives
+ * exceeds maxAnisotropy, a widely used driver reports a LOD that is coarser than its samples, by
+ * half the excess.
  */
 void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                 float maxAnisotropy)
@@ -310,7 +335,10 @@ void sluiceWriteFeedbackQueried(float lod, uint tableIndex, vec2 uv, vec2 dx, ve
     sluiceMarkSample(tableIndex, grid, uv, dx, dy, lodBias, maxAnisotropy, level, coarsest, levels.z);
 }
 
-/** Both in one, in uniform control flow, with `selected` in place of a branch around it. */
+/**
+ * Queries the LOD and writes feedback. Call in uniform control flow, with `selected` rather than a
+ * branch around it.
+ */
 void sluiceWriteFeedbackQuery(sampler2D tex, uint tableIndex, vec2 uv, float lodBias,
                               float maxAnisotropy, bool selected)
 {

@@ -1,13 +1,13 @@
 /*
- * The regions of a texture that one sample may touch.
+ * Computes the regions of a texture that one sample may touch.
  *
- * A tile of level l stands over the regions whose index, shifted right by l, is its own. Level sizes
- * are rounded down, so on textures that do not halve evenly a tile begins up to one texel of its
- * level behind the begin of its regions: the box around a sample reaches that much further down.
+ * A tile of level l covers the regions whose index, shifted right by l, equals the tile's index.
+ * Level sizes are rounded down. In textures that do not halve evenly a tile therefore begins up to
+ * one texel of its level after its regions, and the box around a sample reaches that much further
+ * down.
  *
- * Along an axis it suffices to look at one region of each tile of the finest level that is sampled,
- * and at the last region, which may be narrow. Everything is in texels of level 0. C twin:
- * lib/vulkan/shader_twins.h.
+ * Along an axis it suffices to visit one region per tile of the finest level sampled, and the last
+ * region, which may be narrow. All units are texels of level 0. C twin: lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_FOOTPRINT_GLSL
 #define SLUICE_FOOTPRINT_GLSL
@@ -15,19 +15,23 @@
 #include "buffers.glsl"
 #include "lod.glsl"
 
-/* Texels of the coarser level: half a texel for the bilinear filter, and room for fixed-point uv. */
+/*
+ * Texels of the coarser level: half a texel for the bilinear filter, and room for fixed-point uv.
+ */
 #define SLUICE_APRON 0.5625
 #define SLUICE_APRON_UNEVEN 1.5625
 
-/* More tiles than 64 along an axis are walked in longer steps, and some of them passed over: that
- * takes a LOD bias below -5 and anisotropy. */
+/*
+ * Along an axis of more than 64 tiles steps are longer, and some tiles are skipped. That takes a
+ * LOD bias below -5 and anisotropy.
+ */
 #define SLUICE_FOOTPRINT_STEPS_LOG2 6
 
-/** The regions of a texture, as footprints need them. */
+/** Regions of a texture, as footprints use them. */
 struct SluiceGrid {
     vec2 size;  /* texels of level 0 */
     uint shape; /* SluiceTextureEntry.shape */
-    uvec2 last; /* column and row */
+    uvec2 last; /* last column and row */
 };
 
 SluiceGrid sluiceReadGrid(uint tableIndex)
@@ -45,13 +49,13 @@ uint sluiceMipCount(SluiceGrid grid)
     return ((grid.shape >> SLUICE_SHAPE_LAST_LEVEL_SHIFT) & 31u) + 1u;
 }
 
-/** log2 of a region's width and height. */
+/** Returns log2 of a region's width and height. */
 uvec2 sluiceRegionShift(SluiceGrid grid)
 {
     return uvec2(grid.shape & 31u, (grid.shape >> SLUICE_SHAPE_HEIGHT_SHIFT) & 31u);
 }
 
-/** Texels of level 0 that a region is wide and high. */
+/** Returns a region's width and height in texels of level 0. */
 vec2 sluiceRegionSize(SluiceGrid grid)
 {
     return vec2(uvec2(1u) << sluiceRegionShift(grid));
@@ -62,19 +66,20 @@ uvec2 sluiceAddressModes(SluiceGrid grid)
     return uvec2(grid.shape >> SLUICE_SHAPE_MODE_U_SHIFT, grid.shape >> SLUICE_SHAPE_MODE_V_SHIFT) & 7u;
 }
 
-/** Columns and rows; where the first is behind the last, it goes on at 0. */
+/** Columns and rows of a footprint. If the first is after the last, it wraps around at 0. */
 struct SluiceFootprint {
     uvec2 first, last;
 };
 
-/** Region of a place in texels; always up to `last`, also for NaN. */
+/** Returns the region of a texel coordinate. At most `last`, also for NaN. */
 uint sluiceRegionIndex(float texel, float size, uint shift, uint last)
 {
     return min(uint(texel > 0.0 ? min(texel, size) : 0.0) >> shift, last);
 }
 
 /**
- * One axis: the first and the last region from `below` before to `above` behind the coordinate.
+ * Returns the first and last region along one axis of the interval from `below` before to `above`
+ * after the coordinate.
  */
 uvec2 sluiceRegionRange(float coordinate, float below, float above, uint addressMode, float size,
                         uint shift, uint last)
@@ -111,7 +116,10 @@ uvec2 sluiceRegionRange(float coordinate, float below, float above, uint address
     return wraps ? range : uvec2(range.x, max(range.x, range.y)); /* NaN */
 }
 
-/** Around `uv`, for samples of levels up to `coarsestLevel`; `halfBox` as sluiceHalfBox. */
+/**
+ * Returns the footprint around `uv` of samples of levels up to `coarsestLevel`. `halfBox` is from
+ * sluiceHalfBox.
+ */
 SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsestLevel)
 {
     vec2 texel = min(vec2(uintBitsToFloat((coarsestLevel + 127u) << 23u)), grid.size); /* 2 to the level */
@@ -128,14 +136,14 @@ SluiceFootprint sluiceComputeFootprint(SluiceGrid grid, vec2 uv, vec2 halfBox, u
     return SluiceFootprint(uvec2(x.x, y.x), uvec2(x.y, y.y));
 }
 
-/** The step between regions of an axis that sees every tile of `level`. */
+/** Returns the step between regions along an axis that visits every tile of `level`. */
 uint sluiceRangeStep(uint first, uint last, uint axisLast, uint level)
 {
     uint length = last - first + (last < first ? axisLast + 1u : 0u);
     return max(1u << level, (length >> SLUICE_FOOTPRINT_STEPS_LOG2) + 1u);
 }
 
-/** The region to look at after `at`, which is not `last`. */
+/** Returns the region to visit after `at`, which is not `last`. */
 uint sluiceNextRegion(uint at, uint last, uint axisLast, uint step)
 {
     if (at < last)
@@ -144,11 +152,13 @@ uint sluiceNextRegion(uint at, uint last, uint axisLast, uint step)
 }
 
 /**
- * Half the size of the box around all that an anisotropic sampler may read besides its apron, 0 without
- * anisotropy: twice the ellipse that the derivatives span, whichever of its axes a device takes its
- * samples along, because some devices round their number up to a power of two and keep the distance. A
- * positive LOD bias makes it larger: some scale the footprint with it, and so do explicit derivatives
- * that hold the bias. Derivatives and result in texels.
+ * Returns half the size, in texels, of the box that an anisotropic sampler may read in addition to
+ * its apron. 0 without anisotropy. Derivatives are in texels.
+ *
+ * The box is twice the ellipse that the derivatives span, along either axis: some devices round the
+ * number of samples up to a power of two and keep their distance. A positive LOD bias enlarges the
+ * box: some devices scale the footprint with it, and so do explicit derivatives that include the
+ * bias.
  */
 vec2 sluiceHalfBox(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {

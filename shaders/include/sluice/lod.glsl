@@ -1,57 +1,63 @@
 /*
- * The level of detail that a sampler will choose, computed from derivatives.
+ * Computes from derivatives the level of detail (LOD) that a sampler will choose.
  *
- * Vulkan lets implementations approximate; docs/drivers.md has what was measured: up to 0.12 finer
- * than the formula. Whoever must not miss a level subtracts sluiceLodMargin. Some devices take the
- * lengths of the two derivatives, and some the axes of the ellipse that they span: where the
- * derivatives are not at right angles its shorter axis is shorter, and its longer one up to half a
- * level longer. Here the finer and the coarser of the two count. C twin: lib/vulkan/shader_twins.h.
+ * Vulkan lets devices approximate: up to 0.12 finer than the formula was measured
+ * (docs/drivers.md). Subtract sluiceLodMargin where no level may be missed. Some devices use the
+ * lengths of the two derivatives, some the axes of the ellipse that they span. If the derivatives
+ * are not orthogonal, the ellipse's short axis is shorter and its long axis up to half a level
+ * longer. The functions here return the finer and the coarser result. C twin:
+ * lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_LOD_GLSL
 #define SLUICE_LOD_GLSL
 
 #include "shared/texture_table.h"
 
-/* Ends of the range in which everything is computed; beyond them there are no levels. */
+/* LODs are clamped to +- this. There are no levels beyond. */
 #define SLUICE_LOD_LIMIT 32.0
 
-/** The anisotropy that counts: 1 to 16, 1 for NaN. */
+/** Clamps an anisotropy to 1 to 16. 1 for NaN. */
 float sluiceClampAnisotropy(float maxAnisotropy)
 {
     return maxAnisotropy > 1.0 ? min(maxAnisotropy, 16.0) : 1.0;
 }
 
-/** And finite in texels too, of an image of any size: samplers make NaN of what is not. */
+/**
+ * Returns whether a vector is finite, also when scaled to texels of any image. Otherwise samplers
+ * produce NaN.
+ */
 bool sluiceIsFinite(vec2 v)
 {
     return abs(v.x) <= 1.0e33 && abs(v.y) <= 1.0e33;
 }
 
-/** The LOD that counts: -32 to 32, 32 for NaN. */
+/** Clamps a LOD to -32 to 32. 32 for NaN. */
 float sluiceClampLod(float lod)
 {
     return lod <= SLUICE_LOD_LIMIT ? max(lod, -SLUICE_LOD_LIMIT) : SLUICE_LOD_LIMIT;
 }
 
-/** The LOD bias that counts: -32 to 32, 32 for NaN. */
+/** Clamps a LOD bias to -32 to 32. 32 for NaN. */
 float sluiceClampLodBias(float lodBias)
 {
     return sluiceClampLod(lodBias);
 }
 
-/* How far the sampler's level may lie above the coarser rule: as far as below the other. */
+/* Largest excess of the sampler's LOD over the coarser rule. */
 #define SLUICE_LOD_COARSER_MARGIN 0.125
 
-/** How far the sampler's level may lie below the computed one. */
+/** Returns how much finer the sampler's LOD may be than the computed one. */
 float sluiceLodMargin(float maxAnisotropy)
 {
     return maxAnisotropy > 1.0 ? 0.1875 : 0.125;
 }
 
 /**
- * The LOD that a sampler will choose, the finest (x, without sluiceLodMargin) and the coarsest (y,
- * margin included) that devices come to. `dx` and `dy` in texels of level 0 per pixel. Both are
- * finite, -32 to 32, whatever the arguments: no derivative gives -32, an infinite one or NaN 32.
+ * Returns the LODs that devices choose: the finest (x, without sluiceLodMargin) and the coarsest
+ * (y, with margin).
+ *
+ * `dx` and `dy` are in texels of level 0 per pixel. Results are finite for all arguments, -32 to
+ * 32: -32 for derivatives of 0, 32 for infinity or NaN.
  */
 vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
@@ -75,23 +81,24 @@ vec2 sluiceComputeLods(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     return clamp(lods, -SLUICE_LOD_LIMIT, SLUICE_LOD_LIMIT);
 }
 
-/** The finest of them. */
+/** Returns the finest LOD of sluiceComputeLods. */
 float sluiceComputeLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     return sluiceComputeLods(dx, dy, lodBias, maxAnisotropy).x;
 }
 
 /*
- * The same, 4 to the power of LODs, without bias and margins: so levels are found by exponents alone.
- * `widest` is the coarsest LOD without anisotropy. Where `sum`, of the squared lengths of both
- * derivatives, is not below SLUICE_QUICK_SQUARES they are not to be used.
+ * LODs as powers of 4, without bias and margins, so that levels follow from exponents alone.
+ *
+ * `widest` is the coarsest LOD without anisotropy. `sum` is the sum of the squared lengths of both
+ * derivatives. Do not use the values if it is not below SLUICE_QUICK_SQUARES.
  */
 struct SluiceSquares {
     float fine, coarse, widest, sum;
 };
 
 #define SLUICE_QUICK_SQUARES 1.0e14
-/* Beyond it nothing is quick. */
+/* Largest LOD bias of the quick path. */
 #define SLUICE_QUICK_BIAS 16.0
 /* 4 to the power of the margins: -1/8 and, with anisotropy, -3/16; and of the coarser one. With room for
  * what devices' exp2 and log2 are off, so that no more is sampled than is marked. */
@@ -119,40 +126,44 @@ SluiceSquares sluiceSquareLods(vec2 dx, vec2 dy, float maxAnisotropy)
     return s;
 }
 
-/** floor(log4(x)) of a number that is not negative, 0 below 4; by its exponent alone. */
+/** Returns floor(log4(x)) of a non-negative number from its exponent. 0 below 4. */
 uint sluiceFloorLog4(float x)
 {
     return uint(max(int(floatBitsToUint(x) >> 23u) - 127, 0)) >> 1u;
 }
 
-/** The finest LOD that a texel of the MinMip buffer allows to samplers of that margin. */
+/**
+ * Returns the finest LOD that a texel of the MinMip buffer allows to samplers with this margin.
+ */
 float sluiceLodLimit(uint shown, float margin)
 {
     return shown == 0u ? -SLUICE_LOD_LIMIT
                        : (float(shown) - float(SLUICE_SHOWN_MARGIN)) / float(SLUICE_SHOWN_STEPS) + margin;
 }
 
-/** The finest level whose tiles are sure to be resident, by a texel of the MinMip buffer. */
+/**
+ * Returns the finest level whose tiles are certainly resident, from a texel of the MinMip buffer.
+ */
 uint sluiceShownLevel(uint shown)
 {
     return (max(shown, uint(SLUICE_SHOWN_MARGIN)) - uint(SLUICE_SHOWN_MARGIN)) / uint(SLUICE_SHOWN_STEPS);
 }
 
-/** The finest level of `count` that a sampler may touch at this LOD. */
+/** Returns the finest of `count` levels that a sampler may touch at this LOD. */
 uint sluiceFinestLevel(float lod, float margin, uint count)
 {
     return uint(clamp(lod - margin, 0.0, float(count - 1u)));
 }
 
-/** The coarsest level of `count` that a sampler may touch at this LOD. */
+/** Returns the coarsest of `count` levels that a sampler may touch at this LOD. */
 uint sluiceCoarsestLevel(float lod, uint count)
 {
     return min(uint(clamp(lod, 0.0, float(count - 1u))) + 1u, count - 1u);
 }
 
 /**
- * The levels that a sample marks, of `count`, by exponents: the finest, the coarsest, and that without
- * anisotropy.
+ * Returns the levels that a sample marks, of `count`: finest, coarsest, coarsest without
+ * anisotropy. Uses exponents.
  */
 uvec3 sluiceQuickLevels(SluiceSquares squares, float lodBias, float maxAnisotropy, uint count)
 {
@@ -164,7 +175,7 @@ uvec3 sluiceQuickLevels(SluiceSquares squares, float lodBias, float maxAnisotrop
                uvec3(count - 1u));
 }
 
-/** The same by logarithms, whatever the arguments. */
+/** Returns the levels of sluiceQuickLevels for any arguments. Uses logarithms. */
 uvec3 sluiceSafeLevels(vec2 uv, vec2 dx, vec2 dy, float lodBias, float maxAnisotropy, uint count)
 {
     if (!sluiceIsFinite(uv))

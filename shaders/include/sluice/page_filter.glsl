@@ -1,24 +1,26 @@
 /*
- * How textures are filtered whose texels lie in pages: which texels a bilinear sample is made of, which
- * bilinear samples a trilinear or anisotropic one. Where the texels are is the includer's business:
- * paged.glsl's, and demand.glsl's.
+ * Filters textures whose texels lie in pages: which texels form a bilinear sample, and which
+ * bilinear samples form a trilinear or anisotropic one. Finding the texels is left to paged.glsl
+ * and demand.glsl.
  */
 #ifndef SLUICE_PAGE_FILTER_GLSL
 #define SLUICE_PAGE_FILTER_GLSL
 
 #include "shared/texture_table.h"
 
-/* Of filter weights: what devices have at least by custom, and what the sums of weights stay 1 with. */
+/* Steps of filter weights. Devices usually have at least these, and sums of weights stay exactly 1. */
 #define SLUICE_FILTER_STEPS 256.0
 
-/** One axis of a bilinear sample, in texels of a level. */
+/** Axis of a bilinear sample, in texels of a level. */
 struct SluicePageAxis {
     int low, high; /* -1: beyond the border */
     float weight;  /* of `high` */
 };
 
-/** The place inside the texture that shows the same; of a border, at most a texel beyond the nearest
- *  repetitions. `n` is the size. */
+/**
+ * Returns the equivalent coordinate inside the texture. With a border, at most a texel beyond the
+ * nearest repetitions. `n` is the size.
+ */
 float sluiceFoldOntoPages(float coordinate, uint addressMode, float n)
 {
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT)
@@ -34,7 +36,7 @@ float sluiceFoldOntoPages(float coordinate, uint addressMode, float n)
     return clamp(coordinate, 0.0, 1.0);
 }
 
-/** At a coordinate that has been folded. */
+/** Returns the axis of a folded coordinate. */
 SluicePageAxis sluiceFoldedPageAxis(float coordinate, uint addressMode, int size)
 {
     float n = float(size);
@@ -64,7 +66,7 @@ SluicePageAxis sluicePageAxis(float coordinate, uint addressMode, int size)
                                 size);
 }
 
-/** The nearest texel alone, at a coordinate that has been folded. */
+/** Returns the axis of the nearest texel alone, for a folded coordinate. */
 SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int size)
 {
     int at = int(floor(coordinate * float(size)));
@@ -73,7 +75,7 @@ SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int siz
     return SluicePageAxis(at, at, 0.0);
 }
 
-/* Without non-uniform indexing of arrays every place is visited, and one of them sampled. */
+/* Without non-uniform indexing every element is visited, and one of them is sampled. */
 #ifdef SLUICE_PAGE_LOOP
 #define SLUICE_WITH_PAGE(page, statement)                                                          \
     for (uint chunk = 0u; chunk < SLUICE_PAGE_LOOP; chunk++)                                        \
@@ -88,7 +90,7 @@ SluicePageAxis sluiceNearestPageAxis(float coordinate, uint addressMode, int siz
     }
 #endif
 
-/** What a trilinear or anisotropic sample is made of: bilinear ones in a row, each of two levels. */
+/** Bilinear samples of a trilinear or anisotropic sample: a row, each of two levels. */
 struct SluicePagedTaps {
     uint fine, coarse; /* levels */
     float fraction;    /* of `coarse`: 0 to 1 */
@@ -97,10 +99,11 @@ struct SluicePagedTaps {
 };
 
 /**
- * At `lod`, 0 to the last of `levelCount` levels, with derivatives that hold all bias; `size` is that
- * of level 0. Of the anisotropic ones, up to `maxTaps` above 1, as many samples along the longer
- * derivative as that is longer than a pixel of the level: the customary way, which every device
- * refines in its own.
+ * Places the bilinear samples at `lod`, 0 to the last of `levelCount` levels. `size` is that of
+ * level 0. `dx` and `dy` include all LOD bias.
+ *
+ * Anisotropic samples use up to `maxTaps` (above 1) samples along the longer derivative, one per
+ * pixel of the level. This is the common method; every device refines it.
  */
 SluicePagedTaps sluicePlaceTaps(vec2 size, uint levelCount, vec2 dx, vec2 dy, float lod, float maxTaps)
 {

@@ -1,13 +1,12 @@
 /*
  * Samples textures whose tiles are pages: layers of array images, found through the page table.
  *
- * A bilinear sample whose four texels lie in one page is one hardware sample of that layer. Where it
+ * A bilinear sample whose four texels lie in one page is one hardware sample of that layer. If it
  * crosses the border of a page, or wraps around the texture, its texels are fetched one by one and
- * weighted as the hardware does: in steps of 1/256 texel. So pages need no gutters, and any filter
- * width is right. Levels that are packed are sampled from the texture's own image, by the sampler
- * that came with it.
+ * weighted like hardware does, in steps of 1/256 texel. So pages need no gutters, and any filter
+ * width is correct. Packed levels are sampled from the texture's own image, with its sampler.
  *
- * Only sample.glsl and residency.glsl include this, where SLUICE_PAGED is defined: see buffers.glsl.
+ * Only sample.glsl and residency.glsl include this file, if SLUICE_PAGED is defined (buffers.glsl).
  */
 #ifndef SLUICE_PAGED_GLSL
 #define SLUICE_PAGED_GLSL
@@ -16,7 +15,7 @@
 #include "lod.glsl"
 #include "page_filter.glsl"
 
-/* As the sampler has it. Define it before to change it. */
+/* The sampler's border color. Define it before to change it. */
 #ifndef SLUICE_BORDER_COLOR
 #define SLUICE_BORDER_COLOR vec4(0.0)
 #endif
@@ -31,7 +30,7 @@ ivec2 sluiceTileShift(SluiceTextureEntry entry)
     return ivec2(entry.tileShift & 255u, (entry.tileShift >> 8u) & 255u);
 }
 
-/** The page of a tile of a regular level; SLUICE_PAGE_NONE where there is none. */
+/** Returns the page of a tile of a regular level. SLUICE_PAGE_NONE if it has none. */
 uint sluiceReadPage(SluiceTextureEntry entry, uint level, ivec2 tile)
 {
     ivec2 shift = sluiceTileShift(entry);
@@ -40,7 +39,7 @@ uint sluiceReadPage(SluiceTextureEntry entry, uint level, ivec2 tile)
     return SLUICE_PAGE_TABLE_WORD(first + uint(tile.y * columns + tile.x));
 }
 
-/** One texel of a regular level; 0 where it is not resident. */
+/** Fetches one texel of a regular level. 0 if it is not resident. */
 vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
 {
     ivec2 shift = sluiceTileShift(entry);
@@ -53,7 +52,7 @@ vec4 sluiceFetchPaged(SluiceTextureEntry entry, uint level, ivec2 texel)
     return color;
 }
 
-/** Of a border only the components count that the format has. */
+/** Returns the border color, limited to the components of the format. */
 vec4 sluiceBorder(SluiceTextureEntry entry)
 {
     uint count = (entry.flags >> SLUICE_TEXTURE_COMPONENTS_SHIFT) & 7u;
@@ -67,7 +66,9 @@ vec4 sluiceFetchOrBorder(SluiceTextureEntry entry, uint level, int x, int y)
     return min(x, y) < 0 ? sluiceBorder(entry) : sluiceFetchPaged(entry, level, ivec2(x, y));
 }
 
-/** Across borders of pages. A texel of no weight is not looked at: it may be infinite. */
+/**
+ * Samples across borders of pages. Texels of weight 0 are not read, because they may be infinite.
+ */
 vec4 sluiceGatherPaged(SluiceTextureEntry entry, uint level, SluicePageAxis x, SluicePageAxis y)
 {
     vec4 color = sluiceFetchOrBorder(entry, level, x.low, y.low);
@@ -81,7 +82,7 @@ vec4 sluiceGatherPaged(SluiceTextureEntry entry, uint level, SluicePageAxis x, S
     return mix(color, below, y.weight);
 }
 
-/** A bilinear sample of a regular level. */
+/** Returns a bilinear sample of a regular level. */
 vec4 sluiceSamplePages(SluiceTextureEntry entry, uint level, vec2 uv)
 {
     ivec2 size = sluiceLevelSize(entry, level);
@@ -102,7 +103,7 @@ vec4 sluiceSamplePages(SluiceTextureEntry entry, uint level, vec2 uv)
     return color;
 }
 
-/** A bilinear sample of any level; `tail` has the packed ones. */
+/** Returns a bilinear sample of any level. `tail` has the packed levels. */
 vec4 sluiceSampleLevel(sampler2D tail, SluiceTextureEntry entry, uint level, vec2 uv)
 {
     if (level >= entry.regularMipCount)
@@ -110,7 +111,9 @@ vec4 sluiceSampleLevel(sampler2D tail, SluiceTextureEntry entry, uint level, vec
     return sluiceSamplePages(entry, level, uv);
 }
 
-/** The tail's sampler reckons with the tail's own size: of derivatives. */
+/**
+ * Returns the scale of derivatives for the packed levels' image, whose sampler uses its own size.
+ */
 vec2 sluiceTailScale(SluiceTextureEntry entry)
 {
     return vec2(entry.width, entry.height) / (vec2(sluiceLevelSize(entry, entry.regularMipCount)) *
@@ -140,7 +143,7 @@ vec2 sluicePagedTap(SluicePagedTaps taps, vec2 uv, uint i)
     return uv + taps.axis * ((float(i) + 0.5) / float(taps.count) - 0.5);
 }
 
-/** A level of no weight is not looked at: it may be infinite. */
+/** Mixes two levels. A level of weight 0 is not used, because it may be infinite. */
 vec4 sluiceMixLevels(SluicePagedTaps taps, vec4 fine, vec4 coarse)
 {
     if (taps.fraction >= 1.0)
@@ -148,7 +151,9 @@ vec4 sluiceMixLevels(SluicePagedTaps taps, vec4 fine, vec4 coarse)
     return taps.fraction > 0.0 ? mix(fine, coarse, taps.fraction) : fine;
 }
 
-/** What a trilinear or anisotropic sampler does at `lod` with derivatives that hold all bias. */
+/**
+ * Samples like a trilinear or anisotropic sampler at `lod`. `dx` and `dy` include all LOD bias.
+ */
 vec4 sluiceSamplePaged(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
                        float lod, float maxAnisotropy)
 {
@@ -169,7 +174,7 @@ vec4 sluiceSamplePaged(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 d
     return sum / float(taps.count);
 }
 
-/** 1 if a texel of a bilinear sample has no page. */
+/** Returns 1 if a texel of a bilinear sample has no page, else 0. */
 uint sluiceCountUnpaged(SluiceTextureEntry entry, uint level, vec2 uv)
 {
     if (level >= entry.regularMipCount)

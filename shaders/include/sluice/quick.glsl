@@ -1,19 +1,19 @@
 /*
- * What one load says about most samples.
+ * Decides most samples with one load.
  *
- * Beside its own texel a word of the MinMip buffer holds the largest one of the regions around: no
- * sample that reaches into no more than those can touch anything coarser. Where that is not enough
- * the footprint itself is looked at, which costs several times as much.
+ * A word of the MinMip buffer holds its region's texel and the largest texel of the regions around
+ * it. A sample that reaches no further than those regions touches nothing coarser. Otherwise the
+ * whole footprint is read, which costs several times as much.
  *
- * Members of the texture table are read one by one here: the whole entry would be loaded before the
- * branch that most samples do not take.
+ * Members of the texture table are read one by one: a read of the whole entry would be hoisted
+ * before the branch that few samples take.
  */
 #ifndef SLUICE_QUICK_GLSL
 #define SLUICE_QUICK_GLSL
 
 #include "footprint.glsl"
 
-/** A coordinate inside the image: 0 to 1; 0 for NaN. */
+/** Returns the equivalent coordinate inside the image, 0 to 1. 0 for NaN. */
 float sluiceFoldCoordinate(float coordinate, uint addressMode)
 {
     if (addressMode == SLUICE_ADDRESS_MODE_REPEAT)
@@ -27,7 +27,7 @@ float sluiceFoldCoordinate(float coordinate, uint addressMode)
     return coordinate > 0.0 ? min(coordinate, 1.0) : 0.0;
 }
 
-/** The region that a sample lies in; for `uv` that is not finite some region. */
+/** Returns the region of a sample. If `uv` is not finite: any region. */
 uvec2 sluiceQuickRegion(SluiceGrid grid, vec2 uv)
 {
     vec2 at = uv - floor(uv);
@@ -38,7 +38,7 @@ uvec2 sluiceQuickRegion(SluiceGrid grid, vec2 uv)
     return min(uvec2(at * grid.size) >> sluiceRegionShift(grid), grid.last);
 }
 
-/** How much a LOD bias widens what a sample touches, squared. */
+/** Returns the square of the factor by which a LOD bias widens a sample. */
 float sluiceBiasScale2(float lodBias)
 {
     return lodBias <= 0.0 ? 1.0 : exp2(2.0 * sluiceClampLodBias(lodBias));

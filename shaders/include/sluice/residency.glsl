@@ -1,11 +1,13 @@
 /*
- * Checks, with residency codes, that a sample touches only what is resident. For tests and for
- * pictures of mistakes; drawing does not need it. Needs the feature shaderResourceResidency, and
- * sparse images: a widely used driver crashes where it is asked about others. Without them define
- * SLUICE_NO_RESIDENCY_CODES: paged residency is checked by its page table, and dense residency not.
+ * Checks with residency codes that a sample touches only resident texels. For tests and debug
+ * views.
  *
- * The sampler passed here must filter NEAREST between levels and LINEAR inside them: the codes of a
- * widely used driver are wrong for others.
+ * Requires the feature shaderResourceResidency and sparse images: a widely used driver crashes for
+ * other images. Without them define SLUICE_NO_RESIDENCY_CODES: then paged mode is checked by its
+ * page table, and dense mode is not checked.
+ *
+ * The sampler must filter NEAREST between levels and LINEAR within them: a widely used driver
+ * returns wrong codes for other filters.
  */
 #ifndef SLUICE_RESIDENCY_GLSL
 #define SLUICE_RESIDENCY_GLSL
@@ -16,7 +18,10 @@
 
 #include "sample.glsl"
 
-/* A coordinate whose filter stays inside the image; false if there is none, on a single texel. */
+/*
+ * Clamps a coordinate so that its filter stays inside the image. False if that is impossible (one
+ * texel).
+ */
 bool sluiceStayInside(inout float coordinate, uint size)
 {
     coordinate = clamp(coordinate, 0.75 / float(size), 1.0 - 0.75 / float(size));
@@ -24,9 +29,10 @@ bool sluiceStayInside(inout float coordinate, uint size)
 }
 
 /**
- * 1 if a texel that the LINEAR filter needs at this place and level is not resident, 0 if not.
- * Border colours are no memory, and drivers do not agree on whether they are resident: where the
- * address mode is CLAMP_TO_BORDER the nearest place inside is asked for.
+ * Returns 1 if a texel that the LINEAR filter needs at `uv` and `level` is not resident, else 0.
+ *
+ * Border colors use no memory, and drivers disagree on whether they are resident. So with
+ * CLAMP_TO_BORDER the nearest coordinate inside is probed.
  */
 uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, vec2 uv, float level)
 {
@@ -49,8 +55,8 @@ uint sluiceProbeNonResident(sampler2D nearestMipTex, SluiceTextureEntry entry, v
 }
 
 /**
- * How many places and levels sluiceSample and sluiceSampleGrad touch, with the same arguments,
- * that are not resident. Must be 0.
+ * Counts the positions and levels that sluiceSample and sluiceSampleGrad touch with the same
+ * arguments and that are not resident. Must be 0.
  */
 uint sluiceCountNonResident(sampler2D nearestMipTex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
                             float lodBias, float maxAnisotropy)

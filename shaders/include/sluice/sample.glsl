@@ -1,13 +1,13 @@
 /*
- * Samples a streamed texture where it is resident: at the wanted level, or at the finest one that
- * the MinMip map shows around the sample. Never touches a texel that is not there.
+ * Samples a streamed texture where it is resident: at the wanted level, or at the finest level that
+ * the MinMip map shows around the sample. Never touches a texel that is not resident.
  *
- * The sampler must have no LOD bias of its own, minLod 0 and maxLod VK_LOD_CLAMP_NONE, and the
- * address modes that the texture was added with.
+ * The sampler must have no LOD bias, minLod 0, maxLod VK_LOD_CLAMP_NONE, and the address modes of
+ * SluiceVulkanTexture.
  *
- * In paged residency the sampler sees the packed levels alone, and the rest is paged.glsl. Elsewhere,
- * where nothing has to be clamped the texture is sampled as if it were not streamed, so the settled
- * picture is that of a fully resident texture.
+ * In paged mode the sampler sees only the packed levels; paged.glsl samples the others. In other
+ * modes a sample that needs no clamping uses the texture like one that is not streamed, so the
+ * settled picture equals that of a fully resident texture.
  */
 #ifndef SLUICE_SAMPLE_GLSL
 #define SLUICE_SAMPLE_GLSL
@@ -21,63 +21,66 @@
 #endif
 
 /*
- * Define SLUICE_MIN_LOD where the device has the feature shaderResourceMinLod, and it is enabled: samples
- * are clamped by textureGradClampARB then, and without anisotropy keep their own derivatives. With it, and
- * without the feature, clamped samples get derivatives that are as wide: devices that clamp scale the row
- * of an anisotropic footprint, too. Either shows the same level.
+ * Define SLUICE_MIN_LOD if the device feature shaderResourceMinLod is enabled. Samples are then
+ * clamped by textureGradClampARB, and isotropic samples keep their own derivatives. Without it,
+ * clamped samples get wider derivatives. Both show the same level: devices that clamp also scale
+ * the row of an anisotropic footprint.
  */
 #ifdef SLUICE_MIN_LOD
 #extension GL_ARB_sparse_texture_clamp : require
 #endif
 
-/* What a sample is where not even the packed levels are resident. Define it before to change it. */
+/* Color where not even the packed levels are resident. Define it before to change it. */
 #ifndef SLUICE_FALLBACK_COLOR
 #define SLUICE_FALLBACK_COLOR vec4(0.5, 0.5, 0.5, 1.0)
 #endif
 
-/* Samplers clamp the bias of implicit samples; each device takes at least this (maxSamplerLodBias). */
+/* LOD bias of implicit samples that every device supports (maxSamplerLodBias). Samplers clamp more. */
 #define SLUICE_MAX_IMPLICIT_LOD_BIAS 2.0
 
 /*
- * Some devices read levels coarser than Vulkan's formula where anisotropic footprints are long
- * (docs/drivers.md), so there too it is looked what is resident. Define it as false, or as a constant_id
- * constant, to save that on devices that do not.
+ * Some devices read levels coarser than Vulkan's formula for long anisotropic footprints
+ * (docs/drivers.md), so residency is checked there, too. Define it as false, or as a constant_id
+ * constant, to skip that check on devices that do not.
  */
 #ifndef SLUICE_ANISOTROPY_OVERREACHES
 #define SLUICE_ANISOTROPY_OVERREACHES true
 #endif
 
-/* Longer derivatives, in texels, have squares whose products leave the range of float: samplers that
- * compute with those come to any level. They are as good as infinite. */
+/*
+ * Longest derivatives, in texels. Products of the squares of longer ones exceed the range of float,
+ * and samplers may then choose any level. They count as infinite.
+ */
 #define SLUICE_MAX_TEXELS 1.0e9
 
-/* A footprint this much smaller than a texel is a point. */
+/* LOD below which a footprint is treated as a point. */
 #define SLUICE_LOD_POINT -16.0
 
-/** What may be sampled. */
+/** Resolved sample: what may be sampled. */
 struct SluiceSampling {
-    vec2 uv;            /* as given; 0 where not finite */
-    vec2 dx, dy;        /* for textureGrad: LOD bias included, coarsened where need be */
-    float lod;          /* what the sampler will choose, about */
-    uint wantedLevel;   /* the finest level that would be touched if all were there */
+    vec2 uv;            /* as given; 0 if not finite */
+    vec2 dx, dy;        /* for textureGrad: with LOD bias, coarsened if necessary */
+    float lod;          /* approximately what the sampler will choose */
+    uint wantedLevel;   /* the finest level touched if all were resident */
     uint level;         /* the finest level that may be touched; SLUICE_MIP_UNTOUCHED: none */
-    uint missing;       /* levels that it is coarser than it should be, rounded up */
+    uint missing;       /* levels by which it is too coarse, rounded up */
     float minLod;       /* for textureGradClampARB, with SLUICE_MIN_LOD; else 0 */
-    bool plain;         /* texture() touches only what is there, and may be used instead */
+    bool plain;         /* texture() touches only resident texels, and may be used */
 };
 
 /* In both halves: coarser than any level, but something. */
 #define SLUICE_SHOWN_UNKNOWN 0xFEFFFEFFu
 
-/** The larger of two words, half by half. */
+/** Returns the larger of two words, half by half. */
 uint sluiceMaxHalves(uint a, uint b)
 {
     return max(a & 0xFFFFu, b & 0xFFFFu) | (max(a >> 16u, b >> 16u) << 16u);
 }
 
 /**
- * The words of the MinMip buffer over a footprint of samples of `finestLevel` and coarser, the
- * largest low and the largest high half: what is shown there, and there and around it.
+ * Reads the words of the MinMip buffer under a footprint of samples of `finestLevel` and coarser.
+ * Returns the largest low half (levels of the regions) and the largest high half (levels of the
+ * regions and around them).
  */
 uint sluiceMaxMinMip(uint first, SluiceGrid grid, SluiceFootprint footprint, uint finestLevel)
 {
@@ -103,9 +106,11 @@ uint sluiceMaxMinMip(uint first, SluiceGrid grid, SluiceFootprint footprint, uin
 }
 
 /**
- * Derivatives for a footprint that is nowhere narrower than `width` texels. The longer derivative
- * stays, so an anisotropic footprint keeps its length; the other one is put at a right angle to it,
- * because two that are nearly parallel are a narrow footprint, however long they are.
+ * Widens derivatives to a footprint that is nowhere narrower than `width` texels.
+ *
+ * The longer derivative is kept, so an anisotropic footprint keeps its length. The other one
+ * becomes orthogonal to it: two nearly parallel derivatives form a narrow footprint, however long
+ * they are.
  */
 void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
 {
@@ -120,8 +125,8 @@ void sluiceWiden(inout vec2 dx, inout vec2 dy, vec2 size, float width)
 }
 
 /**
- * Whether levels beyond `coarsest` are there as well, if a sampler reads them: up to those that it
- * would take without anisotropy, `lod`. They reach further to the sides, over other tiles.
+ * Returns whether levels coarser than `coarsest` are resident as well, up to `lod`, the LOD without
+ * anisotropy. Some samplers read them. They reach further to the sides, over other tiles.
  */
 bool sluiceReachIsThere(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint coarsest, float lod)
 {
@@ -133,7 +138,9 @@ bool sluiceReachIsThere(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, uint
     return sluiceShownLevel(shown) <= coarsest + 1u;
 }
 
-/** The LOD without anisotropy, where samplers may come near it; else so fine that it never counts. */
+/**
+ * Returns the LOD without anisotropy if samplers may come near it; else a LOD too fine to count.
+ */
 float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
 {
     bool overreaches = SLUICE_ANISOTROPY_OVERREACHES && maxAnisotropy > 1.0;
@@ -143,7 +150,7 @@ float sluiceOverreachedLod(vec2 dx, vec2 dy, float lodBias, float maxAnisotropy)
     return overreaches ? sluiceComputeLod(dx, dy, lodBias, 1.0) : -SLUICE_LOD_LIMIT;
 }
 
-/** Whether the sampler gets the finest level that it may take along with the sample. */
+/** Returns whether the sampler is passed the finest level that it may use. */
 bool sluiceSamplerClamps()
 {
 #if defined(SLUICE_MIN_LOD) && defined(SLUICE_PAGED)
@@ -156,9 +163,10 @@ bool sluiceSamplerClamps()
 }
 
 /**
- * The words (see sluiceMaxMinMip) that count for a sample of `lod`, `finest` and up to `coarsest`:
- * what coarser levels alone touch, at the rim of its box, must be there of those levels, and does not
- * make the sample coarser.
+ * Returns the words (sluiceMaxMinMip) for a sample of `lod`, of levels `finest` to `coarsest`.
+ *
+ * At the rim of the sample's box only coarser levels are read. Only those must be resident there;
+ * the rim does not make the sample coarser.
  */
 uint sluiceReadBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, float lod, float margin,
                    uint finest, uint coarsest)
@@ -173,7 +181,10 @@ uint sluiceReadBox(uint first, SluiceGrid grid, vec2 uv, vec2 halfBox, float lod
     }
 }
 
-/** The coarsest level of a sample that is clamped to `lod`, and half its box, where that grows. */
+/**
+ * Returns the coarsest level of a sample that is clamped to `lod`, and enlarges `halfBox` if
+ * necessary.
+ */
 uint sluiceClampedBox(float lod, float margin, float coarsestLod, float maxAnisotropy, uint count,
                       inout vec2 halfBox)
 {
@@ -185,9 +196,12 @@ uint sluiceClampedBox(float lod, float margin, float coarsestLod, float maxAniso
 }
 
 /**
- * The LOD of a sample that, clamped to what its box shows, touches something coarser still. `words`
- * are those of its box then, of samples up to `coarsest`: if what they show needs no larger box, that;
- * else what is shown all around, if it reaches no further; else that of packed levels.
+ * Returns the LOD of a sample that, clamped to what its box shows, would touch still coarser
+ * levels.
+ *
+ * `words` are those of its box for samples up to `coarsest`. The result is the LOD that they show,
+ * if it requires no larger box; else the LOD of the regions around, if the box reaches no further;
+ * else that of packed levels.
  */
 float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarsest, float margin,
                       float coarsestLod, float maxAnisotropy, vec2 halfBox)
@@ -207,8 +221,8 @@ float sluiceLodAround(uint tableIndex, SluiceGrid grid, uint words, uint coarses
 }
 
 /**
- * True if texture() surely touches only what is resident. `dx` and `dy` are the derivatives of `uv`
- * per pixel. Where it is false sluiceResolveSampling looks closer.
+ * Returns true if texture() certainly touches only resident texels. `dx` and `dy` are the
+ * derivatives of `uv` per pixel. If false, call sluiceResolveSampling for the exact answer.
  */
 bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
@@ -244,10 +258,11 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 }
 
 /**
- * Finds out what a sample may touch. Use it where sluiceSampleGrad cannot be called, for instance
- * with a non-uniform index of an array of textures: sluiceTextureGrad(tex[i], s), unless s.level is
- * SLUICE_MIP_UNTOUCHED, or in paged mode sluiceSamplePaged. `dx` and `dy` are the derivatives of
- * `uv` per pixel.
+ * Determines what a sample may touch. `dx` and `dy` are the derivatives of `uv` per pixel.
+ *
+ * Use it where sluiceSampleGrad cannot be called, for instance with a non-uniform index into an
+ * array of textures: then call sluiceTextureGrad(tex[i], s), or sluiceSamplePaged in paged mode. If
+ * s.level is SLUICE_MIP_UNTOUCHED, do not sample.
  */
 SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                      float maxAnisotropy)
@@ -324,7 +339,10 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     return s;
 }
 
-/** The sample that was resolved, in sparse and dense mode. Its level must not be SLUICE_MIP_UNTOUCHED. */
+/**
+ * Samples after sluiceResolveSampling. For sparse and dense mode. s.level must not be
+ * SLUICE_MIP_UNTOUCHED.
+ */
 vec4 sluiceTextureGrad(sampler2D tex, SluiceSampling s)
 {
 #ifdef SLUICE_MIN_LOD
@@ -334,14 +352,16 @@ vec4 sluiceTextureGrad(sampler2D tex, SluiceSampling s)
 #endif
 }
 
-/** How many levels a sample is coarser than it should be; SLUICE_MIP_UNTOUCHED if it is nothing. */
+/**
+ * Returns by how many levels a sample is too coarse. SLUICE_MIP_UNTOUCHED if nothing is resident.
+ */
 uint sluiceMissingLevels(SluiceSampling s)
 {
     return s.missing;
 }
 
 #ifdef SLUICE_PAGED
-/** In paged mode, where all is there. */
+/** Samples in paged mode if everything is resident. */
 vec4 sluiceSampleAsPages(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                          float maxAnisotropy)
 {
@@ -355,8 +375,9 @@ vec4 sluiceSampleAsPages(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 
 #endif
 
 /**
- * Samples with explicit derivatives of `uv` per pixel; any stage. `missingLevels` as
- * sluiceMissingLevels: 0 once the texture is as sharp as wanted.
+ * Samples with explicit derivatives of `uv` per pixel. Any stage.
+ *
+ * `missingLevels` is the result of sluiceMissingLevels: 0 when the texture is as sharp as wanted.
  */
 vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                       float maxAnisotropy, out uint missingLevels)
@@ -382,7 +403,7 @@ vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
     return sluiceTextureGrad(tex, s);
 }
 
-/** One texel, which must be resident: sluiceResolveSampling says what is. */
+/** Fetches one texel. It must be resident: see sluiceResolveSampling. */
 vec4 sluiceTexelFetch(sampler2D tex, uint tableIndex, ivec2 texel, uint level)
 {
 #ifdef SLUICE_PAGED
@@ -398,7 +419,7 @@ vec4 sluiceTexelFetch(sampler2D tex, uint tableIndex, ivec2 texel, uint level)
 
 #ifdef GL_FRAGMENT_SHADER
 
-/** True if all of a texture may be shown, and texture() makes something of any derivatives. */
+/** Returns true if the whole texture may be shown, and texture() handles any derivatives. */
 bool sluiceIsWhole(uint tableIndex, float lodBias, float maxAnisotropy)
 {
 #ifdef SLUICE_PAGED
@@ -409,7 +430,7 @@ bool sluiceIsWhole(uint tableIndex, float lodBias, float maxAnisotropy)
            SLUICE_TEXTURE_ENTRY(tableIndex).wholeShown == 0u;
 }
 
-/** True in all four pixels of a quad if it is in one. */
+/** Returns true in all four pixels of a quad if `value` is true in any of them. */
 bool sluiceAnyInQuad(bool value)
 {
     float any = value ? 1.0 : 0.0;
@@ -418,7 +439,10 @@ bool sluiceAnyInQuad(bool value)
     return any > 0.0;
 }
 
-/** The same with the fragment's own derivatives, in control flow that is uniform over the quad. */
+/**
+ * Samples like sluiceSampleGrad with the fragment's own derivatives. Call in control flow that is
+ * uniform over the quad.
+ */
 vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
                   out uint missingLevels)
 {

@@ -1,26 +1,31 @@
 /*
- * Samples the layers of a streamed array (sluiceAddVulkanTextureArray) through one sampler2DArray of
- * SluiceVulkanTexture.arrayView: one descriptor for all layers, and a layer that may differ from pixel
- * to pixel. Each layer is a streamed texture of its own, so every function takes two numbers:
+ * Samples the layers of a streamed array (sluiceAddVulkanTextureArray) through one sampler2DArray,
+ * a descriptor of SluiceVulkanTexture.arrayView. The layer may differ from pixel to pixel.
  *
- *     tableIndex   of the layer's texture: SluiceVulkanTexture.tableIndex; that of layer 0, plus layer
- *     layer        SluiceVulkanTexture.arrayLayer, below the array's number of layers
+ * Each layer is a streamed texture of its own, so every function takes two numbers, which need not
+ * be uniform:
  *
- * What is sampled is what sample.glsl samples through the layer's own imageView, and the sampler must
- * be as is said there. Feedback is that of the layer's texture: sluiceWriteFeedback with its tableIndex.
+ *     tableIndex   SluiceVulkanTexture.tableIndex of the layer: that of layer 0, plus layer
+ *     layer        SluiceVulkanTexture.arrayLayer, below the number of layers
  *
- * In sparse and dense residency the view has all levels. In paged residency it has the packed ones of
- * all layers, and the other tiles are pages as of any texture.
+ * The result equals a sample of the layer's own imageView by sample.glsl, and the sampler must meet
+ * the same requirements. Write feedback for the layer's texture: sluiceWriteFeedback with its
+ * tableIndex.
  *
- * Include it behind the definitions of buffers.glsl. Neither number need be uniform.
+ * In sparse and dense mode the view has all levels. In paged mode it has the packed levels of all
+ * layers; other tiles are pages, as for any texture.
+ *
+ * Include it after the definitions of buffers.glsl.
  */
 #ifndef SLUICE_SAMPLE_ARRAY_GLSL
 #define SLUICE_SAMPLE_ARRAY_GLSL
 
 #include "sample.glsl"
 
-/** The sample that was resolved with the layer's tableIndex, in sparse and dense mode. Its level must
- *  not be SLUICE_MIP_UNTOUCHED. */
+/**
+ * Samples a layer after sluiceResolveSampling with its tableIndex. For sparse and dense mode.
+ * s.level must not be SLUICE_MIP_UNTOUCHED.
+ */
 vec4 sluiceTextureArrayGrad(sampler2DArray tex, uint layer, SluiceSampling s)
 {
     vec3 at = vec3(s.uv, float(layer));
@@ -32,7 +37,7 @@ vec4 sluiceTextureArrayGrad(sampler2DArray tex, uint layer, SluiceSampling s)
 }
 
 #ifdef SLUICE_PAGED
-/** A bilinear sample of any level; `tail` has the packed ones of all layers. */
+/** Returns a bilinear sample of any level. `tail` has the packed levels of all layers. */
 vec4 sluiceSampleArrayLevel(sampler2DArray tail, uint layer, SluiceTextureEntry entry, uint level,
                             vec2 uv)
 {
@@ -41,7 +46,7 @@ vec4 sluiceSampleArrayLevel(sampler2DArray tail, uint layer, SluiceTextureEntry 
     return sluiceSamplePages(entry, level, uv);
 }
 
-/** As sluiceSamplePaged. */
+/** Samples a layer like sluiceSamplePaged. */
 vec4 sluiceSamplePagedArray(sampler2DArray tail, uint layer, SluiceTextureEntry entry, vec2 uv,
                             vec2 dx, vec2 dy, float lod, float maxAnisotropy)
 {
@@ -66,8 +71,10 @@ vec4 sluiceSamplePagedArray(sampler2DArray tail, uint layer, SluiceTextureEntry 
 #endif
 
 /**
- * sluiceSampleGrad of a layer: explicit derivatives of `uv` per pixel; any stage. `missingLevels`: how
- * many levels the sample is coarser than wanted, SLUICE_MIP_UNTOUCHED if it is SLUICE_FALLBACK_COLOR.
+ * Samples a layer like sluiceSampleGrad, with explicit derivatives of `uv` per pixel. Any stage.
+ *
+ * `missingLevels` is the number of levels by which the sample is too coarse; SLUICE_MIP_UNTOUCHED
+ * if it is SLUICE_FALLBACK_COLOR.
  */
 vec4 sluiceSampleArrayGrad(sampler2DArray tex, uint tableIndex, uint layer, vec2 uv, vec2 dx, vec2 dy,
                            float lodBias, float maxAnisotropy, out uint missingLevels)

@@ -1,12 +1,16 @@
 /*
- * Which pixels write feedback in a frame: few, so that it costs little, but all in turn.
+ * Selects the pixels that write feedback in a frame: few, so that feedback is cheap, and all in
+ * turn.
  *
- * Integer only, so that every device selects the same pixels. C twin: lib/vulkan/shader_twins.h.
+ * Integer arithmetic only, so every device selects the same pixels. C twin:
+ * lib/vulkan/shader_twins.h.
  */
 #ifndef SLUICE_STOCHASTIC_GLSL
 #define SLUICE_STOCHASTIC_GLSL
 
-/** Mixes three words; the upper bits are the better ones. Every pixel pays for it, so it is short. */
+/**
+ * Mixes three words. The upper bits are better distributed. Every pixel runs it, so it is short.
+ */
 uint sluiceMix(uvec3 v)
 {
     uint h = v.x * 0x9E3779B1u + v.y * 0x85EBCA77u + v.z * 0xC2B2AE3Du;
@@ -14,16 +18,16 @@ uint sluiceMix(uvec3 v)
     return (h ^ (h >> 13u)) * 0x297A2D39u;
 }
 
-/** The same with good lower bits. */
+/** Mixes three words. All bits are well distributed. */
 uint sluiceHash(uvec3 v)
 {
     uint h = sluiceMix(v);
     return h ^ (h >> 15u);
 }
 
-/* Bits of 2^23: whole numbers that are added to it are in the lower bits of the sum. */
+/* Bits of 2^23. An integer added to that float is in the lower bits of the sum. */
 #define SLUICE_FLOAT_ORIGIN 0x4B000000u
-/* The same number, less the half of a pixel's centre. */
+/* 2^23, minus the half of a pixel center. */
 #define SLUICE_PIXEL_ORIGIN 8388607.5
 
 bool sluiceSelectRandom(uvec2 place, uint frameSeed, float probability)
@@ -33,8 +37,9 @@ bool sluiceSelectRandom(uvec2 place, uint frameSeed, float probability)
 }
 
 /**
- * One decision for the four pixels of a 2x2 quad, true with the given probability; independent
- * between quads and between seeds. 1 and more is always true, 0, less and NaN never.
+ * Decides for the four pixels of a 2x2 quad together: true with the given probability. Decisions of
+ * different quads and seeds are independent. A probability of 1 or more is always true; 0, negative
+ * and NaN never.
  */
 bool sluiceSelectRandomQuad(uvec2 pixel, uint frameSeed, float probability)
 {
@@ -42,8 +47,9 @@ bool sluiceSelectRandomQuad(uvec2 pixel, uint frameSeed, float probability)
 }
 
 /**
- * The same decision for gl_FragCoord.xy, the centre of a pixel below 2^22, without the conversion to
- * whole numbers, which is slow. As all of a quad decides alike, derivatives may be taken behind it.
+ * Decides like sluiceSelectRandomQuad, for gl_FragCoord.xy (pixel centers below 2^22). Avoids the
+ * slow conversion to integers. All pixels of a quad decide alike, so derivatives may be taken in
+ * the branch.
  */
 bool sluiceSelectRandomFragmentQuad(vec2 fragCoord, uint frameSeed, float probability)
 {
@@ -52,8 +58,8 @@ bool sluiceSelectRandomFragmentQuad(vec2 fragCoord, uint frameSeed, float probab
 }
 
 /**
- * A lattice of one pixel in 8x8 that walks: every pixel is selected in exactly one of any 64
- * consecutive frames, and those of neighbouring frames lie far apart.
+ * Selects one pixel in 8x8 on a lattice that moves each frame. Every pixel is selected exactly once
+ * in any 64 consecutive frames. Pixels of consecutive frames are far apart.
  */
 bool sluiceSelectLattice(uvec2 pixel, uint frameIndex)
 {
@@ -63,7 +69,10 @@ bool sluiceSelectLattice(uvec2 pixel, uint frameIndex)
     return (((pixel.x ^ x ^ y) | (pixel.y ^ y)) & 7u) == 0u;
 }
 
-/** The same for gl_FragCoord.xy. Pixels of a quad do not decide alike: derivatives come before it. */
+/**
+ * Selects like sluiceSelectLattice, for gl_FragCoord.xy. Pixels of a quad decide differently: take
+ * derivatives before the branch.
+ */
 bool sluiceSelectFragmentLattice(vec2 fragCoord, uint frameIndex)
 {
     return sluiceSelectLattice(floatBitsToUint(fragCoord + SLUICE_PIXEL_ORIGIN), frameIndex);

@@ -100,7 +100,7 @@ SluiceGrid gridOfArguments()
 void callRegions()
 {
     uvec2 pixel = uvec2(argument(0u), argument(1u));
-    vec2 fragCoord = vec2(pixel) + 0.5;
+    vec2 fragCoord = real2(4u);
     switch (params.function) {
     case NUMERICS_REGION_RANGE: {
         uvec2 range = sluiceRegionRange(real(0u), real(1u), real(2u), argument(3u), real(4u),

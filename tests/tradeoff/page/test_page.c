@@ -121,7 +121,7 @@ static void frames_are_ordered_from_the_worst(void **state)
     page_sweep_add_file(&s, 0, "frames.csv", text, strlen(text));
     for (uint32_t frame = 0; frame < 4; frame++)
         page_sweep_add_picture(&s, 0, "frame", frame, 1, 0);
-    page_sweep_add_file(&s, 0, "frame-0004.png.part", "", 0);
+    page_sweep_add_file(&s, 0, "frame-0004.png.sluice-part", "", 0);
     page_sweep_add_file(&s, 0, "frame--001.png", "", 0);
     const uint32_t by_psnr[] = {2, 0, 1, 3}, by_flip[] = {1, 2, 0, 3};
     assert_true(page_shots_get(&shots, s.folders[0])); /* nothing is known of 3 */

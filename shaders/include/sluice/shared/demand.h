@@ -1,15 +1,15 @@
 /*
- * What host and shaders share for demand loading, see sluice/demand.glsl.
+ * Data that host and shaders share for demand loading. See sluice/demand.glsl.
  *
- * Everything that can be missing is a page with an id. Shaders look pages up in two steps, so that
- * memory follows what is resident: one word of the directory for 32 pages says where their block
- * is, a block has a word per page. A page that is missed sets its bit among the requests, and the
- * bit of its section, which is how the scan finds it.
+ * Everything that can be missing is a page with an id. Shaders look up a page in two steps, so that
+ * memory follows the resident pages: a word of the directory locates the block of 32 pages; the
+ * block has a word per page. A missed page sets its bit in the requests and the bit of its section,
+ * by which the scan finds it.
  *
- * The first ids are those of textures: page i "opens" the texture at index i. A texture that is
- * open has pages of its own for the tiles of each regular level, row by row, and one for all
- * coarser levels, its tail. Pages of one section have one rank: the coarser, the lower, the sooner
- * served.
+ * The first ids belong to textures: page i "opens" the texture at index i. An open texture has
+ * pages for the tiles of each regular level, row by row, and one page for all coarser levels, its
+ * mip tail. Pages of one section have one rank. Coarser pages have a lower rank and are served
+ * earlier.
  */
 #ifndef SLUICE_SHARED_DEMAND_H
 #define SLUICE_SHARED_DEMAND_H
@@ -21,22 +21,24 @@
 #define SLUICE_DEMAND_SECTION_PAGES 1024 /* one bit of sections */
 #define SLUICE_DEMAND_RANKS 16
 
-/* In the directory: none of the 32 pages is resident. Blocks begin at 1. */
+/* In the directory: none of the 32 pages is resident. Blocks count from 1. */
 #define SLUICE_DEMAND_NO_BLOCK 0
 
 /*
- * A block: a word per page, then the second words of pages with 64 bits. Of tiles the word is chunk
- * << 16 | layer. The masks are apart: see SluiceDemandBlockMasks.
+ * Block: a word per page, then the second words of 64-bit pages. For tiles the word is chunk << 16
+ * | layer. Masks are stored separately (SluiceDemandBlockMasks).
  */
 #define SLUICE_DEMAND_BLOCK_WORDS 64
 
-/* Of a tile's word, and of nothing else: SLUICE_PAGE_NONE is not resident, as a cleared bit of the
- * mask is; this one will not be, so it is not asked for: take a coarser level. */
+/*
+ * Word of a tile that will not become resident: do not request it, use a coarser level.
+ * (SLUICE_PAGE_NONE and a cleared bit of the mask mean not resident.)
+ */
 #define SLUICE_DEMAND_PAGE_REFUSED 0xFFFFFFFEu
 
 struct SluiceDemandBlockMasks {
-    uint resident; /* a bit per page: its words count. Written by the host */
-    uint used;     /* a bit per page: looked up since the host took the bits. Written by shaders */
+    uint resident; /* a bit per page: its words are valid. Written by the host */
+    uint used;     /* a bit per page: looked up since the host read the bits. Written by shaders */
 };
 SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 
@@ -45,7 +47,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
     0 /* nobody has asked for it: request the page of its index                                    \
        */
 #define SLUICE_DEMAND_TEXTURE_OPEN 1
-#define SLUICE_DEMAND_TEXTURE_FAILED 2 /* its samples are baseColor, and count as resident */
+#define SLUICE_DEMAND_TEXTURE_FAILED 2 /* its samples are baseColor, and resident */
 #define SLUICE_DEMAND_TEXTURE_UDIM 3   /* a grid: sizes in textures, `levels` has their indices */
 
 /* SluiceDemandTexture.shape */
@@ -59,7 +61,7 @@ SLUICE_SHARED_SIZE(struct SluiceDemandBlockMasks, 8)
 #define SLUICE_DEMAND_NEAREST_LEVEL 0x40000000u /* none between levels */
 #define SLUICE_DEMAND_BLOCKS 0x80000000u /* block-compressed: the tail begins at multiples of 4 */
 
-/* No texture in this place of a UDIM grid: its samples are the grid's baseColor. */
+/* No texture at this position of a UDIM grid: samples are the grid's baseColor. */
 #define SLUICE_DEMAND_NO_TEXTURE 0xFFFFFFFFu
 
 struct SluiceDemandTexture {
@@ -75,19 +77,19 @@ struct SluiceDemandTexture {
 };
 SLUICE_SHARED_SIZE(struct SluiceDemandTexture, 64)
 
-/* First words of the buffer of levels. */
-#define SLUICE_DEMAND_PARAMETER_LOD_BIAS 0 /* float bits: added to all, while memory is short */
-#define SLUICE_DEMAND_PARAMETER_TRACKING 1 /* 0: the used bits are not wanted */
+/* First words of the levels buffer. */
+#define SLUICE_DEMAND_PARAMETER_LOD_BIAS 0 /* float bits: for all, while memory is short */
+#define SLUICE_DEMAND_PARAMETER_TRACKING 1 /* 0: do not write used bits */
 #define SLUICE_DEMAND_PARAMETER_COUNT 4
 
 /*
- * The scan of the requests: lists pages by age (postponed ones first), rank and id, clears what it
- * lists, counts the rest. Written into host memory:
+ * Result of the scan of the requests, in host memory. The scan lists pages by age (postponed ones
+ * first), rank and id, clears what it lists, and counts the rest.
  */
 struct SluiceDemandScanResult {
     uint listedCount;    /* pages that follow */
     uint requestCount;   /* bits that were set, listed or not */
-    uint sectionCount;   /* that had any */
+    uint sectionCount;   /* sections with requests */
     uint postponedCount; /* bits that stay set, for the next scan: requestCount - listedCount */
 };
 SLUICE_SHARED_SIZE(struct SluiceDemandScanResult, 16)

@@ -1,8 +1,8 @@
 /*
- * What the host and the passes of shaders/resolve tell each other.
+ * Data that the host and the passes of shaders/resolve share.
  *
- * A frame resolves the feedback of some textures, its items, in the order that the host gives them.
- * Each is cut into segments of SLUICE_RESOLVE_SEGMENT_SIZE regions, one workgroup each. Four
+ * A frame resolves the feedback of some textures, its items, in the order given by the host. Each
+ * item is cut into segments of SLUICE_RESOLVE_SEGMENT_SIZE regions, one workgroup per segment. Four
  * regions share a word of packed levels, the first in the low byte.
  */
 #ifndef SLUICE_SHARED_RESOLVE_H
@@ -13,12 +13,12 @@
 
 #define SLUICE_RESOLVE_GROUP_SIZE 64
 #define SLUICE_RESOLVE_SEGMENT_SIZE 256
-/* At most; the scan takes what the device allows, a power of two. */
+/* Largest size of the scan: a power of two that the device allows. */
 #define SLUICE_RESOLVE_SCAN_GROUP_SIZE 1024
-/* Workgroups in a row of a dispatch; what every device can do is just below the double. */
+/* Workgroups in a row of a dispatch. Every device supports almost twice as many. */
 #define SLUICE_RESOLVE_ROW 32768
 
-/* SluiceResolveItem.flags: the whole map is wanted, whatever has changed. */
+/* SluiceResolveItem.flags: read back the whole map, whatever has changed. */
 #define SLUICE_RESOLVE_WHOLE 1
 
 /* SluiceResolveResult.state */
@@ -26,11 +26,13 @@
 #define SLUICE_RESOLVED_CHANGES 1 /* `count` words, region << 8 | level, regions ascending */
 #define SLUICE_RESOLVED_MAP 2     /* `count` words of packed levels: all regions */
 
-/* A change has 24 bits for the region; larger maps come whole. */
+/* A change has 24 bits for the region. Larger maps are read back whole. */
 #define SLUICE_RESOLVE_MAX_LISTED_REGIONS 0x1000000
 
-/* Specialization constant 0 of the passes is the encoding, see feedback.h; 1 the size of the scan's
- * workgroup. */
+/*
+ * Specialization constants of the passes: 0 is the encoding (feedback.h), 1 the size of the scan's
+ * workgroup.
+ */
 
 struct SluiceResolveSegment {
     uint firstRegion; /* in the buffers, a multiple of 4 */
@@ -48,7 +50,7 @@ struct SluiceResolveItem {
 };
 SLUICE_SHARED_SIZE(struct SluiceResolveItem, 16)
 
-/* One per item at the start of a readback slot; what they name follows behind them. */
+/* Result of an item. Results are at the start of a readback slot; their words follow. */
 struct SluiceResolveResult {
     uint state;
     uint count;    /* words */

@@ -1,6 +1,6 @@
 /*
- * What lets one header be read by C and by GLSL: only 32-bit scalars and arrays of them.
- * SLUICE_SHARED_SIZE brings its own semicolon, because GLSL before 4.60 takes none on its own.
+ * Types that let C and GLSL read the same headers: only 32-bit scalars and arrays of them.
+ * SLUICE_SHARED_SIZE includes its semicolon, because GLSL before 4.60 accepts none on its own.
  */
 #ifndef SLUICE_SHARED_TYPES_H
 #define SLUICE_SHARED_TYPES_H

@@ -1,0 +1,153 @@
+/*
+ * Which tiles are evicted when requests have no slots: first those on standby, then those of
+ * textures that get no maps any more, then wanted ones that are worth less than the requests.
+ * Evicted tiles are listed for unmapping; sluiceGetTilesToUnmap hands them out.
+ */
+#include "core/eviction.h"
+
+#include "base/checked.h"
+#include "core/history.h"
+#include "core/observer.h"
+#include "core/wants.h"
+#include "residency/node.h"
+#include "residency/node_list.h"
+#include "residency/standby.h"
+
+static bool is_idle(const slc_manager *m, const struct slc_managed_texture *t)
+{
+    uint64_t age = m->time - t->map_time, usual = m->map_interval;
+    usual = t->interval > usual ? t->interval : usual;
+    usual = t->timeout > usual ? t->timeout : usual;
+    return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
+}
+
+/** Tiles that one call looks at for one that is not seen any more. */
+enum { MAX_LOOKED_FOR = 1024 };
+
+/** Where the search is: each tile is looked at once. */
+struct eviction {
+    uint32_t looks;
+    uint32_t left[SLUICE_MAX_MIP_LEVELS]; ///< of m->residency.mapped
+};
+
+static struct eviction begin_eviction(const slc_manager *m)
+{
+    struct eviction d = {.looks = MAX_LOOKED_FOR};
+    for (uint32_t l = 0; l < SLUICE_MAX_MIP_LEVELS; l++)
+        d.left[l] = m->residency.mapped[l].count;
+    return d;
+}
+
+/**
+ * A wanted tile of a level below `end` that the last map does not show; 0 if none is found. Tiles
+ * that are seen go to the end of their list, so all get their turn.
+ */
+static uint32_t unseen_mapped(slc_manager *m, struct eviction *d, uint32_t end)
+{
+    for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
+        for (struct slc_list *list = &m->residency.mapped[l]; d->left[l] && d->looks; d->looks--) {
+            uint32_t node = list->head;
+            d->left[l]--;
+            if (!slc_is_seen(m, node))
+                return node;
+            slc_list_remove(&m->residency, list, node);
+            slc_list_append(&m->residency, list, node);
+        }
+    return 0;
+}
+
+/** The finest wanted tile of a level below `end`, the first in its list; 0 if there is none. */
+static uint32_t finest_mapped(const slc_manager *m, uint32_t end)
+{
+    for (uint32_t l = 0; l < end && l < SLUICE_MAX_MIP_LEVELS; l++)
+        if (m->residency.mapped[l].head)
+            return m->residency.mapped[l].head;
+    return 0;
+}
+
+static void evict_wanted(slc_manager *m, struct eviction *d, uint32_t node)
+{
+    uint32_t level = slc_node_at(&m->residency, node)->level;
+    slc_node_evict_wanted(&m->residency, node);
+    d->left[level] = slc_min_u32(d->left[level], m->residency.mapped[level].count);
+}
+
+/** A wanted tile that may make room for the request; 0 if there is none. */
+static uint32_t victim_for(slc_manager *m, struct eviction *d, uint32_t request)
+{
+    const struct slc_node *n = slc_node_at(&m->residency, request);
+    if (n->level == SLC_PACKED_CLASS)
+        return finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
+    bool waited = n->order < m->round.waited, waited_long = n->order < m->round.waited_long;
+    uint32_t node = unseen_mapped(m, d, n->level + waited);
+    uint32_t gap = waited_long ? 0 : waited ? 1 : 2;
+    return node ? node : n->level > gap ? finest_mapped(m, n->level - gap) : 0;
+}
+
+/**
+ * Wanted tiles make room for requests that are coarser: what came first would stay sharp else, and
+ * what comes later would not be seen. It ends, because each exchange is for something coarser or
+ * takes a tile that is not seen. A tile that is seen is not worth the upload for one or two levels
+ * unless the request has waited for rounds of maps.
+ */
+void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t unserved)
+{
+    struct eviction d = begin_eviction(m);
+    uint64_t coming = (uint64_t)m->residency.evicted.count + m->residency.retiring.count;
+    uint64_t reserved = slc_tile_heaps_reserved(&m->residency.heaps),
+             free_slots = m->residency.heaps.free_total;
+    for (; free_slots + coming < reserved; coming++) {
+        uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
+        if (!victim)
+            return;
+        evict_wanted(m, &d, victim);
+    }
+    coming -= free_slots < reserved ? reserved - free_slots : 0;
+    for (uint32_t passed = 0; walk.node && unserved && passed < SLC_MAX_PASSED_OVER; passed++) {
+        if (slc_is_asked_for(m, walk.node)) {
+            unserved--;
+            uint32_t victim = coming ? 0 : victim_for(m, &d, walk.node);
+            if (!coming && !victim)
+                return;
+            if (victim)
+                evict_wanted(m, &d, victim);
+            coming -= coming > 0;
+        }
+        slc_walk_on(m, &walk);
+    }
+}
+
+/**
+ * Makes room for `unserved` requests out of what is on standby or not looked at any more. Returns
+ * whether a texture was dropped and requests with it.
+ */
+bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved)
+{
+    uint64_t needed = unserved, reserved = slc_tile_heaps_reserved(&m->residency.heaps);
+    bool dropped = false;
+    if (reserved > m->residency.heaps.free_total)
+        needed += reserved - m->residency.heaps.free_total;
+    while ((uint64_t)m->residency.evicted.count + m->residency.retiring.count +
+                   m->residency.standby.count <
+               needed &&
+           m->visit_first != SLC_NONE && is_idle(m, slc_texture_at(m, m->visit_first))) {
+        slc_wants_drop(m, slc_texture_at(m, m->visit_first));
+        dropped = true;
+    }
+    uint64_t coming = (uint64_t)m->residency.evicted.count + m->residency.retiring.count;
+    uint64_t take = needed > coming ? needed - coming : 0;
+    slc_evict_standby(&m->residency, m->residency.standby.count > take
+                                         ? m->residency.standby.count - (uint32_t)take
+                                         : 0);
+    return dropped;
+}
+
+SluiceResult sluiceTrimStandbyTiles(SluiceStreamedTextureManager *manager, uint32_t keepTileCount)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    slc_evict_standby(&manager->residency, keepTileCount);
+    struct slc_call call = {.kind = SLC_CALL_TRIM_STANDBY, .keep_count = keepTileCount};
+    slc_notify(manager, &call);
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,15 @@
+/** Why a tile is evicted: requests need its slot. */
+#ifndef SLC_CORE_EVICTION_H
+#define SLC_CORE_EVICTION_H
+
+#include "core/request_walk.h"
+
+/**
+ * Evicts tiles on standby, and wanted ones of textures that get no maps, for `unserved` requests.
+ * Returns whether such a texture was dropped and requests with it.
+ */
+bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved);
+/** Evicts wanted tiles for the requests that are left of `walk`, as far as these are worth more. */
+void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t unserved);
+
+#endif /* SLC_CORE_EVICTION_H */

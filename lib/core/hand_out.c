@@ -1,0 +1,175 @@
+/* Which requested tiles are loaded next, and which slots they get. */
+#include "base/alloc.h"
+#include "core/mip_bias.h"
+#include "core/eviction.h"
+#include "core/history.h"
+#include "core/lookup.h"
+#include "core/observer.h"
+#include "core/prefetch.h"
+#include "core/request_walk.h"
+#include "core/rounds.h"
+#include "core/texture_tiles.h"
+#include "residency/node.h"
+
+/**
+ * Slots that a tile of `level` leaves in a call for one texture when no heap is to be had: what
+ * makes room for coarser requests of other textures must not go to the texture that is asked first.
+ */
+static uint64_t owed_slots(const slc_manager *m, uint32_t level)
+{
+    uint32_t limit = m->config.maxHeapCount;
+    uint64_t owed = 0;
+    if (!m->refused && (!limit || m->residency.heaps.live_count < limit))
+        return 0;
+    for (uint32_t l = level + 1; l < SLUICE_MAX_MIP_LEVELS; l++)
+        owed += m->residency.requests.counts[l];
+    return owed;
+}
+
+/** Takes a slot from a new heap. BUDGET_REACHED if there is none to be had. */
+static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint32_t node,
+                                       bool *refused)
+{
+    uint32_t limit = m->config.maxHeapCount;
+    if (*refused || (limit && m->residency.heaps.live_count >= limit))
+        return SLUICE_BUDGET_REACHED;
+    struct slc_call call = {.kind = SLC_CALL_HEAP_ANSWER};
+    SluiceResult result = slc_tile_heaps_add(&m->residency.heaps, &call.result, &call.heap_id);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return result;
+    slc_notify(m, &call);
+    *refused = m->refused = result != SLUICE_SUCCESS;
+    if (*refused)
+        return SLUICE_BUDGET_REACHED;
+    slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot);
+    return SLUICE_SUCCESS;
+}
+
+/** Takes a free slot for the node, from a new heap if need be. The last ones are for packed tiles.
+ */
+static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *scope,
+                              uint32_t node, bool *refused)
+{
+    struct slc_node *n = slc_node_at(&m->residency, node);
+    bool packed = n->level == SLC_PACKED_CLASS;
+    uint64_t kept =
+        slc_tile_heaps_reserved(&m->residency.heaps) + (scope ? owed_slots(m, n->level) : 0);
+    if ((packed || m->residency.heaps.free_total > kept) &&
+        slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot))
+        return SLUICE_SUCCESS;
+    SluiceResult result = take_from_new_heap(m, n, node, refused);
+    /* Not before the answer: a call that fails leaves equal heaps in their order. */
+    if (result == SLUICE_BUDGET_REACHED && packed)
+        slc_tile_heaps_settle(&m->residency.heaps);
+    return result;
+}
+
+static uint32_t requests_in_scope(const slc_manager *m, const struct slc_managed_texture *scope)
+{
+    return scope ? scope->requested_count : m->residency.requests.count;
+}
+
+/** What will be needed for the requests that come next. */
+static void prefetch_request(const slc_manager *m, uint32_t node)
+{
+    if (!node)
+        return;
+    const struct slc_node *n = slc_node_at(&m->residency, node);
+    const struct slc_managed_texture *t = slc_texture_at(m, n->owner);
+    __builtin_prefetch(t);
+    __builtin_prefetch(&t->shape->levels[n->level]);
+    __builtin_prefetch(slc_node_at(&m->residency, n->next));
+}
+
+static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *scope,
+                             const struct slc_request_key *keys, uint32_t *count, SluiceTile *tiles)
+{
+    uint32_t room = *count, written = 0, passed_over = 0;
+    uint64_t limit = slc_slot_limit(m);
+    bool refused = false;
+    SluiceResult result = SLUICE_SUCCESS;
+    struct slc_request_walk walk = slc_walk_requests(m, scope, keys);
+    while (written < room && walk.node && passed_over < SLC_MAX_PASSED_OVER) {
+        uint32_t node = walk.node;
+        if (m->starved && !slc_is_asked_for(m, node)) {
+            slc_walk_on(m, &walk);
+            passed_over++;
+            continue;
+        }
+        result = take_slot(m, scope, node, &refused);
+        if (result != SLUICE_SUCCESS)
+            break;
+        slc_walk_on(m, &walk);
+        prefetch_request(m, walk.node);
+        slc_node_handed_out(&m->residency, node);
+        tiles[written++] = slc_node_tile(m, node);
+    }
+    if (!scope && m->residency.requests.count == 0 && m->config.prefetchLevels &&
+        result == SLUICE_SUCCESS)
+        result = slc_prefetch(m, room, &written, tiles);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY && written == 0)
+        return result;
+    slc_end_round(&m->round, m->visited_count, m->residency.requests.next_sequence);
+    slc_update_bias(m, limit); /* not earlier: a call that fails changes nothing */
+    m->handed_out_total += written;
+    *count = written;
+    uint32_t left = requests_in_scope(m, scope);
+    if (room > 0)
+        m->starved = result == SLUICE_BUDGET_REACHED;
+    if (result == SLUICE_BUDGET_REACHED) {
+        if (!slc_evict_unwanted_for(m, left)) /* whatever the room: slots come back calls later */
+            slc_evict_wanted_for(m, walk, left);
+    }
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
+        result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */
+        m->cut_short = true;
+    }
+    return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;
+}
+
+static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_t *count,
+                                     SluiceTile *tiles)
+{
+    struct slc_managed_texture *scope;
+    SluiceResult result = slc_find_scope(m, id, &scope);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint32_t requests = requests_in_scope(m, scope);
+    if (!tiles) {
+        *count = requests;
+        return SLUICE_SUCCESS;
+    }
+    if (!scope || requests == 0)
+        return hand_out(m, scope, NULL, count, tiles);
+    struct slc_request_key *keys = slc_sort_requests(m, scope);
+    if (!keys)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    result = hand_out(m, scope, keys, count, tiles);
+    slc_free(&m->cb, keys, requests, sizeof *keys);
+    return result;
+}
+
+SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
+                                 uint32_t *pTileCount, SluiceTile *pTiles)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_MAP,
+                            .texture_id = textureId,
+                            .query = !pTiles,
+                            .tiles = pTiles};
+    if (!pTileCount) {
+        call.result = SLUICE_ERROR_NULL_POINTER;
+    } else {
+        call.room = *pTileCount;
+        manager->cut_short = false;
+        call.result = get_tiles_to_map(manager, textureId, pTileCount, pTiles);
+        call.count = *pTileCount;
+        if (manager->cut_short)
+            call.room = call.count; /* which gives the same where memory suffices */
+    }
+    slc_notify(manager, &call);
+    return call.result;
+}

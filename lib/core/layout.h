@@ -1,0 +1,12 @@
+/** Tiles of a texture, level by level. */
+#ifndef SLC_CORE_LAYOUT_H
+#define SLC_CORE_LAYOUT_H
+
+#include "core/state.h"
+
+SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);
+void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *layout);
+/** `level` is regularMipCount for packed tiles. */
+struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile);
+
+#endif /* SLC_CORE_LAYOUT_H */

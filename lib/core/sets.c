@@ -1,0 +1,61 @@
+#include "core/sets.h"
+
+#include "core/lookup.h"
+#include "core/observer.h"
+
+void slc_unfollow(slc_manager *m, struct slc_managed_texture *t)
+{
+    if (t->primary == SLC_NONE)
+        return;
+    struct slc_managed_texture *p = slc_texture_at(m, t->primary);
+    if (t->prev_follower == SLC_NONE)
+        p->first_follower = t->next_follower;
+    else
+        slc_texture_at(m, t->prev_follower)->next_follower = t->next_follower;
+    if (t->next_follower == SLC_NONE)
+        p->last_follower = t->prev_follower;
+    else
+        slc_texture_at(m, t->next_follower)->prev_follower = t->prev_follower;
+    t->primary = t->prev_follower = t->next_follower = SLC_NONE;
+}
+
+static SluiceResult set_primary(slc_manager *m, SluiceTextureId follower_id,
+                                SluiceTextureId primary_id)
+{
+    struct slc_managed_texture *t, *p = NULL;
+    SluiceResult result = slc_find_texture(m, follower_id, &t);
+    if (result == SLUICE_SUCCESS && primary_id != SLUICE_NO_TEXTURE)
+        result = slc_find_texture(m, primary_id, &p);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (p && (p == t || p->primary != SLC_NONE || t->first_follower != SLC_NONE))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (p && t->primary == p->index)
+        return SLUICE_SUCCESS;
+    slc_unfollow(m, t);
+    if (!p)
+        return SLUICE_SUCCESS;
+    t->primary = p->index;
+    t->prev_follower = p->last_follower;
+    if (p->last_follower == SLC_NONE)
+        p->first_follower = t->index;
+    else
+        slc_texture_at(m, p->last_follower)->next_follower = t->index;
+    p->last_follower = t->index;
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
+                                     SluiceTextureId followerId, SluiceTextureId primaryId)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_call call = {.kind = SLC_CALL_SET_PRIMARY,
+                            .texture_id = followerId,
+                            .primary_id = primaryId,
+                            .result = set_primary(manager, followerId, primaryId)};
+    slc_notify(manager, &call);
+    return call.result;
+}

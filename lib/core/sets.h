@@ -1,0 +1,10 @@
+/** Which texture follows which. */
+#ifndef SLC_CORE_SETS_H
+#define SLC_CORE_SETS_H
+
+#include "core/state.h"
+
+/** The texture has no primary any more. */
+void slc_unfollow(slc_manager *m, struct slc_managed_texture *t);
+
+#endif /* SLC_CORE_SETS_H */

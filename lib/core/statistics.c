@@ -1,0 +1,37 @@
+#include "core/state.h"
+
+SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
+                                 SluiceStreamedTextureStatistics *pStatistics)
+{
+    if (!manager || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    const slc_manager *m = manager;
+    *pStatistics = (SluiceStreamedTextureStatistics){
+        .textureCount = m->texture_count,
+        .tileCount = m->tile_count,
+        .requestedTileCount = m->residency.state_counts[SLUICE_TILE_STATE_REQUESTED],
+        .allocatedTileCount = m->residency.state_counts[SLUICE_TILE_STATE_ALLOCATED],
+        .mappedTileCount = m->residency.state_counts[SLUICE_TILE_STATE_MAPPED],
+        .standbyTileCount = m->residency.state_counts[SLUICE_TILE_STATE_STANDBY],
+        .cancelledTileCount = m->residency.state_counts[SLUICE_TILE_STATE_CANCELLED],
+        .failedTileCount = m->residency.state_counts[SLUICE_TILE_STATE_FAILED],
+        .givenUpTileCount = m->residency.state_counts[SLUICE_TILE_STATE_GIVEN_UP],
+        .retiringSlotCount = m->residency.retiring.count,
+        .heapCount = m->residency.heaps.live_count,
+        .freeSlotCount = m->residency.heaps.free_total < UINT32_MAX
+                             ? (uint32_t)m->residency.heaps.free_total
+                             : UINT32_MAX,
+        .reservedSlotCount = slc_tile_heaps_reserved(&m->residency.heaps),
+        .globalMipBias = m->bias.value,
+        .handedOutTotal = m->handed_out_total,
+        .mappedTotal = m->mapped_total,
+        .unmappedTotal = m->unmapped_total,
+        .cancelledTotal = m->cancelled_total,
+        .failedTotal = m->failed_total,
+        .restoredTotal = m->residency.restored_total,
+        .movedTotal = m->moved_total,
+        .givenUpRetriedTotal = m->given_up_retried_total,
+        .hostMemorySize = m->host_memory_size,
+    };
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,78 @@
+#include "demand/page_eviction.h"
+
+#include "demand/page_changes.h"
+#include "demand/page_pools.h"
+#include "demand/page_release.h"
+
+/* Pages that the same launch used last lie together at the head; nothing joins them any more once
+ * a later launch has begun, and before that they are not evicted. */
+static void sort_head(struct slc_demand_residency *r, struct slc_page_pool *pool)
+{
+    struct slc_page_node *at = r->nodes.at;
+    struct slc_page_list *pages = &pool->pages;
+    uint64_t launch = at[pages->head].last_use;
+    if (pool->sorted == launch)
+        return;
+    pool->sorted = launch;
+    uint32_t last = pages->head, previous = SLC_NO_NODE, head = pages->head;
+    while (at[last].next[SLC_LINK_HOME] != SLC_NO_NODE &&
+           at[at[last].next[SLC_LINK_HOME]].last_use == launch)
+        last = at[last].next[SLC_LINK_HOME];
+    uint32_t rest = at[last].next[SLC_LINK_HOME];
+    at[last].next[SLC_LINK_HOME] = SLC_NO_NODE;
+    pages->head = slc_page_nodes_sort(&r->nodes, head, SLC_LINK_HOME);
+    for (uint32_t i = pages->head; i != SLC_NO_NODE; i = at[i].next[SLC_LINK_HOME]) {
+        at[i].previous = previous;
+        previous = i;
+    }
+    at[previous].next[SLC_LINK_HOME] = rest;
+    if (rest != SLC_NO_NODE)
+        at[rest].previous = previous;
+    else
+        pages->tail = previous;
+}
+
+static bool goes_before(const struct slc_page_node *a, const struct slc_page_node *b)
+{
+    if (a->last_use != b->last_use)
+        return a->last_use < b->last_use;
+    return a->rank != b->rank ? a->rank > b->rank : a->page < b->page;
+}
+
+/* SLC_NO_NODE if all of the pool were used by the launch. */
+static uint32_t first_to_go(struct slc_demand_residency *r, struct slc_page_pool *pool)
+{
+    if (pool->pages.head == SLC_NO_NODE || slc_node(r, pool->pages.head)->last_use >= r->launch)
+        return SLC_NO_NODE;
+    sort_head(r, pool);
+    return pool->pages.head;
+}
+
+bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, uint32_t pool)
+{
+    uint32_t best = SLC_NO_NODE;
+    if (r->no_eviction)
+        return false;
+    for (uint32_t p = r->classes[class_index].first_pool; p != SLC_NO_POOL; p = r->pools[p].next) {
+        uint32_t node =
+            pool == SLC_NO_POOL || pool == p ? first_to_go(r, &r->pools[p]) : SLC_NO_NODE;
+        if (node != SLC_NO_NODE &&
+            (best == SLC_NO_NODE || goes_before(slc_node(r, node), slc_node(r, best))))
+            best = node;
+    }
+    if (best == SLC_NO_NODE)
+        return false;
+    slc_residency_leave_home(r, best);
+    slc_residency_release(r, best, true);
+    slc_residency_note(r, best);
+    r->classes[class_index].counts.evicted++;
+    return true;
+}
+
+void slc_residency_trim(struct slc_demand_residency *r, uint32_t class_index)
+{
+    struct slc_page_class *c = &r->classes[class_index];
+    while (c->held > c->limit)
+        if (!slc_residency_evict(r, class_index, SLC_NO_POOL))
+            return;
+}

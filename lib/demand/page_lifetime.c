@@ -1,0 +1,66 @@
+#include "base/alloc.h"
+#include "demand/page_eviction.h"
+
+#include <assert.h>
+
+SluiceResult slc_residency_create(const struct slc_page_residency_create_info *info,
+                                  struct slc_demand_residency **residency)
+{
+    assert(info->class_count > 0 && info->class_count <= UINT8_MAX + 1u);
+    SluiceAllocationCallbacks cb = slc_allocator(info->cb);
+    struct slc_demand_residency *r = slc_calloc(&cb, 1, sizeof *r);
+    if (!r)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    r->cb = cb;
+    r->no_eviction = info->no_eviction;
+    r->no_lod_bias = info->no_lod_bias;
+    r->unseen = r->overflow = slc_empty_page_list();
+    r->changed_head = r->changed_tail = SLC_NO_NODE;
+    r->use.full_at = UINT64_MAX;
+    r->bias_shown = true;
+    r->classes = slc_calloc(&cb, info->class_count, sizeof *r->classes);
+    r->class_count = r->classes ? info->class_count : 0;
+    if (!r->classes || slc_page_nodes_init(&r->nodes, &cb) != SLUICE_SUCCESS) {
+        slc_residency_destroy(r);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    for (uint32_t i = 0; i < r->class_count; i++)
+        r->classes[i] = (struct slc_page_class){
+            .limit = UINT64_MAX, .first_pool = SLC_NO_POOL, .ghosts = slc_empty_page_list()};
+    *residency = r;
+    return SLUICE_SUCCESS;
+}
+
+void slc_residency_destroy(struct slc_demand_residency *residency)
+{
+    if (!residency)
+        return;
+    SluiceAllocationCallbacks cb = residency->cb;
+    slc_page_nodes_finish(&residency->nodes, &cb);
+    slc_free(&cb, residency->classes, residency->class_count, sizeof *residency->classes);
+    slc_free(&cb, residency->pools, residency->pool_capacity, sizeof *residency->pools);
+    slc_free(&cb, residency->evicted, residency->evicted_capacity, sizeof *residency->evicted);
+    slc_free(&cb, residency, 1, sizeof *residency);
+}
+
+SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uint32_t class_index,
+                                     uint64_t limit, const struct slc_page_memory *memory)
+{
+    assert(class_index < residency->class_count);
+    struct slc_page_class *c = &residency->classes[class_index];
+    assert(c->held == 0 || c->has_memory == (memory != NULL));
+    c->limit = limit;
+    c->has_memory = memory != NULL;
+    if (memory)
+        c->memory = *memory;
+    slc_residency_trim(residency, class_index);
+    residency->over_limit |= c->held > c->limit;
+    return SLUICE_SUCCESS;
+}
+
+void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
+                              struct slc_residency_counts *counts)
+{
+    assert(class_index < residency->class_count);
+    *counts = residency->classes[class_index].counts;
+}

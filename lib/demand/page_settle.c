@@ -1,0 +1,122 @@
+#include "demand/page_settle.h"
+
+#include "demand/page_changes.h"
+#include "demand/page_eviction.h"
+#include "demand/page_pools.h"
+
+#include <assert.h>
+
+#define LIFT_SHARE 8u /* of the places must be idle before pages are asked for again */
+
+void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch)
+{
+    struct slc_demand_residency *r = residency;
+    assert(launch > r->launch);
+    r->launch = launch;
+    r->use = (struct slc_launch_use){.full_at = UINT64_MAX};
+    if (!r->bias_shown && r->prepared < launch) {
+        r->bias_shown = true;
+        r->bias_from = launch;
+    }
+    while (r->unseen.head != SLC_NO_NODE) {
+        uint32_t index = r->unseen.head;
+        struct slc_page_node *node = slc_node(r, index);
+        if (node->visible_from > launch)
+            break;
+        slc_residency_leave_home(r, index);
+        slc_residency_enter_pool(r, index, launch - 1);
+    }
+}
+
+float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t launch)
+{
+    assert(launch > residency->launch && launch >= residency->prepared);
+    residency->prepared = launch;
+    if (!residency->bias_shown) {
+        residency->bias_shown = true;
+        residency->bias_from = launch;
+    }
+    return slc_residency_lod_bias(residency);
+}
+
+void slc_residency_abandon(struct slc_demand_residency *residency, uint64_t launch)
+{
+    assert(launch > residency->launch);
+    if (residency->prepared >= launch)
+        residency->prepared = launch - 1;
+}
+
+float slc_residency_lod_bias(const struct slc_demand_residency *residency)
+{
+    return (float)residency->bias.quarters * 0.25f;
+}
+
+bool slc_residency_is_hopeless(const struct slc_demand_residency *r, uint32_t class_index)
+{
+    if (class_index != SLC_TILES)
+        return false;
+    return r->no_eviction || r->no_lod_bias || r->bias.quarters == SLC_MAX_BIAS_QUARTERS ||
+           r->classes[SLC_TILES].pinned >= r->classes[SLC_TILES].limit;
+}
+
+static uint64_t less(uint64_t a, uint64_t b)
+{
+    return a > b ? a - b : 0;
+}
+
+static void decide_bias(struct slc_demand_residency *r, uint64_t missing)
+{
+    const struct slc_page_class *tiles = &r->classes[SLC_TILES];
+    uint64_t fixed = tiles->pinned + r->use.pinned_waiting;
+    uint32_t before = r->bias.quarters;
+    struct slc_demand_need need = {
+        .room = less(tiles->limit, fixed),
+        .used = r->use.used,
+        .missing = r->use.asked + less(missing, r->use.requests), /* what was not listed: tiles */
+        .used_pinned = r->use.used_pinned,
+        .loads = r->use.loads,
+        .failed_loads = r->failed_loads,
+    };
+    r->failed_loads = 0;
+    if (r->no_eviction || r->no_lod_bias || !r->bias_shown || r->launch < r->bias_from)
+        return;
+    need.fails = need.used + need.missing + fixed > r->use.full_at;
+    if (tiles->pinned >= tiles->limit)
+        return; /* pinned pages alone fill memory: sharpness is not what is wrong */
+    slc_demand_bias_update(&r->bias, &need);
+    r->bias_shown = r->bias.quarters == before;
+}
+
+/* Pages that were refused for want of memory may be asked for again, those of the earliest launches
+ * first, half as many as there are places that the launch had no use for, if these are more than
+ * when pages were refused. */
+static void lift_refusals(struct slc_demand_residency *r)
+{
+    struct slc_page_class *tiles = &r->classes[SLC_TILES];
+    uint64_t needed = tiles->pinned + r->use.touched + tiles->counts.loading;
+    uint64_t idle = less(tiles->limit, r->no_eviction ? tiles->held : needed);
+    if (r->use.refused)
+        r->refused_idle = idle; /* these are of no use */
+    if (idle <= r->refused_idle || idle * LIFT_SHARE < tiles->limit)
+        return;
+    for (idle = (idle + 1) / 2; idle > 0 && r->overflow.head != SLC_NO_NODE; idle--) {
+        uint32_t index = r->overflow.head;
+        slc_residency_leave_home(r, index);
+        slc_node(r, index)->state = SLC_PAGE_ABSENT;
+        tiles->counts.refused--;
+        slc_residency_note(r, index);
+    }
+}
+
+void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing)
+{
+    decide_bias(residency, missing);
+    lift_refusals(residency);
+    if (!residency->over_limit)
+        return;
+    residency->over_limit = false;
+    for (uint32_t i = 0; i < residency->class_count; i++) {
+        slc_residency_trim(residency, i);
+        residency->over_limit |= residency->classes[i].held > residency->classes[i].limit;
+    }
+}

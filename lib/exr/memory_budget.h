@@ -1,0 +1,21 @@
+/** Memory that several sources share for the levels that they build. */
+#ifndef SLC_EXR_MEMORY_BUDGET_H
+#define SLC_EXR_MEMORY_BUDGET_H
+
+#include <sluice/exr.h>
+
+#include <stdatomic.h>
+
+struct SluiceExrMemoryBudget {
+    SluiceAllocationCallbacks allocator;
+    uint64_t max_size;
+    _Atomic uint64_t used_size;
+};
+
+/** Takes `size` bytes, or none and returns false. Any thread. */
+bool slc_memory_budget_take(SluiceExrMemoryBudget *budget, uint64_t size);
+
+/** Gives back what was taken. Any thread. */
+void slc_memory_budget_give_back(SluiceExrMemoryBudget *budget, uint64_t size);
+
+#endif /* SLC_EXR_MEMORY_BUDGET_H */

@@ -1,0 +1,17 @@
+/** Copies that empty the least used heaps. */
+#ifndef SLC_RESIDENCY_DEFRAGMENT_H
+#define SLC_RESIDENCY_DEFRAGMENT_H
+
+#include "residency/machine.h"
+
+struct slc_move_listener {
+    void *user;
+    /** The node has another slot; it was in this one of the heap with this id. */
+    void (*moved)(void *user, const struct slc_node *node, uint32_t heap_id, uint32_t slot);
+};
+
+/** Makes at most `room` moves. Errors: OUT_OF_HOST_MEMORY, with nothing changed. */
+SluiceResult slc_defragment(struct slc_machine *r, uint64_t retire_value, uint32_t room,
+                            const struct slc_move_listener *listener);
+
+#endif /* SLC_RESIDENCY_DEFRAGMENT_H */

@@ -1,0 +1,121 @@
+/**
+ * The residency machine: tiles of owners and the slots of heaps that hold them. It keeps the state
+ * of each tile, the order in which tiles are loaded and evicted, retries and retire values.
+ *
+ * It does not know why a tile is wanted, nor how residency is published. Its user produces the
+ * wants and is told what becomes resident. The manager's owners are textures
+ * (lib/core/texture_tiles.c).
+ *
+ * A tile that is not FREE has a node. docs/manager-specification.md has the states and the rules.
+ */
+#ifndef SLC_RESIDENCY_MACHINE_H
+#define SLC_RESIDENCY_MACHINE_H
+
+#include <sluice/manager.h>
+
+#include "base/none.h"
+#include "residency/tile_heap.h"
+
+#include <assert.h>
+
+enum slc_node_flags {
+    SLC_NODE_LISTED = 1, ///< CANCELLED: handed out as such; STANDBY: evicted
+    SLC_NODE_WANTED = 2, ///< CANCELLED and handed out: wanted again; STANDBY and evicted: wanted
+};
+
+/** A slot whose tile was unmapped and that the GPU may still read; beside SluiceTileState. */
+#define SLC_NODE_RETIRING 255
+
+/** One per tile that is not FREE, and per retiring slot. Index 0 stands for none. */
+struct slc_node {
+    uint32_t owner;      ///< index of who has the tile; SLC_NONE for retiring slots
+    uint32_t tile;       ///< of the owner
+    uint32_t prev, next; ///< in the list of its state
+    uint32_t heap, slot; ///< heap is an index, SLC_NONE without memory
+    uint32_t failures;
+    uint8_t state;
+    uint8_t level; ///< 0 is the finest; SLC_PACKED_CLASS
+    uint8_t need;  ///< log2 of the tiles of level 0 that want it
+    uint8_t flags;
+    /** REQUESTED: sequence; FAILED: due; GIVEN_UP: the user's; retiring: retire value. */
+    uint64_t order;
+};
+
+struct slc_list {
+    uint32_t head, tail; ///< 0: empty
+    uint32_t count;
+};
+
+#define SLC_REQUEST_CLASSES (SLUICE_MAX_MIP_LEVELS + 1) ///< a class per level and one for packed
+/** Loaded before all levels, and not evicted while wanted: packed mips. */
+#define SLC_PACKED_CLASS SLUICE_MAX_MIP_LEVELS
+/** What a tile of level 0 to 20 can be needed by is 2^0 to 2^40 tiles of level 0, 2^30 at most. */
+#define SLC_REQUEST_NEEDS 31
+
+/** REQUESTED tiles by class and need. */
+struct slc_requests {
+    struct slc_list lists[SLC_REQUEST_CLASSES][SLC_REQUEST_NEEDS];
+    uint32_t needs[SLC_REQUEST_CLASSES]; ///< bit n: lists[class][n] is not empty
+    uint32_t counts[SLC_REQUEST_CLASSES];
+    uint32_t classes; ///< bit c: needs[c] is not 0
+    uint32_t count;
+    uint64_t next_sequence;
+};
+
+/** FAILED tiles in order of due time. See due.c. */
+struct slc_due_tree {
+    uint32_t root; ///< 0: empty
+    uint32_t count;
+};
+
+#define SLC_NODES_PER_CHUNK 1024
+/** Indices of nodes are below this, so that whoever keeps one has a bit to spare. */
+#define SLC_MAX_NODES 0x80000000u
+
+/** Told within the calls that change a node. */
+struct slc_machine_user {
+    void *user;
+    /** A tile of the owner became REQUESTED, or stops to be. */
+    void (*requested)(void *user, uint32_t owner, bool now);
+    /** The tile became resident (MAPPED or STANDBY), or stopped to be. */
+    void (*resident)(void *user, const struct slc_node *node, bool now);
+    /** The tile became GIVEN_UP, or is going to be something else. */
+    void (*given_up)(void *user, uint32_t node, bool now);
+    /** The tile is FREE: it has no node any more. */
+    void (*released)(void *user, const struct slc_node *node);
+};
+
+struct slc_machine_limits {
+    uint32_t standby;       ///< tiles on standby; the oldest of more are evicted
+    uint32_t load_attempts; ///< failures after which a tile is GIVEN_UP
+    uint64_t retry_delay;   ///< after the first failure; doubles with each
+};
+
+struct slc_machine {
+    const SluiceAllocationCallbacks *cb;
+    struct slc_machine_user user;
+    struct slc_machine_limits limits;
+
+    struct slc_node **node_chunks; ///< owned, [node_chunk_room]; node 0 is unused
+    uint32_t node_chunk_count, node_chunk_room;
+    uint32_t node_end, free_node, free_node_count;
+    uint32_t state_counts[8]; ///< nodes by SluiceTileState
+    struct slc_requests requests;
+    struct slc_list standby, evicted, cancelled, given_up, retiring;
+    struct slc_due_tree failed;
+    /** MAPPED tiles by level, oldest first. Those of SLC_PACKED_CLASS are in none. */
+    struct slc_list mapped[SLUICE_MAX_MIP_LEVELS];
+    uint32_t evicted_wanted; ///< evicted tiles that are wanted
+
+    struct slc_tile_heaps heaps;
+    uint64_t completed_retire;
+    uint64_t restored_total; ///< from STANDBY to MAPPED
+    uint64_t steps;          ///< of searches whose length tests bound
+};
+
+static inline struct slc_node *slc_node_at(const struct slc_machine *r, uint32_t node)
+{
+    return &r->node_chunks[node / SLC_NODES_PER_CHUNK][node % SLC_NODES_PER_CHUNK];
+}
+
+#endif /* SLC_RESIDENCY_MACHINE_H */

@@ -1,0 +1,74 @@
+/** Tile slots in the application's heaps: constant time, the fullest heap first. */
+#ifndef SLC_RESIDENCY_TILE_HEAP_H
+#define SLC_RESIDENCY_TILE_HEAP_H
+
+#include <sluice/base.h>
+#include <sluice/heap.h>
+
+#include "base/map.h"
+
+struct slc_tile_heap {
+    uint32_t id;         ///< the application's
+    uint32_t free_count; ///< SLC_HEAP_DEAD: this entry is unused
+    uint32_t retiring_count;
+    uint32_t prev, next; ///< among heaps with equally many free slots, UINT32_MAX ends
+    bool loose;          ///< in no bucket until one has to be found
+    uint32_t low;        ///< in words below this one no slot is free
+    uint64_t *free;      ///< owned, a bit per slot
+    uint32_t *nodes;     ///< owned, [capacity]: who lives in the slot, 0: nobody
+};
+
+#define SLC_HEAP_DEAD UINT32_MAX
+
+struct slc_tile_heaps {
+    const SluiceAllocationCallbacks *cb;
+    SluiceHeapAllocator allocator;
+    uint32_t capacity; ///< slots per heap
+    uint32_t tile_size;
+    struct slc_tile_heap *heaps; ///< owned, [end], dead ones in between
+    uint32_t end, room, live_count;
+    uint32_t dead_from; ///< no entry before this one is dead
+    struct slc_map ids; ///< the application's ids of living heaps to entries; room for `room`
+    uint32_t loose;     ///< heaps in no bucket, linked by `next`
+    uint32_t open; ///< slots are taken from it while no other has fewer; loose; UINT32_MAX: none
+    uint32_t *buckets; ///< owned, [capacity + 1]: first heap with that many free slots
+    uint64_t *bits;    ///< owned: which buckets are not empty, and words over words of that
+    uint32_t bit_words;
+    uint64_t free_total;
+};
+
+SluiceResult slc_tile_heaps_init(struct slc_tile_heaps *h, const SluiceAllocationCallbacks *cb,
+                                 const SluiceHeapAllocator *allocator, uint32_t capacity,
+                                 uint32_t tile_size);
+/** Releases every heap. A zeroed struct is fine. */
+void slc_tile_heaps_finish(struct slc_tile_heaps *h);
+
+/**
+ * Asks the allocator for a heap. `*answer` is what it said, `*heap_id` its id. OUT_OF_HOST_MEMORY
+ * without asking if there is no memory for the books.
+ */
+SluiceResult slc_tile_heaps_add(struct slc_tile_heaps *h, SluiceResult *answer, uint32_t *heap_id);
+
+/**
+ * Takes the lowest slot of a heap with the fewest free ones and writes heap index and slot. Returns
+ * false, with nothing changed, if no slot is free.
+ */
+bool slc_tile_heaps_take(struct slc_tile_heaps *h, uint32_t node, uint32_t *heap, uint32_t *slot);
+/**
+ * Sorts heaps whose slots were taken or given since the last sort back among heaps with equally
+ * many free slots. Which of equal heaps slc_tile_heaps_take prefers depends on when heaps are
+ * sorted, so a call that can still fail must not sort them.
+ */
+void slc_tile_heaps_settle(struct slc_tile_heaps *h);
+/** The lowest slot of this heap, which has one. */
+uint32_t slc_tile_heaps_take_from(struct slc_tile_heaps *h, uint32_t heap, uint32_t node);
+/** Slots that only packed tiles may take: one in 16, at most 64. */
+uint32_t slc_tile_heaps_reserved(const struct slc_tile_heaps *h);
+void slc_tile_heaps_give(struct slc_tile_heaps *h, uint32_t heap, uint32_t slot);
+
+/** Index of the living heap that the application calls `id`, or UINT32_MAX. */
+uint32_t slc_tile_heaps_find(const struct slc_tile_heaps *h, uint32_t id);
+/** The heap must be empty. */
+void slc_tile_heaps_release(struct slc_tile_heaps *h, uint32_t heap);
+
+#endif /* SLC_RESIDENCY_TILE_HEAP_H */

@@ -1,0 +1,127 @@
+/*
+ * The tile whose read failed last stands for its source: when it comes, the source has recovered.
+ * Of several damaged tiles it may be any, so a message may say that a source is well and the next
+ * one that it is not; a minimum of time between such messages bounds their number.
+ */
+#include "vulkan/streamer.h"
+
+#include "base/log.h"
+
+#include <stdio.h>
+
+static const char *name_of(const struct slc_texture *texture)
+{
+    return texture->info.pName ? texture->info.pName : "image";
+}
+
+static double seconds(const SluiceVulkanStreamer *s, uint64_t time_stamps)
+{
+    return (double)time_stamps / (double)s->info.timeStampsPerSecond;
+}
+
+static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *texture, uint32_t tile,
+                       SluiceResult result)
+{
+    SluiceTileLoaderStatistics reads = {.lastFailureOffset = SLUICE_UNKNOWN_OFFSET};
+    char place[48] = "";
+    sluiceGetTileLoaderStatistics(s->loader, texture->source, &reads);
+    if (reads.lastFailure == result && reads.lastFailureOffset != SLUICE_UNKNOWN_OFFSET)
+        snprintf(place, sizeof place, " at offset 0x%llx",
+                 (unsigned long long)reads.lastFailureOffset);
+    bool packed = tile >= texture->layout.regularTileCount;
+    slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
+            name_of(texture), place, sluiceResultString(result),
+            packed ? "Its packed levels are missing" : "Showing a coarser level",
+            seconds(s, s->info.retryDelay));
+}
+
+static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                         uint64_t failed_count)
+{
+    if (s->info.givenUpRetryDelay == UINT64_MAX)
+        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Not retrying.",
+                name_of(texture), (unsigned long long)failed_count);
+    else
+        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Retrying every %.3g s.",
+                name_of(texture), (unsigned long long)failed_count,
+                seconds(s, s->info.givenUpRetryDelay));
+}
+
+/* Of a source that fails and recovers in turns only each interval. */
+static bool may_speak(const SluiceVulkanStreamer *s, const struct slc_read_trouble *trouble)
+{
+    return trouble->said != SLC_READS_WELL || !trouble->has_spoken ||
+           s->time_stamp - trouble->time >= s->info.givenUpRetryDelay;
+}
+
+static void note_spoken(const SluiceVulkanStreamer *s, struct slc_read_trouble *trouble)
+{
+    trouble->said = trouble->health;
+    trouble->has_spoken = true;
+    trouble->time = s->time_stamp;
+}
+
+void slc_read_trouble_failed(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile,
+                             SluiceResult result)
+{
+    const struct slc_texture *t = &s->textures[texture];
+    struct slc_read_trouble *trouble = &s->textures[t->first].trouble;
+    SluiceTileState state = SLUICE_TILE_STATE_FREE;
+    trouble->failed_count++;
+    trouble->texture = texture;
+    trouble->tile = tile;
+    sluiceGetTileState(s->manager, t->id, tile, &state, NULL);
+    if (state == SLUICE_TILE_STATE_GIVEN_UP)
+        trouble->health = SLC_READS_GIVEN_UP;
+    else if (trouble->health == SLC_READS_WELL)
+        trouble->health = SLC_READS_FAIL;
+    if (trouble->said == trouble->health || !may_speak(s, trouble))
+        return;
+    if (trouble->said == SLC_READS_WELL)
+        say_failed(s, t, tile, result);
+    if (trouble->health == SLC_READS_GIVEN_UP)
+        say_given_up(s, t, trouble->failed_count);
+    note_spoken(s, trouble);
+}
+
+static void retry_other_layers(SluiceVulkanStreamer *s, const struct slc_texture *layer)
+{
+    for (uint32_t i = layer->first; i < layer->first + layer->layer_count; i++)
+        if (&s->textures[i] != layer && s->textures[i].state == SLC_TEXTURE_LIVE)
+            slc_streamer_check(s, sluiceRetryFailedTiles(s->manager, s->textures[i].id),
+                               "sluiceRetryFailedTiles");
+}
+
+void slc_read_trouble_delivered(SluiceVulkanStreamer *s, uint32_t texture, uint32_t tile)
+{
+    const struct slc_texture *t = &s->textures[texture];
+    struct slc_read_trouble *trouble = &s->textures[t->first].trouble;
+    if (trouble->health == SLC_READS_WELL || trouble->texture != texture || trouble->tile != tile)
+        return;
+    trouble->health = SLC_READS_WELL;
+    if (trouble->said != SLC_READS_WELL) {
+        slc_log(&s->info.log, SLUICE_LOG_INFO, "%s: can be read again, after %llu failed reads.",
+                name_of(t), (unsigned long long)trouble->failed_count);
+        note_spoken(s, trouble);
+        retry_other_layers(s, t);
+    }
+    trouble->failed_count = 0;
+}
+
+SluiceResult sluiceRetryVulkanSource(SluiceVulkanStreamer *streamer,
+                                     const SluiceImageSource *source)
+{
+    if (!streamer)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceVulkanStreamer *s = streamer;
+    for (uint32_t i = 0; i < s->texture_high; i++) {
+        const struct slc_texture *texture = &s->textures[i];
+        if (texture->state != SLC_TEXTURE_LIVE || (source && texture->source != source))
+            continue;
+        SluiceResult result = slc_streamer_check(s, sluiceRetryFailedTiles(s->manager, texture->id),
+                                                 "sluiceRetryFailedTiles");
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}

@@ -1,0 +1,58 @@
+/**
+ * Slots of one tile each that the host writes and the GPU copies from, in blocks of 4 MiB. Some
+ * blocks are kept from the start. The others are made when a slot of theirs is first needed, and
+ * freed when all of their slots are idle for a while. The user chooses slots, and should prefer
+ * those that were used last.
+ */
+#ifndef SLC_VULKAN_STAGING_H
+#define SLC_VULKAN_STAGING_H
+
+#include "vulkan/buffer.h"
+
+#define SLC_STAGING_BLOCK_SLOTS 64u
+
+struct slc_staging_block {
+    struct slc_buffer buffer; ///< none: not made yet
+    uint32_t used_count;      ///< slots
+    uint64_t idle_since;      ///< tick of slc_staging_trim
+};
+
+struct slc_staging {
+    const struct slc_vk *vk;
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    struct slc_staging_block *blocks; ///< owned
+    uint32_t block_count, slot_count;
+    uint32_t kept_count; ///< blocks that are made at the start and never freed
+    uint64_t tick;
+    bool refused; ///< since the last tick: the device is not asked again before the next
+};
+
+/**
+ * Makes blocks for `kept_size` bytes: at least one, at most all. Errors: OUT_OF_HOST_MEMORY,
+ * OUT_OF_DEVICE_MEMORY, VULKAN; finish it then, too.
+ */
+SluiceResult slc_staging_init(struct slc_staging *staging, const struct slc_vk *vk,
+                              const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                              uint32_t slot_count, uint64_t kept_size);
+void slc_staging_finish(struct slc_staging *staging);
+
+/** Whether a slot has memory. */
+bool slc_staging_is_there(const struct slc_staging *staging, uint32_t slot);
+/** Gives it memory; false if there is none now. */
+bool slc_staging_ensure(struct slc_staging *staging, uint32_t slot);
+/** Of one that has memory, which it keeps until it is given back. */
+void slc_staging_take(struct slc_staging *staging, uint32_t slot);
+/** No frame under way reads it. */
+void slc_staging_give(struct slc_staging *staging, uint32_t slot);
+/** Once per frame: frees blocks that nobody used for 120 frames, except those that are kept. */
+void slc_staging_trim(struct slc_staging *staging);
+
+/** Of one that has memory. */
+uint8_t *slc_staging_memory(const struct slc_staging *staging, uint32_t slot);
+VkBuffer slc_staging_buffer(const struct slc_staging *staging, uint32_t slot);
+uint64_t slc_staging_offset(uint32_t slot); ///< in that buffer
+/** Equal for slots of one buffer. */
+uint32_t slc_staging_block(uint32_t slot);
+
+#endif /* SLC_VULKAN_STAGING_H */

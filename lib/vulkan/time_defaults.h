@@ -1,0 +1,31 @@
+/** Times of the create info: all in the unit of the time stamps, with defaults in seconds. */
+#ifndef SLC_VULKAN_TIME_DEFAULTS_H
+#define SLC_VULKAN_TIME_DEFAULTS_H
+
+#include <sluice/vulkan.h>
+
+#define SLC_MAX_TIME_STAMPS_PER_SECOND 1000000000000ull
+#define SLC_DEFAULT_STANDBY_TILES 1024u
+
+/** ceil(milliseconds * timeStampsPerSecond / 1000), at least 1. `milliseconds` is at most 10^6. */
+uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t milliseconds);
+
+/**
+ * Fills in timeStampsPerSecond first, then every time that is 0 and numExtraStandbyTiles; with
+ * newestFeedbackMapOnly and noStandbyTiles these two become 0. Logs what it refuses.
+ * Errors: INVALID_ARGUMENT.
+ */
+SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info);
+
+/** Notices callers who count frames where the library takes time stamps for nanoseconds. */
+struct slc_time_check {
+    bool on; ///< timeStampsPerSecond was left to the library
+    uint64_t first;
+    uint32_t frame_count;
+};
+
+/** Once per frame. Logs one warning if 256 frames took less than 256 us by their time stamps. */
+void slc_time_check_frame(struct slc_time_check *check, const SluiceLogCallback *log,
+                          uint64_t time_stamp);
+
+#endif /* SLC_VULKAN_TIME_DEFAULTS_H */

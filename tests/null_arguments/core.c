@@ -1,0 +1,235 @@
+/* NULL and zero in every argument of the functions of sluice. */
+#include "null_arguments/calls.h"
+
+#include <sluice/feedback_rate.h>
+#include <sluice/image.h>
+#include <sluice/loader.h>
+#include <sluice/manager.h>
+#include <sluice/metrics.h>
+#include <sluice/replay.h>
+
+#include <stdio.h>
+#include <unistd.h>
+
+/* clang-format off */
+/* CALLS
+sluiceResultString(SLUICE_SUCCESS)
+
+sluicePredictFeedbackMiss(&f->rate, 0.5, &f->out.number)
+sluiceChooseFeedbackProbability(&f->rate, 0.01, &f->out.probability)
+sluicePredictFeedbackDelay(&f->rate, 0.5, &f->out.delay)
+
+sluiceGetFormatInfo(SLUICE_FORMAT_R8_UNORM, &f->out.format)
+sluiceFormatTexelSize(SLUICE_FORMAT_R8_UNORM)
+sluiceFormatRegionSize(SLUICE_FORMAT_R8_UNORM, 4, 4)
+sluiceFormatString(SLUICE_FORMAT_R8_UNORM)
+sluiceGetStandardTileShape(SLUICE_FORMAT_R8_UNORM, &f->out.width, &f->out.height)
+sluiceGetImageInfo(f->source, &f->out.info)
+sluiceReadImageRegion(f->source, &f->region, f->out.texels, sizeof f->out.texels)
+sluiceReadImageRegionLocated(f->source, &f->region, f->out.texels, sizeof f->out.texels, &f->out.fault)
+!sluiceDestroyImageSource(f->source)
+sluiceCreateProceduralImageSource(&f->image, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceCreateMemoryImageSource(f->texels, &f->info, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+sluiceCreateArrayImageSource(&f->source, 1, ?NULL, &f->out.source) => sluiceDestroyImageSource(f->out.source)
+
+sluiceCreateTileLoader(&f->loader_info, &f->out.loader) => sluiceDestroyTileLoader(f->out.loader)
+!sluiceDestroyTileLoader(f->loader)
+sluiceSubmitTileRead(f->loader, &f->read, &f->out.ticket) => sluiceWaitTileLoaderIdle(f->loader)
+sluiceSubmitTileReads(f->loader, 1, &f->read, &f->out.ticket) => sluiceWaitTileLoaderIdle(f->loader)
+sluiceCancelTileRead(f->loader, 1)
+sluiceCollectTileReads(f->loader, one(f), &f->out.read)
+sluiceWaitTileLoaderIdle(f->loader)
+sluiceGetTileLoaderStatistics(f->loader, ?f->source, &f->out.loader_statistics)
+sluiceForgetTileLoaderSource(f->loader, f->source)
+
+sluiceCreateStreamedTextureManager(&f->manager_info, &f->out.manager) => sluiceDestroyStreamedTextureManager(f->out.manager)
+!sluiceDestroyStreamedTextureManager(f->manager)
+sluiceSetConfig(f->manager, &f->config)
+sluiceGetStreamedTextureLayout(&f->desc, &f->out.layout)
+sluiceAddStreamedTexture(f->manager, &f->desc, &f->out.id)
+!sluiceRemoveStreamedTexture(f->manager, f->id, 1)
+sluiceGetTextureLayout(f->manager, f->id, &f->out.layout)
+sluiceUpdateWithSamplerFeedback(f->manager, f->id, &f->feedback, 1, 1)
+sluiceMatchPrimaryTexture(f->manager, f->id, f->follower, 1, 1)
+sluiceSetPrimaryTexture(f->manager, f->follower, f->id)
+sluiceGetTilesToMap(f->manager, f->id, one(f), ?f->out.tiles)
+!sluiceUpdateTilesMapping(f->manager, f->id, 1, f->indices)
+!sluiceReportFailedTiles(f->manager, f->id, 1, f->indices, 1)
+sluiceRetryFailedTiles(f->manager, f->id)
+sluiceGetGivenUpTiles(f->manager, one(f), ?f->out.tiles)
+sluiceGetTilesToCancel(f->manager, f->id, one(f), ?f->out.tiles)
+!sluiceReportCancelledTiles(f->manager, f->id, 1, f->indices, 1)
+sluiceGetTilesToUnmap(f->manager, f->id, 1, one(f), ?f->out.tiles)
+sluiceCompleteRetireValue(f->manager, 1)
+sluiceTrimStandbyTiles(f->manager, 1)
+sluiceDefragmentTiles(f->manager, 1, one(f), ?f->out.moves)
+sluiceGetEmptyHeaps(f->manager, one(f), ?f->out.heaps)
+!sluiceReleaseHeap(f->manager, 1)
+sluiceWriteMinMipData(f->manager, f->id, 2, 4, f->out.min_mip)
+sluiceWriteMinMipRect(f->manager, &f->rect, 2, 4, f->out.min_mip)
+sluiceGetMinMipUpdates(f->manager, one(f), ?f->out.rects)
+sluiceGetTileState(f->manager, f->id, 1, ?&f->out.state, ?&f->out.tile)
+sluiceGetStatistics(f->manager, &f->out.statistics)
+
+sluiceComputePsnr8(f->texels, f->texels, 4, 4, 4, &f->out.number)
+sluiceComputeSsim(&f->pair, ?NULL, ?NULL, &f->out.number)
+sluiceComputeFlip(&f->pair, 60, ?NULL, ?NULL, &f->out.number)
+~sluiceColourMagma(f->values, 2, f->out.texels)
+
+sluiceBeginRecording(f->fresh, &f->writer, ?NULL, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
+sluiceBeginRecordingToFile(f->fresh, f->path, ?NULL, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
+sluiceBeginFileRecording(f->fresh, &f->recording, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
+sluiceEndRecording(?NULL)
+!sluiceReplay(&f->replay, &f->out.replay)
+*/
+/* clang-format on */
+
+struct fixture {
+    SluiceFeedbackRate rate;
+    SluiceProceduralImage image;
+    SluiceImageInfo info;
+    SluiceImageSource *source;
+    SluiceImageRegion region;
+    uint8_t texels[4 * 256 * 256];
+    SluiceTileLoaderCreateInfo loader_info;
+    SluiceTileLoader *loader;
+    void *read_texels;
+    uint8_t read_room[64];
+    SluiceTileRead read;
+    SluiceStreamedTextureManagerCreateInfo manager_info;
+    SluiceStreamedTextureManagerConfig config;
+    SluiceStreamedTextureManager *manager, *fresh;
+    SluiceStreamedTextureDesc desc;
+    SluiceTextureId id, follower;
+    SluiceFeedbackDesc feedback;
+    uint8_t map[4];
+    uint32_t indices[1];
+    SluiceMinMipRect rect;
+    SluicePicturePair pair;
+    float values[2];
+    SluiceRecordWriter writer;
+    SluiceFileRecordingInfo recording;
+    SluiceReplayInfo replay;
+    char path[64];
+    struct {
+        double number;
+        float probability;
+        SluiceFeedbackDelay delay;
+        SluiceFormatInfo format;
+        uint32_t width, height, room;
+        SluiceImageInfo info;
+        uint8_t texels[64];
+        SluiceImageFault fault;
+        SluiceImageSource *source;
+        SluiceTileLoader *loader;
+        uint64_t ticket;
+        SluiceTileReadResult read;
+        SluiceTileLoaderStatistics loader_statistics;
+        SluiceStreamedTextureManager *manager;
+        SluiceStreamedTextureLayout layout;
+        SluiceTextureId id;
+        SluiceTile tiles[1], tile;
+        SluiceTileMove moves[1];
+        uint32_t heaps[1];
+        uint8_t min_mip[4];
+        SluiceMinMipRect rects[1];
+        SluiceTileState state;
+        SluiceStreamedTextureStatistics statistics;
+        SluiceRecorder *recorder;
+        SluiceReplayResult replay;
+    } out;
+};
+
+CALLS_FUNCTIONS
+
+static uint32_t *one(struct fixture *f)
+{
+    f->out.room = 1;
+    return &f->out.room;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
+{
+    (void)user, (void)size;
+    *heap_id = 0;
+    return SLUICE_SUCCESS;
+}
+
+static void release_heap(void *user, uint32_t heap_id)
+{
+    (void)user, (void)heap_id;
+}
+
+static SluiceResult write_nothing(void *user, const void *data, size_t size)
+{
+    (void)user, (void)data, (void)size;
+    return SLUICE_SUCCESS;
+}
+
+static void init_manager(struct fixture *f)
+{
+    f->manager_info = (SluiceStreamedTextureManagerCreateInfo){
+        .heapAllocator = {NULL, allocate_heap, release_heap},
+        .heapTileCapacity = 16,
+        .tileSize = 65536,
+        .alwaysMapPackedTiles = true};
+    CHECK_OK(sluiceCreateStreamedTextureManager(&f->manager_info, &f->manager));
+    CHECK_OK(sluiceCreateStreamedTextureManager(&f->manager_info, &f->fresh));
+    f->desc = (SluiceStreamedTextureDesc){.width = 256,
+                                          .height = 256,
+                                          .mipLevelCount = 9,
+                                          .regularMipCount = 2,
+                                          .packedTileCount = 1,
+                                          .tileWidth = 128,
+                                          .tileHeight = 128};
+    CHECK_OK(sluiceAddStreamedTexture(f->manager, &f->desc, &f->id));
+    CHECK_OK(sluiceAddStreamedTexture(f->manager, &f->desc, &f->follower));
+    f->feedback = (SluiceFeedbackDesc){.pMinMip = f->map, .width = 2, .height = 2};
+    f->rect = (SluiceMinMipRect){.textureId = f->id, .width = 2, .height = 2};
+}
+
+static void fixture_init(struct fixture *f, void **state)
+{
+    (void)state;
+    f->rate = (SluiceFeedbackRate){
+        .regionWidth = 4, .regionHeight = 4, .textureCount = 10, .frameRate = 60, .timeout = 1};
+    f->image = (SluiceProceduralImage){NULL, texel};
+    f->info = (SluiceImageInfo){
+        .width = 256, .height = 256, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&f->image, &f->info, NULL, &f->source));
+    f->region = (SluiceImageRegion){.width = 4, .height = 4};
+    f->loader_info = (SluiceTileLoaderCreateInfo){.threadCount = 1};
+    CHECK_OK(sluiceCreateTileLoader(&f->loader_info, &f->loader));
+    f->read_texels = f->read_room;
+    f->read = (SluiceTileRead){
+        .source = f->source, .regionCount = 1, .pRegions = &f->region, .ppTexels = &f->read_texels};
+    f->pair = (SluicePicturePair){.pA = f->texels, .pB = f->texels, .width = 16, .height = 16};
+    f->writer = (SluiceRecordWriter){NULL, write_nothing};
+    f->recording.pPath = f->path;
+    snprintf(f->path, sizeof f->path, "/tmp/sluice-null-%ld.rec", (long)getpid());
+    init_manager(f);
+}
+
+static void fixture_finish(struct fixture *f)
+{
+    sluiceDestroyTileLoader(f->loader);
+    sluiceDestroyStreamedTextureManager(f->manager);
+    sluiceDestroyStreamedTextureManager(f->fresh);
+    sluiceDestroyImageSource(f->source);
+    remove(f->path);
+}
+
+#include "core_calls.h"
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {CALLS_TESTS};
+    return RUN_TESTS(tests);
+}

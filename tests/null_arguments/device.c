@@ -1,0 +1,190 @@
+/* NULL and zero in every argument of the functions of sluice-vulkan. */
+#include "device/harness.h"
+#include "null_arguments/calls.h"
+
+#include <sluice/demand.h>
+
+/* clang-format off */
+/* CALLS
+sluiceGetVulkanDeviceCapabilities(f->h->instance, f->h->physical_device, f->h->get, &f->out.caps)
+sluiceGetVulkanFormatCapabilities(f->h->instance, f->h->physical_device, f->h->get, SLUICE_FORMAT_R8G8B8A8_UNORM, &f->out.format)
+!sluiceGetVulkanSparseImageLayout(f->h->instance, f->h->physical_device, f->h->device, f->h->get, ?NULL, &f->info, &f->out.sparse)
+sluiceRequireVulkanFeatures(f->h->instance, f->h->physical_device, f->h->get, f->h->mode, ?NULL, &f->out.features, &f->out.features12)
+sluiceCreateVulkanStreamer(&f->streamer_info, &f->out.streamer) => sluiceDestroyVulkanStreamer(f->out.streamer)
+!sluiceDestroyVulkanStreamer(f->streamer)
+sluiceWaitVulkanStreamerIdle(f->streamer)
+sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->out.texture)
+sluiceAddVulkanTextureArray(f->streamer, &f->texture_info, 1, &f->out.texture)
+sluiceRemoveVulkanTexture(f->streamer, f->texture.textureId)
+sluiceGetVulkanBuffers(f->streamer, &f->out.buffers)
+sluiceGetVulkanPages(f->streamer, &f->out.pages)
+sluiceBeginStreamingFrame(f->streamer, f->commands, 2, &f->out.frame) => sluiceAbandonStreamingFrame(f->streamer, &f->out.frame)
+!sluiceEndStreamingFrame(f->streamer, f->commands)
+!sluiceAbandonStreamingFrame(f->streamer, &f->frame)
+sluiceGetVulkanStreamerStatistics(f->streamer, &f->out.statistics)
+sluiceGetVulkanReadStatistics(f->streamer, ?f->source, &f->out.reads)
+sluiceRetryVulkanSource(f->streamer, ?f->source)
+sluiceGetVulkanResidencyMode(f->streamer)
+sluiceChooseVulkanResidencyMode(&f->out.caps, f->h->mode, 1)
+sluiceGetVulkanStreamerManager(f->streamer)
+
+sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemandLoader(f->out.loader)
+!sluiceDestroyDemandLoader(f->loader)
+sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->out.id)
+sluiceCreateDemandTextureVariant(f->loader, f->id, &f->sampler, &f->out.id)
+sluiceCreateDemandUdim(f->loader, &f->id, 1, 1, f->color, &f->out.id)
+sluiceDestroyDemandTexture(f->loader, f->id)
+sluiceReplaceDemandImage(f->loader, f->id, &f->demand_info.image)
+sluiceInvalidateDemandTexture(f->loader, f->id)
+sluiceRetryDemandTexture(f->loader, ?f->id)
+sluicePreloadDemandTexture(f->loader, f->id, 0, ?&f->out.ticket)
+sluiceCreateDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
+sluiceDestroyDemandResource(f->loader, f->resource)
+sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
+sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
+sluiceGetDemandPages(f->loader, &f->out.pages)
+sluicePrepareDemandLaunch(f->loader, f->commands, &f->out.launch) => sluiceAbandonDemandLaunch(f->loader, &f->out.launch)
+!sluiceEndDemandLaunch(f->loader, f->commands)
+!sluiceAbandonDemandLaunch(f->loader, &f->launch)
+!sluiceProcessDemandRequests(f->loader, &f->launch, 1, &f->out.requests, ?&f->out.ticket)
+sluiceGetDemandTicketStatus(f->loader, 0, &f->out.ticket_status)
+sluiceWaitDemandTicket(f->loader, 0, 1, ?&f->out.ticket_status)
+sluiceCancelDemandTicket(f->loader, 0)
+!sluiceAbortDemandLoader(f->loader)
+sluiceGetDemandStatistics(f->loader, &f->out.demand_statistics)
+*/
+/* clang-format on */
+
+struct fixture {
+    struct harness *h;
+    VkCommandBuffer commands; ///< begun
+    SluiceImageInfo info;
+    SluiceImageSource *source;
+    SluiceVulkanStreamerCreateInfo streamer_info;
+    SluiceVulkanStreamer *streamer;
+    SluiceStreamingFrame frame;
+    SluiceVulkanTextureCreateInfo texture_info;
+    SluiceVulkanTexture texture;
+    SluiceDemandLoaderCreateInfo loader_info;
+    SluiceDemandLoader *loader;
+    SluiceDemandTextureCreateInfo demand_info;
+    SluiceDemandSampler sampler;
+    SluiceDemandTextureId id;
+    float color[4];
+    SluiceDemandResourceCreateInfo resource_info;
+    SluiceDemandResourceId resource;
+    SluiceDemandLaunch launch;
+    struct {
+        SluiceVulkanDeviceCapabilities caps;
+        SluiceVulkanFormatCapabilities format;
+        SluiceVulkanSparseImageLayout sparse;
+        VkPhysicalDeviceFeatures features;
+        VkPhysicalDeviceVulkan12Features features12;
+        SluiceVulkanStreamer *streamer;
+        SluiceVulkanTexture texture;
+        SluiceVulkanBuffers buffers;
+        SluiceVulkanPages pages;
+        SluiceStreamingFrame frame;
+        SluiceVulkanStreamerStatistics statistics;
+        SluiceTileLoaderStatistics reads;
+        SluiceDemandLoader *loader;
+        SluiceDemandTextureId id;
+        SluiceDemandTicket ticket;
+        SluiceDemandResourceId resource;
+        uint32_t page;
+        SluiceDemandBuffers demand_buffers;
+        SluiceDemandLaunch launch;
+        SluiceDemandRequests requests;
+        SluiceDemandTicketStatus ticket_status;
+        SluiceDemandStatistics demand_statistics;
+    } out;
+};
+
+CALLS_FUNCTIONS
+
+static struct harness h;
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
+{
+    (void)user;
+    *value = page;
+    return SLUICE_SUCCESS;
+}
+
+static void init_streamer(struct fixture *f)
+{
+    f->streamer_info = (SluiceVulkanStreamerCreateInfo){
+        .maxTextureCount = 8, .tilesPerFrame = 4, .maxRegionCount = 64, .loaderThreadCount = 1};
+    harness_fill(&h, &f->streamer_info);
+    CHECK_OK(sluiceCreateVulkanStreamer(&f->streamer_info, &f->streamer));
+    f->texture_info.source = f->source;
+    CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
+}
+
+static void init_loader(struct fixture *f)
+{
+    const SluiceVulkanStreamerCreateInfo *handles = &f->streamer_info;
+    f->loader_info =
+        (SluiceDemandLoaderCreateInfo){.instance = handles->instance,
+                                       .physicalDevice = handles->physicalDevice,
+                                       .device = handles->device,
+                                       .pfnGetInstanceProcAddr = handles->pfnGetInstanceProcAddr,
+                                       .queueFamilyIndex = handles->queueFamilyIndex,
+                                       .log = handles->log,
+                                       .maxTextureCount = 64,
+                                       .pageCapacity = 4096,
+                                       .maxTilesInFlight = 4,
+                                       .memoryBudget = 4 << 20,
+                                       .loaderThreadCount = 1};
+    CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
+    f->demand_info.image.source = f->source;
+    CHECK_OK(sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->id));
+    f->resource_info = (SluiceDemandResourceCreateInfo){.pageCount = 4, .pfnFill = fill};
+    uint32_t first;
+    CHECK_OK(sluiceCreateDemandResource(f->loader, &f->resource_info, &f->resource, &first));
+}
+
+static void fixture_init(struct fixture *f, void **state)
+{
+    (void)state;
+    h.quiet = true;
+    f->h = &h;
+    f->commands = h.commands[0];
+    f->info = (SluiceImageInfo){
+        .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    const SluiceProceduralImage image = {NULL, texel};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &f->info, NULL, &f->source));
+    init_streamer(f);
+    init_loader(f);
+    const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    assert_int_equal(h.BeginCommandBuffer(f->commands, &begin), VK_SUCCESS);
+}
+
+/* Nothing of what was recorded is submitted. */
+static void fixture_finish(struct fixture *f)
+{
+    assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
+    sluiceDestroyDemandLoader(f->loader);
+    sluiceDestroyVulkanStreamer(f->streamer);
+    sluiceDestroyImageSource(f->source);
+    h.quiet = false;
+    harness_check_silence(&h);
+}
+
+#include "device_calls.h"
+
+int main(void)
+{
+    int status = harness_init(&h);
+    if (status)
+        return status;
+    const struct CMUnitTest tests[] = {CALLS_TESTS};
+    return harness_finish(&h, RUN_TESTS(tests));
+}

@@ -1,0 +1,191 @@
+/* More textures than a device bears: what fits goes on, and a line says what to do. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/test.h"
+
+#include <string.h>
+
+enum { BEARABLE = 3 };
+
+static void note_error(void *user, SluiceLogSeverity severity, const char *message)
+{
+    if (severity == SLUICE_LOG_ERROR && strstr(message, "paged mode"))
+        ++*(uint32_t *)user;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static uint8_t want_nothing(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return SLUICE_MIP_UNTOUCHED;
+}
+
+static void frame(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer, uint64_t time)
+{
+    SluiceStreamingFrame frame;
+    fake->published = false;
+    fake->copy_count = fake->bind_count = 0;
+    fake->bind_value = fake->submitted_bind_value;
+    CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+    CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(fake), time, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(streamer, fake_vulkan_commands(fake)));
+    fake->frame_semaphore = frame.semaphore;
+    fake->frame_value = frame.signalValue;
+}
+
+static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    uint32_t errors = 0;
+    fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_nothing};
+    SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+                                           .maxTextureCount = 8,
+                                           .maxRegionCount = 256,
+                                           .loaderThreadCount = 1,
+                                           .maxTouchedTiles = BEARABLE,
+                                           .log = {&errors, note_error}};
+    fake_vulkan_fill(&fake, &info);
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {
+        .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceVulkanTextureCreateInfo create = {0};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
+    SluiceVulkanTexture texture;
+    for (uint32_t i = 0; i < BEARABLE; i++)
+        CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
+    CHECK_RESULT(sluiceAddVulkanTexture(streamer, &create, &texture), SLUICE_ERROR_LIMIT_EXCEEDED);
+    assert_int_equal(errors, 1);
+    for (uint64_t time = 1; time < 8; time++)
+        frame(&fake, streamer, time);
+    SluiceVulkanStreamerStatistics stats;
+    sluiceGetVulkanStreamerStatistics(streamer, &stats);
+    assert_int_equal(stats.manager.mappedTileCount, BEARABLE);
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyImageSource(create.source);
+    assert_int_equal(fake.live_objects, 0);
+}
+
+static void count_shortages(void *user, SluiceLogSeverity severity, const char *message)
+{
+    if (severity == SLUICE_LOG_WARNING && strstr(message, "maxPageChunkCount"))
+        ++*(uint32_t *)user;
+}
+
+static uint8_t want_all(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return 0;
+}
+
+static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    uint32_t warnings = 0;
+    fake = (struct fake_vulkan){.want = want_all};
+    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
+                                           .maxRegionCount = 1024,
+                                           .loaderThreadCount = 1,
+                                           .feedbackTimeout = 1000,
+                                           .maxPageChunkCount = 2,
+                                           .log = {&warnings, count_shortages}};
+    fake_vulkan_fill(&fake, &info);
+    info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {
+        .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceVulkanTextureCreateInfo create = {0};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
+    SluiceVulkanTexture texture;
+    CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
+    SluiceVulkanStreamerStatistics stats;
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
+    assert_int_equal(stats.pageChunkCount, 0);
+    for (uint64_t time = 1; time < 200; time++)
+        frame(&fake, streamer, time);
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
+    assert_int_equal(stats.pageChunkCount, 2); /* of 64 tiles each; level 0 alone has 256 */
+    assert_in_range(stats.pageChunkShortages, 2, 10);
+    assert_int_equal(warnings, 1);
+    assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 2 * 64 + 2);
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyImageSource(create.source);
+    assert_int_equal(fake.live_objects, 0);
+}
+
+/* The first texture has the regions below, the second those from 256 on. */
+static uint8_t want_one(void *user, uint32_t region)
+{
+    return (region < 256) == (*(uint32_t *)user == 0) ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
+static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    uint32_t seen = 0;
+    fake = (struct fake_vulkan){.want = want_one, .user = &seen};
+    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
+                                           .maxRegionCount = 1024,
+                                           .loaderThreadCount = 1,
+                                           .feedbackTimeout = 2,
+                                           .numExtraStandbyTiles = 1024,
+                                           .maxPageChunkCount = 2};
+    fake_vulkan_fill(&fake, &info);
+    info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
+    SluiceVulkanStreamer *streamer;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {
+        .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageSource *sources[2];
+    SluiceVulkanTexture texture;
+    for (uint32_t i = 0; i < 2; i++) {
+        CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &sources[i]));
+        SluiceVulkanTextureCreateInfo create = {.source = sources[i]};
+        CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
+        grey.width = grey.height = 1024;
+    }
+    SluiceVulkanStreamerStatistics stats;
+    for (uint64_t time = 1; time < 60; time++)
+        frame(&fake, streamer, time);
+    seen = 1; /* 85 tiles, where 128 have pages */
+    for (uint64_t time = 60; time < 100; time++)
+        frame(&fake, streamer, time);
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
+    assert_true(stats.pageChunkShortages > 0);
+    SluiceStreamedTextureLayout layout;
+    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
+    CHECK_OK(sluiceGetTextureLayout(manager, texture.textureId, &layout));
+    for (uint32_t i = 0; i < layout.tileCount; i++) {
+        SluiceTileState tile_state;
+        CHECK_OK(sluiceGetTileState(manager, texture.textureId, i, &tile_state, NULL));
+        assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
+    }
+    assert_in_range(stats.manager.standbyTileCount, 30, 128); /* no more went than had to */
+    sluiceDestroyVulkanStreamer(streamer);
+    for (uint32_t i = 0; i < 2; i++)
+        sluiceDestroyImageSource(sources[i]);
+    assert_int_equal(fake.live_objects, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_lack_of_page_chunks_is_logged_once_and_counted),
+        cmocka_unit_test(standby_tiles_give_their_pages_to_tiles_that_are_wanted),
+        cmocka_unit_test(a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on),
+    };
+    return RUN_TESTS(tests);
+}

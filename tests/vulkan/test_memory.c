@@ -1,0 +1,227 @@
+/* What a streamer takes of the device's memory: all of it is counted, it is little at first, grows
+ * with what is under way, and shrinks again. */
+#include "vulkan/fake_vulkan.h"
+#include "vulkan/streamer.h"
+
+#include "support/test.h"
+
+#include <string.h>
+
+enum { MODES = 3, TEXTURES = 3, SIZE = 2048 };
+static const SluiceResidencyMode modes[MODES] = {
+    SLUICE_RESIDENCY_MODE_SPARSE, SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_DENSE};
+
+#define MIB 1048576u
+
+struct stage {
+    struct fake_vulkan fake;
+    SluiceVulkanStreamer *streamer;
+    SluiceImageSource *source;
+    SluiceVulkanTexture textures[TEXTURES];
+    uint64_t time;
+    bool looks;
+};
+
+static uint8_t want(void *user, uint32_t region)
+{
+    (void)region;
+    return ((struct stage *)user)->looks ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
+{
+    SluiceVulkanStreamerStatistics stats;
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
+    assert_true(stats.deviceMemorySize + stats.hostVisibleMemorySize == s->fake.live_memory);
+    assert_true(stats.tileMemorySize <= stats.deviceMemorySize);
+    return stats;
+}
+
+static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_staging_size)
+{
+    static struct stage s; /* large */
+    s = (struct stage){.fake = {.tail_page_count = 1, .layer_size = MIB, .want = want, .user = &s}};
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {
+        .width = SIZE, .height = SIZE, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+    SluiceVulkanStreamerCreateInfo info = {
+        .feedbackTimeout = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};
+    fake_vulkan_fill(&s.fake, &info);
+    info.residencyMode = mode;
+    CHECK_OK(sluiceCreateVulkanStreamer(&info, &s.streamer));
+    return &s;
+}
+
+static struct stage *stage_init(SluiceResidencyMode mode)
+{
+    return stage_init_with(mode, 0);
+}
+
+static void add_textures(struct stage *s)
+{
+    SluiceVulkanTextureCreateInfo create = {.source = s->source};
+    for (int i = 0; i < TEXTURES; i++)
+        CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[i]));
+}
+
+static void stage_finish(struct stage *s)
+{
+    sluiceDestroyVulkanStreamer(s->streamer);
+    sluiceDestroyImageSource(s->source);
+    assert_true(s->fake.live_objects == 0 && s->fake.live_memory == 0);
+}
+
+static void frame(struct stage *s)
+{
+    struct fake_vulkan *fake = &s->fake;
+    SluiceStreamingFrame frame;
+    fake->published = false;
+    fake->copy_count = fake->bind_count = fake->destroyed_count = fake->freed_count = 0;
+    fake->bind_value = fake->submitted_bind_value;
+    CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
+    CHECK_OK(sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(fake), ++s->time, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(fake)));
+    fake->frame_semaphore = frame.semaphore;
+    fake->frame_value = frame.signalValue;
+    statistics(s);
+}
+
+static void a_new_streamer_takes_little_and_counts_all_of_it(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MODES; i++) {
+        struct stage *s = stage_init(modes[i]);
+        SluiceVulkanStreamerStatistics stats = statistics(s);
+        assert_true(stats.hostVisibleMemorySize < 8 * MIB);
+        assert_true(stats.deviceMemorySize - stats.tileMemorySize < 12 * MIB);
+        assert_true(stats.tileMemorySize < 9 * MIB);
+        stage_finish(s);
+    }
+}
+
+static void staging_grows_with_the_loads_and_shrinks_when_idle(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MODES; i++) {
+        struct stage *s = stage_init(modes[i]);
+        uint64_t little = statistics(s).hostVisibleMemorySize;
+        add_textures(s);
+        s->looks = true;
+        uint64_t most = 0;
+        for (int f = 0; f < 12; f++) {
+            frame(s);
+            uint64_t size = statistics(s).hostVisibleMemorySize;
+            most = size > most ? size : most;
+        }
+        assert_true(statistics(s).manager.mappedTileCount > TEXTURES * 256);
+        assert_true(most >= little + 16 * MIB); /* 256 tiles a frame */
+        s->looks = false;
+        for (int f = 0; f < 140; f++)
+            frame(s);
+        assert_true(statistics(s).hostVisibleMemorySize < little + MIB);
+        stage_finish(s);
+    }
+}
+
+/* Default: 1024 loads in flight, of 64 KiB each. */
+static void staging_that_was_asked_for_is_there_from_the_start_and_stays(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(SLUICE_RESIDENCY_MODE_PAGED);
+    const uint64_t little = statistics(s).hostVisibleMemorySize;
+    stage_finish(s);
+    const uint64_t asked[] = {1, 4 * MIB + 1, UINT64_MAX}, more[] = {0, 4 * MIB, 60 * MIB};
+    for (int i = 0; i < 3; i++) {
+        s = stage_init_with(SLUICE_RESIDENCY_MODE_PAGED, asked[i]);
+        assert_true(statistics(s).hostVisibleMemorySize == little + more[i]);
+        for (int f = 0; f < 140; f++)
+            frame(s);
+        assert_true(statistics(s).hostVisibleMemorySize == little + more[i]);
+        stage_finish(s);
+    }
+}
+
+static void without_memory_for_more_staging_loads_are_slower_and_all_arrive(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MODES; i++) {
+        struct stage *s = stage_init(modes[i]);
+        uint64_t little = statistics(s).hostVisibleMemorySize;
+        add_textures(s);
+        s->looks = true;
+        s->fake.refused_size = 64 * 65536; /* a block of staging memory; other things are larger */
+        uint32_t frames = 0, all = (uint32_t)statistics(s).manager.tileCount;
+        for (; frames < 100 && statistics(s).manager.mappedTileCount < all; frames++)
+            frame(s);
+        assert_true(statistics(s).hostVisibleMemorySize < little + MIB);
+        assert_in_range(frames, 12, 99);
+        assert_int_equal(statistics(s).manager.failedTileCount, 0);
+        stage_finish(s);
+    }
+}
+
+struct order {
+    uint32_t tiles[1024], count;
+};
+
+/* The last ones first: reads of other textures may have come back so. */
+static void turn_slots(SluiceVulkanStreamer *s)
+{
+    s->free_units = (struct slc_unit_list){SLC_NONE, SLC_NONE};
+    for (uint32_t slot = s->info.maxLoadsInFlight; slot-- > 0;)
+        slc_unit_list_append(s, &s->free_units, slot);
+}
+
+static void play(SluiceResidencyMode mode, bool turned, struct order *order)
+{
+    struct stage *s = stage_init(mode);
+    SluiceVulkanTextureCreateInfo create = {.source = s->source};
+    CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[0]));
+    if (turned)
+        turn_slots(s->streamer);
+    s->looks = true;
+    *order = (struct order){.count = 0};
+    for (uint32_t f = 0; f < 8; f++) {
+        uint64_t before = s->streamer->counts.tilesMapped;
+        memset(s->streamer->tile_indices, 0, s->streamer->info.tilesPerFrame * sizeof(uint32_t));
+        frame(s);
+        uint32_t added = (uint32_t)(s->streamer->counts.tilesMapped - before);
+        assert_true(added <= s->streamer->info.tilesPerFrame && order->count + added <= 1024);
+        memcpy(order->tiles + order->count, s->streamer->tile_indices, added * sizeof(uint32_t));
+        order->count += added;
+    }
+    stage_finish(s);
+}
+
+static void tiles_are_told_in_the_order_of_their_arrival_whatever_their_slots(void **state)
+{
+    (void)state;
+    for (int i = 0; i < MODES; i++) {
+        struct order plain, turned;
+        play(modes[i], false, &plain);
+        play(modes[i], true, &turned);
+        assert_true(plain.count > 256);
+        assert_int_equal(plain.count, turned.count);
+        assert_memory_equal(plain.tiles, turned.tiles, plain.count * sizeof(uint32_t));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_new_streamer_takes_little_and_counts_all_of_it),
+        cmocka_unit_test(staging_grows_with_the_loads_and_shrinks_when_idle),
+        cmocka_unit_test(staging_that_was_asked_for_is_there_from_the_start_and_stays),
+        cmocka_unit_test(without_memory_for_more_staging_loads_are_slower_and_all_arrive),
+        cmocka_unit_test(tiles_are_told_in_the_order_of_their_arrival_whatever_their_slots),
+    };
+    return RUN_TESTS(tests);
+}
