@@ -350,14 +350,14 @@ static void files_beyond_the_limit_of_descriptors_are_read_later(void **state)
     (void)state;
     enum { COUNT = 30, ROOM = 5 };
     struct sample s;
-    struct log_tally tally;
+    struct log_tally tallies[COUNT]; /* one each: two threads log at once */
     struct few_descriptors few;
     SluiceImageSource *sources[COUNT];
     SluiceTileLoader *loader;
     const SluiceTileLoaderCreateInfo info = {.threadCount = 2, .retry = {2, 1, 1}};
     assert_true(sample_init(&s, DX10));
     for (uint32_t i = 0; i < COUNT; i++)
-        CHECK_OK(create(s.scratch.path, false, NULL, &tally, &sources[i]));
+        CHECK_OK(create(s.scratch.path, false, NULL, &tallies[i], &sources[i]));
     CHECK_OK(sluiceCreateTileLoader(&info, &loader));
     few_descriptors_begin(&few, FEW_DESCRIPTORS_LIMIT / 4 + ROOM);
     uint32_t first = load_all(loader, sources, COUNT);
