@@ -1,7 +1,7 @@
 /* Measures textures that no shader samples: the time to create them, and device memory. */
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 struct counted_image {
     uint32_t opened;

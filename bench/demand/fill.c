@@ -1,7 +1,7 @@
 /* Tiles per second from nothing, with a source that costs nothing. */
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <inttypes.h>
 #include <math.h>

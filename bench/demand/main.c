@@ -2,7 +2,7 @@
  */
 #include "rig.h"
 
-#include "../../samples/common/options.h"
+#include "../../tools/common/option_table.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <math.h>
 #include <stdio.h>

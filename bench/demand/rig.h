@@ -4,7 +4,7 @@
 #ifndef BENCH_DEMAND_RIG_H
 #define BENCH_DEMAND_RIG_H
 
-#include "../../samples/common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "../manager/figures.h"
 #include "../vulkan/source.h"
 

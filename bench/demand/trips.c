@@ -1,7 +1,7 @@
 /* What a launch costs that misses nothing: prepare, end, submit, wait, process. */
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <stdio.h>
 

@@ -20,7 +20,7 @@
  * for, keeps it for good and never guesses. It knows of a tile when it is too late for the first
  * map; "appears", "enters" and "finer" say what was new: the set, the region or the level.
  */
-#include "../../samples/common/output_file.h"
+#include "../../tools/common/output_file.h"
 #include "clairvoyant.h"
 
 #include <stdlib.h>

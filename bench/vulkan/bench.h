@@ -2,7 +2,7 @@
 #ifndef BENCH_VULKAN_BENCH_H
 #define BENCH_VULKAN_BENCH_H
 
-#include "../../samples/common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "../manager/figures.h"
 
 struct bench {

@@ -2,7 +2,7 @@
 #include "floors.h"
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <inttypes.h>
 #include <math.h>

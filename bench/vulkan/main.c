@@ -1,7 +1,7 @@
 /* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
 #include "bench.h"
 
-#include "../../samples/common/options.h"
+#include "../../tools/common/option_table.h"
 
 #include <math.h>
 #include <stdarg.h>

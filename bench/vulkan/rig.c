@@ -1,7 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "rig.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* What a sample of a streamed texture costs beside texture(), and what feedback adds to it. */
 #include "scene.h"
 
-#include "../../samples/common/clock.h"
+#include "../../tools/common/clock.h"
 
 #include <math.h>
 #include <stdio.h>

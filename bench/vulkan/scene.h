@@ -4,7 +4,7 @@
 
 #include "rig.h"
 
-#include "../../samples/common/target.h"
+#include "../../tools/common/target.h"
 
 struct scene {
     struct rig rig;

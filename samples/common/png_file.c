@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "input.h"
-#include "output_file.h"
-#include "text.h"
+#include "../../tools/common/input.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
 
 static uint8_t *without_alpha(const uint8_t *rgba, size_t texel_count)
 {

@@ -1,7 +1,7 @@
 #include "report.h"
 
-#include "input.h"
-#include "output_file.h"
+#include "../../tools/common/input.h"
+#include "../../tools/common/output_file.h"
 
 #include <math.h>
 #include <string.h>

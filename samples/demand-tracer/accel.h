@@ -2,7 +2,7 @@
 #ifndef TRACER_ACCEL_H
 #define TRACER_ACCEL_H
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "scene.h"
 
 struct accel_structure {

@@ -4,7 +4,7 @@
 
 #include <sluice/demand.h>
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "tracer_shared.h"
 
 /** Zeroed is empty. */

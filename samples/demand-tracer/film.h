@@ -2,7 +2,7 @@
 #ifndef TRACER_FILM_H
 #define TRACER_FILM_H
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "picture.h"
 #include "tracer_shared.h"
 

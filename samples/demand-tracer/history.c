@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/output_file.h"
+#include "../../tools/common/output_file.h"
 
 bool history_add(struct history *h, const struct history_row *row)
 {

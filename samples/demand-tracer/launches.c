@@ -2,8 +2,8 @@
 
 #include <stdio.h>
 
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 
 /* Nanoseconds: how long a preview waits for tiles before it shows what is there. */
 #define PATIENCE 20000000u

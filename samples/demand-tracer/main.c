@@ -8,16 +8,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../common/clock.h"
-#include "../common/descriptors.h"
-#include "../common/files.h"
-#include "../common/log.h"
-#include "../common/output_file.h"
-#include "../common/progress.h"
+#include "../../tools/common/clock.h"
+#include "../../tools/common/descriptors.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/log.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/progress.h"
 #include "contact_sheet.h"
 #include "history.h"
 #include "summary.h"
-#include "../common/text.h"
+#include "../../tools/common/text.h"
 
 #define EXIT_USAGE 2
 #define EXIT_NO_DEVICE 77

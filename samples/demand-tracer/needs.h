@@ -6,7 +6,7 @@
 #ifndef TRACER_NEEDS_H
 #define TRACER_NEEDS_H
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 
 /** Zeroed is empty. */
 struct needs {

@@ -2,7 +2,7 @@
 #ifndef TRACER_ONE_TIME_H
 #define TRACER_ONE_TIME_H
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 
 /** Says on stderr why it failed. */
 bool one_time_run(const struct gpu *gpu, void (*record)(void *user_data, VkCommandBuffer commands),

@@ -1,6 +1,6 @@
 #include "options.h"
 
-#include "../common/text.h"
+#include "../../tools/common/text.h"
 
 #include <sluice/exr.h>
 

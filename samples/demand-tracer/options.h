@@ -2,7 +2,7 @@
 #ifndef TRACER_OPTIONS_H
 #define TRACER_OPTIONS_H
 
-#include "../common/options.h"
+#include "../../tools/common/option_table.h"
 #include "scene.h"
 
 enum needs_choice { NEEDS_ON, NEEDS_OFF };

@@ -8,9 +8,9 @@
 #include <sluice/exr.h>
 #include <sluice/metrics.h>
 
-#include "../common/output_file.h"
+#include "../../tools/common/output_file.h"
 #include "../common/png_file.h"
-#include "../common/text.h"
+#include "../../tools/common/text.h"
 
 bool picture_create(uint32_t width, uint32_t height, struct picture *picture)
 {

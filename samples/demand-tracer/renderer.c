@@ -1,6 +1,6 @@
 #include "renderer.h"
 
-#include "../common/text.h"
+#include "../../tools/common/text.h"
 
 #include <math.h>
 #include <stdio.h>

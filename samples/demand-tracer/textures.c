@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/output_file.h"
-#include "../common/text.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
 #include "../streaming/picture_file.h"
 
 #define TEXTURE_SUFFIXES ".store|.exr|.dds|.ktx2"

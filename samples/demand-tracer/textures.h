@@ -6,7 +6,7 @@
 #include <sluice/demand.h>
 #include <sluice/exr.h>
 
-#include "../common/files.h"
+#include "../../tools/common/files.h"
 #include "options.h"
 #include "patterns.h"
 

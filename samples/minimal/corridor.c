@@ -1,9 +1,9 @@
 #include "corridor.h"
 
-#include "../common/options.h"
-#include "../common/output_file.h"
+#include "../../tools/common/option_table.h"
+#include "../../tools/common/output_file.h"
 #include "../common/png_file.h"
-#include "../common/text.h"
+#include "../../tools/common/text.h"
 
 #include <math.h>
 #include <stdio.h>

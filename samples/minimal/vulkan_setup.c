@@ -1,6 +1,6 @@
 #include "vulkan_setup.h"
 
-#include "../common/no_vulkan.h"
+#include "../../tools/common/no_vulkan.h"
 
 #include <stdio.h>
 #include <stdlib.h>

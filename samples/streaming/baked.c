@@ -9,9 +9,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../common/bake_jobs.h"
-#include "../common/files.h"
-#include "../common/text.h"
+#include "../../tools/common/bake_jobs.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/text.h"
 #include "cache.h"
 
 /* Somebody waits: a third of the time of the baker's own level, for files a sixth larger. */

@@ -12,8 +12,8 @@
 #include <sluice/metrics.h>
 
 #include "../common/png_file.h"
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 #include "gallery_report.h"
 
 #define MAX_WORKERS 64

@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../common/output_file.h"
-#include "../common/text.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
 
 static bool take_descriptor(int descriptor, size_t frame_size, struct frame_file *file)
 {

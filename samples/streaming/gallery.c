@@ -3,10 +3,10 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "../common/descriptors.h"
-#include "../common/output_file.h"
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/descriptors.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 
 /* Recordings, traces, frames of the reference, and three for each worker of comparison.c. */
 #define WRITTEN_AT_ONCE 210

@@ -8,10 +8,10 @@
 
 #include <sluice/exr.h>
 
-#include "../common/files.h"
-#include "../common/log.h"
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/log.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 #include "cache.h"
 
 /* In hanging order. About 105 million texels, 1.1 GB as half floats with all levels. */

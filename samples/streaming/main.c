@@ -12,14 +12,14 @@
 
 #include <sluice/metrics.h>
 
-#include "../common/clock.h"
-#include "../common/descriptors.h"
-#include "../common/files.h"
-#include "../common/output_file.h"
+#include "../../tools/common/clock.h"
+#include "../../tools/common/descriptors.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/output_file.h"
 #include "../common/png_file.h"
-#include "../common/log.h"
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/log.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 #include "comparison.h"
 #include "gallery.h"
 #include "gallery_report.h"

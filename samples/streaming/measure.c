@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/output_file.h"
+#include "../../tools/common/output_file.h"
 
 bool measure_begin(struct measure *measure, const struct settings *settings)
 {

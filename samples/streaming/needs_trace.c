@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "../common/output_file.h"
-#include "../common/text.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
 
 #define TILE_BYTES 65536u
 

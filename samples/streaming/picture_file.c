@@ -10,9 +10,9 @@
 #include <sluice/exr.h>
 #include <sluice/ktx2.h>
 
-#include "../common/input.h"
-#include "../common/log.h"
-#include "../common/text.h"
+#include "../../tools/common/input.h"
+#include "../../tools/common/log.h"
+#include "../../tools/common/text.h"
 
 static const SluiceLogCallback to_stderr = {NULL, log_say};
 

@@ -5,7 +5,7 @@
 #include <sluice/exr.h>
 #include <sluice/store.h>
 
-#include "../common/picture_names.h"
+#include "../../tools/common/picture_names.h"
 #include "settings.h"
 
 /** Files of folders that are looked at. */

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../common/files.h"
-#include "../common/text.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/text.h"
 #include "baked.h"
 #include "exposure.h"
 

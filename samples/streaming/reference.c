@@ -8,9 +8,9 @@
 
 #include <zlib.h>
 
-#include "../common/files.h"
-#include "../common/progress.h"
-#include "../common/text.h"
+#include "../../tools/common/files.h"
+#include "../../tools/common/progress.h"
+#include "../../tools/common/text.h"
 #include "gallery.h"
 #include "reference_key.h"
 #include "supersample.h"

@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../common/input.h"
-#include "../common/output_file.h"
-#include "../common/text.h"
+#include "../../tools/common/input.h"
+#include "../../tools/common/output_file.h"
+#include "../../tools/common/text.h"
 
 #define MAX_SIZE (16u << 20) ///< bytes of a text file that is looked at
 #define FIRST_WORDS "frames of the gallery with everything resident"

@@ -5,7 +5,7 @@
 #ifndef SAMPLES_STREAMING_REFERENCE_KEY_H
 #define SAMPLES_STREAMING_REFERENCE_KEY_H
 
-#include "../common/gpu.h"
+#include "../../tools/common/gpu.h"
 #include "pictures.h"
 
 /** For the caller to free; NULL if out of memory. */

@@ -2,8 +2,8 @@
 #ifndef SAMPLES_STREAMING_RENDERER_H
 #define SAMPLES_STREAMING_RENDERER_H
 
-#include "../common/gpu.h"
-#include "../common/target.h"
+#include "../../tools/common/gpu.h"
+#include "../../tools/common/target.h"
 #include "room.h"
 #include "walk.h"
 

@@ -4,7 +4,7 @@
 
 #include <sluice/vulkan.h>
 
-#include "../common/options.h"
+#include "../../tools/common/option_table.h"
 
 enum write_frames { WRITE_FRAMES_SOME, WRITE_FRAMES_ALL, WRITE_FRAMES_NONE };
 enum pixel_format { PIXEL_FORMAT_AUTO, PIXEL_FORMAT_RGBA16F, PIXEL_FORMAT_RGBA8 };

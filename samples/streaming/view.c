@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/clock.h"
-#include "../common/log.h"
-#include "../common/text.h"
+#include "../../tools/common/clock.h"
+#include "../../tools/common/log.h"
+#include "../../tools/common/text.h"
 #include "view_needs.h"
 
 _Static_assert(PREDICT_SLOTS == VIEW_FRAMES_IN_FLIGHT, "one for each frame in flight");

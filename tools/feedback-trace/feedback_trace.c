@@ -1,7 +1,7 @@
 #include "feedback_trace.h"
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/text.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 
 #include "find.h"
 
-#include "files.h"
-#include "picture_names.h"
-#include "text.h"
+#include "../common/files.h"
+#include "../common/picture_names.h"
+#include "../common/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>

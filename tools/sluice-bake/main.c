@@ -1,11 +1,11 @@
 /* Makes tile stores of pictures. */
 #define _XOPEN_SOURCE 700
 
-#include "descriptors.h"
+#include "../common/descriptors.h"
 #include "find.h"
 #include "options.h"
 #include "report.h"
-#include "text.h"
+#include "../common/text.h"
 #include "verify.h"
 
 #include <signal.h>

@@ -2,7 +2,7 @@
 #ifndef TOOLS_SLUICE_BAKE_REPORT_H
 #define TOOLS_SLUICE_BAKE_REPORT_H
 
-#include "bake_jobs.h"
+#include "../common/bake_jobs.h"
 
 /** The table on standard output, or an object per line; failures also on standard error. Answers
  *  how many failed. */

@@ -2,9 +2,9 @@
 
 #include "verify.h"
 
-#include "files.h"
-#include "log.h"
-#include "text.h"
+#include "../common/files.h"
+#include "../common/log.h"
+#include "../common/text.h"
 
 #include <sluice/store.h>
 

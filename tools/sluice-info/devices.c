@@ -1,7 +1,7 @@
 #include "devices.h"
 
-#include "no_vulkan.h"
-#include "text.h"
+#include "../common/no_vulkan.h"
+#include "../common/text.h"
 
 #include <dlfcn.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
  */
 #include "show.h"
 
-#include "text.h"
+#include "../common/text.h"
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 #include "open_file.h"
 
-#include "input.h"
-#include "text.h"
+#include "../common/input.h"
+#include "../common/text.h"
 
 #include <errno.h>
 #include <stdio.h>

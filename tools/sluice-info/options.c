@@ -1,6 +1,6 @@
 #include "options.h"
 
-#include "text.h"
+#include "../common/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "png_rows.h"
 
-#include "text.h"
+#include "../common/text.h"
 
 #ifdef HAVE_PNG
 

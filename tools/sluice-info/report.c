@@ -1,6 +1,6 @@
 #include "report.h"
 
-#include "text.h"
+#include "../common/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 
 #include "devices.h"
 #include "report.h"
-#include "text.h"
+#include "../common/text.h"
 
 #include <stdio.h>
 #include <string.h>

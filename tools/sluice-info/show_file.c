@@ -3,7 +3,7 @@
 #include "show.h"
 
 #include "open_file.h"
-#include "text.h"
+#include "../common/text.h"
 
 #include <inttypes.h>
 #include <math.h>

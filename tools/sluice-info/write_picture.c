@@ -1,9 +1,9 @@
 #include "show.h"
 
 #include "open_file.h"
-#include "output_file.h"
+#include "../common/output_file.h"
 #include "png_rows.h"
-#include "text.h"
+#include "../common/text.h"
 #include "to_bytes.h"
 
 #include <stdio.h>

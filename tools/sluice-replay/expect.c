@@ -1,7 +1,7 @@
 #include "expect.h"
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/text.h"
 #include "trace.h"
 
 #include <errno.h>

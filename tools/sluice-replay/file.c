@@ -1,6 +1,6 @@
 #include "file.h"
 
-#include "../../samples/common/input.h"
+#include "../common/input.h"
 
 #define FILE_SIZE_MAX ((uint64_t)4 << 30)
 

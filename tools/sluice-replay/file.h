@@ -7,7 +7,7 @@
 
 /**
  * Reads a regular file of at most 4 GiB. `*data` is to be freed, and ends with a NUL that is not
- * counted. On failure errno says why; input_reason (samples/common/input.h) has the words.
+ * counted. On failure errno says why; input_reason (tools/common/input.h) has the words.
  */
 bool read_file(const char *path, char **data, size_t *size);
 

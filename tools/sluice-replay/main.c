@@ -4,9 +4,9 @@
 #include "report.h"
 #include "trace.h"
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 
 #include <sluice/replay.h>
 

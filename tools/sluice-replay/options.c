@@ -1,6 +1,6 @@
 #include "options.h"
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "trace.h"
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/text.h"
 
 #include <errno.h>
 #include <inttypes.h>

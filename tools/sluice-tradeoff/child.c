@@ -14,8 +14,8 @@
 #include <sys/prctl.h>
 #endif
 
-#include "../../samples/common/clock.h"
-#include "../../samples/common/input.h"
+#include "../common/clock.h"
+#include "../common/input.h"
 #include "memory.h"
 
 #define MOST_OUTPUT (64 << 20) ///< bytes of standard output, and of standard error

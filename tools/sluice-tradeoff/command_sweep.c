@@ -7,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../samples/common/files.h"
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/files.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "folders.h"
 #include "foresight.h"
 #include "page.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/clock.h"
+#include "../common/clock.h"
 #include "../sluice-replay/file.h"
 
 #define PLAYS 5

@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "memory.h"
 
 #define OPEN_FOLDERS 16

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "../sluice-replay/file.h"
 #include "folders.h"
 #include "help_text.h"

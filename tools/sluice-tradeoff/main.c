@@ -2,7 +2,7 @@
 #include "commands.h"
 #include "play.h"
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #include <stddef.h>
 #include <string.h>

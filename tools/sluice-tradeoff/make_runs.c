@@ -9,9 +9,9 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "../../samples/common/clock.h"
-#include "../../samples/common/progress.h"
-#include "../../samples/common/text.h"
+#include "../common/clock.h"
+#include "../common/progress.h"
+#include "../common/text.h"
 #include "core_time.h"
 #include "folders.h"
 

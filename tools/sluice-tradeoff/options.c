@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/text.h"
 
 #define DEFAULT_RESULTS "tradeoff-out"
 #define QUICK_REPEATS 3u

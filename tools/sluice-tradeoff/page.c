@@ -3,13 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output_file.h"
+#include "../common/output_file.h"
 #include "page_choose.h"
 #include "page_json.h"
 #include "page_pictures.h"
 #include "page_series.h"
 #include "page_template.h"
-#include "text.h"
+#include "../common/text.h"
 
 #define SERIES_SIZE_MAX                                                                            \
     ((size_t)3 << 19) /* bytes: a quarter of the page, pictures have the rest                      \

@@ -1,7 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "page_frames.h"
 
-#include "input.h"
+#include "../common/input.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "text.h"
+#include "../common/text.h"
 
 void page_put_text(FILE *file, const char *text)
 {

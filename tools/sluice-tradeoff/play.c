@@ -1,8 +1,8 @@
 #include "play.h"
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "play_figures.h"
 
 #include <clairvoyant.h>

@@ -1,6 +1,6 @@
 #include "play_figures.h"
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../../samples/common/output_file.h"
+#include "../common/output_file.h"
 
 #define TILE 65536.0
 

@@ -2,7 +2,7 @@
 
 #include "play_loop.h"
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>

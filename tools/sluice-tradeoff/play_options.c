@@ -1,6 +1,6 @@
 #include "play_options.h"
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #include <math.h>
 #include <stdio.h>

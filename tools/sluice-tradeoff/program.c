@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../samples/common/input.h"
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/input.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "../sluice-replay/file.h"
 #include "child.h"
 #include "folders.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/output_file.h"
+#include "../common/output_file.h"
 
 /* RFC 4180: quoted where need be, quotes doubled. */
 static void put_cell(FILE *file, const char *text)

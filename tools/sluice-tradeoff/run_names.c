@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/output_file.h"
+#include "../common/output_file.h"
 #include "../sluice-replay/file.h"
 
 bool run_names_write(const struct runs *runs)

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/output_file.h"
-#include "../../samples/common/text.h"
+#include "../common/output_file.h"
+#include "../common/text.h"
 #include "../sluice-replay/file.h"
 #include "plan.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../samples/common/text.h"
+#include "../common/text.h"
 
 #define CELL 24
 

@@ -1,6 +1,6 @@
 /** Many pictures baked side by side on all processors, with one progress bar. */
-#ifndef SAMPLES_COMMON_BAKE_JOBS_H
-#define SAMPLES_COMMON_BAKE_JOBS_H
+#ifndef TOOLS_COMMON_BAKE_JOBS_H
+#define TOOLS_COMMON_BAKE_JOBS_H
 
 #include <sluice/bake.h>
 
@@ -30,4 +30,4 @@ struct bake_conditions {
  */
 bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_conditions *conditions);
 
-#endif /* SAMPLES_COMMON_BAKE_JOBS_H */
+#endif /* TOOLS_COMMON_BAKE_JOBS_H */

@@ -1,6 +1,6 @@
 /** What all programs say on a machine that cannot do what they need. */
-#ifndef SAMPLES_COMMON_NO_VULKAN_H
-#define SAMPLES_COMMON_NO_VULKAN_H
+#ifndef TOOLS_COMMON_NO_VULKAN_H
+#define TOOLS_COMMON_NO_VULKAN_H
 
 #define NO_VULKAN_DRIVER                                                                           \
     "there is no Vulkan driver; install the one for your GPU, or lavapipe, which needs no GPU "    \
@@ -9,4 +9,4 @@
 /** Behind "no Vulkan device", or "no Vulkan device like NAME". */
 #define CANNOT_STREAM "can stream in this residency mode; sluice-info says what each device can do"
 
-#endif /* SAMPLES_COMMON_NO_VULKAN_H */
+#endif /* TOOLS_COMMON_NO_VULKAN_H */

@@ -1,6 +1,6 @@
 /** A picture to render into, with depth and optional multisampling, that can be copied out. */
-#ifndef SAMPLES_COMMON_TARGET_H
-#define SAMPLES_COMMON_TARGET_H
+#ifndef TOOLS_COMMON_TARGET_H
+#define TOOLS_COMMON_TARGET_H
 
 #include "gpu.h"
 
@@ -29,4 +29,4 @@ void target_end(const struct target *target, VkCommandBuffer commands);
 /** Records the copy to a host buffer of width * height * 4 bytes, and makes it visible there. */
 void target_copy_out(const struct target *target, VkCommandBuffer commands, VkBuffer buffer);
 
-#endif /* SAMPLES_COMMON_TARGET_H */
+#endif /* TOOLS_COMMON_TARGET_H */

@@ -2,8 +2,8 @@
  * Files that somebody named as input. A name may be that of a pipe or a device: opening it must not
  * make the program wait, and reading it must not take all memory.
  */
-#ifndef SAMPLES_COMMON_INPUT_H
-#define SAMPLES_COMMON_INPUT_H
+#ifndef TOOLS_COMMON_INPUT_H
+#define TOOLS_COMMON_INPUT_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -35,4 +35,4 @@ bool input_read_rest(FILE *stream, uint64_t limit, char **data, size_t *size);
 /** Reads a regular file of at most `limit` bytes in the same way. */
 bool input_read_file(const char *path, uint64_t limit, char **data, size_t *size);
 
-#endif /* SAMPLES_COMMON_INPUT_H */
+#endif /* TOOLS_COMMON_INPUT_H */

@@ -4,8 +4,8 @@
  *
  * A program names its inputs once, with output_add_input. From then on no output replaces an input.
  */
-#ifndef SAMPLES_COMMON_OUTPUT_FILE_H
-#define SAMPLES_COMMON_OUTPUT_FILE_H
+#ifndef TOOLS_COMMON_OUTPUT_FILE_H
+#define TOOLS_COMMON_OUTPUT_FILE_H
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -53,4 +53,4 @@ __attribute__((format(printf, 2, 3)))
 bool
 output_file_print(const char *path, const char *format, ...);
 
-#endif /* SAMPLES_COMMON_OUTPUT_FILE_H */
+#endif /* TOOLS_COMMON_OUTPUT_FILE_H */

@@ -1,6 +1,6 @@
 /** A Vulkan device without a window: instance, device, queues, and small helpers over them. */
-#ifndef SAMPLES_COMMON_GPU_H
-#define SAMPLES_COMMON_GPU_H
+#ifndef TOOLS_COMMON_GPU_H
+#define TOOLS_COMMON_GPU_H
 
 #include <vulkan/vulkan.h>
 
@@ -93,4 +93,4 @@ VkShaderModule gpu_create_shader(const struct gpu *gpu, const uint32_t *words, s
 void gpu_barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags from_access,
                  VkPipelineStageFlags to, VkAccessFlags to_access);
 
-#endif /* SAMPLES_COMMON_GPU_H */
+#endif /* TOOLS_COMMON_GPU_H */

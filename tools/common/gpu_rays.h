@@ -1,6 +1,6 @@
 /** What the ray-tracing pipeline needs of a device. */
-#ifndef SAMPLES_COMMON_GPU_RAYS_H
-#define SAMPLES_COMMON_GPU_RAYS_H
+#ifndef TOOLS_COMMON_GPU_RAYS_H
+#define TOOLS_COMMON_GPU_RAYS_H
 
 #include <vulkan/vulkan.h>
 
@@ -17,4 +17,4 @@ bool gpu_traces_rays(VkPhysicalDevice device);
 void gpu_require_rays(struct gpu_ray_features *rays, VkPhysicalDeviceVulkan12Features *vulkan12,
                       VkDeviceCreateInfo *info);
 
-#endif /* SAMPLES_COMMON_GPU_RAYS_H */
+#endif /* TOOLS_COMMON_GPU_RAYS_H */

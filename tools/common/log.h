@@ -2,8 +2,8 @@
  * Messages of the library on stderr: each once, and not too many about one file. A damaged file has
  * hundreds of tiles, each of which is read again and again.
  */
-#ifndef SAMPLES_COMMON_LOG_H
-#define SAMPLES_COMMON_LOG_H
+#ifndef TOOLS_COMMON_LOG_H
+#define TOOLS_COMMON_LOG_H
 
 #include <sluice/base.h>
 
@@ -20,4 +20,4 @@ void log_say(void *user_data, SluiceLogSeverity severity, const char *message);
 /** Says how many messages were only counted, for each file, and begins anew. */
 void log_finish(void);
 
-#endif /* SAMPLES_COMMON_LOG_H */
+#endif /* TOOLS_COMMON_LOG_H */

@@ -1,6 +1,6 @@
 /** Command lines: a table of options becomes the parser and the --help text. */
-#ifndef SAMPLES_COMMON_OPTIONS_H
-#define SAMPLES_COMMON_OPTIONS_H
+#ifndef TOOLS_COMMON_OPTION_TABLE_H
+#define TOOLS_COMMON_OPTION_TABLE_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,4 +39,4 @@ enum option_outcome { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_ERROR };
 enum option_outcome options_parse(const struct option *options, size_t option_count,
                                   const char *usage, int argc, char *const *argv);
 
-#endif /* SAMPLES_COMMON_OPTIONS_H */
+#endif /* TOOLS_COMMON_OPTION_TABLE_H */

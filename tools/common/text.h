@@ -2,8 +2,8 @@
  * Words that come from elsewhere, names of files among them, so that no terminal and no program
  * takes them for something else. Texts are UTF-8, or what claims to be.
  */
-#ifndef SAMPLES_COMMON_TEXT_H
-#define SAMPLES_COMMON_TEXT_H
+#ifndef TOOLS_COMMON_TEXT_H
+#define TOOLS_COMMON_TEXT_H
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -34,4 +34,4 @@ text_say(const char *format, ...);
  */
 void text_write_json(FILE *out, const char *text);
 
-#endif /* SAMPLES_COMMON_TEXT_H */
+#endif /* TOOLS_COMMON_TEXT_H */

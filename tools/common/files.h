@@ -1,6 +1,6 @@
 /** Folders: making them, and finding the files in them. */
-#ifndef SAMPLES_COMMON_FILES_H
-#define SAMPLES_COMMON_FILES_H
+#ifndef TOOLS_COMMON_FILES_H
+#define TOOLS_COMMON_FILES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -32,4 +32,4 @@ bool files_collect(const char *path, const char *suffixes, struct file_list *lis
 bool files_add(const char *path, struct file_list *list);
 void files_finish(struct file_list *list);
 
-#endif /* SAMPLES_COMMON_FILES_H */
+#endif /* TOOLS_COMMON_FILES_H */

@@ -1,10 +1,10 @@
 /** How names of pictures end, for those who look for them in folders. */
-#ifndef SAMPLES_COMMON_PICTURE_NAMES_H
-#define SAMPLES_COMMON_PICTURE_NAMES_H
+#ifndef TOOLS_COMMON_PICTURE_NAMES_H
+#define TOOLS_COMMON_PICTURE_NAMES_H
 
 /** What sluice-bake reads: OpenEXR, DDS, KTX2 and what libvips does. For files_has_suffix. */
 #define PICTURE_SUFFIXES                                                                           \
     ".exr|.dds|.ktx2|.png|.jpg|.jpeg|.tif|.tiff|.tx|.webp|.hdr|.gif|.ppm|.pgm|.pfm|.pnm|.bmp|"     \
     ".tga|.jp2|.j2k|.jxl|.heic|.heif|.avif|.psd|.v|.vips"
 
-#endif /* SAMPLES_COMMON_PICTURE_NAMES_H */
+#endif /* TOOLS_COMMON_PICTURE_NAMES_H */

@@ -1,10 +1,10 @@
 /** Wall time for progress and statistics; no decision depends on it. */
-#ifndef SAMPLES_COMMON_CLOCK_H
-#define SAMPLES_COMMON_CLOCK_H
+#ifndef TOOLS_COMMON_CLOCK_H
+#define TOOLS_COMMON_CLOCK_H
 
 /** Seconds from some fixed point in the past. */
 double clock_seconds(void);
 /** Sleeps until clock_seconds() reaches `time`. */
 void clock_sleep_until(double time);
 
-#endif /* SAMPLES_COMMON_CLOCK_H */
+#endif /* TOOLS_COMMON_CLOCK_H */

@@ -1,7 +1,7 @@
 /** A progress bar on stderr: a line that is redrawn on a terminal, a line now and then elsewhere.
  */
-#ifndef SAMPLES_COMMON_PROGRESS_H
-#define SAMPLES_COMMON_PROGRESS_H
+#ifndef TOOLS_COMMON_PROGRESS_H
+#define TOOLS_COMMON_PROGRESS_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -20,4 +20,4 @@ void progress_update(struct progress *progress, uint64_t done);
 /** Shows the whole time it took. */
 void progress_end(struct progress *progress);
 
-#endif /* SAMPLES_COMMON_PROGRESS_H */
+#endif /* TOOLS_COMMON_PROGRESS_H */

@@ -1,6 +1,6 @@
 /** File descriptors: as many as allowed, and some kept for what a program writes. */
-#ifndef SAMPLES_COMMON_DESCRIPTORS_H
-#define SAMPLES_COMMON_DESCRIPTORS_H
+#ifndef TOOLS_COMMON_DESCRIPTORS_H
+#define TOOLS_COMMON_DESCRIPTORS_H
 
 #define DESCRIPTORS_KEPT_MAX 240
 
@@ -20,4 +20,4 @@ struct descriptors_kept {
 void descriptors_keep(struct descriptors_kept *kept, unsigned count);
 void descriptors_release(struct descriptors_kept *kept);
 
-#endif /* SAMPLES_COMMON_DESCRIPTORS_H */
+#endif /* TOOLS_COMMON_DESCRIPTORS_H */
