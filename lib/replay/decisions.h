@@ -3,13 +3,7 @@
 #define SLC_REPLAY_DECISIONS_H
 
 #include "core/observer.h"
-
-/** FNV-1a, 64 bits: the hash of nothing. */
-#define SLC_HASH_EMPTY UINT64_C(0xCBF29CE484222325)
-
-uint64_t slc_hash_bytes(uint64_t hash, const void *data, size_t size);
-/** The value's 8 bytes, low one first. */
-uint64_t slc_hash_u64(uint64_t hash, uint64_t value);
+#include "replay/hash.h"
 
 /** Whether the call answers with a list: GET_... and DEFRAGMENT. */
 bool slc_call_lists(enum slc_call_kind kind);

@@ -7,11 +7,6 @@
 
 #define SLC_TRACE_MAGIC "SLUICERT"
 #define SLC_TRACE_VERSION 1u
-#define SLC_TRACE_HEADER_SIZE 40u
-/** u32 payload size, u64 checksum. */
-#define SLC_TRACE_BLOCK_HEADER_SIZE 12u
-/** A block ends with the first record that makes its payload at least so long. */
-#define SLC_TRACE_BLOCK_SIZE 4096u
 #define SLC_TRACE_FLAG_PACKED 1u
 
 /** What is written of an input that the caller gives by pointer. */

@@ -1,48 +1,12 @@
 /* Plays "SLUICERT" recordings; docs/replay.md has the format. */
 #include "base/checked.h"
-#include "base/log.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
 #include "replay/replay.h"
 #include "replay/runs.h"
+#include "replay/trace_reader.h"
 
-#include <inttypes.h>
 #include <string.h>
-
-/* The header, whose first 40 bytes are the same in all versions. */
-static SluiceResult read_header(struct slc_replay *replay, uint64_t *checksum,
-                                SluiceStreamedTextureManagerCreateInfo *info)
-{
-    struct slc_cursor *in = &replay->in;
-    slc_get_bytes(in, 8);
-    uint32_t version = slc_get_u32(in);
-    uint32_t library = slc_get_u32(in);
-    info->heapTileCapacity = slc_get_u32(in);
-    info->tileSize = slc_get_u32(in);
-    uint32_t flags = slc_get_u32(in);
-    uint32_t reserved = slc_get_u32(in);
-    size_t checksum_pos = in->pos;
-    *checksum = slc_hash_bytes(SLC_HASH_EMPTY, in->data, in->pos);
-    uint64_t stored = slc_get_u64(in);
-    info->alwaysMapPackedTiles = flags & SLC_TRACE_FLAG_PACKED;
-    if (!in->why && stored != *checksum)
-        slc_cursor_fail(in, 0, "the header's checksum is wrong");
-    if (in->why)
-        return slc_replay_check(replay, in);
-    if (version != SLC_TRACE_VERSION) {
-        slc_log(&replay->info->log, SLUICE_LOG_ERROR,
-                "trace has version %" PRIu32 " of the format, this library reads version %u",
-                version, SLC_TRACE_VERSION);
-        replay->out->errorOffset = 8;
-        return SLUICE_ERROR_UNSUPPORTED;
-    }
-    if (flags > SLC_TRACE_FLAG_PACKED || reserved != 0)
-        return slc_replay_corrupt(replay, checksum_pos - 8, "unknown flags");
-    slc_log(&replay->info->log, SLUICE_LOG_INFO,
-            "trace was recorded with Sluice %" PRIu32 ".%" PRIu32 ".%" PRIu32, library >> 22,
-            library >> 12 & 1023, library & 4095);
-    return SLUICE_SUCCESS;
-}
 
 /* Only a size that the texture has is trusted; any other will be refused before the map is read. */
 static SluiceResult prepare_map(struct slc_replay *replay, struct slc_record *record)
@@ -92,19 +56,6 @@ static SluiceResult prepare_indices(struct slc_replay *replay, struct slc_record
     return SLUICE_SUCCESS;
 }
 
-/* Reports only the first; what follows from it may differ all over. */
-static void note_divergence(struct slc_replay *replay, size_t offset, const char *recorded,
-                            const char *got)
-{
-    if (replay->out->divergedEvent)
-        return;
-    replay->out->divergedEvent = replay->player.event_count;
-    replay->out->divergedOffset = offset;
-    slc_log(&replay->info->log, SLUICE_LOG_WARNING,
-            "decisions differ from event %" PRIu64 " at byte %zu on: recorded %s, got %s",
-            replay->player.event_count, offset, recorded, got);
-}
-
 static SluiceResult play_call(struct slc_replay *replay, struct slc_record *record, size_t offset)
 {
     struct slc_player *player = &replay->player;
@@ -129,8 +80,8 @@ static SluiceResult play_call(struct slc_replay *replay, struct slc_record *reco
         (call->kind == SLC_CALL_ADD_TEXTURE && call->result >= SLUICE_SUCCESS &&
          call->texture_id != recorded.texture_id) ||
         (slc_call_lists(call->kind) && player->hash != record->hash))
-        note_divergence(replay, offset, sluiceResultString(recorded.result),
-                        sluiceResultString(call->result));
+        slc_note_divergence(replay, player->event_count, offset,
+                            sluiceResultString(recorded.result), sluiceResultString(call->result));
     player->answer_count = player->answers_used = 0;
     player->answers_missing = false;
     return SLUICE_SUCCESS;
@@ -158,58 +109,25 @@ static SluiceResult play_block(struct slc_replay *replay, size_t end)
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult read_end(struct slc_replay *replay, size_t start, uint64_t checksum)
-{
-    struct slc_cursor *in = &replay->in;
-    uint64_t event_count = slc_get_u64(in);
-    uint64_t hash = slc_get_u64(in);
-    checksum = slc_hash_bytes(checksum, in->data + start, in->pos - start);
-    uint64_t stored = slc_get_u64(in);
-    if (!in->why && stored != checksum)
-        slc_cursor_fail(in, start, "the end mark's checksum is wrong");
-    if (!in->why && event_count != replay->player.event_count)
-        slc_cursor_fail(in, start, "the end mark counts other events than there are");
-    if (!in->why && in->pos != in->end)
-        slc_cursor_fail(in, in->pos, "there is more behind the end mark");
-    if (in->why)
-        return slc_replay_check(replay, in);
-    replay->out->recordedHash = hash;
-    if (hash != replay->player.hash)
-        note_divergence(replay, start, "another hash", "this one");
-    return SLUICE_SUCCESS;
-}
-
 SluiceResult slc_play_recording(struct slc_replay *replay)
 {
-    struct slc_cursor *in = &replay->in;
-    SluiceStreamedTextureManagerCreateInfo info = {0};
+    uint32_t words[SLC_TRACE_WORDS];
     uint64_t checksum;
-    SluiceResult result = read_header(replay, &checksum, &info);
+    SluiceResult result = slc_read_trace_header(replay, SLC_TRACE_VERSION, &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
+    if (words[2] > SLC_TRACE_FLAG_PACKED || words[3] != 0)
+        return slc_replay_corrupt(replay, 24, "unknown flags");
+    const SluiceStreamedTextureManagerCreateInfo info = {.heapTileCapacity = words[0],
+                                                         .tileSize = words[1],
+                                                         .alwaysMapPackedTiles =
+                                                             words[2] & SLC_TRACE_FLAG_PACKED};
     result = slc_replay_start(replay, &info, true);
     if (result == SLUICE_ERROR_ZERO_HEAP_CAPACITY || result == SLUICE_ERROR_INVALID_ARGUMENT)
         return slc_replay_corrupt(replay, 16, "no manager has such heaps");
-    while (result == SLUICE_SUCCESS) {
-        size_t start = in->pos;
-        uint32_t size = slc_get_u32(in);
-        if (!in->why && size == 0)
-            return read_end(replay, start, checksum);
-        checksum = slc_hash_bytes(checksum, in->data + start, in->pos - start);
-        uint64_t stored = slc_get_u64(in);
-        size_t payload = in->pos;
-        if (!in->why && size > in->end - payload)
-            slc_cursor_fail(in, start, "the block that begins here is cut off");
-        if (!in->why) {
-            checksum = slc_hash_bytes(checksum, in->data + payload, size);
-            if (stored != checksum)
-                slc_cursor_fail(in, start, "the checksum of the block that begins here is wrong");
-        }
-        result = slc_replay_check(replay, in);
-        if (result != SLUICE_SUCCESS)
-            return result;
-        in->pos = payload;
-        result = play_block(replay, payload + size);
-    }
-    return result;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const struct slc_trace_player player = {play_block, &replay->player.hash,
+                                            &replay->player.event_count};
+    return slc_play_blocks(replay, checksum, &player);
 }

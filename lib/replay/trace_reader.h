@@ -1,0 +1,29 @@
+/** The outside of a recording: its header, the checksums of its blocks, its end mark. */
+#ifndef SLC_REPLAY_TRACE_READER_H
+#define SLC_REPLAY_TRACE_READER_H
+
+#include "replay/recorder.h"
+#include "replay/replay.h"
+
+/**
+ * Reads and checks the header; `words` are those of slc_recorder_write_header. Errors:
+ * CORRUPT_DATA; UNSUPPORTED if the recording has another version.
+ */
+SluiceResult slc_read_trace_header(struct slc_replay *replay, uint32_t version, uint64_t *checksum,
+                                   uint32_t words[SLC_TRACE_WORDS]);
+
+/** Who plays the records. */
+struct slc_trace_player {
+    /** Plays the records from replay->in up to `end`, whose checksum is right. */
+    SluiceResult (*play_block)(struct slc_replay *replay, size_t end);
+    const uint64_t *hash, *event_count; ///< over what was played so far
+};
+/** Plays block after block, up to and with the end mark. */
+SluiceResult slc_play_blocks(struct slc_replay *replay, uint64_t checksum,
+                             const struct slc_trace_player *player);
+
+/** Says which call was the first to differ from the recording. */
+void slc_note_divergence(struct slc_replay *replay, uint64_t event, size_t offset,
+                         const char *recorded, const char *got);
+
+#endif /* SLC_REPLAY_TRACE_READER_H */
