@@ -2,6 +2,12 @@
 #include "vulkan/streamer.h"
 
 #include "base/log.h"
+#include "vulkan/load_arrivals.h"
+#include "vulkan/load_binds.h"
+#include "vulkan/load_cancels.h"
+#include "vulkan/load_deferred.h"
+#include "vulkan/load_starts.h"
+#include "vulkan/tile_upload.h"
 
 #define MAX_BARRIERS 64u
 

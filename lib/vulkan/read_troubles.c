@@ -3,7 +3,7 @@
  * Of several damaged tiles it may be any, so a message may say that a source is well and the next
  * one that it is not; a minimum of time between such messages bounds their number.
  */
-#include "vulkan/streamer.h"
+#include "vulkan/read_troubles.h"
 
 #include "base/log.h"
 

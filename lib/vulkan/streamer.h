@@ -12,8 +12,8 @@
 #include "vulkan/packed_units.h"
 #include "vulkan/page_cache.h"
 #include "vulkan/page_views.h"
-#include "vulkan/parked_tiles.h"
-#include "vulkan/read_troubles.h"
+#include "vulkan/deferred_tiles.h"
+#include "vulkan/read_health.h"
 #include "vulkan/readback_ring.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/residency.h"
@@ -154,7 +154,7 @@ struct SluiceVulkanStreamer {
     struct slc_unit_list arrived, binding, uploaded;
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
-    struct slc_parked_tiles parked;
+    struct slc_deferred_tiles deferred;
     uint32_t
         pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
     struct slc_staging staging;       ///< a slot per unit
@@ -199,31 +199,9 @@ static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
                                 const char *what);
 
-/* loads.c: from tiles that are wanted to texels in staging slots */
+/* load_units.c */
 SluiceResult slc_loads_init(SluiceVulkanStreamer *s);
 void slc_loads_finish(SluiceVulkanStreamer *s);
-SluiceResult slc_loads_collect(SluiceVulkanStreamer *s);
-SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s);
-/** The manager knows of slots alone: where pages are short, standby tiles give theirs to tiles that
- *  wait for one. Before tiles are unmapped. */
-SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s);
-SluiceResult slc_loads_start(SluiceVulkanStreamer *s);
-void slc_loads_bind(SluiceVulkanStreamer *s); ///< what arrived is given to the residency
-void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value); ///< by the submission of that value
-void slc_loads_recycle(SluiceVulkanStreamer *s);               ///< slots of completed frames
-/** A tile is unmapped. False: its texels may not be on its page, as the frame that copies them is
- *  not complete, or was abandoned. */
-bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
-/** What frames from `frame` on copied is copied again. */
-void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame);
-void slc_loads_drop(SluiceVulkanStreamer *s,
-                    uint32_t texture); ///< of a texture that is being removed
-void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
-uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
-void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit);
-
-/* tile_upload.c: from staging slots to images */
-SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 
 /* minmip_upload.c: publishes what the manager changed */
 SluiceResult slc_min_mip_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);

@@ -8,6 +8,7 @@
 #include "image/info.h"
 #include "vulkan/address_mode.h"
 #include "vulkan/format.h"
+#include "vulkan/load_cancels.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,9 @@
 /* Copies texels from staging slots to the images whose bindings are over, and tells the manager. */
-#include "vulkan/streamer.h"
+#include "vulkan/tile_upload.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "vulkan/load_units.h"
 
 #include <assert.h>
 

@@ -84,7 +84,7 @@ search 'https?://' "${code[@]}" | grep -v -E '://(registry\.khronos\.org|[a-z]+\
 search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:blank:]]*\(|\bRAND_MAX\b' \
     '*.c' '*.cpp' '*.h' | report random_numbers_are_the_same_on_every_machine
 
-import_circles residency core demand | report files_of_a_folder_do_not_import_in_circles
+import_circles residency core demand vulkan demand_vulkan | report files_of_a_folder_do_not_import_in_circles
 
 if command -v shellcheck >/dev/null; then
     files '*.sh' '*.ci/run' | tr '\n' '\0' | xargs -0 shellcheck -x 2>&1 | report scripts_pass_shellcheck

@@ -1,7 +1,7 @@
 /* What a streamer takes of the device's memory: all of it is counted, it is little at first, grows
  * with what is under way, and shrinks again. */
 #include "vulkan/fake_vulkan.h"
-#include "vulkan/streamer.h"
+#include "vulkan/load_units.h"
 
 #include "support/test.h"
 

@@ -1,0 +1,25 @@
+/**
+ * From texels that have arrived to the residency, and units that frames have read.
+ *
+ * A tile is bound when its texels have arrived, not when its load begins: a load that fails or is
+ * cancelled then never touches a page table
+ * (docs/decisions/0020-tiles-are-bound-when-their-texels-arrive.md).
+ */
+#ifndef SLC_VULKAN_LOAD_BINDS_H
+#define SLC_VULKAN_LOAD_BINDS_H
+
+#include "vulkan/streamer.h"
+
+/** Gives tiles that have arrived to the residency. */
+void slc_loads_bind(SluiceVulkanStreamer *s);
+/** The submission of that value binds them. */
+void slc_loads_bound(SluiceVulkanStreamer *s, uint64_t value);
+/** Frees the staging slots of completed frames. */
+void slc_loads_recycle(SluiceVulkanStreamer *s);
+/** A tile is unmapped. False: its texels may not be on its page, as the frame that copies them is
+ *  not complete, or was abandoned. */
+bool slc_loads_unmap(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
+/** Copies again what frames from `frame` on copied. */
+void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame);
+
+#endif /* SLC_VULKAN_LOAD_BINDS_H */

@@ -1,0 +1,84 @@
+#include "vulkan/load_deferred.h"
+
+#include "vulkan/load_units.h"
+
+/* There is no page for it. One that was asked to stop is not waited for. */
+SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    SluiceTileState state = SLUICE_TILE_STATE_CANCELLED;
+    sluiceGetTileState(s->manager, s->textures[texture].id, tile->tileIndex, &state, NULL);
+    if (state == SLUICE_TILE_STATE_CANCELLED ||
+        !slc_deferred_tiles_add(&s->deferred, &s->cb, texture, tile))
+        return slc_load_give_back(s, texture, tile);
+    return SLUICE_SUCCESS;
+}
+
+/* Tiles that are going to ask for a page of the format. */
+static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < s->info.maxLoadsInFlight; i++) {
+        const struct slc_unit *unit = &s->units[i];
+        bool is_coming = unit->state == SLC_UNIT_READING || unit->state == SLC_UNIT_ARRIVED;
+        count += is_coming && unit->packed_unit == SLC_NONE &&
+                 s->textures[unit->texture].info.format == format;
+    }
+    return count;
+}
+
+/* For further loads of the texture's format; UINT32_MAX: nobody knows of an end. Counted once a
+ * frame. */
+uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture)
+{
+    const struct slc_residency_interface *interface = s->residency->interface;
+    SluiceFormat format = s->textures[texture].info.format;
+    uint32_t *left = &s->pages_left[format];
+    if (*left == SLC_NONE && interface->page_room) {
+        uint32_t room = interface->page_room(s->residency, texture);
+        uint32_t loads = room == UINT32_MAX ? 0 : count_loads(s, format);
+        *left = room == UINT32_MAX ? SLC_NONE : room > loads ? room - loads : 0;
+    }
+    return *left;
+}
+
+void slc_pages_left_forget(SluiceVulkanStreamer *s)
+{
+    for (uint32_t i = 0; i < SLC_PAGE_FORMATS; i++)
+        s->pages_left[i] = SLC_NONE;
+}
+
+/* Deferred tiles that even pages which are free now do not suffice for. */
+static uint32_t count_without_page(SluiceVulkanStreamer *s)
+{
+    uint32_t count = 0;
+    slc_pages_left_forget(s);
+    for (uint32_t i = 0; i < s->deferred.count; i++) {
+        uint32_t texture = s->deferred.tiles[i].texture, left = slc_pages_left(s, texture);
+        count += left == 0;
+        if (left > 0 && left != SLC_NONE)
+            s->pages_left[s->textures[texture].info.format]--;
+    }
+    return count;
+}
+
+SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
+{
+    uint32_t count = s->deferred.count ? count_without_page(s) : 0;
+    if (count == 0)
+        return SLUICE_SUCCESS;
+    SluiceStreamedTextureStatistics stats;
+    sluiceGetStatistics(s->manager, &stats);
+    if (stats.standbyTileCount == 0)
+        return SLUICE_SUCCESS;
+    uint32_t kept = stats.standbyTileCount > count ? (uint32_t)stats.standbyTileCount - count : 0;
+    return slc_streamer_check(s, sluiceTrimStandbyTiles(s->manager, kept),
+                              "sluiceTrimStandbyTiles");
+}
+
+SluiceResult slc_load_give_back(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    s->counts.tilesCancelled++;
+    return slc_streamer_check(
+        s, sluiceReportCancelledTiles(s->manager, s->textures[texture].id, 1, &tile->tileIndex, 0),
+        "sluiceReportCancelledTiles");
+}

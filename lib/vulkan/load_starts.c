@@ -1,0 +1,150 @@
+#include "vulkan/load_starts.h"
+
+#include "base/checked.h"
+#include "vulkan/load_arrivals.h"
+#include "vulkan/load_deferred.h"
+#include "vulkan/load_reads.h"
+#include "vulkan/load_units.h"
+
+/* Before anything is read for it: the tile cannot ever be bound. */
+static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    s->counts.tilesFailed++;
+    return slc_streamer_check(s,
+                              sluiceReportFailedTiles(s->manager, s->textures[texture].id, 1,
+                                                      &tile->tileIndex, s->manager_time),
+                              "sluiceReportFailedTiles");
+}
+
+static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    const struct slc_residency_interface *interface = s->residency->interface;
+    if (interface->revive && interface->revive(s->residency, texture, tile)) {
+        s->counts.tilesMapped++;
+        s->counts.tilesRevived++;
+        return slc_streamer_check(
+            s, sluiceUpdateTilesMapping(s->manager, s->textures[texture].id, 1, &tile->tileIndex),
+            "sluiceUpdateTilesMapping");
+    }
+    if (interface->reserve && !interface->reserve(s->residency, texture, tile))
+        return refuse_tile(s, texture, tile);
+    uint32_t left = slc_pages_left(s, texture);
+    if (left == 0 || !slc_units_are_ready(s, 1))
+        return slc_load_defer(s, texture, tile);
+    if (left != SLC_NONE)
+        s->pages_left[s->textures[texture].info.format]--;
+    uint32_t unit = slc_unit_take(s, texture, SLC_NONE);
+    s->units[unit].tile = *tile;
+    slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
+    SluiceResult result = slc_unit_submit(s, unit);
+    return result == SLUICE_SUCCESS ? result : slc_tile_back(s, unit, result);
+}
+
+/* Those for which there is a page now, coarse ones first. */
+static SluiceResult start_deferred(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->deferred.count > 0 && level-- > 0;)
+        for (uint32_t i = 0; i < s->deferred.count && slc_units_are_ready(s, 1) && result >= 0;) {
+            struct slc_deferred_tile deferred = s->deferred.tiles[i];
+            if (deferred.tile.mipLevel != level || slc_pages_left(s, deferred.texture) == 0) {
+                i++;
+                continue;
+            }
+            slc_deferred_tiles_remove_at(&s->deferred, i);
+            result = start_tile(s, deferred.texture, &deferred.tile);
+        }
+    return result;
+}
+
+/* All packed tiles are there or handed out: then the levels are read, as one. */
+static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    uint32_t count = texture->packed_collected + texture->packed_mapped;
+    if (texture->packed_state != SLC_PACKED_COLLECTING || texture->packed_collected == 0 ||
+        count < texture->layout.desc.packedTileCount)
+        return;
+    texture->packed_state = SLC_PACKED_READY;
+    s->packed_queue[s->packed_queue_count++] = index;
+}
+
+/* One that comes while the others are on their way was evicted meanwhile. Its turn is later. */
+static SluiceResult collect_packed_tile(SluiceVulkanStreamer *s, uint32_t index,
+                                        const SluiceTile *tile)
+{
+    struct slc_texture *texture = &s->textures[index];
+    if (texture->packed_state != SLC_PACKED_COLLECTING)
+        return slc_load_give_back(s, index, tile);
+    texture->packed_tiles[texture->packed_collected++] = *tile;
+    check_packed(s, index);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    uint32_t count = texture->packed.unit_count;
+    texture->packed_state = SLC_PACKED_READING;
+    texture->packed_done = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t unit = slc_unit_take(s, index, i);
+        SluiceResult result = slc_unit_submit(s, unit);
+        if (result != SLUICE_SUCCESS)
+            result = slc_packed_unit_back(s, unit, result);
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
+/* True if one waits for staging slots: then tiles must not take them away. */
+static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
+{
+    *waits = false;
+    for (uint32_t i = 0; i < s->packed_queue_count;) {
+        uint32_t index = s->packed_queue[i];
+        struct slc_texture *texture = &s->textures[index];
+        if (texture->packed_state != SLC_PACKED_READY) {
+            i++;
+            continue;
+        }
+        if (!slc_units_are_ready(s, texture->packed.unit_count)) {
+            *waits = true;
+            return SLUICE_SUCCESS;
+        }
+        slc_packed_queue_remove(s, i);
+        SluiceResult result = start_packed(s, index);
+        if (result < 0)
+            return result;
+    }
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
+{
+    bool waits;
+    SluiceResult result = start_packed_queue(s, &waits);
+    slc_pages_left_forget(s);
+    if (result >= 0 && !waits)
+        result = start_deferred(s);
+    uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
+    if (result < 0 || waits || count == 0)
+        return result;
+    result = sluiceGetTilesToMap(s->manager, SLUICE_ALL_TEXTURES, &count, s->tiles);
+    if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
+        return SLUICE_SUCCESS; /* they stay requested */
+    if (result < 0)
+        return slc_streamer_check(s, result, "sluiceGetTilesToMap");
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t index = s->by_manager_index[(uint32_t)s->tiles[i].textureId];
+        result = SLUICE_SUCCESS;
+        if (slc_tile_is_packed(s, index, &s->tiles[i]))
+            result = collect_packed_tile(s, index, &s->tiles[i]);
+        else
+            result = start_tile(s, index, &s->tiles[i]);
+        if (result < 0)
+            return result;
+    }
+    return start_packed_queue(s, &waits);
+}

@@ -1,0 +1,28 @@
+/** Staging slots of the streamer: which are free, and lists of those that are not. */
+#ifndef SLC_VULKAN_LOAD_UNITS_H
+#define SLC_VULKAN_LOAD_UNITS_H
+
+#include "vulkan/streamer.h"
+
+void slc_unit_list_append(SluiceVulkanStreamer *s, struct slc_unit_list *list, uint32_t unit);
+/** SLC_NONE if the list is empty. */
+uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
+
+/** True if `count` units can be taken. Makes memory for them. Without device memory it puts units
+ *  that have memory first. */
+bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count);
+/** Takes a unit that is ready. `packed_unit`: SLC_NONE for a tile. */
+uint32_t slc_unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit);
+void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit);
+/** Removes the unit's tile from tile_units. */
+void slc_unit_forget_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit);
+
+void slc_packed_queue_remove(SluiceVulkanStreamer *s, uint32_t at);
+
+static inline bool slc_tile_is_packed(const SluiceVulkanStreamer *s, uint32_t texture,
+                                      const SluiceTile *tile)
+{
+    return tile->tileIndex >= s->textures[texture].layout.regularTileCount;
+}
+
+#endif /* SLC_VULKAN_LOAD_UNITS_H */
