@@ -35,11 +35,13 @@ SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAlloc
                                  const struct slc_read_queue_limits *limits)
 {
     uint32_t capacity = limits->capacity;
-    *queue = (struct slc_read_queue){.capacity = capacity,
-                                     .max_running_per_source = limits->max_running_per_source,
-                                     .max_running_size = limits->max_running_size,
-                                     .startable.is_before = source_is_more_urgent,
-                                     .delayed.is_before = read_is_due_before};
+    *queue = (struct slc_read_queue){
+        .capacity = capacity,
+        .own_load = {.max_running_per_source = limits->max_running_per_source,
+                     .max_running_size = limits->max_running_size},
+        .startable.is_before = source_is_more_urgent,
+        .delayed.is_before = read_is_due_before};
+    queue->load = &queue->own_load;
     queue->reads = slc_calloc(cb, capacity, sizeof *queue->reads);
     queue->free_slots = slc_alloc(cb, capacity, sizeof *queue->free_slots);
     queue->finished = slc_alloc(cb, capacity, sizeof *queue->finished);
@@ -62,13 +64,30 @@ void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationC
     slc_free(cb, queue->finished, queue->capacity, sizeof *queue->finished);
 }
 
+void slc_read_queue_share(struct slc_read_queue *queue, struct slc_read_load *load,
+                          struct slc_read_queue *peer)
+{
+    queue->load = load;
+    if (peer)
+        slc_read_sources_share(&queue->sources, &peer->sources);
+}
+
 /* Slot and generation in one number that is never 0. */
 static uint64_t make_ticket(const struct slc_read_queue *queue, uint32_t slot)
 {
     return queue->reads[slot].generation * queue->capacity + slot + 1;
 }
 
-/* Around every change of a source's queue or of how many of its reads run. */
+/* Reads of a source that run, of all queues that share limits. */
+static uint32_t running_count(const struct slc_read_source *source)
+{
+    uint32_t count = source->running_count;
+    for (const struct slc_read_source *twin = source->twin; twin != source; twin = twin->twin)
+        count += twin->running_count;
+    return count;
+}
+
+/* Around every change of a source's queue. */
 static void source_leave(struct slc_read_queue *queue, struct slc_read_source *source)
 {
     if (slc_heap_node_is_in(&source->node))
@@ -77,8 +96,22 @@ static void source_leave(struct slc_read_queue *queue, struct slc_read_source *s
 
 static void source_return(struct slc_read_queue *queue, struct slc_read_source *source)
 {
-    if (source->queued.root && source->running_count < queue->max_running_per_source)
+    if (source->queued.root && running_count(source) < queue->load->max_running_per_source)
         slc_pairing_heap_add(&queue->startable, &source->node);
+}
+
+static struct slc_read_queue *queue_of(struct slc_read_source *source)
+{
+    return SLC_CONTAINER_OF(source->sources, struct slc_read_queue, sources);
+}
+
+/* After a change of how many reads of the source run: other queues may start one now, or not. */
+static void update_twins(struct slc_read_source *source)
+{
+    for (struct slc_read_source *twin = source->twin; twin != source; twin = twin->twin) {
+        source_leave(queue_of(twin), twin);
+        source_return(queue_of(twin), twin);
+    }
 }
 
 static void enqueue(struct slc_read_queue *queue, struct slc_read *read)
@@ -110,8 +143,10 @@ static void stop_running(struct slc_read_queue *queue, struct slc_read *read)
     source_leave(queue, read->source);
     read->source->running_count--;
     queue->running_count--;
-    queue->running_size -= read->running_size;
+    queue->load->running_count--;
+    queue->load->running_size -= read->running_size;
     source_return(queue, read->source);
+    update_twins(read->source);
 }
 
 bool slc_read_queue_submit(struct slc_read_queue *queue, const SluiceTileRead *given,
@@ -171,8 +206,9 @@ struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now
         SLC_CONTAINER_OF(queue->startable.root, struct slc_read_source, node);
     struct slc_read *read = SLC_CONTAINER_OF(source->queued.root, struct slc_read, node);
     uint64_t size = size_of(read);
-    uint64_t room = queue->max_running_size - queue->running_size;
-    if (queue->running_count > 0 && (queue->running_size > queue->max_running_size || size > room))
+    struct slc_read_load *load = queue->load;
+    uint64_t room = load->max_running_size - load->running_size;
+    if (load->running_count > 0 && (load->running_size > load->max_running_size || size > room))
         return NULL;
     source_leave(queue, source);
     slc_pairing_heap_remove(&source->queued, &read->node);
@@ -181,8 +217,10 @@ struct slc_read *slc_read_queue_start(struct slc_read_queue *queue, uint64_t now
     read->running_size = size;
     source->running_count++;
     queue->running_count++;
-    queue->running_size += size;
+    load->running_count++;
+    load->running_size += size;
     source_return(queue, source);
+    update_twins(source);
     return read;
 }
 

@@ -40,10 +40,17 @@ struct slc_read {
     atomic_bool dropped; ///< nobody wants it any more
 };
 
+/** Limits, and what runs of them. Several queues may share it. */
+struct slc_read_load {
+    uint32_t max_running_per_source;
+    uint32_t running_count;
+    uint64_t max_running_size; ///< bytes; a single read may exceed it
+    uint64_t running_size;
+};
+
 struct slc_read_queue {
     uint32_t capacity;
-    uint32_t max_running_per_source;
-    uint64_t max_running_size; ///< bytes, but for a read that runs alone
+    struct slc_read_load own_load, *load; ///< `load` is `own_load`, or the one that queues share
     struct slc_read *reads;
     uint32_t *free_slots; ///< a stack
     uint32_t free_count;
@@ -55,7 +62,6 @@ struct slc_read_queue {
     struct slc_pairing_heap startable; ///< sources that have room for another of their queued reads
     struct slc_pairing_heap delayed;   ///< reads, the first one due in front
     uint32_t queued_count, running_count;
-    uint64_t running_size;
     struct slc_read_statistics statistics; ///< of all sources; knows how many are delayed
 };
 
@@ -69,6 +75,11 @@ struct slc_read_queue_limits {
 /** Errors: OUT_OF_HOST_MEMORY; nothing to finish then. Must not be moved afterwards. */
 SluiceResult slc_read_queue_init(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb,
                                  const struct slc_read_queue_limits *limits);
+/** Counts reads against `load` instead of the queue's own limits. `peer`: another queue that does,
+ *  or NULL. Before the first read. */
+void slc_read_queue_share(struct slc_read_queue *queue, struct slc_read_load *load,
+                          struct slc_read_queue *peer);
+/** Nothing of it is running. Queues that it shares limits with go on. */
 void slc_read_queue_finish(struct slc_read_queue *queue, const SluiceAllocationCallbacks *cb);
 
 /** False when every slot is taken. */

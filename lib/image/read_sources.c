@@ -32,17 +32,11 @@ SluiceResult slc_read_sources_init(struct slc_read_sources *sources,
         slc_read_sources_finish(sources, cb);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
+    sources->peer = sources;
     sources->idle.previous = sources->idle.next = &sources->idle;
     for (uint32_t i = 0; i < count; i++)
         link_after(&sources->idle, &sources->records[i]);
     return SLUICE_SUCCESS;
-}
-
-void slc_read_sources_finish(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb)
-{
-    slc_free(cb, sources->records, sources->count, sizeof *sources->records);
-    slc_free(cb, sources->places, sources->place_count, sizeof *sources->places);
-    *sources = (struct slc_read_sources){0};
 }
 
 /* Where it is, or the free place where it would be. */
@@ -74,6 +68,60 @@ static void remove_place(struct slc_read_sources *sources, const struct slc_read
     }
 }
 
+static void link_twin(struct slc_read_sources *sources, struct slc_read_source *record)
+{
+    record->twin = record;
+    for (const struct slc_read_sources *peer = sources->peer; peer != sources; peer = peer->peer) {
+        struct slc_read_source *twin = slc_read_sources_find(peer, record->source);
+        if (!twin)
+            continue;
+        record->twin = twin->twin;
+        twin->twin = record;
+        return;
+    }
+}
+
+static void unlink_twin(struct slc_read_source *record)
+{
+    struct slc_read_source *before = record;
+    while (before->twin != record)
+        before = before->twin;
+    before->twin = record->twin;
+    record->twin = record;
+}
+
+void slc_read_sources_share(struct slc_read_sources *sources, struct slc_read_sources *peer)
+{
+    sources->peer = peer->peer;
+    peer->peer = sources;
+}
+
+static void leave_peers(struct slc_read_sources *sources)
+{
+    struct slc_read_sources *before = sources;
+    for (uint32_t i = 0; i < sources->count; i++)
+        if (sources->records[i].source)
+            unlink_twin(&sources->records[i]);
+    while (before->peer != sources)
+        before = before->peer;
+    before->peer = sources->peer;
+}
+
+void slc_read_sources_finish(struct slc_read_sources *sources, const SluiceAllocationCallbacks *cb)
+{
+    if (sources->peer)
+        leave_peers(sources);
+    slc_free(cb, sources->records, sources->count, sizeof *sources->records);
+    slc_free(cb, sources->places, sources->place_count, sizeof *sources->places);
+    *sources = (struct slc_read_sources){0};
+}
+
+static void forget(struct slc_read_sources *sources, struct slc_read_source *record)
+{
+    unlink_twin(record);
+    remove_place(sources, record);
+}
+
 /* A record out of the idle ones, its former source forgotten. */
 static struct slc_read_source *recycle(struct slc_read_sources *sources, SluiceImageSource *source)
 {
@@ -81,9 +129,10 @@ static struct slc_read_source *recycle(struct slc_read_sources *sources, SluiceI
     assert(record != &sources->idle);
     unlink_idle(record);
     if (record->source)
-        remove_place(sources, record);
-    *record = (struct slc_read_source){.source = source};
+        forget(sources, record);
+    *record = (struct slc_read_source){.source = source, .sources = sources};
     sources->places[place_of(sources, source)] = record;
+    link_twin(sources, record);
     return record;
 }
 
@@ -108,7 +157,7 @@ void slc_read_sources_remove_read(struct slc_read_sources *sources, struct slc_r
 void slc_read_sources_forget(struct slc_read_sources *sources, struct slc_read_source *source)
 {
     assert(source->source && source->read_count == 0);
-    remove_place(sources, source);
+    forget(sources, source);
     unlink_idle(source);
     *source = (struct slc_read_source){0};
     link_after(&sources->idle, source);

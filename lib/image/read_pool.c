@@ -1,0 +1,295 @@
+#define _GNU_SOURCE /* mutexes that spin before they sleep */
+
+#include "image/read_pool.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+
+#include <time.h>
+#include <unistd.h>
+
+/* One try at the regions of a read that are left. */
+struct attempt {
+    SluiceResult result;
+    SluiceImageInfo info; ///< zeroed if the source did not tell
+    SluiceImageFault fault;
+    uint64_t latency; ///< ns
+};
+
+static uint64_t nanoseconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+static bool is_dropped(const struct slc_read *read)
+{
+    return atomic_load_explicit(&read->dropped, memory_order_relaxed);
+}
+
+static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
+                                 SluiceImageFault *fault)
+{
+    SluiceImageSource *source = read->source->source;
+    SluiceResult result = sluiceGetImageInfo(source, info);
+    if (result != SLUICE_SUCCESS) {
+        *info = (SluiceImageInfo){0};
+        return result;
+    }
+    for (; read->done_count < read->region_count; read->done_count++) {
+        if (is_dropped(read))
+            return SLUICE_ERROR_CANCELLED;
+        const SluiceImageRegion *region = &read->regions[read->done_count];
+        result = sluiceReadImageRegionLocated(
+            source, region, read->texels[read->done_count],
+            sluiceFormatRegionSize(info->format, region->width, 1), fault);
+        if (result != SLUICE_SUCCESS)
+            return result;
+        read->done_size += sluiceFormatRegionSize(info->format, region->width, region->height);
+    }
+    return SLUICE_SUCCESS;
+}
+
+static struct attempt make_attempt(struct slc_read *read)
+{
+    struct attempt attempt = {.fault = {"", SLUICE_UNKNOWN_OFFSET}};
+    uint64_t start = nanoseconds();
+    attempt.result = read_regions(read, &attempt.info, &attempt.fault);
+    attempt.latency = nanoseconds() - start;
+    read->attempts.count++;
+    read->attempts.corrupt_count += attempt.result == SLUICE_ERROR_CORRUPT_DATA;
+    return attempt;
+}
+
+/* Before the read is over, because the source need not live longer. */
+static void report_failure(const SluiceTileLoader *loader, const struct slc_read *read,
+                           const struct attempt *attempt, bool will_retry, uint64_t delay)
+{
+    bool is_failure = attempt->result != SLUICE_SUCCESS &&
+                      attempt->result != SLUICE_ERROR_CANCELLED &&
+                      (attempt->result != SLUICE_NOT_READY || !will_retry);
+    if (!is_failure || !loader->failure.pfnFailed)
+        return;
+    SluiceTileReadFailure failure = {
+        .source = read->source->source,
+        .pName = attempt->fault.pName,
+        .region = read->regions[read->done_count],
+        .result = attempt->result,
+        .attempt = read->attempts.count,
+        .willRetry = will_retry,
+        .retryDelay = will_retry ? delay : 0,
+        .userValue = read->result.userValue,
+        .offset = attempt->fault.offset,
+    };
+    loader->failure.pfnFailed(loader->failure.pUserData, &failure);
+}
+
+void slc_loader_signal_if_idle(SluiceTileLoader *loader)
+{
+    if (slc_read_queue_is_idle(&loader->queue))
+        pthread_cond_broadcast(&loader->pool->idle);
+}
+
+void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result)
+{
+    slc_read_queue_end(&loader->queue, read, result);
+    if (loader->end.pfnEnded)
+        loader->end.pfnEnded(loader->end.pUserData, read->result.userValue, result);
+}
+
+/* With the mutex held, which is given up meanwhile. */
+static void run(SluiceTileLoader *loader, struct slc_read *read)
+{
+    pthread_mutex_t *mutex = &loader->pool->mutex;
+    uint64_t delay = 0;
+    pthread_mutex_unlock(mutex);
+    struct attempt attempt = make_attempt(read);
+    bool will_retry = slc_retry_is_due(&loader->retry, &read->attempts, attempt.result, &delay);
+    report_failure(loader, read, &attempt, will_retry, delay);
+    pthread_mutex_lock(mutex);
+    if (attempt.info.format != SLUICE_FORMAT_UNDEFINED)
+        read->source->format = attempt.info.format;
+    slc_read_queue_add_attempt(&loader->queue, read, attempt.result, attempt.fault.offset,
+                               attempt.latency);
+    if (!will_retry) {
+        slc_loader_end_read(loader, read, attempt.result);
+    } else if (is_dropped(read)) {
+        slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELLED);
+    } else {
+        uint64_t now = nanoseconds();
+        slc_read_queue_delay(&loader->queue, read,
+                             delay < UINT64_MAX - now ? now + delay : UINT64_MAX - 1);
+    }
+    slc_loader_signal_if_idle(loader);
+}
+
+static uint64_t next_due(const struct slc_read_pool *pool)
+{
+    uint64_t due = UINT64_MAX;
+    for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next) {
+        uint64_t own = slc_read_queue_next_due(&loader->queue);
+        due = own < due ? own : due;
+    }
+    return due;
+}
+
+/* Until something is said, or until the first delayed read is due. */
+static void wait_for_work(struct slc_read_pool *pool)
+{
+    uint64_t due = next_due(pool);
+    struct timespec until = {(time_t)(due / 1000000000u), (long)(due % 1000000000u)};
+    pool->waiting_count++;
+    if (due == UINT64_MAX)
+        pthread_cond_wait(&pool->work, &pool->mutex);
+    else
+        pthread_cond_timedwait(&pool->work, &pool->mutex, &until);
+    pool->waiting_count--;
+    pool->signalled_count -= pool->signalled_count > 0;
+}
+
+/*
+ * One thread at a time, which will wake the next one if there is more: where reads are quick, few
+ * threads that are awake do them sooner than many that wait for each other.
+ */
+void slc_read_pool_signal(struct slc_read_pool *pool)
+{
+    if (pool->waiting_count == 0 || pool->signalled_count > 0)
+        return;
+    pool->signalled_count++;
+    pthread_cond_signal(&pool->work);
+}
+
+bool slc_read_pool_has_startable(const struct slc_read_pool *pool)
+{
+    for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next)
+        if (loader->queue.startable.root)
+            return true;
+    return false;
+}
+
+static bool has_work(const struct slc_read_pool *pool)
+{
+    for (const SluiceTileLoader *loader = pool->loaders; loader; loader = loader->next)
+        if (loader->queue.startable.root || loader->queue.delayed.root)
+            return true;
+    return false;
+}
+
+/* The loaders take turns. A read that waits until fewer bytes are being read keeps its turn: the
+ * small reads of other loaders would otherwise hold it up for ever. */
+static struct slc_read *start(struct slc_read_pool *pool, SluiceTileLoader **loader)
+{
+    SluiceTileLoader *first = pool->turn ? pool->turn : pool->loaders, *at = first;
+    uint64_t now = first ? nanoseconds() : 0;
+    while (at) {
+        SluiceTileLoader *next = at->next ? at->next : pool->loaders;
+        struct slc_read *read = slc_read_queue_start(&at->queue, now);
+        pool->turn = read ? next : at;
+        *loader = at;
+        if (read || at->queue.startable.root || next == first)
+            return read;
+        at = next;
+    }
+    return NULL;
+}
+
+static void *worker_main(void *argument)
+{
+    struct slc_read_pool *pool = argument;
+    pthread_mutex_lock(&pool->mutex);
+    for (;;) {
+        SluiceTileLoader *loader = NULL;
+        struct slc_read *read = start(pool, &loader);
+        if (!read && pool->stopping)
+            break;
+        if (!read) {
+            wait_for_work(pool);
+            continue;
+        }
+        /* This thread may be gone for long: another one looks after what else there is. */
+        if (has_work(pool))
+            slc_read_pool_signal(pool);
+        run(loader, read);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return NULL;
+}
+
+/* At least two, or one source that stalls would stop all. */
+static uint32_t default_thread_count(void)
+{
+    long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return processors > 3 ? (uint32_t)processors - 1 : 2;
+}
+
+static void init_synchronisation(struct slc_read_pool *pool)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_mutexattr_t mutex;
+    pthread_mutexattr_init(&mutex);
+#ifdef PTHREAD_ADAPTIVE_MUTEX_INITIALIZER_NP
+    pthread_mutexattr_settype(&mutex, PTHREAD_MUTEX_ADAPTIVE_NP);
+#endif
+    pthread_mutex_init(&pool->mutex, &mutex);
+    pthread_mutexattr_destroy(&mutex);
+    pthread_cond_init(&pool->work, &attributes);
+    pthread_cond_init(&pool->idle, NULL);
+    pthread_condattr_destroy(&attributes);
+}
+
+/* `wanted`: threads that there is room for. */
+static void stop(struct slc_read_pool *pool, uint32_t wanted)
+{
+    pthread_mutex_lock(&pool->mutex);
+    pool->stopping = true;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+    for (uint32_t i = 0; i < pool->thread_count; i++)
+        pthread_join(pool->threads[i], NULL);
+    pthread_mutex_destroy(&pool->mutex);
+    pthread_cond_destroy(&pool->work);
+    pthread_cond_destroy(&pool->idle);
+    SluiceAllocationCallbacks cb = pool->allocator;
+    slc_free(&cb, pool->threads, wanted, sizeof *pool->threads);
+    slc_free(&cb, pool, 1, sizeof *pool);
+}
+
+SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
+                                  struct slc_read_pool **out)
+{
+    uint32_t wanted = info->threadCount ? info->threadCount : default_thread_count();
+    uint32_t per_source = info->maxReadsPerSource ? info->maxReadsPerSource : wanted - 1;
+    SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
+    struct slc_read_pool *pool = slc_calloc(&cb, 1, sizeof *pool);
+    if (!pool)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    pool->allocator = cb;
+    pool->load = (struct slc_read_load){
+        .max_running_per_source = slc_max_u32(1, per_source),
+        .max_running_size = info->maxBytesInFlight ? info->maxBytesInFlight : (uint64_t)1 << 28,
+    };
+    pool->threads = slc_calloc(&cb, wanted, sizeof *pool->threads);
+    if (!pool->threads) {
+        slc_free(&cb, pool, 1, sizeof *pool);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    init_synchronisation(pool);
+    while (pool->thread_count < wanted &&
+           pthread_create(&pool->threads[pool->thread_count], NULL, worker_main, pool) == 0)
+        pool->thread_count++;
+    if (pool->thread_count < wanted) {
+        stop(pool, wanted);
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    }
+    *out = pool;
+    return SLUICE_SUCCESS;
+}
+
+void slc_read_pool_destroy(struct slc_read_pool *pool)
+{
+    if (pool)
+        stop(pool, pool->thread_count);
+}

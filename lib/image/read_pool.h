@@ -1,0 +1,72 @@
+/**
+ * Threads that read for several tile loaders.
+ *
+ * The loaders of a pool take turns, one read each, so that none of them starves. Limits of bytes
+ * and of reads per source count the reads of all loaders together. Each loader has its own
+ * capacity, results, retry policy, callbacks and statistics.
+ */
+#ifndef SLC_IMAGE_READ_POOL_H
+#define SLC_IMAGE_READ_POOL_H
+
+#include <sluice/loader.h>
+
+#include "image/read_queue.h"
+
+#include <pthread.h>
+
+struct slc_read_pool {
+    SluiceAllocationCallbacks allocator;
+    pthread_mutex_t mutex; ///< around everything below, and all queues
+    pthread_cond_t work;   ///< a read may have become startable or delayed, or the pool stops
+    pthread_cond_t idle;   ///< nothing of some loader is queued, delayed or running
+    struct slc_read_load load;
+    SluiceTileLoader *loaders; ///< in a list
+    SluiceTileLoader *turn;    ///< which starts the next read if it can
+    bool stopping;
+    uint32_t waiting_count;   ///< threads that wait for `work`
+    uint32_t signalled_count; ///< of which so many were told, and have not woken yet
+    uint32_t thread_count;
+    pthread_t *threads;
+};
+
+struct SluiceTileLoader {
+    SluiceAllocationCallbacks allocator;
+    SluiceTileRetryPolicy retry;
+    SluiceTileReadFailureCallback failure;
+    SluiceTileReadEndCallback end;
+    struct slc_read_pool *pool;
+    bool owns_pool;
+    SluiceTileLoader *next;      ///< of the pool's loaders
+    struct slc_read_queue queue; ///< the pool's mutex is around it
+};
+
+/**
+ * Creates a pool and starts its threads. Uses pAllocator, threadCount, maxReadsPerSource and
+ * maxBytesInFlight of `info`.
+ *
+ * Errors: OUT_OF_HOST_MEMORY, also if a thread cannot be started.
+ */
+SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
+                                  struct slc_read_pool **pool);
+/** Stops the threads. All loaders of the pool are destroyed. NULL is allowed. */
+void slc_read_pool_destroy(struct slc_read_pool *pool);
+
+/**
+ * Creates a loader whose reads the pool's threads do. Uses the other fields of `info`. Destroy the
+ * loader with sluiceDestroyTileLoader, before the pool.
+ *
+ * Errors: INVALID_ARGUMENT, OUT_OF_HOST_MEMORY.
+ */
+SluiceResult slc_create_pool_loader(struct slc_read_pool *pool,
+                                    const SluiceTileLoaderCreateInfo *info,
+                                    SluiceTileLoader **loader);
+
+/** With the mutex held: reads may have become startable. Wakes a thread. */
+void slc_read_pool_signal(struct slc_read_pool *pool);
+/** With the mutex held: something can be started or waits for a retry. */
+bool slc_read_pool_has_startable(const struct slc_read_pool *pool);
+/** With the mutex held: ends a read and tells the loader's owner. */
+void slc_loader_end_read(SluiceTileLoader *loader, struct slc_read *read, SluiceResult result);
+void slc_loader_signal_if_idle(SluiceTileLoader *loader);
+
+#endif /* SLC_IMAGE_READ_POOL_H */
