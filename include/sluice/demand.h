@@ -119,9 +119,15 @@ SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateI
                                                  SluiceDemandLoader **pLoader);
 
 /**
- * Destroys a loader: cancels work that has not begun, waits for reads in progress and for the
- * device, and closes every image. NULL is allowed.
- * Thread safety: external on `loader` and on all queues of the device.
+ * Destroys a loader: cancels work that has not begun, waits for reads in progress and for its own
+ * launches, and closes every image. Does not wait for other work of the device. NULL is allowed.
+ *
+ * Launches that were processed, abandoned or not ended are not waited for. Submit or abandon every
+ * launch that you ended: otherwise destruction logs a warning after 5 seconds without progress, and
+ * calls vkDeviceWaitIdle. Process launches that may run for longer than that.
+ *
+ * Thread safety: external on `loader`. On all queues of the device if an ended launch was neither
+ * submitted nor abandoned, or runs for more than 5 seconds.
  */
 SLUICE_API void sluiceDestroyDemandLoader(SluiceDemandLoader *loader);
 

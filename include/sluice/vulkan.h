@@ -17,7 +17,8 @@
  * barriers for its own images and buffers; you need none for them. docs/frame-loop.md explains each
  * step, docs/examples/vulkan.c is a whole program.
  *
- * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU.
+ * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU. Both wait for
+ * work of the streamer alone.
  *
  * Thread safety, unless a function says otherwise: external on the streamer; during
  * sluiceBeginStreamingFrame also on the sparse queue.
@@ -352,9 +353,15 @@ SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
     const SluiceVulkanStreamerCreateInfo *pCreateInfo, SluiceVulkanStreamer **pStreamer);
 
 /**
- * Waits for the device (vkDeviceWaitIdle) and for reads in progress, then destroys the streamer and
- * everything it owns. NULL is allowed.
- * Thread safety: external on `streamer` and on all queues of the device.
+ * Waits for its own frames, sparse binds and reads, then destroys the streamer and everything it
+ * owns. Does not wait for other work of the device. NULL is allowed.
+ *
+ * Frames that were not ended, or were abandoned, are not waited for. Submit or abandon every frame
+ * that you ended: otherwise destruction logs a warning after 5 seconds without progress, and calls
+ * vkDeviceWaitIdle.
+ *
+ * Thread safety: external on `streamer`. On all queues of the device if an ended frame was neither
+ * submitted nor abandoned.
  */
 SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
 

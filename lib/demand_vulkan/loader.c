@@ -8,6 +8,7 @@
 #include "vulkan/format_caps.h"
 #include "vulkan/region_arena.h"
 #include "vulkan/sparse_layout.h"
+#include "vulkan/submitted_work.h"
 
 #include <sluice/shared/demand.h>
 
@@ -303,7 +304,6 @@ static void stop_workers(SluiceDemandLoader *loader)
 
 static void destroy_device_parts(SluiceDemandLoader *loader)
 {
-    loader->vk.DeviceWaitIdle(loader->vk.device);
     slc_page_directory_finish(&loader->directory);
     slc_demand_scan_finish(&loader->scan, &loader->vk);
     slc_tile_memory_finish(&loader->tiles);
@@ -318,8 +318,8 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     if (!loader)
         return;
     stop_workers(loader);
-    if (loader->vk.device)
-        loader->vk.DeviceWaitIdle(loader->vk.device);
+    if (loader->ended > loader->processed)
+        slc_submitted_work_wait(&loader->vk, loader->semaphore, loader->ended, "launch");
     slc_resources_finish(loader);
     slc_images_finish(loader);
     slc_demand_textures_finish(loader);

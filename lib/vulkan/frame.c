@@ -202,6 +202,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     if (s->in_flight[s->slot] > s->completed_frame)
         return SLUICE_NOT_READY;
     s->in_flight[s->slot] = ++s->frame;
+    s->submittable[s->slot] = false;
     s->slot_turn++;
     s->time_stamp = timeStamp;
     slc_time_check_frame(&s->time_check, &s->info.log, timeStamp);
@@ -227,6 +228,7 @@ SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBu
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
     streamer->ended_frame = streamer->frame;
+    streamer->submittable[streamer->slot] = true;
     slc_feedback_record(streamer, commandBuffer);
     return SLUICE_SUCCESS;
 }
@@ -237,6 +239,15 @@ static bool is_in_flight(const SluiceVulkanStreamer *s, uint64_t frame)
         if (frame && s->in_flight[i] == frame)
             return frame > s->completed_frame;
     return false;
+}
+
+uint64_t slc_streamer_last_submittable(const SluiceVulkanStreamer *s)
+{
+    uint64_t last = 0;
+    for (uint32_t i = 0; i < s->info.framesInFlight; i++)
+        if (s->submittable[i] && s->in_flight[i] > last)
+            last = s->in_flight[i];
+    return last;
 }
 
 static void give_slots_back(SluiceVulkanStreamer *s, uint64_t frame)

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "vulkan/around.h"
 #include "vulkan/create_checks.h"
+#include "vulkan/submitted_work.h"
 
 #include <string.h>
 
@@ -340,9 +341,19 @@ static void free_arrays(SluiceVulkanStreamer *s)
     slc_free(cb, s->textures, textures, sizeof *s->textures);
 }
 
+/* A frame that was not ended cannot be under way. */
+static void wait_for_own_work(SluiceVulkanStreamer *s)
+{
+    uint64_t frame = slc_streamer_last_submittable(s);
+    if (frame > s->completed_frame)
+        slc_submitted_work_wait(&s->vk, s->semaphore, frame, "frame");
+    if (s->residency)
+        s->residency->interface->wait(s->residency);
+}
+
 static void destroy_device_parts(SluiceVulkanStreamer *s)
 {
-    s->vk.DeviceWaitIdle(s->vk.device);
+    wait_for_own_work(s);
     slc_loads_finish(s);
     for (uint32_t i = 0; i < s->texture_high; i++)
         slc_texture_destroy(s, i);

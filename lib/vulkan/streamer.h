@@ -129,6 +129,7 @@ struct SluiceVulkanStreamer {
     struct slc_time_check time_check;
     uint64_t manager_time;              ///< the last time stamp that the manager got
     uint64_t in_flight[SLC_MAX_FRAMES]; ///< by slot; framesInFlight of them; 0: none
+    bool submittable[SLC_MAX_FRAMES];   ///< by slot; its frame was ended without an error
     uint64_t slot_turn;                 ///< frames begun and not abandoned
     uint32_t slot;                      ///< of the last frame begun
     bool buffers_cleared;
@@ -198,6 +199,10 @@ static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 /** Logs what the manager refuses although it should not; returns `result`. */
 SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
                                 const char *what);
+
+/* frame.c */
+/** The last frame that may be under way on the GPU: ended, and not abandoned. 0: none. */
+uint64_t slc_streamer_last_submittable(const SluiceVulkanStreamer *s);
 
 /* load_units.c */
 SluiceResult slc_loads_init(SluiceVulkanStreamer *s);

@@ -72,7 +72,15 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_AllocateMemory(VkDevice device,
     return next_AllocateMemory(device, info, cb, memory);
 }
 
-/* A device that is lost answers a wait at once. */
+/* The device below is not lost, and what it does has to end before anything is destroyed. */
+static PFN_vkDeviceWaitIdle next_DeviceWaitIdle;
+static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
+{
+    VkResult result = next_DeviceWaitIdle(device);
+    return fails() ? failing_layer.failure : result;
+}
+
+/* A device that is lost answers a wait at once, whatever was never submitted. */
 static PFN_vkWaitSemaphores next_WaitSemaphores;
 static VKAPI_ATTR VkResult VKAPI_CALL layer_WaitSemaphores(VkDevice device,
                                                            const VkSemaphoreWaitInfo *info,
@@ -80,16 +88,9 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_WaitSemaphores(VkDevice device,
 {
     if (!fails())
         return next_WaitSemaphores(device, info, timeout);
+    next_DeviceWaitIdle(device);
     failing_layer.waited_in_vain++;
     return failing_layer.failure;
-}
-
-/* The device below is not lost, and what it does has to end before anything is destroyed. */
-static PFN_vkDeviceWaitIdle next_DeviceWaitIdle;
-static VKAPI_ATTR VkResult VKAPI_CALL layer_DeviceWaitIdle(VkDevice device)
-{
-    VkResult result = next_DeviceWaitIdle(device);
-    return fails() ? failing_layer.failure : result;
 }
 
 /* clang-format off */

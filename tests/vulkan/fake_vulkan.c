@@ -343,14 +343,18 @@ static VKAPI_ATTR void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore
     drop(fake_of(device), semaphore);
 }
 
+static uint64_t value_of(const struct fake_vulkan *fake, VkSemaphore semaphore)
+{
+    /* until the first bind tells which one is its, both stand at 0 */
+    bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
+    return semaphore == fake->frame_semaphore ? fake->frame_value : binds ? fake->bind_value : 0;
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL counter_value(VkDevice device, VkSemaphore semaphore,
                                                     uint64_t *value)
 {
     MAY_FAIL(device);
-    struct fake_vulkan *fake = fake_of(device);
-    /* until the first bind tells which one is its, both stand at 0 */
-    bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
-    *value = semaphore == fake->frame_semaphore ? fake->frame_value : binds ? fake->bind_value : 0;
+    *value = value_of(fake_of(device), semaphore);
     return VK_SUCCESS;
 }
 
@@ -360,8 +364,11 @@ static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
                                                       uint64_t timeout)
 {
     MAY_FAIL(device);
-    (void)device, (void)info, (void)timeout;
-    return VK_SUCCESS;
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_wait wait = {info->pSemaphores[0], info->pValues[0], timeout, fake->live_objects};
+    fake->waits[fake->wait_count++ % 64] = wait;
+    bool waits = fake->waits_time_out && value_of(fake, wait.semaphore) < wait.value;
+    return waits ? VK_TIMEOUT : VK_SUCCESS;
 }
 
 static void note_bind(struct fake_vulkan *fake, const struct fake_bind *bind)
@@ -451,6 +458,8 @@ static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t write_co
                                               const VkCopyDescriptorSet *copies)
 {
     (void)write_count, (void)copy_count, (void)copies;
+    if (fake_of(device)->no_resolve)
+        return;
     fake_of(device)->table = OBJECT(writes[0].pBufferInfo[2].buffer);
     fake_of(device)->readback = OBJECT(writes[0].pBufferInfo[4].buffer);
 }
@@ -489,6 +498,8 @@ static VKAPI_ATTR void VKAPI_CALL push_constants(VkCommandBuffer commands, VkPip
                                                  uint32_t size, const void *values)
 {
     (void)layout, (void)stages, (void)offset;
+    if (fake_of(commands)->no_resolve)
+        return;
     assert_int_equal(size, sizeof fake_of(commands)->push);
     memcpy(&fake_of(commands)->push, values, size);
 }
@@ -528,7 +539,7 @@ static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x,
 {
     (void)x, (void)y, (void)z;
     struct fake_vulkan *fake = fake_of(commands);
-    if (++fake->dispatch_count % 3 != 0)
+    if (fake->no_resolve || ++fake->dispatch_count % 3 != 0)
         return;
     for (uint32_t i = 0, at = 0; i < fake->push.itemCount; i++)
         resolve_item(fake, i, &at);
@@ -538,6 +549,7 @@ static VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, uint32_t x,
 static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
 {
     struct fake_vulkan *fake = fake_of(device);
+    fake->device_waits++;
     bool is_lost = fake->fails_on && fake->failing_call && fake->calls >= fake->failing_call;
     return is_lost ? fake->failure : VK_SUCCESS;
 }

@@ -75,6 +75,17 @@ struct fake_vulkan {
         uint32_t marked[FAKE_WORDS];
     } watches[2];
 
+    /** Waits: each device wait, and what semaphores were waited for. */
+    uint32_t device_waits;
+    struct fake_wait {
+        VkSemaphore semaphore;
+        uint64_t value, timeout;
+        uint64_t live_objects; ///< at that time
+    } waits[64];
+    uint32_t wait_count;
+    bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
+    bool no_resolve;     ///< compute passes leave no trace: for the demand loader
+
     const char *missing; ///< function that neither instance nor device has; NULL: none
 
     uint64_t live_objects; ///< created and not destroyed
