@@ -25,13 +25,17 @@ static void print_log(void *user, SluiceLogSeverity severity, const char *messag
 static bool create_loader(struct rig *rig, const SluiceDemandLoaderCreateInfo *given)
 {
     const struct gpu *gpu = &rig->bench->gpu;
+    const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                                   .queueFamilyIndex = gpu->family,
+                                                   .instance = gpu->instance,
+                                                   .physicalDevice = gpu->physical_device,
+                                                   .device = gpu->device,
+                                                   .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                                   .log = {.pfnLog = print_log}};
+    if (!check(sluiceCreateVulkanContext(&context, &rig->context), "sluiceCreateVulkanContext"))
+        return false;
     SluiceDemandLoaderCreateInfo info = *given;
-    info.instance = gpu->instance;
-    info.physicalDevice = gpu->physical_device;
-    info.device = gpu->device;
-    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
-    info.queueFamilyIndex = gpu->family;
-    info.log.pfnLog = print_log;
+    info.context = rig->context;
     info.launchesInFlight = RIG_SLOTS;
     info.maxPageChunkCount = DEMAND_BENCH_CHUNKS;
     info.loaderThreadCount = rig->bench->threads;
@@ -100,8 +104,10 @@ bool rig_create(struct rig *rig, const struct bench *bench,
 void rig_destroy(struct rig *rig)
 {
     const struct gpu *gpu = &rig->bench->gpu;
-    if (!rig->loader)
+    if (!rig->loader) {
+        sluiceDestroyVulkanContext(rig->context);
         return;
+    }
     vkDeviceWaitIdle(gpu->device);
     rig_destroy_descriptors(rig);
     rig_destroy_plain(rig);
@@ -112,6 +118,7 @@ void rig_destroy(struct rig *rig)
         if (rig->slots[i].commands)
             vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &rig->slots[i].commands);
     sluiceDestroyDemandLoader(rig->loader);
+    sluiceDestroyVulkanContext(rig->context);
     *rig = (struct rig){.bench = rig->bench};
 }
 

@@ -37,6 +37,7 @@ struct rig_slot {
 
 struct rig {
     const struct bench *bench;
+    SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
     struct free_source source;
     SluiceDemandTextureId ids[DEMAND_BENCH_TEXTURES];
@@ -56,7 +57,7 @@ struct rig {
     struct DemandBenchParams params;
 };
 
-/** `info`: of what is not zero; handles are filled in. `plain`: with ordinary images, too. A rig
+/** `info`: of what is not zero; the context is filled in. `plain`: with ordinary images, too. A rig
  *  that was not created can be destroyed. */
 bool rig_create(struct rig *rig, const struct bench *bench,
                 const SluiceDemandLoaderCreateInfo *info, bool plain);

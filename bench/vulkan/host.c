@@ -134,16 +134,16 @@ static bool walk_create(struct walk *walk, const struct bench *bench, uint32_t s
     uint32_t count = options.quick ? 100 : 1000;
     *walk = (struct walk){.wants.params = {.kind = BENCH_WANTS_VIEW, .probability = probability},
                           .allocator = {&walk->allocations, count_allocation, release}};
-    struct rig_info info = {.bench = bench,
-                            .streamer = {.pfnGetInstanceProcAddr = driver_calls_get,
-                                         .pAllocator = &walk->allocator,
-                                         .maxTextureCount = count,
-                                         .texturesPerFrame = share,
-                                         .feedbackTimeout = TIMEOUT},
-                            .format = SLUICE_FORMAT_BC7_UNORM_BLOCK,
-                            .texture_size = options.quick ? 1024 : 4096,
-                            .texture_count = count,
-                            .anisotropy = 1.0f};
+    struct rig_info info = {
+        .bench = bench,
+        .context = {.pfnGetInstanceProcAddr = driver_calls_get, .pAllocator = &walk->allocator},
+        .streamer = {.maxTextureCount = count,
+                     .texturesPerFrame = share,
+                     .feedbackTimeout = TIMEOUT},
+        .format = SLUICE_FORMAT_BC7_UNORM_BLOCK,
+        .texture_size = options.quick ? 1024 : 4096,
+        .texture_count = count,
+        .anisotropy = 1.0f};
     if (!rig_create(&walk->rig, &info) || !rig_load(&walk->rig, NULL))
         return false;
     walk->overhead = driver_calls_overhead();

@@ -19,10 +19,11 @@ static void print_log(void *user, SluiceLogSeverity severity, const char *messag
         fprintf(stderr, "%s\n", message);
 }
 
-static bool create_streamer(struct rig *rig, const struct rig_info *info)
+static bool create_context(struct rig *rig, const struct rig_info *info)
 {
     const struct gpu *gpu = &rig->bench->gpu;
-    SluiceVulkanStreamerCreateInfo create = info->streamer;
+    SluiceVulkanContextCreateInfo create = info->context;
+    create.structSize = sizeof create;
     create.instance = gpu->instance;
     create.physicalDevice = gpu->physical_device;
     create.device = gpu->device;
@@ -31,9 +32,16 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
     create.queueFamilyIndex = gpu->family;
     create.sparseQueue = gpu->sparse_queue;
     create.sparseQueueFamilyIndex = gpu->sparse_family;
+    create.log.pfnLog = print_log;
+    return check(sluiceCreateVulkanContext(&create, &rig->context), "sluiceCreateVulkanContext");
+}
+
+static bool create_streamer(struct rig *rig, const struct rig_info *info)
+{
+    SluiceVulkanStreamerCreateInfo create = info->streamer;
+    create.context = rig->context;
     if (create.residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
         create.residencyMode = rig->bench->mode;
-    create.log.pfnLog = print_log;
     create.framesInFlight = RIG_FRAMES;
     create.loaderThreadCount = rig->bench->threads;
     create.maxPageChunkCount = BENCH_PAGE_CHUNKS;
@@ -106,15 +114,17 @@ static bool create_buffers(struct rig *rig, const struct rig_info *info)
 bool rig_create(struct rig *rig, const struct rig_info *info)
 {
     *rig = (struct rig){.bench = info->bench};
-    return create_streamer(rig, info) && add_textures(rig, info) && create_commands(rig) &&
-           create_buffers(rig, info) && rig_create_descriptors(rig, info);
+    return create_context(rig, info) && create_streamer(rig, info) && add_textures(rig, info) &&
+           create_commands(rig) && create_buffers(rig, info) && rig_create_descriptors(rig, info);
 }
 
 void rig_destroy(struct rig *rig)
 {
     const struct gpu *gpu = &rig->bench->gpu;
-    if (!rig->streamer)
+    if (!rig->streamer) {
+        sluiceDestroyVulkanContext(rig->context);
         return;
+    }
     vkDeviceWaitIdle(gpu->device);
     for (uint32_t i = 0; i < rig->pipeline_count; i++)
         vkDestroyPipeline(gpu->device, rig->pipelines[i], NULL);
@@ -127,6 +137,7 @@ void rig_destroy(struct rig *rig)
         if (rig->slots[i].commands[0])
             vkFreeCommandBuffers(gpu->device, gpu->command_pool, 3, rig->slots[i].commands);
     sluiceDestroyVulkanStreamer(rig->streamer);
+    sluiceDestroyVulkanContext(rig->context);
     free(rig->textures);
     *rig = (struct rig){.bench = rig->bench};
 }

@@ -15,7 +15,9 @@
 
 struct rig_info {
     const struct bench *bench;
-    /** Of what is not zero: handles are filled in. */
+    /** Handles are filled in, and pfnGetInstanceProcAddr if it is NULL. */
+    SluiceVulkanContextCreateInfo context;
+    /** Of what is not zero: the context is filled in. */
     SluiceVulkanStreamerCreateInfo streamer;
     SluiceFormat format;
     uint32_t texture_size, texture_count;
@@ -40,6 +42,7 @@ struct rig_slot {
 
 struct rig {
     const struct bench *bench;
+    SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     struct free_source source;
     SluiceVulkanTexture *textures; ///< owned

@@ -27,6 +27,7 @@ struct app {
     VkDevice device;
     VkQueue queue;
     uint32_t family;
+    SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
     SluiceDemandTextureId textures[TEXTURE_COUNT];
     VkBuffer answer_buffer;
@@ -138,14 +139,16 @@ static SluiceResult open_image(void *pUserData, SluiceImageSource **pSource)
 
 static void create_loader(struct app *app)
 {
-    const SluiceDemandLoaderCreateInfo info = {.instance = app->instance,
-                                               .physicalDevice = app->physical_device,
-                                               .device = app->device,
-                                               .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                               .queueFamilyIndex = app->family,
-                                               .log = log_callback,
-                                               .maxPageChunkCount = CHUNKS,
-                                               .memoryBudget = 64u << 20};
+    const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                                   .queueFamilyIndex = app->family,
+                                                   .instance = app->instance,
+                                                   .physicalDevice = app->physical_device,
+                                                   .device = app->device,
+                                                   .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                                   .log = log_callback};
+    SLUICE(sluiceCreateVulkanContext(&context, &app->context));
+    const SluiceDemandLoaderCreateInfo info = {
+        .context = app->context, .maxPageChunkCount = CHUNKS, .memoryBudget = 64u << 20};
     SLUICE(sluiceCreateDemandLoader(&info, &app->loader));
     const SluiceDemandTextureCreateInfo texture = {
         .image = {.pfnOpen = open_image}, /* closed by sluiceDestroyImageSource */
@@ -339,6 +342,7 @@ static uint32_t trace(struct app *app, SluiceDemandRequests *requests)
 static void destroy(struct app *app)
 {
     sluiceDestroyDemandLoader(app->loader); /* waits for the device, closes what was opened */
+    sluiceDestroyVulkanContext(app->context);
     vkDestroyCommandPool(app->device, app->command_pool, NULL);
     vkDestroyPipeline(app->device, app->pipeline, NULL);
     vkDestroyPipelineLayout(app->device, app->pipeline_layout, NULL);

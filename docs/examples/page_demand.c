@@ -24,12 +24,16 @@ SluiceDemandLoader *page_create_loader(VkInstance instance, VkPhysicalDevice phy
 SluiceDemandLoader *page_create_loader(VkInstance instance, VkPhysicalDevice physicalDevice,
                                        VkDevice device, uint32_t family)
 {
-    SluiceDemandLoaderCreateInfo info = {.instance = instance,
-                                         .physicalDevice = physicalDevice,
-                                         .device = device,
-                                         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                         .queueFamilyIndex = family,
-                                         .memoryBudget = 4ull << 30};
+    SluiceVulkanContextCreateInfo contextInfo = {.structSize = sizeof contextInfo,
+                                                 .queueFamilyIndex = family,
+                                                 .instance = instance,
+                                                 .physicalDevice = physicalDevice,
+                                                 .device = device,
+                                                 .pfnGetInstanceProcAddr = vkGetInstanceProcAddr};
+    SluiceVulkanContext *context;
+    sluiceCreateVulkanContext(&contextInfo, &context); /* one per device; streamers share it */
+
+    SluiceDemandLoaderCreateInfo info = {.context = context, .memoryBudget = 4ull << 30};
     SluiceDemandLoader *loader;
     sluiceCreateDemandLoader(&info, &loader);
     return loader;

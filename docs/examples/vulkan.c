@@ -23,6 +23,7 @@ struct app {
     VkDevice device;
     VkQueue queue;
     uint32_t family;
+    SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceVulkanTexture texture;
     VkBuffer answer_buffer;
@@ -116,15 +117,18 @@ static void create_device(struct app *app)
 
 static void create_streamer(struct app *app, SluiceImageSource *source)
 {
-    SluiceVulkanStreamerCreateInfo info = {.instance = app->instance,
-                                           .physicalDevice = app->physical_device,
-                                           .device = app->device,
-                                           .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                           .sparseQueue = app->queue,
-                                           .sparseQueueFamilyIndex = app->family,
-                                           .queueFamilyIndex = app->family,
+    SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                             .queueFamilyIndex = app->family,
+                                             .instance = app->instance,
+                                             .physicalDevice = app->physical_device,
+                                             .device = app->device,
+                                             .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                             .sparseQueue = app->queue,
+                                             .sparseQueueFamilyIndex = app->family,
+                                             .log = log_callback};
+    SLUICE(sluiceCreateVulkanContext(&context, &app->context));
+    SluiceVulkanStreamerCreateInfo info = {.context = app->context,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
-                                           .log = log_callback,
                                            .timeStampsPerSecond = 60, /* frames: see draw_frame */
                                            .feedbackTimeout = 20};
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
@@ -321,6 +325,7 @@ static void draw_frame(struct app *app, uint64_t time_stamp)
 static void destroy(struct app *app)
 {
     sluiceDestroyVulkanStreamer(app->streamer); /* waits for the device */
+    sluiceDestroyVulkanContext(app->context);
     vkDestroyCommandPool(app->device, app->command_pool, NULL);
     vkDestroyPipeline(app->device, app->pipeline, NULL);
     vkDestroyPipelineLayout(app->device, app->pipeline_layout, NULL);

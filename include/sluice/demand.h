@@ -43,13 +43,9 @@ typedef uint64_t SluiceDemandTicket;
 
 /** Settings of a demand loader. A field of zero selects its default. */
 typedef struct SluiceDemandLoaderCreateInfo {
-    VkInstance instance;             ///< Required. Vulkan 1.2.
-    VkPhysicalDevice physicalDevice; ///< Required.
-    VkDevice device; ///< Required. Vulkan 1.2, features of sluiceRequireVulkanFeatures for PAGED.
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< Required.
-    uint32_t queueFamilyIndex; ///< Family of the queue for launches. Must support compute.
-    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
-    SluiceLogCallback log;
+    /** Required. Must outlive the loader. Its device needs the features that
+     *  sluiceRequireVulkanFeatures enables for SLUICE_RESIDENCY_MODE_PAGED. */
+    SluiceVulkanContext *context;
     uint32_t launchesInFlight; ///< 1 to 16. Default: 2.
     uint32_t maxTextureCount;  ///< Including variants and grids. At most 2^24. Default: 2^17.
     uint64_t pageCapacity;     ///< Virtual pages, at most 2^31. Rounded up to 1024s. Default: 2^26.
@@ -104,15 +100,13 @@ typedef struct SluiceDemandLoaderCreateInfo {
 } SluiceDemandLoaderCreateInfo;
 
 /**
- * Creates a demand loader. Errors are logged to `log`.
+ * Creates a demand loader. Errors are logged to the context.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, a
- *         budget below 4 MiB, or a queue family that does not exist or does not support compute;
- *         SLUICE_ERROR_UNSUPPORTED if the device does not support paged mode, or if instance or
- *         device were created for less than Vulkan 1.2; SLUICE_ERROR_LIMIT_EXCEEDED if pageCapacity
- *         or maxTextureCount require a storage buffer above the device's maxStorageBufferRange, or
- *         if there are fewer pages than textures; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
- *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range or a
+ *         budget below 4 MiB; SLUICE_ERROR_UNSUPPORTED if the device does not support paged mode;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED if pageCapacity or maxTextureCount require a storage buffer
+ *         above the device's maxStorageBufferRange, or if there are fewer pages than textures;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,

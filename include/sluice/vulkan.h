@@ -1,6 +1,6 @@
 /**
- * Streams textures on a Vulkan device. Link `sluice-vulkan`. Only this header and demand.h include
- * Vulkan.
+ * Streams textures on a Vulkan device. Link `sluice-vulkan`. Only this header, vulkan_context.h and
+ * demand.h include Vulkan.
  *
  * The application owns instance, device, queues and command buffers, and draws. A streamer owns the
  * streamed images, the buffers for feedback, MinMip maps and the texture table, a manager
@@ -30,6 +30,7 @@
 #include <sluice/loader.h>
 #include <sluice/manager.h>
 #include <sluice/replay.h>
+#include <sluice/vulkan_context.h>
 
 #include <vulkan/vulkan_core.h>
 
@@ -209,21 +210,11 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
 
 /** Settings of a streamer. A field of zero selects its default. */
 typedef struct SluiceVulkanStreamerCreateInfo {
-    VkInstance instance;             ///< Required. Vulkan 1.2.
-    VkPhysicalDevice physicalDevice; ///< Required.
-    VkDevice device; ///< Required. Vulkan 1.2, with the features of sluiceRequireVulkanFeatures.
-    PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr; ///< Required.
-    /** Queue of a family with SPARSE_BINDING; may be the drawing queue. Required in sparse mode,
-     *  else ignored. */
-    VkQueue sparseQueue;
-    uint32_t sparseQueueFamilyIndex; ///< Family of sparseQueue. Ignored in other modes than sparse.
-    uint32_t queueFamilyIndex;       ///< Family of the queue for frames. Must support compute.
-    SluiceResidencyMode residencyMode;           ///< Default: AUTO.
-    const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
-    SluiceLogCallback log;
-    uint32_t framesInFlight;   ///< 1 to 16. Default: 3.
-    uint32_t maxTextureCount;  ///< 1 to 2^20. Default: 1024.
-    uint32_t texturesPerFrame; ///< Feedback maps read back per frame. Default: 10.
+    SluiceVulkanContext *context;      ///< Required. Must outlive the streamer.
+    SluiceResidencyMode residencyMode; ///< Default: AUTO.
+    uint32_t framesInFlight;           ///< 1 to 16. Default: 3.
+    uint32_t maxTextureCount;          ///< 1 to 2^20. Default: 1024.
+    uint32_t texturesPerFrame;         ///< Feedback maps read back per frame. Default: 10.
     uint32_t tilesPerFrame; ///< Most tiles mapped and uploaded per frame, 1 to 2^14. Default: 256.
     uint32_t maxLoadsInFlight;  ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
     uint32_t loaderThreadCount; ///< Default: as in SluiceTileLoaderCreateInfo.
@@ -339,9 +330,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
 } SluiceVulkanStreamerCreateInfo;
 
 /**
- * Creates a streamer.
+ * Creates a streamer. Errors are logged to the context.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, and for
+ * Errors: SLUICE_ERROR_NULL_POINTER without a context, or in sparse mode if the context has no
+ *         sparseQueue; SLUICE_ERROR_INVALID_ARGUMENT for values out of range, and for
  *         a setting together with the one that turns it off; SLUICE_ERROR_UNSUPPORTED if the device
  *         does not support the requested mode; SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
  *         maxRegionCount, texturesPerFrame or feedbackReadbackSize require a storage buffer above

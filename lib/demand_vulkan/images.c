@@ -141,7 +141,7 @@ static void note_opened(SluiceDemandLoader *loader, const struct slc_demand_imag
         return;
     texture->told = false;
     slc_retries_note_opened(loader);
-    slc_log(&loader->info.log, SLUICE_LOG_INFO, "%s: can be opened again.", slc_image_name(image));
+    slc_log(&loader->vk.log, SLUICE_LOG_INFO, "%s: can be opened again.", slc_image_name(image));
 }
 
 /* Pages and what shaders see. */
@@ -189,7 +189,7 @@ static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, Slu
     struct slc_demand_texture *texture = &loader->textures[image->texture];
     char retrying[48];
     if (!texture->told)
-        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "%s cannot be used as a texture (index %u): %s%s%s; %s.", slc_image_name(image),
                 image->texture, sluiceResultString(result), image->trouble ? ": " : "",
                 image->trouble ? image->trouble : "",

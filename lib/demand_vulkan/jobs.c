@@ -70,7 +70,7 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
     const SluiceDemandLoaderCreateInfo *info = &loader->info;
     SluiceTileLoaderCreateInfo create = {.threadCount = info->loaderThreadCount,
                                          .requestCapacity = loader->job_count,
-                                         .pAllocator = info->pAllocator,
+                                         .pAllocator = &loader->cb,
                                          .retry = info->readRetry,
                                          .maxReadsPerSource = info->maxReadsPerSource,
                                          .end = {loader, on_end}};

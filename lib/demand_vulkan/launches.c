@@ -196,7 +196,7 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
     if (!loader || !commandBuffer || !pLaunch)
         return SLUICE_ERROR_NULL_POINTER;
     if (loader->launch > loader->ended) {
-        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "launch %llu was neither ended nor abandoned: no other one can be prepared",
                 (unsigned long long)loader->launch);
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -231,7 +231,7 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
     if (!loader || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
     if (loader->launch == loader->ended) {
-        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "no launch can be ended: none was prepared since the last one was ended or "
                 "abandoned");
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -286,7 +286,7 @@ static SluiceResult check_abandoned(SluiceDemandLoader *loader, uint64_t launch)
         return result;
     if (launch > loader->processed && launch <= loader->launch && value < launch)
         return SLUICE_SUCCESS;
-    slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+    slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
             "launch %llu cannot be abandoned: it is over, was abandoned or never prepared",
             (unsigned long long)launch);
     return SLUICE_ERROR_INVALID_ARGUMENT;

@@ -26,7 +26,8 @@ static uint32_t or_default(uint32_t value, uint32_t otherwise)
     return value ? value : otherwise;
 }
 
-static SluiceResult check_limits(const SluiceDemandLoaderCreateInfo *info)
+static SluiceResult check_limits(const SluiceLogCallback *log,
+                                 const SluiceDemandLoaderCreateInfo *info)
 {
     const struct slc_limit limits[] = {
         {"launchesInFlight", info->launchesInFlight, 1, SLC_MAX_LAUNCHES},
@@ -38,7 +39,7 @@ static SluiceResult check_limits(const SluiceDemandLoaderCreateInfo *info)
         {"memoryBudget", info->memoryBudget ? info->memoryBudget : MIN_BUDGET, MIN_BUDGET,
          UINT64_MAX},
     };
-    return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
+    return slc_check_limits(log, limits, sizeof limits / sizeof limits[0]);
 }
 
 static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
@@ -53,7 +54,7 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
         info->failureRetryDelay = UINT64_C(30000000000);
     if (info->pageCapacity == 0)
         info->pageCapacity = UINT64_C(1) << 26;
-    SluiceResult result = check_limits(info);
+    SluiceResult result = check_limits(&info->context->vk.log, info);
     if (result != SLUICE_SUCCESS)
         return result;
     info->pageCapacity = (info->pageCapacity + section - 1) / section * section;
@@ -67,7 +68,7 @@ static void choose_budget(SluiceDemandLoader *loader)
         slc_page_chunks_capacity(info->maxPageChunkCount, loader->caps.max_image_array_layers) *
         SLC_TILE_SIZE;
     if (info->memoryBudget > most)
-        slc_log(&info->log, SLUICE_LOG_WARNING,
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "maxPageChunkCount %u images of tiles use at most %llu MiB of the memoryBudget",
                 info->maxPageChunkCount, (unsigned long long)(most >> 20));
     if (info->memoryBudget == 0)
@@ -76,14 +77,9 @@ static void choose_budget(SluiceDemandLoader *loader)
 
 static SluiceResult check_device(SluiceDemandLoader *loader)
 {
-    SluiceResult result =
-        slc_check_queue_family(&loader->vk, "queueFamilyIndex", loader->info.queueFamilyIndex,
-                               VK_QUEUE_COMPUTE_BIT, "have VK_QUEUE_COMPUTE_BIT");
-    if (result != SLUICE_SUCCESS)
-        return result;
     const char *missing = slc_missing_for_mode(&loader->caps, SLUICE_RESIDENCY_MODE_PAGED);
     if (missing) {
-        slc_log(&loader->info.log, SLUICE_LOG_ERROR, "%s has no %s", loader->caps.public.deviceName,
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR, "%s has no %s", loader->caps.public.deviceName,
                 missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
@@ -215,20 +211,10 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
 
 static SluiceResult create_parts(SluiceDemandLoader *loader)
 {
-    const SluiceDemandLoaderCreateInfo *info = &loader->info;
-    SluiceResult result = slc_vk_init_instance(&loader->vk, info->instance, info->physicalDevice,
-                                               info->pfnGetInstanceProcAddr, &info->log);
-    if (result == SLUICE_SUCCESS)
-        result = slc_vk_init_device(&loader->vk, info->device);
-    if (result != SLUICE_SUCCESS) {
-        loader->vk.device = VK_NULL_HANDLE; /* nothing can be called */
-        return result;
-    }
-    loader->vk.memory_use = &loader->memory_use;
-    slc_caps_init(&loader->caps, &loader->vk);
     static SluiceResult (*const steps[])(SluiceDemandLoader *) = {
         check_device,      create_semaphore, create_memory, create_tables,
         create_page_table, create_pages,     slc_jobs_init};
+    SluiceResult result = SLUICE_SUCCESS;
     for (size_t i = 0; i < sizeof steps / sizeof steps[0] && result == SLUICE_SUCCESS; i++)
         result = steps[i](loader);
     return result;
@@ -236,34 +222,27 @@ static SluiceResult create_parts(SluiceDemandLoader *loader)
 
 static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
 {
-    SluiceAllocationCallbacks cb = slc_allocator(info->pAllocator);
-    SluiceDemandLoader *loader = slc_calloc(&cb, 1, sizeof *loader);
+    SluiceVulkanContext *context = info->context;
+    SluiceDemandLoader *loader = slc_calloc(&context->cb, 1, sizeof *loader);
     if (!loader)
         return NULL;
-    loader->cb = cb;
+    loader->context = context;
+    loader->cb = context->cb;
+    loader->vk = context->vk;
+    loader->vk.memory_use = &loader->memory_use;
+    loader->caps = context->caps;
     loader->info = *info;
-    if (info->pAllocator)
-        loader->info.pAllocator = &loader->cb;
     loader->texture_high = 1; /* 0 is no texture's */
     loader->free_texture = loader->first_buried_texture = SLC_NONE;
     loader->free_image = loader->first_buried_image = loader->first_refresh = SLC_NONE;
     loader->free_resource = SLC_NONE;
     slc_image_opener_init(&loader->opener);
-    if (slc_tickets_init(&loader->tickets, &loader->cb) == SLUICE_SUCCESS)
-        return loader;
-    slc_free(&cb, loader, 1, sizeof *loader);
-    return NULL;
-}
-
-static SluiceResult check_handles(const SluiceDemandLoaderCreateInfo *info)
-{
-    const struct slc_required fields[] = {
-        {"instance", info->instance},
-        {"physicalDevice", info->physicalDevice},
-        {"device", info->device},
-        {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
-        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
-    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+    if (slc_tickets_init(&loader->tickets, &loader->cb) != SLUICE_SUCCESS) {
+        slc_free(&context->cb, loader, 1, sizeof *loader);
+        return NULL;
+    }
+    slc_context_add_child(context);
+    return loader;
 }
 
 SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreateInfo,
@@ -272,12 +251,10 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
     if (!pLoader)
         return SLUICE_ERROR_NULL_POINTER;
     *pLoader = NULL;
-    if (!pCreateInfo)
+    if (!pCreateInfo || !pCreateInfo->context)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceDemandLoaderCreateInfo info = *pCreateInfo;
-    SluiceResult result = check_handles(&info);
-    if (result == SLUICE_SUCCESS)
-        result = fill_in(&info);
+    SluiceResult result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceDemandLoader *loader = allocate(&info);
@@ -329,8 +306,7 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_jobs_finish(loader);
     slc_residency_destroy(loader->residency); /* gives its places back */
     slc_page_space_destroy(loader->space);
-    if (loader->vk.device)
-        destroy_device_parts(loader);
+    destroy_device_parts(loader);
     slc_table_mirror_finish(&loader->table);
     slc_table_mirror_finish(&loader->levels);
     slc_table_mirror_finish(&loader->grids);
@@ -338,8 +314,9 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_tickets_finish(&loader->tickets);
     slc_free(&loader->cb, loader->owners, loader->owner_capacity, sizeof *loader->owners);
     slc_free(&loader->cb, loader->forgotten, loader->forgotten_capacity, sizeof *loader->forgotten);
-    SluiceAllocationCallbacks cb = loader->cb;
-    slc_free(&cb, loader, 1, sizeof *loader);
+    SluiceVulkanContext *context = loader->context;
+    slc_free(&context->cb, loader, 1, sizeof *loader);
+    slc_context_remove_child(context);
 }
 
 SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *pBuffers)

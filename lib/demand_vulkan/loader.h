@@ -16,6 +16,7 @@
 #include "demand_vulkan/table_mirror.h"
 #include "demand_vulkan/tickets.h"
 #include "demand_vulkan/tile_memory.h"
+#include "vulkan/context.h"
 #include "vulkan/staging.h"
 
 #define SLC_MAX_LAUNCHES 16u
@@ -204,9 +205,10 @@ struct slc_rank_run {
 struct SluiceDemandLoader {
     SluiceAllocationCallbacks cb;
     SluiceDemandLoaderCreateInfo info; ///< with the defaults filled in
-    struct slc_vk vk;
+    SluiceVulkanContext *context;
+    struct slc_vk vk;                 ///< the context's, but for memory_use
     struct slc_memory_use memory_use; ///< of vk
-    struct slc_caps caps;
+    struct slc_caps caps;             ///< the context's
     bool usable[SLUICE_FORMAT_COUNT]; ///< formats that the device samples and filters
     VkSemaphore semaphore;
 

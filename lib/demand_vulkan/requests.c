@@ -107,7 +107,7 @@ static void apply(SluiceDemandLoader *loader, const struct slc_page_change *chan
     if (result == SLUICE_SUCCESS)
         return;
     if (!loader->page_table_was_full)
-        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "no room in the page table for page %u and perhaps others: %s", change->page,
                 sluiceResultString(result));
     loader->page_table_was_full = true;

@@ -241,7 +241,7 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
         if (filled) /* which no launch has seen */
             tell_evicted(resource, page, job->value);
         if (refuse && !resource->told)
-            slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+            slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                     "page %u of a resource has no value: %s; %s.", page, sluiceResultString(result),
                     slc_retries_words(loader, retrying, sizeof retrying));
         resource->told |= refuse;

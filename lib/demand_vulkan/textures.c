@@ -164,7 +164,7 @@ static uint32_t choose_modes(SluiceDemandLoader *loader, uint32_t index,
     bool differs = slc_address_mode_differs(u, info->addressModeU) ||
                    slc_address_mode_differs(v, info->addressModeV);
     if (differs && !loader->told_of_modes)
-        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
                 "%d, %d (VkSamplerAddressMode)",
                 info->pName ? info->pName : "image", (int)u, (int)v,

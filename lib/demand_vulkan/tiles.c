@@ -136,11 +136,11 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
     slc_retries_words(loader, retrying, sizeof retrying);
     uint32_t index, level = find_level(image, page, &index);
     if (level == image->regular_count && !texture->told)
-        slc_log(&loader->info.log, SLUICE_LOG_ERROR,
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "%s: levels from %u on cannot be read, and so it cannot be sampled: %s; %s.", name,
                 level, sluiceResultString(result), retrying);
     else if (level < image->regular_count && !image->told)
-        slc_log(&loader->info.log, SLUICE_LOG_WARNING,
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "%s: level %u, tile (%u, %u) cannot be read: %s. Showing a coarser level; %s.",
                 name, level, index % slc_image_level_width(image, level),
                 index / slc_image_level_width(image, level), sluiceResultString(result), retrying);
@@ -159,8 +159,7 @@ static void note_success(SluiceDemandLoader *loader, struct slc_demand_image *im
     slc_retries_success(loader, &image->retry_group, page);
     bool well = (tail && texture->told) || (image->told && had_group && image->retry_group == 0);
     if (well)
-        slc_log(&loader->info.log, SLUICE_LOG_INFO, "%s: can be read again.",
-                slc_image_name(image));
+        slc_log(&loader->vk.log, SLUICE_LOG_INFO, "%s: can be read again.", slc_image_name(image));
     if (well)
         image->told = false;
     if (tail)

@@ -16,7 +16,7 @@ static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const 
     if (result == SLUICE_ERROR_STALE_TEXTURE || result == SLUICE_ERROR_UNKNOWN_TEXTURE)
         return SLUICE_SUCCESS; /* removed while its map was on its way */
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
-        slc_log(&s->info.log, SLUICE_LOG_WARNING, "no memory to take in a feedback map");
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "no memory to take in a feedback map");
         return SLUICE_SUCCESS; /* nothing has changed, and there will be another one */
     }
     if (result < 0)
@@ -111,7 +111,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
             continue;
         }
         if (!data || !slc_feedback_map_update(&texture->feedback, &resolved, data)) {
-            slc_log(&s->info.log, SLUICE_LOG_WARNING, "feedback came back damaged");
+            slc_log(&s->vk.log, SLUICE_LOG_WARNING, "feedback came back damaged");
             ask_for_all(s, texture, true);
             continue;
         }

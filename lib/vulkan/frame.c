@@ -184,13 +184,13 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     if (!s || !commandBuffer || !pFrame)
         return SLUICE_ERROR_NULL_POINTER;
     if (s->frame && timeStamp - s->time_stamp > UINT64_MAX / 2) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "timeStamp is %llu; it must not be below the last frame's, %llu",
                 (unsigned long long)timeStamp, (unsigned long long)s->time_stamp);
         return SLUICE_ERROR_TIME_BACKWARDS;
     }
     if (s->ended_frame != s->frame) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "frame %llu was neither ended nor abandoned: no other one can be begun",
                 (unsigned long long)s->frame);
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -205,7 +205,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     s->submittable[s->slot] = false;
     s->slot_turn++;
     s->time_stamp = timeStamp;
-    slc_time_check_frame(&s->time_check, &s->info.log, timeStamp);
+    slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
     *pFrame = (SluiceStreamingFrame){s->frame, s->semaphore, s->frame};
     s->manager_locked = false;
     result = decide(s);
@@ -223,7 +223,7 @@ SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBu
     if (!streamer || !commandBuffer)
         return SLUICE_ERROR_NULL_POINTER;
     if (streamer->ended_frame == streamer->frame) {
-        slc_log(&streamer->info.log, SLUICE_LOG_ERROR,
+        slc_log(&streamer->vk.log, SLUICE_LOG_ERROR,
                 "no frame can be ended: none was begun since the last one was ended or abandoned");
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
@@ -267,7 +267,7 @@ SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
         return result;
     uint64_t frame = pFrame->frameIndex;
     if (!is_in_flight(s, frame)) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "frame %llu cannot be abandoned: it is over, was abandoned or never begun",
                 (unsigned long long)frame);
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -289,7 +289,7 @@ SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult resu
                                 const char *what)
 {
     if (result < 0)
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s refused with %s", what,
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s refused with %s", what,
                 sluiceResultString(result));
     return result;
 }

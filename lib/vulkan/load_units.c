@@ -113,7 +113,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
         return result;
     SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
                                          .requestCapacity = count,
-                                         .pAllocator = s->info.pAllocator,
+                                         .pAllocator = &s->cb,
                                          .retry = s->info.readRetry,
                                          .maxReadsPerSource = s->info.maxReadsPerSource,
                                          .maxSourceCount = s->info.maxTextureCount};

@@ -29,7 +29,7 @@ static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *textur
         snprintf(place, sizeof place, " at offset 0x%llx",
                  (unsigned long long)reads.lastFailureOffset);
     bool packed = tile >= texture->layout.regularTileCount;
-    slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
+    slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
             name_of(texture), place, sluiceResultString(result),
             packed ? "Its packed levels are missing" : "Showing a coarser level",
             seconds(s, s->info.retryDelay));
@@ -39,10 +39,10 @@ static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture
                          uint64_t failed_count)
 {
     if (s->info.givenUpRetryDelay == UINT64_MAX)
-        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Not retrying.",
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Not retrying.",
                 name_of(texture), (unsigned long long)failed_count);
     else
-        slc_log(&s->info.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Retrying every %.3g s.",
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Retrying every %.3g s.",
                 name_of(texture), (unsigned long long)failed_count,
                 seconds(s, s->info.givenUpRetryDelay));
 }
@@ -100,7 +100,7 @@ void slc_read_trouble_delivered(SluiceVulkanStreamer *s, uint32_t texture, uint3
         return;
     trouble->health = SLC_READS_WELL;
     if (trouble->said != SLC_READS_WELL) {
-        slc_log(&s->info.log, SLUICE_LOG_INFO, "%s: can be read again, after %llu failed reads.",
+        slc_log(&s->vk.log, SLUICE_LOG_INFO, "%s: can be read again, after %llu failed reads.",
                 name_of(t), (unsigned long long)trouble->failed_count);
         note_spoken(s, trouble);
         retry_other_layers(s, t);

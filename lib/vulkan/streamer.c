@@ -31,7 +31,8 @@ static void set_default(uint32_t *value, uint32_t otherwise)
 }
 
 /* Bounds keep every size below 2^32 bytes of staging and 2^30 regions. */
-static SluiceResult check_limits(const SluiceVulkanStreamerCreateInfo *info)
+static SluiceResult check_limits(const SluiceLogCallback *log,
+                                 const SluiceVulkanStreamerCreateInfo *info)
 {
     const struct slc_limit limits[] = {
         {"framesInFlight", info->framesInFlight, 1, SLC_MAX_FRAMES},
@@ -45,11 +46,12 @@ static SluiceResult check_limits(const SluiceVulkanStreamerCreateInfo *info)
         {"residencyFadeTime", info->residencyFadeTime, 0, SLC_MAX_FADE_TIME},
         {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
     };
-    return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
+    return slc_check_limits(log, limits, sizeof limits / sizeof limits[0]);
 }
 
 static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
 {
+    const SluiceLogCallback *log = &info->context->vk.log;
     set_default(&info->framesInFlight, 3);
     set_default(&info->maxTextureCount, SLC_DEFAULT_TEXTURE_COUNT);
     set_default(&info->texturesPerFrame, 10);
@@ -61,23 +63,16 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     set_default(&info->maxPageChunkCount, 64);
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
-    SluiceResult result = check_limits(info);
-    return result == SLUICE_SUCCESS ? slc_fill_in_times(info) : result;
+    SluiceResult result = check_limits(log, info);
+    return result == SLUICE_SUCCESS ? slc_fill_in_times(info, log) : result;
 }
 
-static SluiceResult check_queues(const SluiceVulkanStreamer *s)
+static SluiceResult check_sparse_queue(const SluiceVulkanStreamer *s)
 {
-    SluiceResult result =
-        slc_check_queue_family(&s->vk, "queueFamilyIndex", s->info.queueFamilyIndex,
-                               VK_QUEUE_COMPUTE_BIT, "have VK_QUEUE_COMPUTE_BIT");
-    if (result != SLUICE_SUCCESS || s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE)
-        return result;
-    if (!s->info.sparseQueue) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "sparseQueue is NULL, in sparse mode");
-        return SLUICE_ERROR_NULL_POINTER;
-    }
-    return slc_check_queue_family(&s->vk, "sparseQueueFamilyIndex", s->info.sparseQueueFamilyIndex,
-                                  VK_QUEUE_SPARSE_BINDING_BIT, "have VK_QUEUE_SPARSE_BINDING_BIT");
+    if (s->info.residencyMode != SLUICE_RESIDENCY_MODE_SPARSE || s->context->sparse_queue)
+        return SLUICE_SUCCESS;
+    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "sparseQueue of the context is NULL, in sparse mode");
+    return SLUICE_ERROR_NULL_POINTER;
 }
 
 static SluiceResult create_residency(SluiceVulkanStreamer *s)
@@ -86,17 +81,17 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         slc_choose_mode(&s->caps, s->info.residencyMode, s->info.maxTextureCount);
     const char *missing = slc_missing_for_mode(&s->caps, s->info.residencyMode);
     if (missing) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s has no %s", s->caps.public.deviceName, missing);
         return SLUICE_ERROR_UNSUPPORTED;
     }
-    SluiceResult result = check_queues(s);
+    SluiceResult result = check_sparse_queue(s);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_residency_create_info info = {
         .vk = &s->vk,
         .caps = &s->caps,
         .cb = &s->cb,
-        .sparse_queue = s->info.sparseQueue,
+        .sparse_queue = s->context->sparse_queue,
         .max_image_count = s->info.maxTextureCount,
         .max_changes = slc_max_u32(s->info.maxLoadsInFlight, 1024),
         .max_touched_tiles =
@@ -119,7 +114,7 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
 {
     SluiceStreamedTextureManagerCreateInfo info = {
         .heapAllocator = {s, allocate_heap, release_heap},
-        .pAllocator = s->info.pAllocator,
+        .pAllocator = &s->cb,
         .heapTileCapacity = s->info.heapTileCapacity,
         .tileSize = SLC_TILE_SIZE,
         .alwaysMapPackedTiles = !s->info.packedLevelsOnDemand,
@@ -200,7 +195,7 @@ static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
         setting = "feedbackReadbackSize";
     if (!setting)
         return SLUICE_SUCCESS;
-    slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s needs a storage buffer beyond the %llu bytes of %s",
+    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s needs a storage buffer beyond the %llu bytes of %s",
             setting, (unsigned long long)limit, s->caps.public.deviceName);
     return SLUICE_ERROR_LIMIT_EXCEEDED;
 }
@@ -247,18 +242,7 @@ static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
 
 static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
 {
-    const SluiceVulkanStreamerCreateInfo *info = &s->info;
-    SluiceResult result = slc_vk_init_instance(&s->vk, info->instance, info->physicalDevice,
-                                               info->pfnGetInstanceProcAddr, &info->log);
-    if (result == SLUICE_SUCCESS)
-        result = slc_vk_init_device(&s->vk, info->device);
-    if (result != SLUICE_SUCCESS) {
-        s->vk.device = VK_NULL_HANDLE; /* nothing can be called */
-        return result;
-    }
-    s->vk.memory_use = &s->memory_use;
-    slc_caps_init(&s->caps, &s->vk);
-    result = create_residency(s);
+    SluiceResult result = create_residency(s);
     if (result == SLUICE_SUCCESS)
         result = create_semaphore(s);
     if (result == SLUICE_SUCCESS)
@@ -270,40 +254,30 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
     return result;
 }
 
-static SluiceResult check_handles(const SluiceVulkanStreamerCreateInfo *info)
-{
-    const struct slc_required fields[] = {
-        {"instance", info->instance},
-        {"physicalDevice", info->physicalDevice},
-        {"device", info->device},
-        {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
-        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
-    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
-}
-
 SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pCreateInfo,
                                         SluiceVulkanStreamer **pStreamer)
 {
     if (!pStreamer)
         return SLUICE_ERROR_NULL_POINTER;
     *pStreamer = NULL;
-    if (!pCreateInfo)
+    if (!pCreateInfo || !pCreateInfo->context)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceVulkanContext *context = pCreateInfo->context;
     SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
-    SluiceResult result = check_handles(&info);
-    if (result == SLUICE_SUCCESS)
-        result = fill_in(&info);
+    SluiceResult result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
-    SluiceVulkanStreamer *s = slc_calloc(&cb, 1, sizeof *s);
+    SluiceVulkanStreamer *s = slc_calloc(&context->cb, 1, sizeof *s);
     if (!s)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    s->cb = cb;
+    slc_context_add_child(context);
+    s->context = context;
+    s->cb = context->cb;
+    s->vk = context->vk;
+    s->vk.memory_use = &s->memory_use;
+    s->caps = context->caps;
     s->info = info;
     s->time_check.on = pCreateInfo->timeStampsPerSecond == 0;
-    if (info.pAllocator)
-        s->info.pAllocator = &s->cb;
     result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = create_device_parts(s);
@@ -361,7 +335,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     sluiceDestroyStreamedTextureManager(s->manager); /* releases its heaps */
     slc_resolve_finish(&s->resolve, &s->vk);
     slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
-    for (uint32_t i = 0; i < s->info.framesInFlight; i++)
+    for (uint32_t i = 0; s->min_mip_staging && i < s->info.framesInFlight; i++)
         slc_buffer_finish(&s->min_mip_staging[i], &s->vk);
     slc_buffer_finish(&s->min_mip, &s->vk);
     slc_buffer_finish(&s->feedback_turns, &s->vk);
@@ -377,11 +351,11 @@ void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
 {
     if (!streamer)
         return;
-    if (streamer->vk.device)
-        destroy_device_parts(streamer);
+    SluiceVulkanContext *context = streamer->context;
+    destroy_device_parts(streamer);
     free_arrays(streamer);
-    SluiceAllocationCallbacks cb = streamer->cb;
-    slc_free(&cb, streamer, 1, sizeof *streamer);
+    slc_free(&context->cb, streamer, 1, sizeof *streamer);
+    slc_context_remove_child(context);
 }
 
 SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer)

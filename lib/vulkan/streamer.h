@@ -7,6 +7,7 @@
 #include "base/map.h"
 #include "base/none.h"
 #include "vulkan/buffer.h"
+#include "vulkan/context.h"
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
@@ -111,9 +112,10 @@ struct slc_unit_list {
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
-    struct slc_vk vk;
+    SluiceVulkanContext *context;
+    struct slc_vk vk;                 ///< the context's, but for memory_use
     struct slc_memory_use memory_use; ///< of vk
-    struct slc_caps caps;
+    struct slc_caps caps;             ///< the context's
     struct slc_page_views page_views;
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;

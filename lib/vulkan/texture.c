@@ -55,7 +55,7 @@ static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *te
     assert(count >= (uint64_t)layout->minMipWidth * layout->minMipHeight);
     if (count > s->regions.size ||
         !slc_region_arena_take(&s->regions, (uint32_t)count, &texture->region_first)) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR, "%s: no room for %llu more feedback regions of %u",
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s: no room for %llu more feedback regions of %u",
                 texture->info.pName ? texture->info.pName : "image", (unsigned long long)count,
                 s->info.maxRegionCount);
         return SLUICE_ERROR_LIMIT_EXCEEDED;
@@ -63,7 +63,7 @@ static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *te
     texture->region_count = (uint32_t)count;
     if ((count + 3) / 4 <= s->readback.capacity)
         return SLUICE_SUCCESS;
-    slc_log(&s->info.log, SLUICE_LOG_ERROR,
+    slc_log(&s->vk.log, SLUICE_LOG_ERROR,
             "%s: its %llu feedback regions exceed feedbackReadbackSize",
             texture->info.pName ? texture->info.pName : "image", (unsigned long long)count);
     return SLUICE_ERROR_LIMIT_EXCEEDED;
@@ -80,7 +80,7 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
-        slc_log(&s->info.log, SLUICE_LOG_ERROR,
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "%s: its packed levels need %u loads at once; maxLoadsInFlight is %u",
                 texture->info.pName ? texture->info.pName : "image", texture->packed.unit_count,
                 s->info.maxLoadsInFlight);
@@ -169,7 +169,7 @@ static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreat
     bool differs = slc_address_mode_differs(modes[0], image->addressModeU) ||
                    slc_address_mode_differs(modes[1], image->addressModeV);
     if (differs && !s->told_of_modes)
-        slc_log(&s->info.log, SLUICE_LOG_WARNING,
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING,
                 "%s: is sampled with address modes %d, %d, but its coarser levels were made for "
                 "%d, %d (VkSamplerAddressMode)",
                 image->pName ? image->pName : "image", (int)modes[0], (int)modes[1],
@@ -258,7 +258,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(pCreateInfo->source, &image);
     if (result == SLUICE_SUCCESS)
-        result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->info.log);
+        result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
     if (layerCount != (image.arrayLayerCount ? image.arrayLayerCount : 1))

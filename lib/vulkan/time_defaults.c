@@ -11,9 +11,9 @@ uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t mi
     return product / 1000 + (product % 1000 != 0);
 }
 
-static SluiceResult refuse(const SluiceVulkanStreamerCreateInfo *info, const char *why)
+static SluiceResult refuse(const SluiceLogCallback *log, const char *why)
 {
-    slc_log(&info->log, SLUICE_LOG_ERROR, "%s", why);
+    slc_log(log, SLUICE_LOG_ERROR, "%s", why);
     return SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
@@ -23,14 +23,14 @@ static void set_default(uint64_t *value, uint64_t otherwise)
         *value = otherwise;
 }
 
-SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info)
+SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info, const SluiceLogCallback *log)
 {
     if (info->timeStampsPerSecond > SLC_MAX_TIME_STAMPS_PER_SECOND)
-        return refuse(info, "timeStampsPerSecond is above 10^12");
+        return refuse(log, "timeStampsPerSecond is above 10^12");
     if (info->newestFeedbackMapOnly && info->feedbackTimeout)
-        return refuse(info, "newestFeedbackMapOnly contradicts a feedbackTimeout above 0");
+        return refuse(log, "newestFeedbackMapOnly contradicts a feedbackTimeout above 0");
     if (info->noStandbyTiles && info->numExtraStandbyTiles)
-        return refuse(info, "noStandbyTiles contradicts numExtraStandbyTiles above 0");
+        return refuse(log, "noStandbyTiles contradicts numExtraStandbyTiles above 0");
     set_default(&info->timeStampsPerSecond, 1000000000);
     if (!info->newestFeedbackMapOnly)
         set_default(&info->feedbackTimeout, slc_time_stamps(info, 1000));

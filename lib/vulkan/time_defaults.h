@@ -15,7 +15,7 @@ uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t mi
  * newestFeedbackMapOnly and noStandbyTiles these two become 0. Logs what it refuses.
  * Errors: INVALID_ARGUMENT.
  */
-SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info);
+SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info, const SluiceLogCallback *log);
 
 /** Notices callers who count frames where the library takes time stamps for nanoseconds. */
 struct slc_time_check {

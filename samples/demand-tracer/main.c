@@ -27,6 +27,7 @@ struct tracer {
     struct gpu gpu;
     bool unsupported;
     struct scene scene;
+    SluiceVulkanContext *context;
     SluiceDemandLoader *loader;
     struct textures textures;
     struct film film;
@@ -43,20 +44,26 @@ struct tracer {
 static bool create_loader(struct tracer *t)
 {
     const struct tracer_options *o = &t->options;
-    SluiceDemandLoaderCreateInfo info = {
+    const SluiceVulkanContextCreateInfo context = {
+        .structSize = sizeof context,
+        .queueFamilyIndex = t->gpu.family,
         .instance = t->gpu.instance,
         .physicalDevice = t->gpu.physical_device,
         .device = t->gpu.device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-        .queueFamilyIndex = t->gpu.family,
         .log = {.pfnLog = log_say},
+    };
+    SluiceDemandLoaderCreateInfo info = {
         .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
         .memoryBudget = (uint64_t)o->budget << 20,
         .loaderThreadCount = o->threads,
         .maxPageChunkCount = TRACER_PAGE_CHUNKS,
     };
-    SluiceResult result = sluiceCreateDemandLoader(&info, &t->loader);
+    SluiceResult result = sluiceCreateVulkanContext(&context, &t->context);
+    info.context = t->context;
+    if (result == SLUICE_SUCCESS)
+        result = sluiceCreateDemandLoader(&info, &t->loader);
     if (result == SLUICE_SUCCESS)
         return true;
     text_say("textures cannot be loaded on demand: %s", sluiceResultString(result));
@@ -111,6 +118,7 @@ static void close_all(struct tracer *t)
         film_destroy(&t->gpu, &t->film);
     }
     sluiceDestroyDemandLoader(t->loader);
+    sluiceDestroyVulkanContext(t->context);
     textures_finish(&t->textures);
     gpu_destroy(&t->gpu);
     picture_destroy(&t->picture);

@@ -23,6 +23,7 @@ struct frame {
 struct renderer {
     struct gpu gpu;
     struct drawing drawing;
+    SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[TEXTURES];
     struct drawn_texture textures[TEXTURES];
@@ -56,18 +57,21 @@ static bool can_stream(VkInstance instance, VkPhysicalDevice device, const void 
                                        &needs->features, &needs->vulkan12) == SLUICE_SUCCESS;
 }
 
-/* 2. The streamer. What is not named here has a default. */
+/* 2. The context of the device, and a streamer. What is not named here has a default. */
 static void create_streamer(struct renderer *r, const struct settings *settings)
 {
-    const SluiceVulkanStreamerCreateInfo info = {.instance = r->gpu.instance,
-                                                 .physicalDevice = r->gpu.physical_device,
-                                                 .device = r->gpu.device,
-                                                 .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                                 .sparseQueue = r->gpu.sparse_queue,
-                                                 .sparseQueueFamilyIndex = r->gpu.sparse_family,
-                                                 .queueFamilyIndex = r->gpu.family,
+    const SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
+                                                   .queueFamilyIndex = r->gpu.family,
+                                                   .instance = r->gpu.instance,
+                                                   .physicalDevice = r->gpu.physical_device,
+                                                   .device = r->gpu.device,
+                                                   .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
+                                                   .sparseQueue = r->gpu.sparse_queue,
+                                                   .sparseQueueFamilyIndex = r->gpu.sparse_family,
+                                                   .log = log_callback};
+    SLUICE(sluiceCreateVulkanContext(&context, &r->context));
+    const SluiceVulkanStreamerCreateInfo info = {.context = r->context,
                                                  .residencyMode = settings->mode,
-                                                 .log = log_callback,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
                                                  .maxPageChunkCount = PAGE_CHUNKS,
                                                  .timeStampsPerSecond = 60, /* one a frame */
@@ -141,6 +145,7 @@ int main(int argc, char **argv)
     }
 
     sluiceDestroyVulkanStreamer(r.streamer); /* waits for the device, and for reads of sources */
+    sluiceDestroyVulkanContext(r.context);
     for (uint32_t i = 0; i < TEXTURES; i++)
         sluiceDestroyImageSource(r.sources[i]);
     const bool written = write_picture(&settings, r.drawing.picture.texels);

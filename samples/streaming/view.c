@@ -28,21 +28,30 @@ uint32_t view_texture_count(const struct picture_list *pictures)
     return 2 + 2 * pictures->count;
 }
 
-static bool create_streamer(struct view *view)
+static bool create_context(struct view *view)
 {
     const struct gpu *gpu = view->request.gpu;
-    const struct settings *settings = view->request.settings;
-    SluiceVulkanStreamerCreateInfo info = {
+    const SluiceVulkanContextCreateInfo info = {
+        .structSize = sizeof info,
+        .queueFamilyIndex = gpu->family,
         .instance = gpu->instance,
         .physicalDevice = gpu->physical_device,
         .device = gpu->device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .sparseQueue = gpu->sparse_queue,
         .sparseQueueFamilyIndex = gpu->sparse_family,
-        .queueFamilyIndex = gpu->family,
+        .log = {NULL, log_say},
+    };
+    return check(sluiceCreateVulkanContext(&info, &view->context), "sluiceCreateVulkanContext");
+}
+
+static bool create_streamer(struct view *view)
+{
+    const struct settings *settings = view->request.settings;
+    SluiceVulkanStreamerCreateInfo info = {
+        .context = view->context,
         .residencyMode = view->request.mode,
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
-        .log = {NULL, log_say},
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
         .maxTextureCount = view_texture_count(view->request.pictures),
         .maxRegionCount = VIEW_MAX_REGIONS,
@@ -281,7 +290,7 @@ static bool create_prediction(struct view *view)
 bool view_create(const struct view_request *request, const char *record_path, struct view *view)
 {
     *view = (struct view){.request = *request};
-    bool created = create_streamer(view);
+    bool created = create_context(view) && create_streamer(view);
     /* Before the first texture, so that the recording is complete. */
     const SluiceFileRecordingInfo recording = {.pPath = record_path, .log = {.pfnLog = log_say}};
     if (created && record_path)
@@ -319,6 +328,7 @@ bool view_destroy(struct view *view)
     free(view->texture_ids);
     free(view->sources);
     sluiceDestroyVulkanStreamer(view->streamer);
+    sluiceDestroyVulkanContext(view->context);
     slowness_finish(&view->slowness);
     *view = (struct view){0};
     return recorded;

@@ -48,6 +48,7 @@ struct view_frame {
 
 struct view {
     struct view_request request;
+    SluiceVulkanContext *context;   ///< owned
     SluiceVulkanStreamer *streamer; ///< owned
     SluiceRecorder *recorder;       ///< owned
     struct slowness slowness;       ///< of its sources; the truth has none

@@ -101,23 +101,9 @@ static void create_sets(struct runner *r)
     }
 }
 
-static void on_log(void *user, SluiceLogSeverity severity, const char *message)
-{
-    struct harness *h = user;
-    h->log_count[severity]++;
-    snprintf(h->last_message, sizeof h->last_message, "%s", message);
-    if (!h->quiet)
-        fprintf(stderr, "# %s\n", message);
-}
-
 void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info)
 {
-    info->instance = h->instance;
-    info->physicalDevice = h->physical_device;
-    info->device = h->device;
-    info->pfnGetInstanceProcAddr = h->get;
-    info->queueFamilyIndex = h->family;
-    info->log = (SluiceLogCallback){h, on_log};
+    info->context = h->context;
 }
 
 void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *loader)

@@ -32,6 +32,7 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     struct harness *h = user;
     h->log_count[severity]++;
+    snprintf(h->last_message, sizeof h->last_message, "%s", message);
     if (!h->quiet)
         fprintf(stderr, "# %s\n", message);
 }
@@ -279,7 +280,7 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
                                 : "no device has Vulkan 1.2 and what the residency mode needs");
     if (extension_count && !has_extensions(h, &extras))
         return no_device(h, "the device lacks an extension that this test is about");
-    if (!create_device(h, &extras))
+    if (!create_device(h, &extras) || harness_set_context(h, NULL, NULL) != SLUICE_SUCCESS)
         return 1;
     const char *abandon = getenv("SLUICE_ABANDON");
     h->abandon_one_in = abandon ? (uint32_t)strtoul(abandon, NULL, 10) : 0;
@@ -293,6 +294,7 @@ int harness_finish(struct harness *h, int status)
     h->failed = status != 0;
     if (h->device) {
         h->DeviceWaitIdle(h->device);
+        sluiceDestroyVulkanContext(h->context);
         h->DestroyCommandPool(h->device, h->pool, NULL);
         for (uint32_t i = 0; i < HARNESS_PROBE_KINDS; i++)
             h->DestroyPipeline(h->device, h->probe_pipelines[i], NULL);
@@ -312,6 +314,30 @@ int harness_finish(struct harness *h, int status)
     return status;
 }
 
+SluiceVulkanContextCreateInfo harness_context_info(struct harness *h)
+{
+    return (SluiceVulkanContextCreateInfo){.structSize = sizeof(SluiceVulkanContextCreateInfo),
+                                           .queueFamilyIndex = h->family,
+                                           .instance = h->instance,
+                                           .physicalDevice = h->physical_device,
+                                           .device = h->device,
+                                           .pfnGetInstanceProcAddr = h->get,
+                                           .sparseQueue = h->sparse_queue,
+                                           .sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex,
+                                           .log = {h, on_log}};
+}
+
+SluiceResult harness_set_context(struct harness *h, const SluiceAllocationCallbacks *allocator,
+                                 PFN_vkGetInstanceProcAddr get)
+{
+    SluiceVulkanContextCreateInfo info = harness_context_info(h);
+    info.pAllocator = allocator;
+    if (get)
+        info.pfnGetInstanceProcAddr = get;
+    sluiceDestroyVulkanContext(h->context);
+    return sluiceCreateVulkanContext(&info, &h->context);
+}
+
 /* Time stamps count frames here, and defaults in seconds would hide what tests look for. */
 static void fill_times(SluiceVulkanStreamerCreateInfo *info)
 {
@@ -324,16 +350,9 @@ static void fill_times(SluiceVulkanStreamerCreateInfo *info)
 
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
 {
-    info->instance = h->instance;
-    info->physicalDevice = h->physical_device;
-    info->device = h->device;
-    info->pfnGetInstanceProcAddr = h->get;
-    info->sparseQueue = h->sparse_queue;
-    info->sparseQueueFamilyIndex = h->caps.sparseQueueFamilyIndex;
-    info->queueFamilyIndex = h->family;
+    info->context = h->context;
     if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
         info->residencyMode = h->mode;
-    info->log = (SluiceLogCallback){h, on_log};
     info->framesInFlight = HARNESS_FRAMES;
     fill_times(info);
 }

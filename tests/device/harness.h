@@ -62,6 +62,7 @@ struct harness {
     SluiceVulkanDeviceCapabilities caps;
     SluiceResidencyMode mode; ///< never AUTO
     const char *mode_name;
+    SluiceVulkanContext *context;
     bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
     bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
@@ -93,8 +94,18 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
  *  test it says nothing of what that test left behind. */
 int harness_finish(struct harness *h, int status);
 
-/** Fills in handles, queues, the log, the mode if that is AUTO, and frames as the unit of time:
- * then 0 is the newest map alone, no standby tiles, and a second try at once. The rest stays. */
+/**
+ * Replaces the harness's context by one with this allocator, whose functions `get` finds; NULL: the
+ * default, the harness's own. After an error there is none. Its streamers and demand loaders must
+ * have been destroyed.
+ */
+SluiceResult harness_set_context(struct harness *h, const SluiceAllocationCallbacks *allocator,
+                                 PFN_vkGetInstanceProcAddr get);
+/** Settings of such a context. */
+SluiceVulkanContextCreateInfo harness_context_info(struct harness *h);
+
+/** Fills in the context, the mode if that is AUTO, and frames as the unit of time: then 0 is the
+ * newest map alone, no standby tiles, and a second try at once. The rest stays. */
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info);
 
 void harness_buffer_init(struct harness *h, struct harness_buffer *buffer, uint64_t size,

@@ -414,9 +414,9 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
                                          .maxTilesInFlight = 32,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16};
-    runner_fill(&h, &info);
-    info.pfnGetInstanceProcAddr = get_of_instance;
     poor.left = 64u << 20;
+    CHECK_OK(harness_set_context(&h, NULL, get_of_instance));
+    runner_fill(&h, &info);
     CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
     poor.left = 20u << 20;
     runner_init_with(&r, &h, loader);
@@ -433,6 +433,7 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
     assert_true(statistics.tileMemorySize <= 20u << 20);
     assert_true(statistics.residentTileCount >= 64);
     runner_finish(&r);
+    CHECK_OK(harness_set_context(&h, NULL, NULL));
     runner_image_finish(&image);
 }
 
@@ -444,9 +445,9 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
     SluiceDemandLoader *loader;
     SluiceDemandLoaderCreateInfo info = {
         .memoryBudget = 16u << 20, .maxTextureCount = 64, .pageCapacity = 1u << 16};
-    runner_fill(&h, &info);
-    info.pfnGetInstanceProcAddr = get_of_instance;
     poor.left = UINT64_MAX;
+    CHECK_OK(harness_set_context(&h, NULL, get_of_instance));
+    runner_fill(&h, &info);
     CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
     runner_init_with(&r, &h, loader);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
@@ -474,6 +475,7 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
     h.quiet = false;
     assert_true(failures > 0);
     runner_finish(&r);
+    CHECK_OK(harness_set_context(&h, NULL, NULL));
     runner_image_finish(&image);
 }
 
@@ -497,13 +499,14 @@ static bool live(struct failing_allocator *allocator, struct runner_image *image
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
                                          .maxTilesInFlight = 16,
-                                         .loaderThreadCount = 2,
-                                         .pAllocator = &allocator->callbacks};
-    SluiceDemandLoader *loader;
+                                         .loaderThreadCount = 2};
+    SluiceDemandLoader *loader = NULL;
     SluiceDemandTextureId id;
     struct runner r;
+    SluiceResult result = harness_set_context(&h, &allocator->callbacks, NULL);
     runner_fill(&h, &info);
-    SluiceResult result = sluiceCreateDemandLoader(&info, &loader);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceCreateDemandLoader(&info, &loader);
     if (result != SLUICE_SUCCESS) {
         CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
         assert_null(loader);
@@ -550,6 +553,7 @@ static void a_loader_survives_every_refused_allocation(void **state)
         assert_true(n < 500);
         failing_allocator_init(&allocator, n);
         complete = live(&allocator, &image);
+        CHECK_OK(harness_set_context(&h, NULL, NULL));
         assert_int_equal(allocator.live_count, 0);
         assert_int_equal(allocator.live_bytes, 0);
     }

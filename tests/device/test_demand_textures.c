@@ -418,11 +418,6 @@ static void wrong_arguments_are_refused(void **state)
     info.launchesInFlight = 17;
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     info.launchesInFlight = 0;
-    info.queueFamilyIndex = 63;
-    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
-    info.queueFamilyIndex = UINT32_MAX;
-    CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
-    info.queueFamilyIndex = h.family;
     info.pageCapacity = 2048;
     info.maxTextureCount = 2048;
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_LIMIT_EXCEEDED);

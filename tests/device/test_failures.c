@@ -233,13 +233,15 @@ static void creation_survives_every_allocation_failure(void **state)
     for (uint64_t n = 0;; n++) {
         struct failing_allocator a;
         failing_allocator_init(&a, n);
-        SluiceVulkanStreamerCreateInfo info = {
-            .pAllocator = &a.callbacks, .tilesPerFrame = 16, .mapEverything = true};
+        SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16, .mapEverything = true};
+        SluiceVulkanStreamer *streamer = NULL;
+        SluiceResult result = harness_set_context(h, &a.callbacks, NULL);
         harness_fill(h, &info);
-        SluiceVulkanStreamer *streamer;
-        SluiceResult result = sluiceCreateVulkanStreamer(&info, &streamer);
+        if (result == SLUICE_SUCCESS)
+            result = sluiceCreateVulkanStreamer(&info, &streamer);
         assert_true((result == SLUICE_SUCCESS) == (streamer != NULL));
         harness_destroy(h, streamer);
+        CHECK_OK(harness_set_context(h, NULL, NULL));
         assert_int_equal(a.live_count, 0);
         if (result == SLUICE_SUCCESS)
             break;
@@ -255,7 +257,8 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     failing_allocator_init(&a, UINT64_MAX);
     SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanStreamerCreateInfo info = {.pAllocator = &a.callbacks, .feedbackTimeout = 1000};
+    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeout = 1000};
+    CHECK_OK(harness_set_context(h, &a.callbacks, NULL));
     harness_fill(h, &info);
     h->quiet = true;
     SluiceVulkanStreamer *streamer;
@@ -293,6 +296,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     assert_int_equal(scene_missing(&scene), 0);
     h->quiet = false;
     scene_finish(&scene);
+    CHECK_OK(harness_set_context(h, NULL, NULL));
     assert_int_equal(a.live_count, 0);
     sluiceDestroyImageSource(source);
 }

@@ -54,7 +54,7 @@ void gallery_check_nothing_left(const struct gallery *g)
 
 void gallery_finish(struct gallery *g)
 {
-    sluiceDestroyVulkanStreamer(g->streamer);
+    fake_vulkan_destroy(g->streamer);
     g->streamer = NULL;
     gallery_check_nothing_left(g);
     sluiceDestroyImageSource(g->array);
@@ -67,11 +67,11 @@ SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = 8,
-                                           .feedbackTimeout = 20,
-                                           .pAllocator = &g->memory.callbacks};
-    fake_vulkan_fill(&g->fake, &info);
+                                           .feedbackTimeout = 20};
+    g->fake.pAllocator = &g->memory.callbacks;
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    return sluiceCreateVulkanStreamer(&info, &g->streamer);
+    return fake_vulkan_create(&g->fake, &info, &g->streamer);
 }
 
 SluiceResult gallery_add(struct gallery *g, uint32_t texture)

@@ -18,9 +18,10 @@ static SluiceResult create_streamer(SluiceVulkanStreamer **streamer)
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .mapEverything = true};
+    *streamer = NULL;
+    SluiceResult result = harness_set_context(&h, NULL, failing_layer_get);
     harness_fill(&h, &info);
-    info.pfnGetInstanceProcAddr = failing_layer_get;
-    return sluiceCreateVulkanStreamer(&info, streamer);
+    return result == SLUICE_SUCCESS ? sluiceCreateVulkanStreamer(&info, streamer) : result;
 }
 
 static void wait_for(VkSemaphore semaphore, uint64_t value)
@@ -115,17 +116,17 @@ static void a_streamer_on_a_device_that_is_lost_can_be_destroyed(void **state)
     sluiceDestroyImageSource(source);
 }
 
-static SluiceResult create_loader(struct failing_allocator *memory, SluiceDemandLoader **loader)
+static SluiceResult create_loader(SluiceDemandLoader **loader)
 {
     SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
                                          .maxTilesInFlight = 16,
-                                         .loaderThreadCount = 1,
-                                         .pAllocator = memory ? &memory->callbacks : NULL};
+                                         .loaderThreadCount = 1};
+    *loader = NULL;
+    SluiceResult result = harness_set_context(&h, NULL, failing_layer_get);
     runner_fill(&h, &info);
-    info.pfnGetInstanceProcAddr = failing_layer_get;
-    return sluiceCreateDemandLoader(&info, loader);
+    return result == SLUICE_SUCCESS ? sluiceCreateDemandLoader(&info, loader) : result;
 }
 
 /* Launches until nothing is missing, going on after errors that are no loss; the first error. */
@@ -154,7 +155,7 @@ static SluiceResult live_on_demand(struct runner_image *image, bool *is_complete
 {
     SluiceDemandLoader *loader;
     *is_complete = false;
-    SluiceResult result = create_loader(NULL, &loader);
+    SluiceResult result = create_loader(&loader);
     if (result != SLUICE_SUCCESS) {
         assert_null(loader);
         return result;

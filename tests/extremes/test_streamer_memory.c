@@ -2,6 +2,7 @@
  */
 #include "extremes/gallery.h"
 #include "extremes/note.h"
+#include "vulkan/fake_vulkan.h"
 
 enum { FRAMES = 24, RECOVERY = 120 };
 

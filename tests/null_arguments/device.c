@@ -10,6 +10,8 @@ sluiceGetVulkanDeviceCapabilities(f->h->instance, f->h->physical_device, f->h->g
 sluiceGetVulkanFormatCapabilities(f->h->instance, f->h->physical_device, f->h->get, SLUICE_FORMAT_R8G8B8A8_UNORM, &f->out.format)
 !sluiceGetVulkanSparseImageLayout(f->h->instance, f->h->physical_device, f->h->device, f->h->get, ?NULL, &f->info, &f->out.sparse)
 sluiceRequireVulkanFeatures(f->h->instance, f->h->physical_device, f->h->get, f->h->mode, ?NULL, &f->out.features, &f->out.features12)
+sluiceCreateVulkanContext(&f->context_info, &f->out.context) => sluiceDestroyVulkanContext(f->out.context)
+!sluiceDestroyVulkanContext(f->h->context)
 sluiceCreateVulkanStreamer(&f->streamer_info, &f->out.streamer) => sluiceDestroyVulkanStreamer(f->out.streamer)
 !sluiceDestroyVulkanStreamer(f->streamer)
 sluiceWaitVulkanStreamerIdle(f->streamer)
@@ -60,6 +62,7 @@ struct fixture {
     VkCommandBuffer commands; ///< begun
     SluiceImageInfo info;
     SluiceImageSource *source;
+    SluiceVulkanContextCreateInfo context_info;
     SluiceVulkanStreamerCreateInfo streamer_info;
     SluiceVulkanStreamer *streamer;
     SluiceStreamingFrame frame;
@@ -80,6 +83,7 @@ struct fixture {
         SluiceVulkanSparseImageLayout sparse;
         VkPhysicalDeviceFeatures features;
         VkPhysicalDeviceVulkan12Features features12;
+        SluiceVulkanContext *context;
         SluiceVulkanStreamer *streamer;
         SluiceVulkanTexture texture;
         SluiceVulkanBuffers buffers;
@@ -130,19 +134,12 @@ static void init_streamer(struct fixture *f)
 
 static void init_loader(struct fixture *f)
 {
-    const SluiceVulkanStreamerCreateInfo *handles = &f->streamer_info;
-    f->loader_info =
-        (SluiceDemandLoaderCreateInfo){.instance = handles->instance,
-                                       .physicalDevice = handles->physicalDevice,
-                                       .device = handles->device,
-                                       .pfnGetInstanceProcAddr = handles->pfnGetInstanceProcAddr,
-                                       .queueFamilyIndex = handles->queueFamilyIndex,
-                                       .log = handles->log,
-                                       .maxTextureCount = 64,
-                                       .pageCapacity = 4096,
-                                       .maxTilesInFlight = 4,
-                                       .memoryBudget = 4 << 20,
-                                       .loaderThreadCount = 1};
+    f->loader_info = (SluiceDemandLoaderCreateInfo){.context = h.context,
+                                                    .maxTextureCount = 64,
+                                                    .pageCapacity = 4096,
+                                                    .maxTilesInFlight = 4,
+                                                    .memoryBudget = 4 << 20,
+                                                    .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
     f->demand_info.image.source = f->source;
     CHECK_OK(sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->id));
@@ -161,6 +158,7 @@ static void fixture_init(struct fixture *f, void **state)
         .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
     const SluiceProceduralImage image = {NULL, texel};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &f->info, NULL, &f->source));
+    f->context_info = harness_context_info(&h);
     init_streamer(f);
     init_loader(f);
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};

@@ -2,6 +2,7 @@
 
 #include "support/test.h"
 #include "vulkan/feedback_map.h"
+#include "vulkan/streamer.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -736,13 +737,43 @@ VkImage fake_vulkan_image_of(VkImageView view)
     return OBJECT(view)->image;
 }
 
-void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info)
+SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
 {
-    info->instance = (VkInstance)(void *)fake;
-    info->physicalDevice = (VkPhysicalDevice)(void *)fake;
-    info->device = (VkDevice)(void *)fake;
-    info->pfnGetInstanceProcAddr = get_instance_function;
-    info->sparseQueue = (VkQueue)(void *)fake;
+    return (SluiceVulkanContextCreateInfo){.structSize = sizeof(SluiceVulkanContextCreateInfo),
+                                           .instance = (VkInstance)(void *)fake,
+                                           .physicalDevice = (VkPhysicalDevice)(void *)fake,
+                                           .device = (VkDevice)(void *)fake,
+                                           .pfnGetInstanceProcAddr = get_instance_function,
+                                           .sparseQueue = (VkQueue)(void *)fake,
+                                           .pAllocator = fake->pAllocator,
+                                           .log = fake->log};
+}
+
+SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,
+                                SluiceVulkanStreamer **streamer)
+{
+    const SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(fake);
+    *streamer = NULL;
+    SluiceResult result = sluiceCreateVulkanContext(&context, &info->context);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = sluiceCreateVulkanStreamer(info, streamer);
+    if (result != SLUICE_SUCCESS)
+        sluiceDestroyVulkanContext(info->context);
+    return result;
+}
+
+void fake_vulkan_destroy(SluiceVulkanStreamer *streamer)
+{
+    if (!streamer)
+        return;
+    SluiceVulkanContext *context = streamer->context;
+    sluiceDestroyVulkanStreamer(streamer);
+    sluiceDestroyVulkanContext(context);
+}
+
+void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info)
+{
     if (info->timeStampsPerSecond)
         return;
     info->timeStampsPerSecond = 60;

@@ -86,6 +86,10 @@ struct fake_vulkan {
     bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
     bool no_resolve;     ///< compute passes leave no trace: for the demand loader
 
+    /** Of the next context; zeroed: none. */
+    SluiceLogCallback log;
+    const SluiceAllocationCallbacks *pAllocator;
+
     const char *missing; ///< function that neither instance nor device has; NULL: none
 
     uint64_t live_objects; ///< created and not destroyed
@@ -102,9 +106,16 @@ struct fake_vulkan {
     uint32_t dispatch_count;
 };
 
-/** Fills in handles. Where timeStampsPerSecond is 0, time stamps count frames, and 0 is the newest
+/** Fills in the times: if timeStampsPerSecond is 0, time stamps count frames, and 0 is the newest
  *  map alone, no standby tiles, and a second try at once. */
-void fake_vulkan_fill(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info);
+void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info);
+/** Settings of a context on the device, with the log and the allocator of `fake`. */
+SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake);
+/** Creates a streamer on a context of its own. `*streamer` is NULL after an error. */
+SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,
+                                SluiceVulkanStreamer **streamer);
+/** Destroys the streamer and its context. NULL is allowed. */
+void fake_vulkan_destroy(SluiceVulkanStreamer *streamer);
 VkImage fake_vulkan_image_of(VkImageView view);
 VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake);
 /** Commands that were recorded between these calls are never submitted: layouts and watched buffers

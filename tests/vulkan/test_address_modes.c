@@ -53,15 +53,13 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     (void)state;
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
-    fake = (struct fake_vulkan){.tail_page_count = 1};
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
-                                           .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
-                                           .log = {&warnings, count_warnings}};
-    fake_vulkan_fill(&fake, &info);
+    fake = (struct fake_vulkan){.tail_page_count = 1, .log = {&warnings, count_warnings}};
+    SluiceVulkanStreamerCreateInfo info = {
+        .maxTextureCount = 8, .maxRegionCount = 256, .loaderThreadCount = 1};
+    fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[sizeof cases / sizeof cases[0]];
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct mode_case *c = &cases[i];
         SluiceProceduralImage image = {NULL, texel};
@@ -81,7 +79,7 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
         assert_int_equal(texture.addressModeV, c->used[1]);
         assert_int_equal(warnings, c->warnings);
     }
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         sluiceDestroyImageSource(sources[i]);
     assert_int_equal(fake.live_objects, 0);

@@ -91,11 +91,11 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                                            .texturesPerFrame = share,
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = 64,
-                                           .feedbackTimeout = 3 * TEXTURES / share + 10,
-                                           .pAllocator = &w->allocations.callbacks};
-    fake_vulkan_fill(&w->fake, &info);
+                                           .feedbackTimeout = 3 * TEXTURES / share + 10};
+    w->fake.pAllocator = &w->allocations.callbacks;
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &w->streamer));
+    CHECK_OK(fake_vulkan_create(&w->fake, &info, &w->streamer));
     for (uint32_t i = 0; i < TEXTURES; i++) {
         SluiceVulkanTextureCreateInfo create = {.source = w->sources[i % SHAPES]};
         SluiceVulkanTexture texture;
@@ -120,7 +120,7 @@ static void check_walk(SluiceResidencyMode mode, uint32_t share)
     assert_true(after.tilesMapped - before.tilesMapped > 2 * TEXTURES);
     assert_true(after.tilesUnmapped - before.tilesUnmapped > 2 * TEXTURES);
     assert_int_equal(atomic_load(&walk.allocations.count), warm);
-    sluiceDestroyVulkanStreamer(walk.streamer);
+    fake_vulkan_destroy(walk.streamer);
     for (uint32_t i = 0; i < SHAPES; i++)
         sluiceDestroyImageSource(walk.sources[i]);
     assert_int_equal(walk.fake.live_objects, 0);

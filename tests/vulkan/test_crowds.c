@@ -49,11 +49,11 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
                                            .maxTextureCount = 8,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
-                                           .maxTouchedTiles = BEARABLE,
-                                           .log = {&errors, note_error}};
-    fake_vulkan_fill(&fake, &info);
+                                           .maxTouchedTiles = BEARABLE};
+    fake.log = (SluiceLogCallback){&errors, note_error};
+    fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo grey = {
         .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
@@ -69,7 +69,7 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     SluiceVulkanStreamerStatistics stats;
     sluiceGetVulkanStreamerStatistics(streamer, &stats);
     assert_int_equal(stats.manager.mappedTileCount, BEARABLE);
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(create.source);
     assert_int_equal(fake.live_objects, 0);
 }
@@ -96,12 +96,12 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
                                            .maxRegionCount = 1024,
                                            .loaderThreadCount = 1,
                                            .feedbackTimeout = 1000,
-                                           .maxPageChunkCount = 2,
-                                           .log = {&warnings, count_shortages}};
-    fake_vulkan_fill(&fake, &info);
+                                           .maxPageChunkCount = 2};
+    fake.log = (SluiceLogCallback){&warnings, count_shortages};
+    fake_vulkan_fill(&info);
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
     SluiceVulkanStreamer *streamer;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo grey = {
         .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
@@ -119,7 +119,7 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     assert_in_range(stats.pageChunkShortages, 2, 10);
     assert_int_equal(warnings, 1);
     assert_int_equal(stats.tilesMapped - stats.tilesUnmapped, 2 * 64 + 2);
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(create.source);
     assert_int_equal(fake.live_objects, 0);
 }
@@ -142,10 +142,10 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
                                            .feedbackTimeout = 2,
                                            .numExtraStandbyTiles = 1024,
                                            .maxPageChunkCount = 2};
-    fake_vulkan_fill(&fake, &info);
+    fake_vulkan_fill(&info);
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
     SluiceVulkanStreamer *streamer;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo grey = {
         .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
@@ -174,7 +174,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
         assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
     }
     assert_in_range(stats.manager.standbyTileCount, 30, 128); /* no more went than had to */
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     for (uint32_t i = 0; i < 2; i++)
         sluiceDestroyImageSource(sources[i]);
     assert_int_equal(fake.live_objects, 0);

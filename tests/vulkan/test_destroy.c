@@ -13,6 +13,7 @@ static const SluiceResidencyMode modes[MODES] = {
 
 struct stage {
     struct fake_vulkan fake;
+    SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceDemandLoader *loader;
     SluiceImageSource *source;
@@ -47,11 +48,11 @@ static struct stage *stage_of_streamer(SluiceResidencyMode mode)
     SluiceImageInfo grey = {
         .width = 1024, .height = 1024, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
-    SluiceVulkanStreamerCreateInfo info = {
-        .maxRegionCount = 1 << 10, .maxTextureCount = 4, .log = {&s, count_warnings}};
-    fake_vulkan_fill(&s.fake, &info);
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
+    s.fake.log = (SluiceLogCallback){&s, count_warnings};
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &s.streamer));
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     SluiceVulkanTextureCreateInfo create = {.source = s.source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
@@ -89,7 +90,7 @@ static uint32_t frame_waits(const struct stage *s)
 static void destroy(struct stage *s)
 {
     s->fake.wait_count = s->fake.device_waits = s->warnings = 0;
-    sluiceDestroyVulkanStreamer(s->streamer);
+    fake_vulkan_destroy(s->streamer);
     sluiceDestroyImageSource(s->source);
     assert_int_equal(s->fake.live_objects, 0);
     assert_int_equal(s->fake.live_memory, 0);
@@ -217,18 +218,15 @@ static struct stage *stage_of_loader(void)
 {
     static struct stage s; /* large */
     s = (struct stage){.fake = {.no_resolve = true, .waits_time_out = true}};
-    SluiceVulkanStreamerCreateInfo handles = {0};
-    fake_vulkan_fill(&s.fake, &handles);
-    SluiceDemandLoaderCreateInfo info = {.instance = handles.instance,
-                                         .physicalDevice = handles.physicalDevice,
-                                         .device = handles.device,
-                                         .pfnGetInstanceProcAddr = handles.pfnGetInstanceProcAddr,
+    s.fake.log = (SluiceLogCallback){&s, count_warnings};
+    const SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&s.fake);
+    CHECK_OK(sluiceCreateVulkanContext(&context, &s.context));
+    SluiceDemandLoaderCreateInfo info = {.context = s.context,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1 << 16,
                                          .launchesInFlight = 3,
                                          .memoryBudget = 4 << 20,
-                                         .loaderThreadCount = 1,
-                                         .log = {&s, count_warnings}};
+                                         .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&info, &s.loader));
     return &s;
 }
@@ -253,6 +251,7 @@ static void destroy_loader(struct stage *s)
 {
     s->fake.wait_count = s->fake.device_waits = s->warnings = 0;
     sluiceDestroyDemandLoader(s->loader);
+    sluiceDestroyVulkanContext(s->context);
     assert_int_equal(s->fake.live_objects, 0);
     assert_int_equal(s->fake.live_memory, 0);
 }

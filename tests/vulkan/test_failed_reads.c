@@ -102,12 +102,12 @@ static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_
                                            .feedbackTimeout = 1u << 30,
                                            .retryDelay = 1,
                                            .readRetry = {LOADER_ATTEMPTS, 1, 1},
-                                           .log = {f, on_log},
                                            .maxLoadsInFlight = f->loads_in_flight,
                                            .givenUpRetryDelay = rest};
-    fake_vulkan_fill(&f->fake, &info);
+    f->fake.log = (SluiceLogCallback){f, on_log};
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &f->streamer));
+    CHECK_OK(fake_vulkan_create(&f->fake, &info, &f->streamer));
     SluiceVulkanTextureCreateInfo texture_info = {.source = &f->source.base};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &texture_info, &f->texture));
 }
@@ -119,7 +119,7 @@ static void setup(struct fixture *f, SluiceResidencyMode mode)
 
 static void teardown(struct fixture *f)
 {
-    sluiceDestroyVulkanStreamer(f->streamer);
+    fake_vulkan_destroy(f->streamer);
     sluiceDestroyImageSource(f->source.inner);
     assert_int_equal(f->fake.live_objects, 0);
 }

@@ -49,9 +49,9 @@ static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **stre
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .feedbackTimeout = 100};
-    fake_vulkan_fill(fake, &info);
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    return sluiceCreateVulkanStreamer(&info, streamer);
+    return fake_vulkan_create(fake, &info, streamer);
 }
 
 static void check_nothing_left(const struct fake_vulkan *fake)
@@ -73,7 +73,7 @@ static void creation_survives(void)
             bool failed = fake.calls >= n;
             if (failed)
                 CHECK_RESULT(result, failures[f].to);
-            sluiceDestroyVulkanStreamer(streamer);
+            fake_vulkan_destroy(streamer);
             check_nothing_left(&fake);
             if (!failed)
                 break;
@@ -103,7 +103,7 @@ static void adding_survives(uint64_t objects_per_texture)
             assert_int_equal(fake.live_objects, objects + objects_per_texture * f);
         }
     fake.failing_call = 0;
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     check_nothing_left(&fake);
     sluiceDestroyImageSource(info.source);
 }
@@ -142,7 +142,7 @@ static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
         CHECK_RESULT(sluiceAddVulkanTextureArray(streamer, &info, 3, another),
                      SLUICE_ERROR_LIMIT_EXCEEDED); /* one place is left */
         fake.failing_call = 0;
-        sluiceDestroyVulkanStreamer(streamer);
+        fake_vulkan_destroy(streamer);
         check_nothing_left(&fake);
     }
     sluiceDestroyImageSource(array);
@@ -211,7 +211,7 @@ static void frames_survive(uint32_t packed_count, uint32_t harmless_calls)
                 assert_true(failed);
                 CHECK_RESULT(result, failures[f].to);
             }
-            sluiceDestroyVulkanStreamer(streamer);
+            fake_vulkan_destroy(streamer);
             check_nothing_left(&fake);
             sluiceDestroyImageSource(info.source);
             if (!failed)

@@ -61,11 +61,11 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
-                                           .feedbackTimeout = 100,
-                                           .log = {&warnings, count_warnings}};
-    fake_vulkan_fill(&fake, &info);
+                                           .feedbackTimeout = 100};
+    fake.log = (SluiceLogCallback){&warnings, count_warnings};
+    fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceVulkanTextureCreateInfo texture_info = {.source = grey_source()};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &texture_info, &texture));
@@ -85,7 +85,7 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     frame(&fake, streamer, 9);
     assert_int_equal(fake.whole_count, 1); /* once is enough */
     assert_int_equal(warnings, 1);
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(texture_info.source);
     assert_int_equal(fake.live_objects, 0);
 }
@@ -111,10 +111,10 @@ static void settings_beyond_the_device_are_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fake = (struct fake_vulkan){0};
         SluiceVulkanStreamerCreateInfo info = cases[i].info;
-        fake_vulkan_fill(&fake, &info);
+        fake_vulkan_fill(&info);
         SluiceVulkanStreamer *streamer;
-        CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), cases[i].result);
-        sluiceDestroyVulkanStreamer(streamer);
+        CHECK_RESULT(fake_vulkan_create(&fake, &info, &streamer), cases[i].result);
+        fake_vulkan_destroy(streamer);
         assert_int_equal(fake.live_objects, 0);
     }
 }

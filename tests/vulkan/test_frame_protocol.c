@@ -389,8 +389,8 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
                                            .maxHeapCount = heaps,
                                            .feedbackTimeout = 2,
                                            .maxRegionCount = 1 << 14};
-    fake_vulkan_fill(&m->fake, &info);
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    fake_vulkan_fill(&info);
+    CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     roll_seed(seed);
     for (int i = 0; i < TEXTURES; i++)
         model_add(m);
@@ -420,7 +420,7 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
     freed_in_all += m->heaps_freed;
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
-    sluiceDestroyVulkanStreamer(m->streamer);
+    fake_vulkan_destroy(m->streamer);
     assert_int_equal(m->fake.live_objects, 0);
     assert_int_equal(m->fake.live_memory, 0);
     for (uint32_t i = 0; i < 2 * TEXTURES; i++)
@@ -485,8 +485,8 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = 1, .want = want, .user = m}};
     SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .feedbackTimeout = 2};
-    fake_vulkan_fill(&m->fake, &info);
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    fake_vulkan_fill(&info);
+    CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     for (uint64_t i = 1; i <= 3; i++) {
         SluiceStreamingFrame frame;
         VkCommandBuffer commands = fake_vulkan_commands(&m->fake);
@@ -501,7 +501,7 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
         assert_int_equal(stats.feedbackMaps,
                          i == 3); /* of the second frame, heard of in the third */
     }
-    sluiceDestroyVulkanStreamer(m->streamer);
+    fake_vulkan_destroy(m->streamer);
     sluiceDestroyImageSource(m->textures[0].source);
     assert_int_equal(m->fake.live_objects, 0);
 }
@@ -521,9 +521,9 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
     SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
-    fake_vulkan_fill(&fake, &info);
+    fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceVulkanTextureCreateInfo create = {.source = array};
     SluiceVulkanTexture textures[3];
     CHECK_OK(sluiceAddVulkanTextureArray(streamer, &create, 3, textures));
@@ -547,7 +547,7 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     assert_int_equal(fake.metadata_binds, 3);
     for (uint32_t i = 0; i < 3; i++)
         assert_int_equal(seen[i], 3);
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(array);
     sluiceDestroyImageSource(layer);
     assert_int_equal(fake.live_objects, 0);

@@ -54,9 +54,9 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = {
         .feedbackTimeout = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};
-    fake_vulkan_fill(&s.fake, &info);
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &s.streamer));
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     return &s;
 }
 
@@ -74,7 +74,7 @@ static void add_textures(struct stage *s)
 
 static void stage_finish(struct stage *s)
 {
-    sluiceDestroyVulkanStreamer(s->streamer);
+    fake_vulkan_destroy(s->streamer);
     sluiceDestroyImageSource(s->source);
     assert_true(s->fake.live_objects == 0 && s->fake.live_memory == 0);
 }

@@ -53,9 +53,9 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
     info.maxRegionCount = 256;
     info.tilesPerFrame = 4; /* so that packed tiles are handed out in parts */
     info.loaderThreadCount = 1;
-    fake_vulkan_fill(&s.fake, &info);
+    fake_vulkan_fill(&info);
     info.residencyMode = mode;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &s.streamer));
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     SluiceVulkanTextureCreateInfo create = {.source = s.source};
     SluiceVulkanTexture texture;
     for (int i = 0; i < TEXTURES; i++)
@@ -65,7 +65,7 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
 
 static void stage_finish(struct stage *s)
 {
-    sluiceDestroyVulkanStreamer(s->streamer);
+    fake_vulkan_destroy(s->streamer);
     sluiceDestroyImageSource(s->source);
     assert_true(s->fake.live_objects == 0 && s->fake.live_memory == 0);
 }

@@ -285,8 +285,8 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
                                            .feedbackTimeout = 2,
                                            .maxRegionCount = 1 << 14,
                                            .maxPageChunkCount = CHUNKS};
-    fake_vulkan_fill(&m->fake, &info);
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &m->streamer));
+    fake_vulkan_fill(&info);
+    CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     SluiceVulkanBuffers buffers;
     sluiceGetVulkanBuffers(m->streamer, &buffers);
     m->fake.watches[0].buffer = buffers.pageTable;
@@ -308,7 +308,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     assert_true(generation >= 6); /* images came, went, and came again */
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     m->fake.destroyed_count = 0;
-    sluiceDestroyVulkanStreamer(m->streamer);
+    fake_vulkan_destroy(m->streamer);
     assert_int_equal(m->fake.live_objects, 0);
     assert_int_equal(m->fake.live_memory, 0);
     for (uint32_t i = 0; i < TEXTURES; i++)

@@ -51,7 +51,7 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
         .width = 512, .height = 512, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     const SluiceVulkanStreamerCreateInfo asked = info;
-    fake_vulkan_fill(&s.fake, &info);
+    fake_vulkan_fill(&info);
     info.timeStampsPerSecond = asked.timeStampsPerSecond;
     info.newestFeedbackMapOnly = asked.newestFeedbackMapOnly;
     info.noStandbyTiles = asked.noStandbyTiles;
@@ -59,8 +59,8 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
     info.maxTextureCount = 4;
     info.maxRegionCount = 256;
     info.loaderThreadCount = 1;
-    info.log = (SluiceLogCallback){&s, count_warnings};
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &s.streamer));
+    s.fake.log = (SluiceLogCallback){&s, count_warnings};
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     SluiceVulkanTextureCreateInfo create = {.source = s.source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
@@ -69,7 +69,7 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
 
 static void stage_finish(struct stage *s)
 {
-    sluiceDestroyVulkanStreamer(s->streamer);
+    fake_vulkan_destroy(s->streamer);
     sluiceDestroyImageSource(s->source);
     assert_int_equal(s->fake.live_objects, 0);
 }
@@ -168,7 +168,7 @@ static void defaults_are_seconds_in_any_unit(void **state)
                  {1000000000000, 1000000000000, 250000000000}};
     for (int i = 0; i < 5; i++) {
         SluiceVulkanStreamerCreateInfo info = {.timeStampsPerSecond = cases[i].unit};
-        CHECK_OK(slc_fill_in_times(&info));
+        CHECK_OK(slc_fill_in_times(&info, NULL));
         assert_true(info.feedbackTimeout == cases[i].timeout);
         assert_true(info.retryDelay == cases[i].retry);
         assert_int_equal(info.numExtraStandbyTiles, 1024);
@@ -176,7 +176,7 @@ static void defaults_are_seconds_in_any_unit(void **state)
     }
     SluiceVulkanStreamerCreateInfo info = {
         .feedbackTimeout = UINT64_MAX, .retryDelay = 1, .numExtraStandbyTiles = 1};
-    CHECK_OK(slc_fill_in_times(&info));
+    CHECK_OK(slc_fill_in_times(&info, NULL));
     assert_true(info.feedbackTimeout == UINT64_MAX && info.retryDelay == 1);
     assert_int_equal(info.numExtraStandbyTiles, 1);
 }
@@ -190,7 +190,7 @@ static void contradictions_are_refused(void **state)
         {.noStandbyTiles = true, .numExtraStandbyTiles = 1},
     };
     for (int i = 0; i < 3; i++)
-        CHECK_RESULT(slc_fill_in_times(&cases[i]), SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(slc_fill_in_times(&cases[i], NULL), SLUICE_ERROR_INVALID_ARGUMENT);
 }
 
 int main(void)

@@ -7,6 +7,7 @@
 #include <sluice/demand.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MODES = 3 };
@@ -36,13 +37,10 @@ static void check_line(struct lines *lines, const char *part)
 
 static SluiceVulkanStreamerCreateInfo small(struct fake_vulkan *fake, struct lines *lines)
 {
-    *fake = (struct fake_vulkan){.tail_page_count = 1};
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4,
-                                           .maxRegionCount = 256,
-                                           .tilesPerFrame = 16,
-                                           .loaderThreadCount = 1,
-                                           .log = {lines, keep_line}};
-    fake_vulkan_fill(fake, &info);
+    *fake = (struct fake_vulkan){.tail_page_count = 1, .log = {lines, keep_line}};
+    SluiceVulkanStreamerCreateInfo info = {
+        .maxTextureCount = 4, .maxRegionCount = 256, .tilesPerFrame = 16, .loaderThreadCount = 1};
+    fake_vulkan_fill(&info);
     return info;
 }
 
@@ -94,7 +92,7 @@ static void infos_that_no_image_has_are_refused_in_every_mode(void **state)
         SluiceVulkanStreamer *streamer;
         SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
         info.residencyMode = modes[m];
-        CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+        CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
         uint64_t objects = fake.live_objects;
         for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
             struct liar liar = {{&interface}, cases[i].info};
@@ -105,23 +103,47 @@ static void infos_that_no_image_has_are_refused_in_every_mode(void **state)
             check_line(&lines, cases[i].line);
             assert_int_equal(fake.live_objects, objects);
         }
-        sluiceDestroyVulkanStreamer(streamer);
+        fake_vulkan_destroy(streamer);
         assert_int_equal(fake.live_objects, 0);
     }
 }
 
-static void *refuse(void *user, size_t size, size_t alignment)
+static void *allocate_unless(void *refuses, size_t size, size_t alignment)
 {
-    (void)user, (void)size, (void)alignment;
-    return NULL;
+    (void)alignment;
+    return *(bool *)refuses ? NULL : malloc(size);
 }
 
-static void free_nothing(void *user, void *memory, size_t size)
+static void release(void *user, void *memory, size_t size)
 {
-    (void)user, (void)memory, (void)size;
+    (void)user, (void)size;
+    free(memory);
 }
 
-static const SluiceAllocationCallbacks no_memory = {NULL, refuse, free_nothing};
+/* A context that has what it needs, and from then on no memory for anything else. */
+static SluiceVulkanContext *context_without_memory(struct fake_vulkan *fake, struct lines *lines)
+{
+    static bool refuses;
+    static const SluiceAllocationCallbacks callbacks = {&refuses, allocate_unless, release};
+    *fake = (struct fake_vulkan){.pAllocator = &callbacks, .log = {lines, keep_line}};
+    *lines = (struct lines){0};
+    const SluiceVulkanContextCreateInfo info = fake_vulkan_context_info(fake);
+    SluiceVulkanContext *context;
+    refuses = false;
+    CHECK_OK(sluiceCreateVulkanContext(&info, &context));
+    refuses = true;
+    return context;
+}
+
+static SluiceVulkanContext *create_context(struct fake_vulkan *fake, struct lines *lines)
+{
+    *fake = (struct fake_vulkan){.log = {lines, keep_line}};
+    *lines = (struct lines){0};
+    const SluiceVulkanContextCreateInfo info = fake_vulkan_context_info(fake);
+    SluiceVulkanContext *context;
+    CHECK_OK(sluiceCreateVulkanContext(&info, &context));
+    return context;
+}
 
 #define FIELD(type, name, most)                                                                    \
     {                                                                                              \
@@ -157,32 +179,20 @@ static void streamers_take_every_limit_of_the_header_and_nothing_beyond(void **s
         FIELD(SluiceVulkanStreamerCreateInfo, feedbackEncoding, SLUICE_FEEDBACK_ENCODING_MASKS),
         FIELD(SluiceVulkanStreamerCreateInfo, residencyMode, SLUICE_RESIDENCY_MODE_DENSE)};
     static struct fake_vulkan fake; /* large */
+    struct lines lines;
     SluiceVulkanStreamer *streamer;
+    SluiceVulkanContext *context = context_without_memory(&fake, &lines);
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         for (uint64_t beyond = 0; beyond < 2; beyond++) {
-            struct lines lines = {0};
-            SluiceVulkanStreamerCreateInfo info = {.pAllocator = &no_memory,
-                                                   .log = {&lines, keep_line}};
-            fake_vulkan_fill(&fake, &info);
+            SluiceVulkanStreamerCreateInfo info = {.context = context};
+            fake_vulkan_fill(&info);
             set_field(&info, &fields[i], fields[i].most + beyond);
             CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer),
                          beyond ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_ERROR_OUT_OF_HOST_MEMORY);
             if (beyond)
                 check_line(&lines, fields[i].name);
         }
-}
-
-static SluiceDemandLoaderCreateInfo demand_info(struct fake_vulkan *fake, struct lines *lines)
-{
-    SluiceVulkanStreamerCreateInfo handles;
-    *fake = (struct fake_vulkan){0};
-    *lines = (struct lines){0};
-    fake_vulkan_fill(fake, &handles);
-    return (SluiceDemandLoaderCreateInfo){.instance = handles.instance,
-                                          .physicalDevice = handles.physicalDevice,
-                                          .device = handles.device,
-                                          .pfnGetInstanceProcAddr = handles.pfnGetInstanceProcAddr,
-                                          .log = {lines, keep_line}};
+    sluiceDestroyVulkanContext(context);
 }
 
 static void demand_loaders_take_every_limit_of_the_header_and_nothing_beyond(void **state)
@@ -199,96 +209,59 @@ static void demand_loaders_take_every_limit_of_the_header_and_nothing_beyond(voi
     static struct fake_vulkan fake; /* large */
     struct lines lines;
     SluiceDemandLoader *loader;
+    SluiceVulkanContext *context = context_without_memory(&fake, &lines);
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         for (uint64_t beyond = 0; beyond < 2; beyond++) {
-            SluiceDemandLoaderCreateInfo info = demand_info(&fake, &lines);
-            info.pAllocator = &no_memory;
+            SluiceDemandLoaderCreateInfo info = {.context = context};
             set_field(&info, &fields[i], fields[i].most + beyond);
             CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader),
                          beyond ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_ERROR_OUT_OF_HOST_MEMORY);
             if (beyond)
                 check_line(&lines, fields[i].name);
         }
-    SluiceDemandLoaderCreateInfo info = demand_info(&fake, &lines);
-    info.pAllocator = &no_memory;
+    SluiceDemandLoaderCreateInfo info = {.context = context};
     set_field(&info, &budget, UINT64_C(4) << 20);
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     set_field(&info, &budget, (UINT64_C(4) << 20) - 1);
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     check_line(&lines, "memoryBudget");
+    sluiceDestroyVulkanContext(context);
 }
 
-static void queue_families_must_be_there_and_do_what_they_are_for(void **state)
+static void sparse_mode_needs_a_context_with_a_sparse_queue(void **state)
 {
     (void)state;
     static struct fake_vulkan fake; /* large */
-    static const struct {
-        SluiceResidencyMode mode;
-        uint32_t family, sparse_family;
-        const char *line; ///< NULL: good
-    } cases[] = {
-        {SLUICE_RESIDENCY_MODE_SPARSE, 0, 0, NULL},
-        {SLUICE_RESIDENCY_MODE_SPARSE, FAKE_COMPUTE_FAMILY, FAKE_SPARSE_FAMILY, NULL},
-        {SLUICE_RESIDENCY_MODE_PAGED, 0, FAKE_FAMILIES, NULL},
-        {SLUICE_RESIDENCY_MODE_DENSE, FAKE_COMPUTE_FAMILY, UINT32_MAX, NULL},
-        {SLUICE_RESIDENCY_MODE_SPARSE, FAKE_FAMILIES, 0, "queueFamilyIndex is 4"},
-        {SLUICE_RESIDENCY_MODE_DENSE, UINT32_MAX, 0, "queueFamilyIndex is 4294967295"},
-        {SLUICE_RESIDENCY_MODE_PAGED, FAKE_TRANSFER_FAMILY, 0, "VK_QUEUE_COMPUTE_BIT"},
-        {SLUICE_RESIDENCY_MODE_PAGED, FAKE_SPARSE_FAMILY, 0, "VK_QUEUE_COMPUTE_BIT"},
-        {SLUICE_RESIDENCY_MODE_SPARSE, 0, FAKE_FAMILIES, "sparseQueueFamilyIndex is 4"},
-        {SLUICE_RESIDENCY_MODE_SPARSE, 0, FAKE_COMPUTE_FAMILY, "VK_QUEUE_SPARSE_BINDING_BIT"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (uint32_t m = 0; m < MODES; m++) {
         struct lines lines = {0};
         SluiceVulkanStreamer *streamer;
         SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
-        info.residencyMode = cases[i].mode;
-        info.queueFamilyIndex = cases[i].family;
-        info.sparseQueueFamilyIndex = cases[i].sparse_family;
+        SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&fake);
+        bool sparse = modes[m] == SLUICE_RESIDENCY_MODE_SPARSE;
+        context.sparseQueue = VK_NULL_HANDLE;
+        CHECK_OK(sluiceCreateVulkanContext(&context, &info.context));
+        info.residencyMode = modes[m];
         CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer),
-                     cases[i].line ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_SUCCESS);
-        if (cases[i].line)
-            check_line(&lines, cases[i].line);
+                     sparse ? SLUICE_ERROR_NULL_POINTER : SLUICE_SUCCESS);
+        if (sparse)
+            check_line(&lines, "sparseQueue");
         sluiceDestroyVulkanStreamer(streamer);
+        sluiceDestroyVulkanContext(info.context);
         assert_int_equal(fake.live_objects, 0);
     }
-    static const uint32_t bad[] = {FAKE_TRANSFER_FAMILY, FAKE_SPARSE_FAMILY, FAKE_FAMILIES,
-                                   UINT32_MAX};
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        struct lines lines;
-        SluiceDemandLoader *loader;
-        SluiceDemandLoaderCreateInfo info = demand_info(&fake, &lines);
-        info.queueFamilyIndex = bad[i];
-        CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
-        check_line(&lines, "queueFamilyIndex is");
-    }
 }
 
-static void what_is_missing_in_a_create_info_is_named(void **state)
+static void without_a_context_nothing_is_created(void **state)
 {
     (void)state;
-    static struct fake_vulkan fake; /* large */
-    static const SluiceAllocationCallbacks half = {.pfnAllocate = refuse};
-    for (int i = 0; i < 5; i++) {
-        static const char *const names[] = {"instance is NULL", "physicalDevice is NULL",
-                                            "device is NULL", "pfnGetInstanceProcAddr is NULL",
-                                            "pAllocator is NULL"};
-        struct lines lines = {0};
-        SluiceVulkanStreamer *streamer;
-        SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
-        SluiceDemandLoader *loader;
-        SluiceDemandLoaderCreateInfo demand = demand_info(&fake, &lines);
-        info.instance = demand.instance = i == 0 ? NULL : info.instance;
-        info.physicalDevice = demand.physicalDevice = i == 1 ? NULL : info.physicalDevice;
-        info.device = demand.device = i == 2 ? NULL : info.device;
-        if (i == 3)
-            info.pfnGetInstanceProcAddr = demand.pfnGetInstanceProcAddr = NULL;
-        info.pAllocator = demand.pAllocator = i == 4 ? &half : NULL;
-        CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_NULL_POINTER);
-        check_line(&lines, names[i]);
-        CHECK_RESULT(sluiceCreateDemandLoader(&demand, &loader), SLUICE_ERROR_NULL_POINTER);
-        check_line(&lines, names[i]);
-    }
+    SluiceVulkanStreamer *streamer;
+    SluiceDemandLoader *loader;
+    const SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4};
+    const SluiceDemandLoaderCreateInfo demand = {.maxTextureCount = 4};
+    CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceCreateDemandLoader(&demand, &loader), SLUICE_ERROR_NULL_POINTER);
+    assert_null(streamer);
+    assert_null(loader);
 }
 
 static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void **state)
@@ -300,7 +273,7 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     SluiceStreamingFrame frame;
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
     info.timeStampsPerSecond = 60;
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     VkCommandBuffer commands = fake_vulkan_commands(&fake);
     CHECK_RESULT(sluiceEndStreamingFrame(streamer, commands), SLUICE_ERROR_INVALID_ARGUMENT);
     check_line(&lines, "no frame can be ended");
@@ -309,37 +282,16 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     CHECK_RESULT(sluiceBeginStreamingFrame(streamer, commands, 6, &frame),
                  SLUICE_ERROR_TIME_BACKWARDS);
     check_line(&lines, "timeStamp is 6; it must not be below the last frame's, 7");
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
 
     SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo demand = demand_info(&fake, &lines);
+    const SluiceDemandLoaderCreateInfo demand = {.context = create_context(&fake, &lines)};
     CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
     CHECK_RESULT(sluiceEndDemandLaunch(loader, fake_vulkan_commands(&fake)),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     check_line(&lines, "no launch can be ended");
     sluiceDestroyDemandLoader(loader);
-}
-
-/* As loaders do when the instance was created for an older version. */
-static void instances_of_vulkan_1_1_hear_what_to_do(void **state)
-{
-    (void)state;
-    static struct fake_vulkan fake; /* large */
-    static const char *const newer[] = {"vkGetSemaphoreCounterValue", "vkWaitSemaphores",
-                                        "vkGetPhysicalDeviceFeatures2"};
-    for (size_t i = 0; i < sizeof newer / sizeof newer[0]; i++) {
-        struct lines lines = {0};
-        SluiceVulkanStreamer *streamer;
-        SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
-        fake.missing = newer[i];
-        CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_UNSUPPORTED);
-        check_line(&lines, "create the instance with apiVersion 1.2");
-        SluiceDemandLoader *loader;
-        SluiceDemandLoaderCreateInfo demand = demand_info(&fake, &lines);
-        fake.missing = newer[i];
-        CHECK_RESULT(sluiceCreateDemandLoader(&demand, &loader), SLUICE_ERROR_UNSUPPORTED);
-        check_line(&lines, "create the instance with apiVersion 1.2");
-    }
+    sluiceDestroyVulkanContext(demand.context);
 }
 
 /* What the streamer does itself nobody else does; what pages tell people to call goes on. */
@@ -352,7 +304,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     struct lines lines = {0};
     SluiceVulkanStreamer *streamer;
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
-    CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+    CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
     SluiceVulkanTextureCreateInfo create = {.source = &source.base};
     SluiceVulkanTexture texture;
@@ -395,7 +347,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     CHECK_RESULT(sluiceRemoveStreamedTexture(manager, id, 1), refused);
     CHECK_OK(sluiceRemoveVulkanTexture(streamer, id));
     CHECK_RESULT(sluiceCompleteRetireValue(manager, 1), refused);
-    sluiceDestroyVulkanStreamer(streamer);
+    fake_vulkan_destroy(streamer);
     assert_int_equal(fake.live_objects, 0);
 }
 
@@ -405,10 +357,9 @@ int main(void)
         cmocka_unit_test(infos_that_no_image_has_are_refused_in_every_mode),
         cmocka_unit_test(streamers_take_every_limit_of_the_header_and_nothing_beyond),
         cmocka_unit_test(demand_loaders_take_every_limit_of_the_header_and_nothing_beyond),
-        cmocka_unit_test(queue_families_must_be_there_and_do_what_they_are_for),
-        cmocka_unit_test(what_is_missing_in_a_create_info_is_named),
+        cmocka_unit_test(sparse_mode_needs_a_context_with_a_sparse_queue),
+        cmocka_unit_test(without_a_context_nothing_is_created),
         cmocka_unit_test(what_is_ended_without_a_begin_and_time_that_runs_back_are_named),
-        cmocka_unit_test(instances_of_vulkan_1_1_hear_what_to_do),
         cmocka_unit_test(the_manager_of_a_streamer_takes_no_calls_of_its_loop),
     };
     return RUN_TESTS(tests);

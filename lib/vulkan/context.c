@@ -1,0 +1,98 @@
+#include "vulkan/context.h"
+
+#include "base/alloc.h"
+#include "base/log.h"
+#include "vulkan/create_checks.h"
+
+#include <assert.h>
+
+static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
+{
+    const struct slc_required fields[] = {
+        {"instance", info->instance},
+        {"physicalDevice", info->physicalDevice},
+        {"device", info->device},
+        {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
+        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
+    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+}
+
+static SluiceResult check_queues(const struct slc_vk *vk, const SluiceVulkanContextCreateInfo *info)
+{
+    SluiceResult result = slc_check_queue_family(vk, "queueFamilyIndex", info->queueFamilyIndex,
+                                                 VK_QUEUE_COMPUTE_BIT, "have VK_QUEUE_COMPUTE_BIT");
+    if (result != SLUICE_SUCCESS || !info->sparseQueue)
+        return result;
+    return slc_check_queue_family(vk, "sparseQueueFamilyIndex", info->sparseQueueFamilyIndex,
+                                  VK_QUEUE_SPARSE_BINDING_BIT, "have VK_QUEUE_SPARSE_BINDING_BIT");
+}
+
+static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContextCreateInfo *info)
+{
+    SluiceResult result = slc_vk_init_instance(&context->vk, info->instance, info->physicalDevice,
+                                               info->pfnGetInstanceProcAddr, &info->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_vk_init_device(&context->vk, info->device);
+    if (result == SLUICE_SUCCESS)
+        result = check_queues(&context->vk, info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_caps_init(&context->caps, &context->vk);
+    context->sparse_queue = info->sparseQueue;
+    atomic_init(&context->child_count, 0);
+    return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCreateInfo,
+                                       SluiceVulkanContext **pContext)
+{
+    if (!pContext)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pContext = NULL;
+    if (!pCreateInfo)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (pCreateInfo->structSize != sizeof *pCreateInfo)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceResult result = check_fields(pCreateInfo);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(pCreateInfo->pAllocator);
+    SluiceVulkanContext *context = slc_calloc(&cb, 1, sizeof *context);
+    if (!context)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    context->cb = cb;
+    result = init(context, pCreateInfo);
+    if (result != SLUICE_SUCCESS) {
+        slc_free(&cb, context, 1, sizeof *context);
+        return result;
+    }
+    *pContext = context;
+    return SLUICE_SUCCESS;
+}
+
+void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
+{
+    if (!context)
+        return;
+    unsigned children = atomic_load(&context->child_count);
+    if (children > 0) {
+        slc_log(&context->vk.log, SLUICE_LOG_ERROR,
+                "context is not destroyed: %u of its streamers and demand loaders still exist",
+                children);
+        return;
+    }
+    SluiceAllocationCallbacks cb = context->cb;
+    slc_free(&cb, context, 1, sizeof *context);
+}
+
+void slc_context_add_child(SluiceVulkanContext *context)
+{
+    atomic_fetch_add(&context->child_count, 1);
+}
+
+void slc_context_remove_child(SluiceVulkanContext *context)
+{
+    unsigned before = atomic_fetch_sub(&context->child_count, 1);
+    assert(before > 0);
+    (void)before;
+}

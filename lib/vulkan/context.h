@@ -1,0 +1,23 @@
+/** What the streamers and demand loaders of a device share. */
+#ifndef SLC_VULKAN_CONTEXT_H
+#define SLC_VULKAN_CONTEXT_H
+
+#include "vulkan/caps.h"
+
+#include <sluice/vulkan_context.h>
+
+#include <stdatomic.h>
+
+struct SluiceVulkanContext {
+    SluiceAllocationCallbacks cb;
+    VkQueue sparse_queue; ///< VK_NULL_HANDLE: none
+    struct slc_vk vk;
+    struct slc_caps caps;
+    atomic_uint child_count; ///< streamers and demand loaders
+};
+
+/** A streamer or demand loader counts as a child from the start of its creation to its end. */
+void slc_context_add_child(SluiceVulkanContext *context);
+void slc_context_remove_child(SluiceVulkanContext *context);
+
+#endif /* SLC_VULKAN_CONTEXT_H */
