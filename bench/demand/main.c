@@ -2,7 +2,7 @@
  */
 #include "rig.h"
 
-#include "../../tools/common/option_table.h"
+#include "../../tools/common/shared_options.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -69,23 +69,22 @@ static int measure(const struct arguments *arguments)
 int main(int argc, char **argv)
 {
     struct arguments a = {0};
-    const struct option table[] = {
-        {OPTION_TEXT, "device", "NAME", &a.device, "an index of --list-devices, or part of a name",
-         0, 0},
-        {OPTION_CHOICE, "only", "all|create|fill|sampling|trips|budget", &a.only, "what to measure",
-         0, 0},
-        {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
-         0, 256},
-        {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
-        {OPTION_FLAG, "validation", NULL, &a.validation,
-         "with validation layers, which must be silent; times mean nothing then", 0, 0},
-        {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
-        {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
+    const struct option rows[] = {
+        option_device(&a.device),
+        {OPTION_CHOICE, "only", "all|create|fill|sampling|trips|budget", "all", &a.only,
+         "measurement to make"},
+        option_threads(&a.threads),
+        {OPTION_FLAG, "quick", .value = &a.quick,
+         .help = "small and few: to see that everything works"},
+        option_validation(&a.validation),
+        option_json(&a.json),
+        option_list_devices(&a.list),
     };
-    switch (options_parse(table, sizeof table / sizeof *table,
-                          "Usage: demand_figures [options]\n"
-                          "Measures what demand loading costs; a figure per line.\n\n",
-                          argc, argv)) {
+    const struct option_table table = {"demand_figures",
+                                       "usage: demand_figures [options]\n"
+                                       "Measures what demand loading costs; a figure per line.\n",
+                                       NULL, rows, sizeof rows / sizeof *rows};
+    switch (options_parse(&table, argc, argv)) {
     case OPTIONS_HELP: return 0;
     case OPTIONS_ERROR: return 2;
     case OPTIONS_RUN: break;

@@ -8,7 +8,7 @@
 #   --only NAME       create, fill, sampling, trips or budget (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           few and small textures: to see that everything works
-#   --threads COUNT   that load tiles (default: all processors but one)
+#   --threads N       that load tiles (default: all processors but one)
 #   --bin DIR         run DIR/demand_figures instead of building
 #   --work DIR        keep the build there (default: a scratch folder, removed)
 #   --validation      with validation layers, which must be silent; times mean nothing then

@@ -6,6 +6,8 @@
 #include "figures.h"
 #include "micro.h"
 
+#include "../../tools/common/shared_options.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,46 +25,35 @@ static const struct part {
     {"cut", bench_cut},
 #endif
 };
-enum { PARTS = sizeof parts / sizeof *parts, MAX_TRACES = 8 };
+enum { PARTS = sizeof parts / sizeof *parts };
 
 static const char *only; ///< NULL: everything
-static const char *traces[MAX_TRACES];
-static int trace_count;
-
-static void usage(void)
-{
-    printf("usage: micro [--json] [--quick] [--only NAME] [--trace FILE]...\n"
-           "  --json         one object per line: name, value, unit (default: a table)\n"
-           "  --quick        a tenth of the repetitions, a tenth of the tiles for memory\n"
-           "  --only NAME    one part alone (default: all of them):");
-    for (int i = 0; i < PARTS; i++)
-        printf(" %s", parts[i].name);
 #ifdef WITH_HARNESS
-    printf(" floor\n  --trace FILE   a trace for floor, which copies its maps (default: none)\n");
-#else
-    printf("\n  built without the harness: no cut, no floor\n");
+static struct option_texts traces;
 #endif
-}
 
-static void parse(int argc, char **argv)
+static enum option_outcome parse(int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--json") == 0) {
-            options.json = true;
-        } else if (strcmp(argv[i], "--quick") == 0) {
-            options.quick = true;
-        } else if (strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
-            only = argv[++i];
-        } else if (strcmp(argv[i], "--trace") == 0 && i + 1 < argc && trace_count < MAX_TRACES) {
-            traces[trace_count++] = argv[++i];
-        } else if (strcmp(argv[i], "--help") == 0) {
-            usage();
-            exit(0);
-        } else {
-            fprintf(stderr, "unknown option %s (see --help)\n", argv[i]);
-            exit(2);
-        }
-    }
+    const struct option rows[] = {
+        option_json(&options.json),
+        {OPTION_FLAG, "quick", .value = &options.quick,
+         .help = "a tenth of the repetitions, a tenth of the tiles for memory"},
+        {OPTION_TEXT, "only", "NAME", "(all)", &only,
+         "one part: copy, feedback, follow, idle, add, memory, heaps, growth"
+#ifdef WITH_HARNESS
+         ", cut, floor"
+#endif
+        },
+#ifdef WITH_HARNESS
+        {OPTION_REPEATED, "trace", "FILE", "(none)", &traces,
+         "trace for floor, which copies its maps"},
+#endif
+    };
+    const struct option_table table = {"micro",
+                                       "usage: micro [options]\n"
+                                       "Times single calls of the manager, and weighs it.\n",
+                                       NULL, rows, sizeof rows / sizeof *rows};
+    return options_parse(&table, argc, argv);
 }
 
 static bool chosen(const char *name)
@@ -88,7 +79,11 @@ int main(int argc, char **argv)
 {
     int status = 0;
     bool any = false;
-    parse(argc, argv);
+    switch (parse(argc, argv)) {
+    case OPTIONS_RUN: break;
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    }
     for (int i = 0; i < PARTS; i++) {
         if (!chosen(parts[i].name))
             continue;
@@ -100,9 +95,9 @@ int main(int argc, char **argv)
     }
 #ifdef WITH_HARNESS
     any = any || chosen("floor");
-    for (int i = 0; chosen("floor") && i < trace_count; i++) {
-        if (forked(traces[i], &status)) {
-            bench_floor(traces[i]);
+    for (int i = 0; chosen("floor") && i < (int)traces.count; i++) {
+        if (forked(traces.items[i], &status)) {
+            bench_floor(traces.items[i]);
             return 0;
         }
     }

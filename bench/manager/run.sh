@@ -100,12 +100,13 @@ compile() {
 
 build_programs() {
     say "building the programs"
-    local sources=("$here"/{micro,micro_feedback,micro_growth,micro_heaps,micro_memory,micro_scale,figures,rig}.c)
+    local sources=("$here"/{micro,micro_feedback,micro_growth,micro_heaps,micro_memory,micro_scale,figures,rig}.c
+        "$root"/tools/common/{nearest,option_help,option_table,option_value,shared_options,text}.c)
     if [ "$have_harness" = no ]; then
-        compile micro "${sources[@]}"
+        compile micro "${sources[@]}" -lm
         return
     fi
-    compile micro -DWITH_HARNESS -I"$harness" "${sources[@]}" "$here/micro_trace.c"
+    compile micro -DWITH_HARNESS -I"$harness" "${sources[@]}" "$here/micro_trace.c" -lm
     compile replay -I"$harness" "$harness/replay.c" "$here/backend_sluice.c"
     compile generate -I"$harness" "$harness/sltrace_gen.c"
     compile clairvoyant -I"$root"/lib -I"$root"/tools/{clairvoyant,feedback-trace} "$here/clairvoyant.c" \

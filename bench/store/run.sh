@@ -79,8 +79,9 @@ build() {
     export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
     # shellcheck disable=SC2046 # a list of words
     logged "$CC" -std=c11 -O2 "$here"/*.c \
+        "$root"/tools/common/{nearest,option_help,option_table,option_value,shared_options,text}.c \
         $(pkg-config --static --cflags --libs sluice-store sluice-exr sluice libzstd) \
-        -pthread -o "$work/store_figures"
+        -pthread -lm -o "$work/store_figures"
 }
 
 # Photographs of many sizes and kinds; drawings compress too well to say much.

@@ -14,6 +14,8 @@
 
 #include "pictures.h"
 
+#include "../../tools/common/shared_options.h"
+
 #include <sluice/store.h>
 
 #include <fcntl.h>
@@ -351,22 +353,28 @@ static void measure_opening(const char *folder)
 
 int main(int argc, char **argv)
 {
-    int first = 1;
-    for (; first < argc && strncmp(argv[first], "--", 2) == 0; first++) {
-        run.json |= strcmp(argv[first], "--json") == 0;
-        run.quick |= strcmp(argv[first], "--quick") == 0;
+    const char *folder = NULL;
+    struct option_list pictures = {0};
+    const struct option rows[] = {
+        {OPTION_WORD, .operand = "FOLDER", .value = &folder, .minimum = 1, .help = "a folder"},
+        {OPTION_WORDS, .operand = "PICTURE", .value = &pictures, .minimum = 1, .help = "a picture"},
+        option_json(&run.json),
+        {OPTION_FLAG, "quick", .value = &run.quick, .help = "one picture, few rounds"},
+    };
+    const struct option_table table = {"store_figures",
+                                       "usage: store_figures [options] FOLDER PICTURE...\n", NULL,
+                                       rows, sizeof rows / sizeof *rows};
+    switch (options_parse(&table, argc, argv)) {
+    case OPTIONS_RUN: break;
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
     }
-    if (argc - first < 2) {
-        fprintf(stderr, "usage: store_figures [--json] [--quick] FOLDER PICTURE...\n");
-        return 2;
-    }
-    const char *folder = argv[first++];
     run.rounds = run.quick ? 3 : 9;
     run.places = calloc(PLACES, TILE);
-    SluiceImageSource **sources = calloc((size_t)(argc - first), sizeof(SluiceImageSource *));
+    SluiceImageSource **sources = calloc(pictures.count, sizeof(SluiceImageSource *));
     size_t count = 0;
-    for (int i = first; i < argc && !(run.quick && count == 1); i++)
-        if ((sources[count] = open_picture(argv[i])))
+    for (size_t i = 0; i < pictures.count && !(run.quick && count == 1); i++)
+        if ((sources[count] = open_picture(pictures.items[i])))
             count++;
     if (!run.places || count == 0)
         fail("reading any picture");

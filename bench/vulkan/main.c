@@ -1,7 +1,7 @@
 /* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
 #include "bench.h"
 
-#include "../../tools/common/option_table.h"
+#include "../../tools/common/shared_options.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -158,34 +158,34 @@ static int measure(const struct arguments *arguments)
 int main(int argc, char **argv)
 {
     struct arguments a = {0};
-    const struct option table[] = {
-        {OPTION_TEXT, "device", "NAME", &a.device, "an index of --list-devices, or part of a name",
-         0, 0},
-        {OPTION_CHOICE, "residency", "all|sparse|paged|dense", &a.residency, "mode to measure", 0,
-         0},
-        {OPTION_TEXT, "only", "NAMES", &a.only,
-         "some of sampling,feedback,fill,budget,resolve,host,sharp,unseen (default: all)", 0, 0},
-        {OPTION_SIZE, "size", "WxH", &a.size,
-         "of pictures in pixels; 0x0: 1920x1080, on software devices\n640x360, with --quick 160x90",
+    const struct option rows[] = {
+        option_device(&a.device),
+        {OPTION_CHOICE, "residency", "all|sparse|paged|dense", "all", &a.residency,
+         "mode to measure"},
+        {OPTION_TEXT, "only", "NAMES", "(all)", &a.only,
+         "some of sampling,feedback,fill,budget,resolve,host,sharp,unseen"},
+        {OPTION_EXTENT, "size", "WxH", "0x0", a.size,
+         "of pictures in pixels; 0x0: 1920x1080, on software devices 640x360, with --quick 160x90",
          0, 8192},
-        {OPTION_UINT, "texture", "TEXELS", &a.texture_size,
-         "edge of the texture of scenes, a power of 2; 0: 16384, on software\ndevices 8192, with "
-         "--quick 2048",
+        {OPTION_UINT, "texture-size", "N", "0", &a.texture_size,
+         "width and height of the texture of scenes in texels, a power of 2; 0: 16384, on software "
+         "devices 8192, with --quick 2048",
          0, 16384},
-        {OPTION_UINT, "threads", "COUNT", &a.threads, "that load tiles; 0: all processors but one",
-         0, 256},
-        {OPTION_CHOICE, "clock", "auto|device|host", &a.clock,
-         "that times draws; auto: the host's on software devices", 0, 0},
-        {OPTION_FLAG, "quick", NULL, &a.quick, "small and few: to see that everything works", 0, 0},
-        {OPTION_FLAG, "validation", NULL, &a.validation,
-         "with validation layers, which must be silent; times mean nothing then", 0, 0},
-        {OPTION_FLAG, "json", NULL, &a.json, "an object per line: name, value, unit", 0, 0},
-        {OPTION_FLAG, "list-devices", NULL, &a.list, "print the devices and exit", 0, 0},
+        {OPTION_RENAMED, "texture", "texture-size"},
+        option_threads(&a.threads),
+        {OPTION_CHOICE, "clock", "auto|device|host", "auto", &a.clock,
+         "clock that times draws; auto: the host's on software devices"},
+        {OPTION_FLAG, "quick", .value = &a.quick,
+         .help = "small and few: to see that everything works"},
+        option_validation(&a.validation),
+        option_json(&a.json),
+        option_list_devices(&a.list),
     };
-    switch (options_parse(table, sizeof table / sizeof *table,
-                          "Usage: vulkan_figures [options]\n"
-                          "Measures what streaming costs; a figure per line.\n\n",
-                          argc, argv)) {
+    const struct option_table table = {"vulkan_figures",
+                                       "usage: vulkan_figures [options]\n"
+                                       "Measures what streaming costs; a figure per line.\n",
+                                       NULL, rows, sizeof rows / sizeof *rows};
+    switch (options_parse(&table, argc, argv)) {
     case OPTIONS_HELP: return 0;
     case OPTIONS_ERROR: return 2;
     case OPTIONS_RUN: break;
@@ -195,13 +195,13 @@ int main(int argc, char **argv)
     if (!names_are_known(a.only))
         return 2;
     if ((a.size[0] == 0) != (a.size[1] == 0)) {
-        fprintf(stderr, "--size wants two numbers, or 0x0\n");
+        options_refuse(&table, "--size wants two numbers, or 0x0");
         return 2;
     }
     options.json = a.json;
     options.quick = a.quick;
     if (a.texture_size && (a.texture_size < 1024 || (a.texture_size & (a.texture_size - 1)))) {
-        fprintf(stderr, "--texture wants a power of 2 from 1024 to 16384\n");
+        options_refuse(&table, "--texture-size wants a power of 2 from 1024 to 16384");
         return 2;
     }
     return measure(&a);

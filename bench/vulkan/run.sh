@@ -11,9 +11,9 @@
 #   --quick           small pictures, few and small textures: to see that everything works
 #   --size WxH        of pictures in pixels (default: 1920x1080, on software devices 640x360, with
 #                     --quick 160x90)
-#   --texture TEXELS  edge of the texture of scenes (default: 16384, on software devices 8192, with
+#   --texture-size N  edge of the texture of scenes (default: 16384, on software devices 8192, with
 #                     --quick 2048)
-#   --threads COUNT   that load tiles (default: all processors but one)
+#   --threads N       that load tiles (default: all processors but one)
 #   --clock CLOCK     device or host, that times draws (default: the host's on software devices)
 #   --bin DIR         run DIR/vulkan_figures instead of building; if DIR holds libvulkan.so.1, with that
 #   --work DIR        keep the build there (default: a scratch folder, removed)
@@ -52,7 +52,7 @@ while [ $# -gt 0 ]; do
         declare "${1#--}=$2"
         shift
         ;;
-    --device | --residency | --only | --size | --texture | --threads | --clock)
+    --device | --residency | --only | --size | --texture-size | --threads | --clock)
         [ $# -ge 2 ] || die "$1 needs a value (see --help)"
         arguments+=("$1" "$2")
         shift

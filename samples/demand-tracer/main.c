@@ -56,7 +56,7 @@ static bool create_loader(struct tracer *t)
     SluiceDemandLoaderCreateInfo info = {
         .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
-        .memoryBudget = (uint64_t)o->budget << 20,
+        .memoryBudget = o->budget,
         .loaderThreadCount = o->threads,
         .maxPageChunkCount = TRACER_PAGE_CHUNKS,
     };
@@ -86,8 +86,9 @@ static bool check_outputs(const struct tracer_options *o, bool (*check)(const ch
 /* Before anything takes its time. */
 static bool can_write_outputs(const struct tracer_options *o)
 {
-    return (!o->compare || output_add_input(o->compare)) && files_make_folders(o->output) &&
-           (!o->frames || files_make_folders(o->frames)) && check_outputs(o, output_can_write);
+    return (!o->reference || output_add_input(o->reference)) && files_make_folders(o->output) &&
+           (!o->launch_pictures || files_make_folders(o->launch_pictures)) &&
+           check_outputs(o, output_can_write);
 }
 
 static bool open_all(struct tracer *t)
@@ -171,14 +172,14 @@ static bool after_launch(void *user_data, const struct launch_record *record)
         return false;
     bool sheet = t->options.contact_sheet &&
                  (contact_sheet_has_room(&t->sheet) || record->missing_count == 0);
-    if (!sheet && !t->options.frames)
+    if (!sheet && !t->options.launch_pictures)
         return true;
     char name[32];
     snprintf(name, sizeof name, "launch-%05u", record->index);
     return film_read(&t->gpu, &t->film, &t->picture) &&
            (!sheet || add_to_sheet(t, record, statistics.residentTileCount)) &&
-           (!t->options.frames ||
-            picture_write(&t->picture, t->options.exposure, t->options.frames, name));
+           (!t->options.launch_pictures ||
+            picture_write(&t->picture, t->options.exposure, t->options.launch_pictures, name));
 }
 
 static bool write_files(struct tracer *t)
@@ -209,8 +210,8 @@ static bool print_summary(struct tracer *t, double seconds)
                               .needed_tiles = NAN,
                               .resident_peak = t->history.resident_peak};
     const struct picture_place place = {o->output, t->launches.count};
-    if ((o->compare &&
-         !picture_compare(&t->picture, o->exposure, o->compare, &place, &summary.difference)) ||
+    if ((o->reference &&
+         !picture_compare(&t->picture, o->exposure, o->reference, &place, &summary.difference)) ||
         !count_needs(t, &summary.needed_tiles) ||
         sluiceGetDemandStatistics(t->loader, &summary.statistics) != SLUICE_SUCCESS)
         return false;

@@ -5,7 +5,7 @@
 #include "../../tools/common/option_table.h"
 #include "scene.h"
 
-enum needs_choice { NEEDS_ON, NEEDS_OFF };
+enum needs_choice { NEEDS_AUTO, NEEDS_ON, NEEDS_OFF };
 enum path_choice { PATH_AUTO, PATH_PIPELINE, PATH_COMPUTE };
 
 struct tracer_options {
@@ -13,22 +13,21 @@ struct tracer_options {
     uint32_t texture_count, texture_size;
     uint32_t size[2];
     uint32_t samples, bounces, max_launches, seed;
-    const char *camera;
-    struct scene_camera view; ///< of `camera`
-    int path;                 ///< enum path_choice
+    struct scene_camera view;
+    int path; ///< enum path_choice
     bool preview, preload;
-    bool needs;      ///< of `count_needs`
-    int count_needs; ///< enum needs_choice
-    double exposure; ///< stops
-    uint32_t budget, memory, threads, requests;
+    bool needs;              ///< of `count_needs`
+    int count_needs;         ///< enum needs_choice
+    double exposure;         ///< stops
+    uint64_t budget, memory; ///< bytes
+    uint32_t threads, requests;
     double anisotropy;
-    const char *output, *frames, *contact_sheet, *compare;
+    const char *output, *launch_pictures, *contact_sheet, *reference;
     bool json, list_devices, validation;
     const char *device;
 };
 
 /** Says on stderr what is wrong. */
-enum option_outcome tracer_options_parse(int argc, char *const *argv,
-                                         struct tracer_options *options);
+enum option_outcome tracer_options_parse(int argc, char **argv, struct tracer_options *options);
 
 #endif /* TRACER_OPTIONS_H */

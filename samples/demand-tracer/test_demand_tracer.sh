@@ -67,11 +67,11 @@ is_like_first() { # name, dB
 }
 
 validation=--validation
-trace first $validation --frames "$folder/frames" --contact-sheet "$folder/sheet.png"
+trace first $validation --launch-pictures "$folder/frames" --contact-sheet "$folder/sheet.png"
 if [ "$status" -ne 0 ] && grep -q VK_ERROR_LAYER_NOT_PRESENT "$folder/first.log"; then
     echo "there are no validation layers: tracing without them" >&2
     validation=
-    trace first --frames "$folder/frames" --contact-sheet "$folder/sheet.png"
+    trace first --launch-pictures "$folder/frames" --contact-sheet "$folder/sheet.png"
 fi
 [ "$status" -ne 77 ] || { cat "$folder/first.log" >&2; exit 77; }
 succeeds
@@ -102,7 +102,7 @@ awk -F, -v launches="$(value first launches)" -v bytes="$(value first loaded_byt
 
 # Nothing is missing where all was loaded before, and the picture is the same. It needs the same, as
 # its paths never go astray.
-trace preloaded $validation --preload --compare "$folder/first/picture.png"
+trace preloaded $validation --preload --reference "$folder/first/picture.png"
 succeeds
 is_complete preloaded
 check preloaded launches 'v + 0 == 2'
@@ -118,7 +118,7 @@ for kind in frame truth flip; do # two launches
 done
 
 # The same scene without a ray-tracing pipeline; edges may fall to the other side of a pixel.
-trace compute $validation --path compute --compare "$folder/first/picture.png"
+trace compute $validation --path compute --reference "$folder/first/picture.png"
 succeeds
 is_complete compute
 check compute ray_tracing_pipeline 'v + 0 == 0'
@@ -130,8 +130,8 @@ check compute ssim_mean 'v + 0 > 0.98 && v + 0 <= 1'
 check compute flip_mean 'v + 0 >= 0 && v + 0 < 0.02'
 
 # A preview shows coarse levels from the second launch on, and ends as sharp.
-trace preview $validation --preview --frames "$folder/preview-frames" \
-    --compare "$folder/first/picture.png"
+trace preview $validation --preview --launch-pictures "$folder/preview-frames" \
+    --reference "$folder/first/picture.png"
 succeeds
 is_complete preview
 check preview needed_bytes "v + 0 == $(value first needed_bytes)"
@@ -139,7 +139,7 @@ check preview loaded_per_needed 'v + 0 >= 1 && v + 0 <= 1.15'
 is_like_first preview 60
 
 # A few tiles at a time.
-trace slow --requests 16 --threads 1 --compare "$folder/first/picture.png"
+trace slow --requests 16 --threads 1 --reference "$folder/first/picture.png"
 succeeds
 is_complete slow
 check slow launches "v + 0 > $(value first launches)"
@@ -160,7 +160,7 @@ succeeds
 is_complete away
 check away textures_opened 'v + 0 > 0 && v + 0 < 20'
 [ "$(value away needed_bytes)" = null ] || { echo "needs were counted although off" >&2; failed=1; }
-trace sky --camera 0,3,0,1,9,0 --compare "$folder/first/picture.png"
+trace sky --camera 0,3,0,1,9,0 --reference "$folder/first/picture.png"
 succeeds
 is_complete sky
 check sky launches 'v + 0 == 2'

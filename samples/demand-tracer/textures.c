@@ -119,8 +119,7 @@ bool textures_create(const struct tracer_options *options, SluiceDemandLoader *l
     t->items = calloc(t->scene_count, sizeof *t->items);
     t->of_scene = calloc(t->scene_count, sizeof *t->of_scene);
     if (!t->items || !t->of_scene ||
-        sluiceCreateExrMemoryBudget((uint64_t)options->memory << 20, NULL, &t->memory) !=
-            SLUICE_SUCCESS) {
+        sluiceCreateExrMemoryBudget(options->memory, NULL, &t->memory) != SLUICE_SUCCESS) {
         fprintf(stderr, "out of memory\n");
         return false;
     }

@@ -13,23 +13,25 @@
 
 struct settings read_settings(int argc, char **argv)
 {
-    struct settings settings = {.size = {640, 360}, .walk_frames = 120, .output = "minimal.png"};
-    int mode = SLUICE_RESIDENCY_MODE_AUTO;
+    struct settings settings = {0};
+    int mode;
     const struct option options[] = {
-        {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", &mode, "how tiles get memory", 0,
-         0},
-        {OPTION_UINT, "frames", "N", &settings.walk_frames, "to walk, before the eye rests", 1,
-         100000},
-        {OPTION_SIZE, "size", "WxH", settings.size, "of the picture in pixels", 1, 4096},
-        {OPTION_FLAG, "everything", NULL, &settings.everything, "have every tile, wanted or not", 0,
-         0},
-        {OPTION_TEXT, "output", "FILE", &settings.output, "the last picture, as PNG", 0, 0}};
-    const char *usage = "Usage: minimal [options]\n"
-                        "Walks along a corridor of streamed textures, without a window.\n"
-                        "Exit status: 0; 1 if something failed; 2 for wrong usage; 77 if no device "
-                        "can stream.\n\n";
-    const enum option_outcome outcome =
-        options_parse(options, sizeof options / sizeof *options, usage, argc, argv);
+        {OPTION_CHOICE, "residency", "auto|sparse|paged|dense", "auto", &mode,
+         "how tiles get memory"},
+        {OPTION_UINT, "frames", "N", "120", &settings.walk_frames,
+         "frames of the walk, before the eye rests", 1, 100000},
+        {OPTION_EXTENT, "size", "WxH", "640x360", settings.size, "pixels", 1, 4096},
+        {OPTION_FLAG, "everything", .value = &settings.everything,
+         .help = "have every tile, wanted or not"},
+        {OPTION_TEXT, "output", "FILE", "minimal.png", &settings.output,
+         "the last picture, as PNG"}};
+    const struct option_table table = {
+        "minimal",
+        "usage: minimal [options]\n\n"
+        "Walks along a corridor of streamed textures, without a window.\n",
+        "Exit status: 0; 1 if something failed; 2 for wrong usage; 77 if no device can stream.\n",
+        options, sizeof options / sizeof *options};
+    const enum option_outcome outcome = options_parse(&table, argc, argv);
     if (outcome != OPTIONS_RUN)
         exit(outcome == OPTIONS_ERROR ? 2 : text_flush("") ? 0 : 1);
     if (!output_can_write(settings.output))

@@ -218,7 +218,7 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
         {"resident_bytes", MEASURE_TILE_BYTES * measure_resident_tiles(last), "bytes",
          "of the tiles in memory at the end"},
         {"resident_bytes_peak", MEASURE_TILE_BYTES * peak_tiles, "bytes", "the most at a time"},
-        {"budget_bytes", measure->settings->budget ? 1048576.0 * measure->settings->budget : NAN,
+        {"budget_bytes", measure->settings->budget ? (double)measure->settings->budget : NAN,
          "bytes", "that heaps may take"},
         {"psnr_final_db", finite_psnr(last->psnr), "dB",
          "of the last frame to everything resident; 999: equal"},

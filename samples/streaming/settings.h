@@ -34,8 +34,8 @@ struct settings {
     bool lattice;
     uint32_t textures_per_frame, tiles_per_frame;
     double timeout; ///< seconds
-    uint32_t standby, heap_tiles, max_heaps, loader_threads, touched_tiles;
-    uint32_t budget;  ///< MiB for tiles, 0: no cap; heap_tiles and max_heaps keep to it
+    uint32_t standby, heap_tiles, max_heaps, threads, touched_tiles;
+    uint64_t budget;  ///< bytes for tiles, 0: no cap; heap_tiles and max_heaps keep to it
     int texture_sets; ///< enum on_off
     uint32_t loads_in_flight;
     double fade;             ///< seconds
@@ -64,7 +64,7 @@ struct settings {
     bool list_devices;
 };
 
-enum option_outcome settings_parse(int argc, char *const *argv, struct settings *settings);
+enum option_outcome settings_parse(int argc, char **argv, struct settings *settings);
 
 SluiceResidencyMode settings_residency_mode(int residency);
 /** Whether it is to be found out what frames need. */

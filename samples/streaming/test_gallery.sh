@@ -134,7 +134,7 @@ fi
 
 # The same walk twice is the same, decision by decision and pixel by pixel.
 for name in first second; do
-    walk $name --frames 24 --rest-frames 6 --deterministic --loader-threads 1 --write-frames all
+    walk $name --frames 24 --rest-frames 6 --deterministic --threads 1 --write-frames all
     [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
 done
 cmp "$folder/first.trace" "$folder/second.trace" >&2 || failed=1
@@ -169,7 +169,7 @@ check foreseen psnr_final_db 'v >= 45'
 for name in here ahead; do
     seconds=0
     [ $name = here ] || seconds=0.3
-    walk $name --frames 16 --rest-frames 16 --deterministic --loader-threads 1 --samples 1 \
+    walk $name --frames 16 --rest-frames 16 --deterministic --threads 1 --samples 1 \
         --write-frames none --predict $seconds
     [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
 done
@@ -204,7 +204,7 @@ check past loaded_per_needed 'v >= 0.98 && v <= 1.02'
 # The pass that finds out needs sees the same pixels, and the same lack of detail, as the one that
 # counts, and changes neither decisions nor pictures.
 for needs in on off; do
-    walk needs-$needs --frames 30 --rest-frames 8 --deterministic --loader-threads 1 --needs $needs \
+    walk needs-$needs --frames 30 --rest-frames 8 --deterministic --threads 1 --needs $needs \
         --residency paged --check-residency "$([ $needs = on ] && echo off || echo on)" \
         --write-frames all
     [ "$status" -eq 0 ] || { cat "$folder/needs-$needs.log" >&2; failed=1; }
@@ -224,7 +224,7 @@ refer() { # name, options
     name=$1
     shift
     walk "$name" --reference "$folder/truth" --frames 12 --rest-frames 6 --deterministic --samples 1 \
-        --probability 1 --loader-threads 1 --metrics-every 11 "$@"
+        --probability 1 --threads 1 --metrics-every 11 "$@"
     [ "$status" -eq 0 ] || { cat "$folder/$name.log" >&2; failed=1; }
 }
 said() { # name, words

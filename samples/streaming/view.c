@@ -57,7 +57,7 @@ static bool create_streamer(struct view *view)
         .maxRegionCount = VIEW_MAX_REGIONS,
         .texturesPerFrame = settings->textures_per_frame,
         .tilesPerFrame = settings->tiles_per_frame,
-        .loaderThreadCount = settings->loader_threads,
+        .loaderThreadCount = settings->threads,
         .heapTileCapacity = settings->heap_tiles,
         .maxHeapCount = settings->max_heaps,
         .numExtraStandbyTiles = settings->standby,

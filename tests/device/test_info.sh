@@ -26,11 +26,11 @@ status() { # expected exit status, command
 }
 
 status 0 "$info" --help && grep -q 'exit status\|Exit status' "$folder/out" &&
-    grep -q 'WxH.*(4096x4096)' "$folder/out"
+    grep -q 'WxH.*\[4096x4096\]' "$folder/out"
 report help_names_defaults $?
 
 wrong=0
-for arguments in '--no-such-option' '--png x' '--level 1' '--tile 1,1' 'x --device 0' 'x --png y --tile 1' '--image' '--image 0x4' '--image 4' '--image 4x' \
+for arguments in '--no-such-option' '--device' '--png x' '--level 1' '--tile 1,1' 'x --device 0' 'x --png y --tile 1' '--image' '--image 0x4' '--image 4' '--image 4x' \
     '--image 4x4x4' '--image -4x4' '--image 1048577x1'; do
     # shellcheck disable=SC2086
     status 2 "$info" $arguments && [ -s "$folder/err" ] || wrong=1
@@ -42,7 +42,7 @@ VK_DRIVER_FILES=/nonexistent.json VK_ICD_FILENAMES=/nonexistent.json VK_LOADER_L
     status 1 "$info" && grep -q '^sluice-info: .*Vulkan' "$folder/err" && [ ! -s "$folder/out" ]
 report without_a_driver_it_exits_with_1_and_says_so $?
 
-if ! "$info" --device >"$folder/devices" 2>/dev/null; then
+if ! "$info" --list-devices >"$folder/devices" 2>/dev/null; then
     echo "ok 4 # SKIP no Vulkan device"
     echo "1..4"
     exit $failed

@@ -111,7 +111,7 @@ static void play(const struct trace_file *file, const char **arguments, struct p
     while (arguments && *arguments)
         argv[argc++] = *arguments++;
     trace_file_write(file, file->size, path);
-    assert_int_equal(play_options_parse(&p->options, argc, (char **)argv), PLAY_RUN);
+    assert_int_equal(play_options_parse(&p->options, argc, (char **)argv), OPTIONS_RUN);
     assert_true(feedback_trace_open(&p->trace, path));
     unlink(path);
     assert_true(play_loop_init(&p->loop, &p->options, &p->trace));
@@ -370,14 +370,14 @@ static void what_cannot_be_meant_is_refused(void **state)
         const char *argv[] = {"play", "trace", wrong[i][0], wrong[i][1]};
         struct play_options options;
         assert_int_equal(play_options_parse(&options, wrong[i][1] ? 4 : 3, (char **)argv),
-                         PLAY_WRONG);
+                         OPTIONS_ERROR);
     }
     struct play_options options;
     const char *both[] = {"play", "trace", "--probability", "1/4", "--drop-probability", "0.5"};
-    assert_int_equal(play_options_parse(&options, 6, (char **)both), PLAY_WRONG);
-    assert_int_equal(play_options_parse(&options, 4, (char **)both), PLAY_RUN);
+    assert_int_equal(play_options_parse(&options, 6, (char **)both), OPTIONS_ERROR);
+    assert_int_equal(play_options_parse(&options, 4, (char **)both), OPTIONS_RUN);
     assert_true(options.probability == 0.25 && options.drop == 0.75);
-    assert_int_equal(play_options_parse(&options, 1, (char **)both), PLAY_WRONG);
+    assert_int_equal(play_options_parse(&options, 1, (char **)both), OPTIONS_ERROR);
     assert_int_equal(run_main("/nowhere/trace.slt", NULL), 1);
 }
 

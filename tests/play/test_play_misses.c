@@ -70,7 +70,7 @@ static struct observed play(uint32_t texture_count, const char *probability, con
     struct feedback_trace trace;
     struct play_loop loop;
     write_still_view(texture_count, path);
-    assert_int_equal(play_options_parse(&options, in_turns ? 18 : 16, (char **)argv), PLAY_RUN);
+    assert_int_equal(play_options_parse(&options, in_turns ? 18 : 16, (char **)argv), OPTIONS_RUN);
     assert_true(feedback_trace_open(&trace, path));
     unlink(path);
     assert_true(play_loop_init(&loop, &options, &trace) && play_loop_run(&loop));

@@ -53,7 +53,7 @@ trace() { # exit status, options
     run "$expected" --size 32x18 --samples 1 --texture-count 30 --texture-size 512 --json "$@"
 }
 trace 0 --output traced && cp traced/picture.png before.png &&
-    trace 1 --output traced --compare traced/picture.png &&
+    trace 1 --output traced --reference traced/picture.png &&
     grep -q 'traced/picture.png: would replace a file that is read' err && cmp traced/picture.png before.png
 fact a_tracer_does_not_replace_the_picture_that_it_compares_with
 

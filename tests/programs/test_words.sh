@@ -55,7 +55,7 @@ if [ -n "$streaming" ] && [ -n "$bake" ]; then
         ! grep -q 'image cannot be used' err; }
     fact the_tracer_names_files_and_prints_them_plainly
 
-    plain "$tracer" --textures "$red.gone" && plain "$tracer" --compare "$red" --camera "$red"
+    plain "$tracer" --textures "$red.gone" && plain "$tracer" --reference "$red" --camera "$red"
     fact the_tracer_prints_what_it_was_given_plainly
 fi
 
@@ -96,7 +96,8 @@ if [ -n "$streaming" ] && [ -n "$bake" ]; then
     run 2 --loads-in-flight 1 --output nothing && grep -q -- '--loads-in-flight 1: wants 2' err && [ ! -e nothing ]
     fact too_few_loads_in_flight_are_refused_at_once
 
-    run 2 --budget 64M && grep -q -- '--budget 64M: wants MIB from 0 to 1048576$' err
+    run 2 --budget 64Q && grep -q -- '--budget 64Q: wants a size like 512M or 2G, from 0 to 1T$' err &&
+        run 2 --fps 0 && grep -q -- '--fps 0: wants a whole number from 1 to 10000$' err
     fact ranges_are_written_out
 fi
 

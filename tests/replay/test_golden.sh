@@ -10,7 +10,7 @@ failed=0
 
 check() { # name, trace, expected
     n=$((n + 1))
-    if "$replay" "$2" --expect "$3" >/dev/null; then
+    if "$replay" "$2" --heap-tiles 1024 --standby 1000 --expect "$3" >/dev/null; then
         echo "ok $n $1"
     else
         echo "not ok $n $1"

@@ -25,7 +25,7 @@ status() { # expected exit status, command
     [ $? = "$want" ]
 }
 
-status 0 "$replay" --help && grep -q 'timeout SECONDS.*(1)' "$folder/out"
+status 0 "$replay" --help && grep -q 'timeout SECONDS.*\[1\]' "$folder/out"
 report help_names_defaults $?
 
 wrong=0

@@ -15,5 +15,5 @@ for trace in "$data"/*.trace; do
 done
 for trace in "$traces"/*.slt; do
     [ -f "$trace" ] || continue
-    "$replay" "$trace" | grep '^hash ' >"$data/$(basename "$trace" .slt).hash"
+    "$replay" "$trace" --heap-tiles 1024 --standby 1000 | grep '^hash ' >"$data/$(basename "$trace" .slt).hash"
 done

@@ -15,8 +15,10 @@ static char help[] = "streaming [OPTION ...]\n\nWords about --nothing [3].\n\nSt
                      "  --residency auto|sparse|paged|dense\n"
                      "                              what makes texels resident [auto]\n"
                      "  --fade=SECONDS              until sharp\n"
-                     "  --standby            N        tiles kept (1000)\n"
-                     "  --in-turns                    one frame (see there)\n"
+                     "  --standby N                 tiles kept (in memory) [1000]\n"
+                     "  --in-turns                  one frame (see there)\n"
+                     "  --cache DIR                 where pictures are kept (in the\n"
+                     "                              home folder)\n"
                      "  --strange NAME              not in the scene's list [a b]\n\nNext\n"
                      "  --help                      this text\n";
 
@@ -84,7 +86,8 @@ static void help_text_says_what_an_option_takes_means_and_is(void **state)
     expect_entry("budget", "MIB", "MiB for tiles at most, in heaps [of 16]", "0");
     expect_entry("residency", "auto|sparse|paged|dense", "what makes texels resident", "auto");
     expect_entry("fade", "SECONDS", "until sharp", "");
-    expect_entry("standby", "N", "tiles kept", "1000");
+    expect_entry("standby", "N", "tiles kept (in memory)", "1000");
+    expect_entry("cache", "DIR", "where pictures are kept", "");
     expect_entry("in-turns", "", "one frame (see there)", "");
     expect_entry("help", "", "this text", "");
     assert_false(help_text_find(help, "nothing", &entry));

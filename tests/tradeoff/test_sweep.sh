@@ -38,7 +38,7 @@ cell() {
         index($0, start) == 1 && column { print $column }' "$1"
 }
 
-status 0 "$tool" --help && grep -q -- '--repeats N .*\[3; 5 with --full\]' out
+status 0 "$tool" --help && grep -q -- '--repeats N .*(3; 5 with --full)' out
 report help_names_defaults $?
 
 wrong=0

@@ -1,224 +1,212 @@
 #include "option_table.h"
 
+#include "nearest.h"
+#include "option_help.h"
+#include "option_value.h"
 #include "text.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <math.h>
+#include <assert.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define HELP_COLUMN 30
+/* Where the parser is. */
+struct command_line {
+    const struct option_table *table;
+    int argc, index; ///< index: the argument that is looked at
+    char **argv;
+    int word_count;  ///< OPTION_WORDS; they are at the front of argv
+    size_t next_row; ///< OPTION_WORD: rows before this one are filled
+};
 
-static void print_default(const struct option *option)
+bool options_refuse(const struct option_table *table, const char *format, ...)
 {
-    switch (option->kind) {
-    case OPTION_UINT: printf(" [%u]", *(const uint32_t *)option->value); break;
-    case OPTION_REAL:
-        if (!isnan(*(const double *)option->value))
-            printf(" [%g]", *(const double *)option->value);
-        break;
-    case OPTION_TEXT: {
-        const char *text = *(const char *const *)option->value;
-        if (text)
-            printf(" [%s]", text);
-        break;
-    }
-    case OPTION_CHOICE: {
-        const char *choice = option->operand;
-        for (int i = *(const int *)option->value; i > 0; i--)
-            choice = strchr(choice, '|') + 1;
-        printf(" [%.*s]", (int)strcspn(choice, "|"), choice);
-        break;
-    }
-    case OPTION_SIZE: {
-        const uint32_t *size = option->value;
-        printf(" [%ux%u]", size[0], size[1]);
-        break;
-    }
-    case OPTION_SECTION:
-    case OPTION_FLAG:
-    case OPTION_LIST: break;
-    }
-}
-
-static void print_help(const struct option *options, size_t option_count, const char *usage)
-{
-    fputs(usage, stdout);
-    for (size_t i = 0; i < option_count; i++) {
-        const struct option *option = &options[i];
-        if (option->kind == OPTION_SECTION) {
-            printf("\n%s\n", option->help);
-            continue;
-        }
-        int column = printf("  --%s%s%s", option->name, option->operand ? " " : "",
-                            option->operand ? option->operand : "");
-        if (column >= HELP_COLUMN)
-            column = printf("\n") - 1;
-        for (const char *line = option->help; line;) {
-            int length = (int)strcspn(line, "\n");
-            printf("%*s%.*s", HELP_COLUMN - column, "", length, line);
-            line = line[length] ? line + length + 1 : NULL;
-            if (line)
-                printf("\n");
-            column = 0;
-        }
-        print_default(option);
-        printf("\n");
-    }
-    printf("%-*sthis text\n", HELP_COLUMN, "  --help");
-}
-
-/** A number, or two with a slash between them. */
-static bool parse_real(const char *text, double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    if (end == text)
-        return false;
-    if (*end == '/') {
-        const char *divisor_text = end + 1;
-        double divisor = strtod(divisor_text, &end);
-        if (end == divisor_text || divisor == 0.0)
-            return false;
-        *value /= divisor;
-    }
-    return *end == '\0' && isfinite(*value);
-}
-
-static bool parse_uint(const char *text, const char **end, uint32_t *value)
-{
-    if (!isdigit((unsigned char)*text))
-        return false;
-    errno = 0;
-    unsigned long long number = strtoull(text, (char **)end, 10);
-    *value = (uint32_t)number;
-    return errno == 0 && number <= UINT32_MAX;
-}
-
-static bool in_range(const struct option *option, double value)
-{
-    return value >= option->minimum && value <= option->maximum;
-}
-
-static bool parse_choice(const struct option *option, const char *text)
-{
-    size_t length = strlen(text);
-    const char *choice = option->operand;
-    for (int i = 0;; i++) {
-        size_t choice_length = strcspn(choice, "|");
-        if (length == choice_length && strncmp(choice, text, length) == 0) {
-            *(int *)option->value = i;
-            return true;
-        }
-        if (choice[choice_length] == '\0')
-            return false;
-        choice += choice_length + 1;
-    }
-}
-
-static bool parse_value(const struct option *option, const char *text)
-{
-    const char *end = text;
-    switch (option->kind) {
-    case OPTION_UINT: {
-        uint32_t *value = option->value;
-        return parse_uint(text, &end, value) && *end == '\0' && in_range(option, *value);
-    }
-    case OPTION_REAL: {
-        double *value = option->value;
-        return parse_real(text, value) && in_range(option, *value);
-    }
-    case OPTION_TEXT: *(const char **)option->value = text; return *text != '\0';
-    case OPTION_CHOICE: return parse_choice(option, text);
-    case OPTION_SIZE: {
-        uint32_t *size = option->value;
-        return parse_uint(text, &end, &size[0]) && *end == 'x' &&
-               parse_uint(end + 1, &end, &size[1]) && *end == '\0' && in_range(option, size[0]) &&
-               in_range(option, size[1]);
-    }
-    case OPTION_SECTION:
-    case OPTION_FLAG:
-    case OPTION_LIST: break;
-    }
+    char line[4096];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    text_say("%s: %s", table->program, line);
     return false;
 }
 
-static const struct option *find_option(const struct option *options, size_t option_count,
-                                        const char *argument)
+static const struct option *find_kind(const struct option_table *table, enum option_kind kind)
 {
-    if (strncmp(argument, "--", 2) != 0)
-        return NULL;
-    size_t length = strcspn(argument + 2, "=");
-    for (size_t i = 0; i < option_count; i++)
-        if (options[i].name && strlen(options[i].name) == length &&
-            strncmp(options[i].name, argument + 2, length) == 0)
-            return &options[i];
+    for (size_t i = 0; i < table->option_count; i++)
+        if (table->options[i].kind == kind)
+            return &table->options[i];
     return NULL;
 }
 
-static void explain_bad_value(const struct option *option, const char *text)
+static const struct option *find_option(const struct option_table *table, const char *argument)
 {
-    char range[64] = "";
-    if (option->kind == OPTION_UINT || option->kind == OPTION_REAL || option->kind == OPTION_SIZE)
-        snprintf(range, sizeof range, " from %.15g to %.15g", option->minimum, option->maximum);
-    text_say("--%s%s%s: wants %s%s", option->name, *text ? " " : "", text,
-             option->operand ? option->operand : "no value", range);
+    bool is_long = argument[1] == '-';
+    size_t length = is_long ? strcspn(argument + 2, "=") : 0;
+    for (size_t i = 0; i < table->option_count; i++) {
+        const struct option *option = &table->options[i];
+        if (is_long && option->name && strlen(option->name) == length &&
+            strncmp(option->name, argument + 2, length) == 0)
+            return option;
+        if (!is_long && option->letter == argument[1] && argument[2] == '\0')
+            return option;
+    }
+    return NULL;
 }
 
-/** Takes the operand behind `--name=` or the next argument; moves *index to the last one used. */
-static bool take_operands(const struct option *option, int argc, char *const *argv, int *index)
+static bool refuse_unknown(const struct option_table *table, const char *argument)
 {
-    const char *equals = strchr(argv[*index], '=');
+    char question[64];
+    const char *word = argument + strspn(argument, "-");
+    struct nearest nearest = {.word = word, .word_length = strcspn(word, "=")};
+    for (size_t i = 0; i < table->option_count; i++)
+        if (table->options[i].name && table->options[i].kind != OPTION_RENAMED)
+            nearest_try(&nearest, table->options[i].name, strlen(table->options[i].name));
+    return options_refuse(table, "there is no option %s%s --help lists all", argument,
+                          nearest.best ? nearest_question(&nearest, "--", question, sizeof question)
+                                       : ";");
+}
+
+static bool refuse_value(const struct option_table *table, const struct option *option,
+                         const char *text)
+{
+    char wanted[512];
+    return options_refuse(table, "--%s%s%s: wants %s", option->name, *text ? " " : "", text,
+                          option_value_wanted(option, text, wanted, sizeof wanted));
+}
+
+static bool is_dashes(const char *argument)
+{
+    return strcmp(argument, "--") == 0;
+}
+
+static bool take_list(struct command_line *line, const struct option *option, bool has_value)
+{
+    struct option_list *list = option->value;
+    int next = line->index + 1;
+    if (has_value || list->count > 0)
+        return options_refuse(line->table, "--%s: give it once, with all of %s behind it",
+                              option->name, option->operand);
+    bool all = next < line->argc && is_dashes(line->argv[next]);
+    int first = next + all, end = first;
+    while (end < line->argc && (all || strncmp(line->argv[end], "--", 2) != 0))
+        end++;
+    list->items = line->argv + first;
+    list->count = (size_t)(end - first);
+    line->index = end - 1;
+    return list->count > 0 || refuse_value(line->table, option, "");
+}
+
+/* Takes the value behind `--name=` or the next argument. */
+static bool take_option(struct command_line *line)
+{
+    const char *argument = line->argv[line->index];
+    const struct option *option = find_option(line->table, argument);
+    if (!option)
+        return refuse_unknown(line->table, argument);
+    const char *equals = argument[1] == '-' ? strchr(argument, '=') : NULL;
+    if (option->kind == OPTION_RENAMED)
+        return options_refuse(line->table, "--%s is called --%s", option->name, option->operand);
+    if (option->kind == OPTION_LIST)
+        return take_list(line, option, equals != NULL);
     if (option->kind == OPTION_FLAG) {
         *(bool *)option->value = true;
-        return equals == NULL || (explain_bad_value(option, equals + 1), false);
+        return !equals || refuse_value(line->table, option, equals + 1);
     }
-    if (option->kind == OPTION_LIST) {
-        struct option_list *list = option->value;
-        if (equals || list->count > 0) {
-            text_say("--%s: give it once, with all of %s behind it", option->name, option->operand);
-            return false;
-        }
-        bool all = *index + 1 < argc && strcmp(argv[*index + 1], "--") == 0;
-        *index += all;
-        list->items = argv + *index + 1;
-        for (list->count = 0; *index + 1 < argc && (all || strncmp(argv[*index + 1], "--", 2) != 0);
-             ++*index)
-            list->count++;
-        return list->count > 0 || (explain_bad_value(option, ""), false);
-    }
-    if (!equals && *index + 1 >= argc) {
-        explain_bad_value(option, "");
-        return false;
-    }
-    const char *text = equals ? equals + 1 : argv[++*index];
-    return parse_value(option, text) || (explain_bad_value(option, text), false);
+    if (!equals && line->index + 1 >= line->argc)
+        return refuse_value(line->table, option, "");
+    const char *text = equals ? equals + 1 : line->argv[++line->index];
+    return option_value_read(option, text) || refuse_value(line->table, option, text);
 }
 
-enum option_outcome options_parse(const struct option *options, size_t option_count,
-                                  const char *usage, int argc, char *const *argv)
+static bool take_word(struct command_line *line, char *word)
 {
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            print_help(options, option_count, usage);
-            return OPTIONS_HELP;
+    const struct option_table *table = line->table;
+    for (; line->next_row < table->option_count; line->next_row++) {
+        const struct option *option = &table->options[line->next_row];
+        if (option->kind == OPTION_WORD) {
+            *(const char **)option->value = word;
+            line->next_row++;
+            return true;
         }
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--") == 0 && i + 1 == argc)
-            break;
-        if (strcmp(argv[i], "--") == 0) {
-            text_say("%s: only options are taken, no words", argv[i + 1]);
-            return OPTIONS_ERROR;
-        }
-        const struct option *option = find_option(options, option_count, argv[i]);
-        if (!option) {
-            text_say("%s: no such option; see --help", argv[i]);
-            return OPTIONS_ERROR;
-        }
-        if (!take_operands(option, argc, argv, &i))
-            return OPTIONS_ERROR;
     }
+    if (!find_kind(table, OPTION_WORDS))
+        return options_refuse(table, "'%s' is one word too many; --help says more", word);
+    line->argv[1 + line->word_count++] = word;
+    return true;
+}
+
+/* Returns false after a mistake. */
+static bool take_all(struct command_line *line)
+{
+    const struct option *rest = find_kind(line->table, OPTION_REST);
+    bool only_words = false;
+    for (line->index = 1; line->index < line->argc; line->index++) {
+        char *argument = line->argv[line->index];
+        if (!only_words && is_dashes(argument)) {
+            only_words = true;
+            if (rest) {
+                struct option_list *list = rest->value;
+                list->items = line->argv + line->index + 1;
+                list->count = (size_t)(line->argc - line->index - 1);
+                return true;
+            }
+        } else if (only_words || argument[0] != '-' || argument[1] == '\0') {
+            if (!take_word(line, argument))
+                return false;
+        } else if (!take_option(line)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool has_needed_words(const struct command_line *line)
+{
+    for (size_t i = 0; i < line->table->option_count; i++) {
+        const struct option *option = &line->table->options[i];
+        bool missing = (option->kind == OPTION_WORD && i >= line->next_row) ||
+                       (option->kind == OPTION_WORDS && line->word_count == 0);
+        if (missing && option->minimum > 0)
+            return options_refuse(line->table, "%s is needed; --help says more", option->help);
+    }
+    return true;
+}
+
+static void set_initial_values(const struct option_table *table)
+{
+    for (size_t i = 0; i < table->option_count; i++) {
+        const struct option *option = &table->options[i];
+        if (!option->initial || *option->initial == '(')
+            continue;
+        bool is_value = option_value_read(option, option->initial);
+        assert(is_value);
+        (void)is_value;
+    }
+}
+
+static bool asks_for_help(int argc, char **argv)
+{
+    for (int i = 1; i < argc && !is_dashes(argv[i]); i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)
+            return true;
+    return false;
+}
+
+enum option_outcome options_parse(const struct option_table *table, int argc, char **argv)
+{
+    struct command_line line = {.table = table, .argc = argc, .argv = argv};
+    const struct option *words = find_kind(table, OPTION_WORDS);
+    assert(!words || !find_kind(table, OPTION_LIST));
+    if (asks_for_help(argc, argv)) {
+        option_help_print(table, stdout);
+        return OPTIONS_HELP;
+    }
+    set_initial_values(table);
+    if (!take_all(&line) || !has_needed_words(&line))
+        return OPTIONS_ERROR;
+    if (words)
+        *(struct option_list *)words->value =
+            (struct option_list){argv + 1, (size_t)line.word_count};
     return OPTIONS_RUN;
 }

@@ -115,13 +115,13 @@ static bool add_input(struct files *files, char *input, const char *output, bool
                to_folder ? output_in(output, slash ? slash + 1 : input) : copy(output));
 }
 
-bool find_files(struct files *files, char **inputs, int input_count, const char *output)
+bool find_files(struct files *files, const struct option_list *inputs, const char *output)
 {
-    bool to_folder = input_count > 1 || is_folder(output) || is_folder(inputs[0]) ||
+    bool to_folder = inputs->count > 1 || is_folder(output) || is_folder(inputs->items[0]) ||
                      output[strlen(output) - 1] == '/';
     *files = (struct files){0};
-    for (int i = 0; i < input_count; i++)
-        if (!add_input(files, inputs[i], output, to_folder))
+    for (size_t i = 0; i < inputs->count; i++)
+        if (!add_input(files, inputs->items[i], output, to_folder))
             return false;
     if (files->count)
         qsort(files->files, files->count, sizeof *files->files, by_output);

@@ -2,6 +2,8 @@
 #ifndef TOOLS_SLUICE_BAKE_FIND_H
 #define TOOLS_SLUICE_BAKE_FIND_H
 
+#include "../common/option_table.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +25,7 @@ struct files {
  * followed there. False, having said why, if two pictures would go to one file or there is no
  * memory.
  */
-bool find_files(struct files *files, char **inputs, int input_count, const char *output);
+bool find_files(struct files *files, const struct option_list *inputs, const char *output);
 void free_files(struct files *files);
 
 #endif /* TOOLS_SLUICE_BAKE_FIND_H */

@@ -36,7 +36,7 @@ static int bake(const struct options *options)
                                          .quiet = true,
                                          .speaker = "sluice-bake: "};
     int status = FAILED;
-    if (!find_files(&files, options->inputs, options->input_count, options->output)) {
+    if (!find_files(&files, &options->inputs, options->output)) {
         free_files(&files);
         return FAILED;
     }
@@ -57,12 +57,13 @@ int main(int argc, char **argv)
     descriptors_raise();
     signal(SIGXFSZ, SIG_IGN);       /* files that may not grow are an error like a full disk */
     setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
-    if (!parse_options(&options, argc, argv))
+    enum option_outcome outcome = parse_options(&options, argc, argv);
+    if (outcome == OPTIONS_ERROR)
         return WRONG_USAGE;
-    if (options.help)
-        print_help();
+    if (outcome == OPTIONS_HELP)
+        status = OK;
     else if (options.verify)
-        status = verify_files(options.inputs, options.input_count, options.json) ? OK : FAILED;
+        status = verify_files(&options.inputs, options.json) ? OK : FAILED;
     else
         status = bake(&options);
     return text_flush("sluice-bake: ") ? status : FAILED;

@@ -53,23 +53,25 @@ static bool verify(const char *path, bool json)
 }
 
 /* A file whatever its name, and of folders all stores. */
-static bool collect(char **paths, int count, struct file_list *list)
+static bool collect(const struct option_list *paths, struct file_list *list)
 {
     struct stat status;
     bool enough_memory = true;
-    for (int i = 0; i < count && enough_memory; i++)
-        enough_memory = stat(paths[i], &status) == 0 && S_ISDIR(status.st_mode)
-                            ? files_collect(paths[i], SLUICE_STORE_EXTENSION, list)
-                            : files_add(paths[i], list);
+    for (size_t i = 0; i < paths->count && enough_memory; i++) {
+        const char *path = paths->items[i];
+        enough_memory = stat(path, &status) == 0 && S_ISDIR(status.st_mode)
+                            ? files_collect(path, SLUICE_STORE_EXTENSION, list)
+                            : files_add(path, list);
+    }
     if (!enough_memory)
         fprintf(stderr, "sluice-bake: out of memory\n");
     return enough_memory;
 }
 
-bool verify_files(char **paths, int count, bool json)
+bool verify_files(const struct option_list *paths, bool json)
 {
     struct file_list list = {.speaker = "sluice-bake: "};
-    bool all_are_whole = collect(paths, count, &list);
+    bool all_are_whole = collect(paths, &list);
     for (size_t i = 0; i < list.count; i++)
         all_are_whole = verify(list.paths[i], json) && all_are_whole;
     log_finish();

@@ -2,9 +2,9 @@
 #ifndef TOOLS_SLUICE_BAKE_VERIFY_H
 #define TOOLS_SLUICE_BAKE_VERIFY_H
 
-#include <stdbool.h>
+#include "../common/option_table.h"
 
 /** Says of each file whether it is whole. False if one is not. */
-bool verify_files(char **paths, int count, bool json);
+bool verify_files(const struct option_list *paths, bool json);
 
 #endif /* TOOLS_SLUICE_BAKE_VERIFY_H */

@@ -9,8 +9,8 @@
 static int show_files(const struct options *options)
 {
     int status = ALL_SHOWN;
-    for (int i = 0; i < options->file_count; i++)
-        if (show_file(options, options->files[i]) != ALL_SHOWN)
+    for (size_t i = 0; i < options->files.count; i++)
+        if (show_file(options, options->files.items[i]) != ALL_SHOWN)
             status = NOT_SHOWN;
     return status;
 }
@@ -19,13 +19,14 @@ int main(int argc, char **argv)
 {
     struct options options;
     int status = ALL_SHOWN;
-    if (!parse_options(&options, argc, argv))
+    enum option_outcome outcome = parse_options(&options, argc, argv);
+    if (outcome == OPTIONS_ERROR)
         return WRONG_USAGE;
-    if (options.help)
-        print_help();
+    if (outcome == OPTIONS_HELP)
+        status = ALL_SHOWN;
     else if (options.png)
         status = write_picture(&options);
-    else if (options.file_count)
+    else if (options.files.count)
         status = show_files(&options);
     else
         status = show_devices(&options);

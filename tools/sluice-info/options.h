@@ -2,25 +2,26 @@
 #ifndef TOOLS_SLUICE_INFO_OPTIONS_H
 #define TOOLS_SLUICE_INFO_OPTIONS_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "../common/option_table.h"
 
-struct options {
-    char **files; ///< of argv
-    int file_count;
-    const char *png; ///< NULL: no picture is written
-    uint32_t level;
-    bool has_tile; ///< a tile of it, or all of it
-    uint32_t tile_x, tile_y;
-    uint64_t memory;        ///< bytes that a picture and the reading of its file may take
-    const char *device;     ///< number or a part of the name; NULL: all
-    uint32_t width, height; ///< of the image whose layout is shown
-    bool list, json, help;
+/** A tile of a level, by column and row. */
+struct tile_choice {
+    bool is_given; ///< False: the whole level.
+    uint32_t x, y;
 };
 
-/** Moves file names to the front of argv. On failure says on standard error what is wrong. */
-bool parse_options(struct options *options, int argc, char **argv);
+struct options {
+    struct option_list files;
+    const char *png; ///< NULL: no picture is written
+    uint32_t level;
+    struct tile_choice tile;
+    uint64_t memory;    ///< bytes that a picture and the reading of its file may take
+    const char *device; ///< number or a part of the name; NULL: all
+    uint32_t image[2];  ///< width and height of the image whose layout is shown
+    bool list_devices, json;
+};
 
-void print_help(void);
+/** Prints the help text if it was asked for. On failure says on standard error what is wrong. */
+enum option_outcome parse_options(struct options *options, int argc, char **argv);
 
 #endif /* TOOLS_SLUICE_INFO_OPTIONS_H */

@@ -30,7 +30,7 @@ static int print_devices(const struct devices *devices, const struct options *op
     uint32_t shown = 0;
     for (uint32_t i = 0; i < devices->count; i++) {
         struct device_report report;
-        if (!ask_device(devices, i, options->width, options->height, &report) ||
+        if (!ask_device(devices, i, options->image[0], options->image[1], &report) ||
             !is_wanted(options, &report))
             continue;
         if (options->json)
@@ -54,7 +54,7 @@ int show_devices(const struct options *options)
     if (!open_devices(&devices))
         return NOT_SHOWN;
     int status = ALL_SHOWN;
-    if (options->list)
+    if (options->list_devices)
         print_names(&devices, stdout);
     else
         status = print_devices(&devices, options);

@@ -34,19 +34,19 @@ static bool find_region(const struct options *o, const SluiceImageInfo *image,
 {
     uint32_t width, height;
     if (o->level >= image->mipLevelCount)
-        return fail(o->files[0], "it has no such level");
+        return fail(o->files.items[0], "it has no such level");
     width = level_size(image->width, o->level);
     height = level_size(image->height, o->level);
     *region = (SluiceImageRegion){.mipLevel = o->level, .width = width, .height = height};
-    if (!o->has_tile)
+    if (!o->tile.is_given)
         return (uint64_t)width * height <= MAX_TEXELS ||
-               fail(o->files[0], "the level is too large for a picture; name a tile");
+               fail(o->files.items[0], "the level is too large for a picture; name a tile");
     if (sluiceGetStandardTileShape(image->format, &region->width, &region->height) !=
         SLUICE_SUCCESS)
-        return fail(o->files[0], "its format has no tiles");
-    uint64_t x = (uint64_t)o->tile_x * region->width, y = (uint64_t)o->tile_y * region->height;
+        return fail(o->files.items[0], "its format has no tiles");
+    uint64_t x = (uint64_t)o->tile.x * region->width, y = (uint64_t)o->tile.y * region->height;
     if (x >= width || y >= height)
-        return fail(o->files[0], "the level has no such tile");
+        return fail(o->files.items[0], "the level has no such tile");
     region->x = (uint32_t)x;
     region->y = (uint32_t)y;
     region->width = least(region->width, width - region->x);
@@ -102,7 +102,7 @@ static bool write_strips(struct texture_file *file, const struct options *option
         return false;
     struct png_rows *rows =
         png_rows_begin(output_file_stream(out), options->png, region->width, region->height);
-    bool done = rows && write_rows(file, options->files[0], region, strip, rows);
+    bool done = rows && write_rows(file, options->files.items[0], region, strip, rows);
     done = png_rows_end(rows, done);
     return output_file_end(out, done);
 }
@@ -115,7 +115,7 @@ static bool write_region(const struct options *options, struct texture_file *fil
     strip.texels = malloc(count * sluiceFormatTexelSize(file->image.format));
     strip.rgba = malloc(4 * count);
     bool done = strip.texels && strip.rgba ? write_strips(file, options, region, &strip)
-                                           : fail(options->files[0], "out of memory");
+                                           : fail(options->files.items[0], "out of memory");
     free(strip.texels);
     free(strip.rgba);
     return done;
@@ -128,13 +128,13 @@ int write_picture(const struct options *options)
     struct texture_file file;
     SluiceImageRegion region;
     output_set_speaker("sluice-info: ");
-    if (!output_add_input(options->files[0]))
+    if (!output_add_input(options->files.items[0]))
         return NOT_SHOWN;
-    if (!open_texture_file(&file, options->files[0], &opening))
+    if (!open_texture_file(&file, options->files.items[0], &opening))
         return NOT_SHOWN;
     bool done = false;
     if (!can_become_bytes(file.image.format))
-        fail(options->files[0], "its format cannot be shown as a picture");
+        fail(options->files.items[0], "its format cannot be shown as a picture");
     else if (find_region(options, &file.image, &region))
         done = write_region(options, &file, &region);
     close_texture_file(&file);

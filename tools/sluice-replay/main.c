@@ -61,16 +61,11 @@ static void log_message(void *user, SluiceLogSeverity severity, const char *mess
         text_say("%s: %s", (const char *)user, message);
 }
 
-static uint64_t memory_of(const struct options *o)
-{
-    return (uint64_t)o->memory_mib << 20;
-}
-
 static SluiceResult replay(const struct options *o, const char *data, size_t size,
                            struct output *output, SluiceReplayResult *result)
 {
     size_t expected = output->expectation ? output->expectation->size : 0;
-    struct limited_memory memory = {memory_of(o) - expected - size};
+    struct limited_memory memory = {o->memory - expected - size};
     const SluiceAllocationCallbacks callbacks = {&memory, allocate, release};
     /* The log's user pointer is not const; it is only printed. */
     const SluiceReplayInfo info = {
@@ -85,7 +80,7 @@ static SluiceResult replay(const struct options *o, const char *data, size_t siz
         .standbyTileCount = o->standby,
         .tilesPerFrame = o->tiles_per_frame,
         .latency = o->latency,
-        .timeoutMicros = o->timeout_micros,
+        .timeoutMicros = (uint64_t)(o->timeout * 1e6 + 0.5),
         .pRecordPath = o->record,
     };
     return sluiceReplay(&info, result);
@@ -97,7 +92,7 @@ static bool run(const struct options *o, struct expectation *expectation)
     char *data;
     size_t size;
     size_t expected = expectation ? expectation->size : 0;
-    if (!read_trace(o->trace, memory_of(o) - expected, &data, &size))
+    if (!read_trace(o->trace, o->memory - expected, &data, &size))
         return false;
     struct output output = {o->dump, expectation};
     SluiceReplayResult result = {0};
@@ -130,17 +125,16 @@ static bool record_spares_inputs(const struct options *o)
 int main(int argc, char **argv)
 {
     struct options o;
-    if (!parse_options(&o, argc, argv))
-        return 2;
-    if (o.help) {
-        print_help();
-        return text_flush("sluice-replay: ") ? 0 : 1;
+    switch (parse_options(&o, argc, argv)) {
+    case OPTIONS_RUN: break;
+    case OPTIONS_HELP: return text_flush("sluice-replay: ") ? 0 : 1;
+    case OPTIONS_ERROR: return 2;
     }
     struct expectation expectation;
     output_set_speaker("sluice-replay: ");
     if (!record_spares_inputs(&o))
         return 1;
-    if (o.expect && !expectation_open(&expectation, o.expect, memory_of(&o)))
+    if (o.expect && !expectation_open(&expectation, o.expect, o.memory))
         return 1;
     bool good = run(&o, o.expect ? &expectation : NULL);
     if (o.expect && !expectation_close(&expectation))

@@ -19,8 +19,8 @@ static bool fail(const char *path, const char *why)
 void say_unread(const char *path, int error, uint64_t memory)
 {
     if (error == EFBIG)
-        text_say("sluice-replay: %s: has more than %" PRIu64 " MiB; --memory MIB allows more", path,
-                 memory >> 20);
+        text_say("sluice-replay: %s: has more than %" PRIu64 " MiB; --memory SIZE allows more",
+                 path, memory >> 20);
     else
         text_say("sluice-replay: %s: %s", path, input_reason(error));
 }

@@ -9,6 +9,7 @@
 
 #include "../common/files.h"
 #include "../common/output_file.h"
+#include "../common/shared_options.h"
 #include "../common/text.h"
 #include "folders.h"
 #include "foresight.h"
@@ -133,7 +134,7 @@ static bool prepare_folder(const struct options *o)
 /* Marked before the scene's program writes into it. */
 static bool make_reference(const struct session *s)
 {
-    if (!program_has_option(&s->program, "reference"))
+    if (!s->options.scene->keeps_reference || !program_has_option(&s->program, "reference"))
         return true;
     char *path = memory_text("%s/reference", s->options.results);
     bool made = folders_make_own(path);
@@ -177,12 +178,12 @@ int command_sweep(int argc, char **argv)
 {
     struct session s = {0};
     int status = TRADEOFF_FAILED;
-    enum options_outcome outcome = options_parse_sweep(argc, argv, &s.options);
+    enum option_outcome outcome = options_parse_sweep(argc, argv, &s.options);
     char *own_path = program_own_path(argv[0]);
     child_watch_interruptions();
     output_set_speaker("sluice-tradeoff: ");
-    if (outcome != SWEEP_OPTIONS_RUN) {
-        status = outcome == SWEEP_OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
+    if (outcome != OPTIONS_RUN) {
+        status = outcome == OPTIONS_HELP ? TRADEOFF_DONE : TRADEOFF_USAGE;
     } else if (prepare_folder(&s.options)) {
         s.sweep.command_line = join_words(argc, argv);
         if (session_open(&s, own_path, false) && make_reference(&s) &&
@@ -198,7 +199,7 @@ int command_sweep(int argc, char **argv)
 static int show_again(struct session *s, const struct text_list *words, const char *own_path,
                       const char *results, bool json)
 {
-    if (options_parse_sweep((int)words->count, words->items, &s->options) != SWEEP_OPTIONS_RUN)
+    if (options_parse_sweep((int)words->count, words->items, &s->options) != OPTIONS_RUN)
         return TRADEOFF_FAILED;
     s->options.results = results;
     s->options.json = json;
@@ -213,20 +214,27 @@ int command_page(int argc, char **argv)
 {
     struct session s = {0};
     struct text_list words = {0};
-    bool named = argc > 2 && strcmp(argv[1], "--") == 0;
-    if (named) {
-        argv[1] = argv[0];
-        argc--;
-        argv++;
-    }
-    bool json = argc > 2 && strcmp(argv[argc - 1], "--json") == 0;
-    if (argc != (json ? 3 : 2) || (argv[1][0] == '-' && !named)) {
-        text_say("usage: sluice-tradeoff page RESULTS [--json]");
-        return TRADEOFF_USAGE;
+    const char *results = NULL;
+    bool json = false;
+    const struct option options[] = {
+        {OPTION_WORD, .operand = "RESULTS", .value = &results, .minimum = 1,
+         .help = "the folder of a sweep"},
+        option_json(&json),
+    };
+    const struct option_table table = {
+        "sluice-tradeoff page",
+        "usage: sluice-tradeoff page RESULTS [--json]\n"
+        "\n"
+        "Makes the table, the CSV files and the page of a sweep again, without a run.\n",
+        NULL, options, sizeof options / sizeof *options};
+    switch (options_parse(&table, argc, argv)) {
+    case OPTIONS_RUN: break;
+    case OPTIONS_HELP: return TRADEOFF_DONE;
+    case OPTIONS_ERROR: return TRADEOFF_USAGE;
     }
     char *own_path = program_own_path(argv[0]);
     output_set_speaker("sluice-tradeoff: ");
-    int status = session_recall(argv[1], &words) ? show_again(&s, &words, own_path, argv[1], json)
+    int status = session_recall(results, &words) ? show_again(&s, &words, own_path, results, json)
                                                  : TRADEOFF_FAILED;
     session_close(&s);
     text_list_finish(&words);

@@ -50,49 +50,35 @@ static char *one_line(const char *text, size_t length)
     return line;
 }
 
-/* "[what]" or "(a number)" at the end; NULL: neither. */
-static char *find_default(char *meaning)
-{
-    size_t length = strlen(meaning);
-    char *bracket = strrchr(meaning, '['), *round = strrchr(meaning, '('), *end;
-    if (length > 0 && meaning[length - 1] == ']')
-        return bracket;
-    if (!round || meaning[length - 1] != ')')
-        return NULL;
-    strtod(round + 1, &end);
-    return end != round + 1 && end == meaning + length - 1 ? round : NULL;
-}
-
+/* Moves what stands in brackets at the end of the meaning. Words in parentheses, which stand there
+ * instead, are no value. */
 static void split_default(struct help_entry *entry)
 {
     size_t length = strlen(entry->meaning);
-    char *open = find_default(entry->meaning);
-    entry->default_value = memory_copy_text("");
-    if (!open)
+    char last = length > 0 ? entry->meaning[length - 1] : '\0';
+    char *open = NULL;
+    if (*entry->operand != '\0' && (last == ']' || last == ')'))
+        open = strrchr(entry->meaning, last == ']' ? '[' : '(');
+    if (!open) {
+        entry->default_value = memory_copy_text("");
         return;
+    }
     entry->meaning[length - 1] = '\0';
-    free(entry->default_value);
-    entry->default_value = memory_copy_text(open + 1);
+    entry->default_value = memory_copy_text(last == ']' ? open + 1 : "");
     while (open > entry->meaning && open[-1] == ' ')
         open--;
     *open = '\0';
 }
 
-/* The operand is one space away; where it has a column of its own it is a word of capitals, two
- * spaces before what it means. Nothing: the option stands alone. */
+/* The operand is one space away and ends before two. Nothing: the option stands alone. */
 static size_t operand_length(const char *at, const char **start)
 {
-    const char *end;
     *start = at + (*at == '=' || *at == ' ');
-    if (*at == ' ' && at[1] == ' ')
-        *start = at + strspn(at, " ");
-    size_t line = strcspn(*start, "\n");
-    end = strstr(*start, "  ");
-    size_t length = end && (size_t)(end - *start) < line ? (size_t)(end - *start) : line;
-    if (at[0] == ' ' && at[1] == ' ' &&
-        (length == line || strspn(*start, "ABCDEFGHIJKLMNOPQRSTUVWXYZ|/") != length))
+    if (at[0] == ' ' && at[1] == ' ')
         return 0;
-    return length;
+    size_t line = strcspn(*start, "\n");
+    const char *end = strstr(*start, "  ");
+    return end && (size_t)(end - *start) < line ? (size_t)(end - *start) : line;
 }
 
 bool help_text_find(const char *help, const char *name, struct help_entry *entry)

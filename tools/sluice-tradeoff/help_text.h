@@ -1,6 +1,6 @@
 /**
- * What a --help text says of an option: "  --name OPERAND   words over lines [default]", or with
- * the operand in a column of its own and a number in round brackets.
+ * Finds an option in a --help text that tools/common/option_help.c or a like printer has written:
+ * "  --name OPERAND   words over lines [default]".
  */
 #ifndef SLUICE_TRADEOFF_HELP_TEXT_H
 #define SLUICE_TRADEOFF_HELP_TEXT_H
@@ -11,7 +11,7 @@
 struct help_entry {
     char *operand;       ///< "MIB"; owned
     char *meaning;       ///< in one line, without the default; owned
-    char *default_value; ///< what stands in brackets at the end; owned
+    char *default_value; ///< what stands in brackets at the end, not in parentheses; owned
 };
 
 /** False if the text has no such option; then `entry` is zeroed. */

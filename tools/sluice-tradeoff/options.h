@@ -2,13 +2,9 @@
 #ifndef SLUICE_TRADEOFF_OPTIONS_H
 #define SLUICE_TRADEOFF_OPTIONS_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
+#include "../common/option_table.h"
 #include "memory.h"
 #include "scenes.h"
-
-enum options_outcome { SWEEP_OPTIONS_RUN, SWEEP_OPTIONS_HELP, SWEEP_OPTIONS_ERROR };
 
 /** Texts are borrowed from the command line, but those of lists. */
 struct options {
@@ -24,7 +20,7 @@ struct options {
 };
 
 /** Says on stderr what is wrong; prints the help text for --help. `argv[0]` is passed over. */
-enum options_outcome options_parse_sweep(int argc, char *const *argv, struct options *options);
+enum option_outcome options_parse_sweep(int argc, char **argv, struct options *options);
 /** What the plan says of the scene, but for what the command line says otherwise. */
 void options_add_scene(const struct options *options, struct text_list *arguments);
 void options_finish(struct options *options);

@@ -70,9 +70,9 @@ int play_print(int argc, char **argv, FILE *out)
     struct play_options options;
     struct feedback_trace trace;
     switch (play_options_parse(&options, argc, argv)) {
-    case PLAY_HELP: return 0;
-    case PLAY_WRONG: return 2;
-    case PLAY_RUN: break;
+    case OPTIONS_HELP: return 0;
+    case OPTIONS_ERROR: return 2;
+    case OPTIONS_RUN: break;
     }
     if (!output_add_input(input_stream_path(options.trace)) ||
         !feedback_trace_open(&trace, options.trace))

@@ -150,7 +150,7 @@ static bool give_feedback(struct play_loop *l)
 {
     const uint64_t timeout = (uint64_t)(l->options->timeout * 1e6 + 0.5);
     uint32_t index;
-    SluiceFeedbackDesc feedback = {.mipBias = (int32_t)l->options->mip_bias};
+    SluiceFeedbackDesc feedback = {.mipBias = l->options->mip_bias};
     play_feedback_begin_reading(&l->feedback);
     while (play_feedback_next(&l->feedback, &index, &feedback.pMinMip)) {
         feedback.width = l->trace->textures[index].layout.feedbackWidth;

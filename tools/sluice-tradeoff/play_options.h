@@ -2,15 +2,14 @@
 #ifndef SLUICE_TRADEOFF_PLAY_OPTIONS_H
 #define SLUICE_TRADEOFF_PLAY_OPTIONS_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "../common/option_table.h"
 
 struct play_options {
     const char *trace;  ///< path
     const char *output; ///< folder for frames.csv; NULL: none
     /* memory */
     uint32_t heap_tiles, max_heaps; ///< max_heaps 0: any number
-    uint32_t budget;                ///< MiB for all heaps, 0: as max_heaps says
+    uint64_t budget;                ///< bytes for all heaps, 0: as max_heaps says
     uint32_t standby, prefetch_levels;
     /* loads */
     uint32_t tiles_per_frame, latency;
@@ -21,7 +20,7 @@ struct play_options {
     uint32_t writers;   ///< of a region
     double probability; ///< that one of them writes
     double drop;        ///< that none does: that a region is left out of a frame's map
-    double mip_bias;    ///< a whole number of levels
+    int32_t mip_bias;   ///< levels
     uint32_t seed;      ///< of what is left out
     bool in_turns;      ///< a map shows the frame that it is read in alone
     /* what is printed beside */
@@ -29,9 +28,7 @@ struct play_options {
     uint32_t rounds; ///< of the search for its bound
 };
 
-enum play_usage { PLAY_RUN, PLAY_HELP, PLAY_WRONG };
-
 /** Says on stderr what is wrong. */
-enum play_usage play_options_parse(struct play_options *options, int argc, char **argv);
+enum option_outcome play_options_parse(struct play_options *options, int argc, char **argv);
 
 #endif /* SLUICE_TRADEOFF_PLAY_OPTIONS_H */

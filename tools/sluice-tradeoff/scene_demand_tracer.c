@@ -72,8 +72,8 @@ static void add_run_arguments(const struct program *program, const struct scene_
                               struct text_list *arguments)
 {
     char *truth = run->base ? memory_text("%s/picture.png", run->base) : NULL;
-    if (truth && access(truth, R_OK) == 0 && program_has_option(program, "compare")) {
-        text_list_add(arguments, "--compare");
+    if (truth && access(truth, R_OK) == 0 && program_has_option(program, "reference")) {
+        text_list_add(arguments, "--reference");
         text_list_add(arguments, truth);
     }
     if (program_has_option(program, "needs")) { /* takes time in each launch */

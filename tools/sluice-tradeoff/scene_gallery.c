@@ -30,9 +30,7 @@ static const struct scene_setting settings[] = {
      "-1,-0.5,0.5,1,2"},
     /* The base has the truth's filter, so that its error is streaming alone. */
     {{"anisotropy", "of the filter, at most; 1: trilinear", ""}, "16", "1,4", "1,2,4,8"},
-    {{"loads-in-flight",
-      "tiles being read or waiting for their upload at most; 0: as many as four "
-      "frames take",
+    {{"loads-in-flight", "tiles read or waiting for upload, at most; 0: as four frames take",
       "tiles"},
      NULL,
      NULL,
@@ -187,6 +185,7 @@ const struct scene scene_gallery = {
         "--fps 60",
     .full_arguments = "--size 640x360 --frames 330 --rest-frames 90 --fps 60",
     .full_grid = "probability=1/4,1/16,1/64 budget=0,48,96 textures-per-frame=1,10",
+    .keeps_reference = true,
     .roles = {quality, memory, times},
     .add_run_arguments = add_run_arguments,
     .add_repeat_arguments = add_repeat_arguments,

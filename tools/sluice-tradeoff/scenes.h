@@ -38,6 +38,7 @@ struct scene {
     uint32_t setting_count, metric_count;
     const char *quick_arguments, *full_arguments; ///< separated by spaces
     const char *full_grid;                        ///< "name=a,b name=c,d", or NULL
+    bool keeps_reference;                         ///< runs share a folder for --reference
     struct scene_roles roles;
     /** What a run needs beside its settings and decides nothing of the scene. */
     void (*add_run_arguments)(const struct program *program, const struct scene_run *run,

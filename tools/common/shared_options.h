@@ -1,0 +1,33 @@
+/**
+ * Options that several programs have: one name, default and meaning each. tests/programs compares
+ * the --help texts.
+ */
+#ifndef TOOLS_COMMON_SHARED_OPTIONS_H
+#define TOOLS_COMMON_SHARED_OPTIONS_H
+
+#include "option_table.h"
+
+/* Memory. Sizes are in bytes. */
+struct option option_budget(uint64_t *bytes, const char *help);
+struct option option_heap_tiles(uint32_t *tiles);
+struct option option_max_heaps(uint32_t *heaps);
+struct option option_standby(uint32_t *tiles);
+/** Host memory. `help` says for what. */
+struct option option_memory(uint64_t *bytes, const char *help);
+
+/* Loading. */
+struct option option_tiles_per_frame(uint32_t *tiles, uint32_t most);
+struct option option_latency(uint32_t *frames);
+struct option option_timeout(double *seconds);
+struct option option_threads(uint32_t *count);
+
+/* The device. */
+struct option option_device(const char **device);
+struct option option_list_devices(bool *list);
+struct option option_validation(bool *validation);
+
+/* What a program does. */
+struct option option_seed(uint32_t *seed);
+struct option option_json(bool *json);
+
+#endif /* TOOLS_COMMON_SHARED_OPTIONS_H */
