@@ -11,8 +11,6 @@
 
 #define TEXTURE_COUNT 1000
 #define SAMPLED_COUNT 4
-#define CHUNKS 64 /* as in demand.comp: info.maxPageChunkCount, which is the default */
-#define BUFFERS 8
 
 struct answer {       /* as in demand.comp */
     uint32_t missing; /* samples */
@@ -36,7 +34,6 @@ struct app {
     VkDescriptorSetLayout set_layout;
     VkDescriptorPool set_pool;
     VkDescriptorSet set;
-    uint64_t generation; /* of the images in it */
     VkPipelineLayout pipeline_layout;
     VkPipeline pipeline;
     VkCommandPool command_pool;
@@ -147,8 +144,7 @@ static void create_loader(struct app *app)
                                                    .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
                                                    .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &app->context));
-    const SluiceDemandLoaderCreateInfo info = {
-        .context = app->context, .maxPageChunkCount = CHUNKS, .memoryBudget = 64u << 20};
+    const SluiceDemandLoaderCreateInfo info = {.context = app->context, .memoryBudget = 64u << 20};
     SLUICE(sluiceCreateDemandLoader(&info, &app->loader));
     const SluiceDemandTextureCreateInfo texture = {
         .image = {.pfnOpen = open_image}, /* closed by sluiceDestroyImageSource */
@@ -187,83 +183,43 @@ static void create_answer(struct app *app)
     VK(vkMapMemory(app->device, app->answer_memory, 0, VK_WHOLE_SIZE, 0, (void **)&app->answer));
 }
 
-static void create_set_layout(struct app *app)
-{
-    VkDescriptorSetLayoutBinding bindings[BUFFERS + 1];
-    for (uint32_t i = 0; i <= BUFFERS; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            i,
-            i < BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-                        : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-            i < BUFFERS ? 1 : CHUNKS, VK_SHADER_STAGE_COMPUTE_BIT, NULL};
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = BUFFERS + 1,
-                                            .pBindings = bindings};
-    VK(vkCreateDescriptorSetLayout(app->device, &info, NULL, &app->set_layout));
-}
-
-/* The buffers stay the same. */
-static void write_buffers(const struct app *app)
-{
-    SluiceDemandBuffers own;
-    sluiceGetDemandBuffers(app->loader, &own);
-    const VkBuffer all[BUFFERS] = {own.textures, own.levels,   own.directory, own.blocks,
-                                   own.masks,    own.requests, own.sections,  app->answer_buffer};
-    VkDescriptorBufferInfo buffers[BUFFERS];
-    for (uint32_t i = 0; i < BUFFERS; i++)
-        buffers[i] = (VkDescriptorBufferInfo){all[i], 0, VK_WHOLE_SIZE};
-    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                        .dstSet = app->set,
-                                        .descriptorCount = BUFFERS,
-                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                        .pBufferInfo = buffers};
-    vkUpdateDescriptorSets(app->device, 1, &write, 0, NULL);
-}
-
-/* The images come and go. With several launches in flight each needs a set of its own. */
-static void write_pages(struct app *app)
-{
-    SluiceVulkanPages pages;
-    VkDescriptorImageInfo images[CHUNKS];
-    sluiceGetDemandPages(app->loader, &pages);
-    if (app->generation == pages.generation)
-        return;
-    app->generation = pages.generation;
-    for (uint32_t i = 0; i < CHUNKS; i++)
-        images[i] =
-            (VkDescriptorImageInfo){pages.sampler, pages.pViews[i], VK_IMAGE_LAYOUT_GENERAL};
-    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                        .dstSet = app->set,
-                                        .dstBinding = BUFFERS,
-                                        .descriptorCount = CHUNKS,
-                                        .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                        .pImageInfo = images};
-    vkUpdateDescriptorSets(app->device, 1, &write, 0, NULL);
-}
-
+/* Set 1 holds the answer alone: set 0 comes with each launch. */
 static void create_set(struct app *app)
 {
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, CHUNKS}};
+    const VkDescriptorSetLayoutBinding binding = {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                                                  VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo layout = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 1,
+        .pBindings = &binding};
+    VK(vkCreateDescriptorSetLayout(app->device, &layout, NULL, &app->set_layout));
+    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = 1,
-                                       .poolSizeCount = 2,
-                                       .pPoolSizes = sizes};
+                                       .poolSizeCount = 1,
+                                       .pPoolSizes = &size};
     VK(vkCreateDescriptorPool(app->device, &pool, NULL, &app->set_pool));
     VkDescriptorSetAllocateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                        .descriptorPool = app->set_pool,
                                        .descriptorSetCount = 1,
                                        .pSetLayouts = &app->set_layout};
     VK(vkAllocateDescriptorSets(app->device, &set, &app->set));
-    write_buffers(app);
+    const VkDescriptorBufferInfo buffer = {app->answer_buffer, 0, VK_WHOLE_SIZE};
+    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                        .dstSet = app->set,
+                                        .descriptorCount = 1,
+                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                        .pBufferInfo = &buffer};
+    vkUpdateDescriptorSets(app->device, 1, &write, 0, NULL);
 }
 
 static void create_pipeline(struct app *app)
 {
+    VkDescriptorSetLayout sets[2] = {VK_NULL_HANDLE, app->set_layout};
+    SLUICE(sluiceGetDemandDescriptorSetLayout(app->loader, &sets[0]));
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 1,
-                                         .pSetLayouts = &app->set_layout};
+                                         .setLayoutCount = 2,
+                                         .pSetLayouts = sets};
     VK(vkCreatePipelineLayout(app->device, &layout, NULL, &app->pipeline_layout));
     VkShaderModuleCreateInfo code = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                      .codeSize = sizeof demand_comp,
@@ -317,11 +273,11 @@ static uint32_t trace(struct app *app, SluiceDemandRequests *requests)
     app->answer->missing = 0;
     VK(vkBeginCommandBuffer(app->commands, &begin));
     SLUICE(sluicePrepareDemandLaunch(app->loader, app->commands, &launch));
-    write_pages(app);
 
+    const VkDescriptorSet sets[] = {launch.descriptorSet, app->set};
     vkCmdBindPipeline(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline);
     vkCmdBindDescriptorSets(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline_layout, 0,
-                            1, &app->set, 0, NULL);
+                            2, sets, 0, NULL);
     vkCmdDispatch(app->commands, 32, 32, 1);
 
     SLUICE(sluiceEndDemandLaunch(app->loader, app->commands));
@@ -361,7 +317,6 @@ int main(void)
     create_device(&app);
     create_loader(&app);
     create_answer(&app);
-    create_set_layout(&app);
     create_set(&app);
     create_pipeline(&app);
     create_commands(&app);

@@ -1,17 +1,12 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "sluice/shared/texture_table.h"
-layout(std430, binding = 0) readonly buffer Table { SluiceTextureEntry entries[]; } textureTable;
-layout(std430, binding = 1) readonly buffer MinMip { uint words[]; } minMip;
-layout(std430, binding = 2) buffer Feedback { uint words[]; } feedback;
-#define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]
-#define SLUICE_MIN_MIP_WORD(i) minMip.words[i]
-#define SLUICE_FEEDBACK_WORD(i) feedback.words[i]
+#define SLUICE_SET 0
+#include "sluice/bindings.glsl"
 #include "sluice/sample.glsl"
 #include "sluice/feedback.glsl"
 #include "sluice/stochastic.glsl"
 
-layout(set = 1, binding = 2) uniform sampler2D albedo;
+layout(set = 1, binding = 0) uniform sampler2D albedo;
 layout(push_constant) uniform Draw { uint tableIndex; uint frameSeed; } draw;
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 result;

@@ -376,12 +376,32 @@ SLUICE_API SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
 SLUICE_API SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader,
                                              SluiceVulkanPages *pPages);
 
+/**
+ * Gets the layout of the descriptor sets of launches (SluiceDemandLaunch). The loader owns the
+ * layout; it never changes.
+ *
+ * shaders/include/sluice/demand_bindings.glsl declares what such a set holds: the buffers above and
+ * the array of pages. Use the layout in your pipeline layouts, at the set number that your shaders
+ * define as SLUICE_DEMAND_SET. All shader stages may use the set.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED, with a log message, if the device
+ *         supports fewer samplers per shader stage than maxPageChunkCount. Launches then have no
+ *         descriptor set. Set a smaller maxPageChunkCount, or write your own sets.
+ */
+SLUICE_API SluiceResult sluiceGetDemandDescriptorSetLayout(const SluiceDemandLoader *loader,
+                                                           VkDescriptorSetLayout *pLayout);
+
 /** Launch that was prepared. */
 typedef struct SluiceDemandLaunch {
     uint64_t launchIndex;  ///< Counts from 1.
     VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
     uint64_t signalValue;  ///< Value to signal.
     uint32_t tileCount;    ///< Tiles that become resident with this launch.
+    /**
+     * Holds all that shaders read and write (sluiceGetDemandDescriptorSetLayout). Bind it only in
+     * commands of this launch: later launches write it again. The loader owns it.
+     */
+    VkDescriptorSet descriptorSet;
 } SluiceDemandLaunch;
 
 /**

@@ -65,7 +65,8 @@ typedef struct SluiceVulkanDeviceCapabilities {
     bool shaderResourceResidency;    ///< Residency codes exist.
     bool shaderResourceMinLod;       ///< Samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl.
     bool residencyNonResidentStrict; ///< Reads of unbound texels return 0.
-    bool nonUniformIndexing; ///< Of image arrays. If false, shaders define SLUICE_PAGE_LOOP.
+    bool nonUniformIndexing;      ///< Of image arrays. If false, shaders define SLUICE_PAGE_LOOP.
+    bool runtimeDescriptorArrays; ///< Arrays of unknown length. If false: as nonUniformIndexing.
     /**
      * Best queue family with SPARSE_BINDING, preferably without graphics. It may support nothing
      * else.
@@ -193,10 +194,12 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
  * Features per mode:
  * - All modes: timelineSemaphore, fragmentStoresAndAtomics.
  * - Sparse: also sparseBinding, sparseResidencyImage2D and a queue family with SPARSE_BINDING.
- * - Paged: also shaderSampledImageArrayDynamicIndexing. shaderSampledImageArrayNonUniformIndexing
- *   is enabled if available.
- * - AUTO: requires the features of the mode it resolves to. It also enables the features of paged
- *   mode if available, because AUTO selects paged mode for many textures.
+ * - Paged: also shaderSampledImageArrayDynamicIndexing.
+ * - AUTO: requires the features of the mode it resolves to.
+ *
+ * Enabled in every mode if available, for shaders that serve all modes and for arrays of textures:
+ * shaderSampledImageArrayDynamicIndexing, shaderSampledImageArrayNonUniformIndexing,
+ * runtimeDescriptorArray.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown mode;
  *         SLUICE_ERROR_UNSUPPORTED if the device lacks a feature (the log names it).
@@ -495,11 +498,32 @@ typedef struct SluiceVulkanPages {
 SLUICE_API SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer,
                                              SluiceVulkanPages *pPages);
 
+/**
+ * Gets the layout of the descriptor sets of frames (SluiceStreamingFrame). The streamer owns the
+ * layout; it never changes.
+ *
+ * shaders/include/sluice/bindings.glsl declares what such a set holds: the buffers above and the
+ * array of pages. Use the layout in your pipeline layouts, at the set number that your shaders
+ * define as SLUICE_SET. All shader stages may read the set. In paged mode the array of pages has
+ * maxPageChunkCount elements, in other modes one.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED, with a log message, if the device
+ *         supports fewer samplers per shader stage than maxPageChunkCount. Frames then have no
+ *         descriptor set. Set a smaller maxPageChunkCount, or write your own sets.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanDescriptorSetLayout(const SluiceVulkanStreamer *streamer,
+                                                           VkDescriptorSetLayout *pLayout);
+
 /** Frame that was begun. */
 typedef struct SluiceStreamingFrame {
     uint64_t frameIndex;   ///< Counts from 1.
     VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
     uint64_t signalValue;  ///< Value to signal.
+    /**
+     * Holds all that shaders read and write (sluiceGetVulkanDescriptorSetLayout). Bind it only in
+     * commands of this frame: later frames write it again. The streamer owns it.
+     */
+    VkDescriptorSet descriptorSet;
 } SluiceStreamingFrame;
 
 /**

@@ -222,6 +222,8 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
                                     .semaphore = loader->semaphore,
                                     .signalValue = launch,
                                     .tileCount = record_transfers(loader, commandBuffer)};
+    pLaunch->descriptorSet = slc_descriptors_update(&loader->descriptors, &loader->vk,
+                                                    slot_of(loader, launch), &loader->views);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;
 }

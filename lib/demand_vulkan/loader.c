@@ -10,6 +10,7 @@
 #include "vulkan/sparse_layout.h"
 #include "vulkan/submitted_work.h"
 
+#include <sluice/shared/bindings.h>
 #include <sluice/shared/demand.h>
 
 #include <string.h>
@@ -209,11 +210,39 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
     return result;
 }
 
+static void fill_buffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *buffers)
+{
+    *buffers = (SluiceDemandBuffers){.textures = loader->table_buffer.buffer,
+                                     .levels = loader->levels_buffer.buffer,
+                                     .directory = loader->directory.directory.buffer,
+                                     .blocks = loader->directory.blocks.buffer,
+                                     .masks = loader->directory.masks.buffer,
+                                     .requests = loader->scan.requests.buffer,
+                                     .sections = loader->scan.sections.buffer};
+}
+
+static SluiceResult create_descriptors(SluiceDemandLoader *loader)
+{
+    struct slc_descriptors_create_info info = {.buffer_count = SLUICE_DEMAND_BINDING_BUFFER_COUNT,
+                                               .page_count = loader->views.count,
+                                               .set_count = loader->info.launchesInFlight};
+    SluiceDemandBuffers buffers;
+    fill_buffers(loader, &buffers);
+    info.buffers[SLUICE_DEMAND_BINDING_TEXTURES] = buffers.textures;
+    info.buffers[SLUICE_DEMAND_BINDING_LEVELS] = buffers.levels;
+    info.buffers[SLUICE_DEMAND_BINDING_DIRECTORY] = buffers.directory;
+    info.buffers[SLUICE_DEMAND_BINDING_BLOCKS] = buffers.blocks;
+    info.buffers[SLUICE_DEMAND_BINDING_MASKS] = buffers.masks;
+    info.buffers[SLUICE_DEMAND_BINDING_REQUESTS] = buffers.requests;
+    info.buffers[SLUICE_DEMAND_BINDING_SECTIONS] = buffers.sections;
+    return slc_descriptors_init(&loader->descriptors, &loader->vk, &loader->caps, &info);
+}
+
 static SluiceResult create_parts(SluiceDemandLoader *loader)
 {
     static SluiceResult (*const steps[])(SluiceDemandLoader *) = {
-        check_device,      create_semaphore, create_memory, create_tables,
-        create_page_table, create_pages,     slc_jobs_init};
+        check_device,      create_semaphore,   create_memory, create_tables,
+        create_page_table, create_descriptors, create_pages,  slc_jobs_init};
     SluiceResult result = SLUICE_SUCCESS;
     for (size_t i = 0; i < sizeof steps / sizeof steps[0] && result == SLUICE_SUCCESS; i++)
         result = steps[i](loader);
@@ -281,6 +310,7 @@ static void stop_workers(SluiceDemandLoader *loader)
 
 static void destroy_device_parts(SluiceDemandLoader *loader)
 {
+    slc_descriptors_finish(&loader->descriptors, &loader->vk);
     slc_page_directory_finish(&loader->directory);
     slc_demand_scan_finish(&loader->scan, &loader->vk);
     slc_tile_memory_finish(&loader->tiles);
@@ -323,14 +353,16 @@ SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDema
 {
     if (!loader || !pBuffers)
         return SLUICE_ERROR_NULL_POINTER;
-    *pBuffers = (SluiceDemandBuffers){.textures = loader->table_buffer.buffer,
-                                      .levels = loader->levels_buffer.buffer,
-                                      .directory = loader->directory.directory.buffer,
-                                      .blocks = loader->directory.blocks.buffer,
-                                      .masks = loader->directory.masks.buffer,
-                                      .requests = loader->scan.requests.buffer,
-                                      .sections = loader->scan.sections.buffer};
+    fill_buffers(loader, pBuffers);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetDemandDescriptorSetLayout(const SluiceDemandLoader *loader,
+                                                VkDescriptorSetLayout *pLayout)
+{
+    if (!loader || !pLayout)
+        return SLUICE_ERROR_NULL_POINTER;
+    return slc_descriptors_get_layout(&loader->descriptors, &loader->vk, &loader->caps, pLayout);
 }
 
 SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkanPages *pPages)

@@ -17,6 +17,7 @@
 #include "demand_vulkan/tickets.h"
 #include "demand_vulkan/tile_memory.h"
 #include "vulkan/context.h"
+#include "vulkan/descriptors.h"
 #include "vulkan/staging.h"
 
 #define SLC_MAX_LAUNCHES 16u
@@ -214,6 +215,7 @@ struct SluiceDemandLoader {
 
     struct slc_page_views views;
     struct slc_tile_memory tiles;
+    struct slc_descriptors descriptors; ///< a set per launch in flight
     struct slc_buffer table_buffer, levels_buffer;
     bool told_of_modes;             ///< that a texture's address modes are not its image's
     struct slc_staging staging;     ///< a slot per tile job

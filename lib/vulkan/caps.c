@@ -1,5 +1,6 @@
 #include "vulkan/caps.h"
 
+#include "base/checked.h"
 #include "base/log.h"
 
 #include <stdio.h>
@@ -74,6 +75,16 @@ static void take_properties(SluiceVulkanDeviceCapabilities *out,
     out->timestampPeriod = p->limits.timestampComputeAndGraphics ? p->limits.timestampPeriod : 0.0f;
 }
 
+/* Combined image samplers count as both, per stage and per pipeline layout. */
+static uint32_t max_stage_samplers(const VkPhysicalDeviceLimits *limits)
+{
+    uint32_t samplers =
+        slc_min_u32(limits->maxPerStageDescriptorSamplers, limits->maxDescriptorSetSamplers);
+    uint32_t images = slc_min_u32(limits->maxPerStageDescriptorSampledImages,
+                                  limits->maxDescriptorSetSampledImages);
+    return slc_min_u32(samplers, images);
+}
+
 static uint64_t largest_local_heap(const VkPhysicalDeviceMemoryProperties *memory)
 {
     uint64_t size = 0;
@@ -105,6 +116,8 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     memcpy(out->driverInfo, driver.driverInfo, sizeof out->driverInfo);
     out->deviceLocalMemorySize = largest_local_heap(&caps->memory);
     out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
+    out->runtimeDescriptorArrays = features12.runtimeDescriptorArray;
+    caps->max_stage_samplers = max_stage_samplers(&properties.properties.limits);
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
     caps->max_image_array_layers = out->maxImageArrayLayers;
     caps->max_storage_buffer_range = out->maxStorageBufferRange;
@@ -189,6 +202,18 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
     return SLUICE_SUCCESS;
 }
 
+/* Of pages and of textures. In every mode: one shader may serve all of them. */
+static void require_arrays(const struct slc_caps *caps, VkPhysicalDeviceFeatures *features,
+                           VkPhysicalDeviceVulkan12Features *vulkan12)
+{
+    if (caps->array_dynamic_indexing)
+        features->shaderSampledImageArrayDynamicIndexing = VK_TRUE;
+    if (caps->public.nonUniformIndexing)
+        vulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
+    if (caps->public.runtimeDescriptorArrays)
+        vulkan12->runtimeDescriptorArray = VK_TRUE;
+}
+
 SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,
                                          PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                          SluiceResidencyMode mode, const SluiceLogCallback *pLog,
@@ -206,7 +231,6 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         return result;
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
-    bool is_auto = mode == SLUICE_RESIDENCY_MODE_AUTO;
     mode = slc_choose_mode(&caps, mode, 0);
     VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
@@ -221,12 +245,7 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         pFeatures->sparseBinding = VK_TRUE;
         pFeatures->sparseResidencyImage2D = VK_TRUE;
     }
-    /* AUTO is paged for many textures, whose number nobody knows here. */
-    if (mode == SLUICE_RESIDENCY_MODE_PAGED || (is_auto && caps.array_dynamic_indexing)) {
-        pFeatures->shaderSampledImageArrayDynamicIndexing = VK_TRUE;
-        if (caps.public.nonUniformIndexing)
-            pVulkan12->shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
-    }
+    require_arrays(&caps, pFeatures, pVulkan12);
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     if (there.features.textureCompressionBC)
         pFeatures->textureCompressionBC = VK_TRUE;

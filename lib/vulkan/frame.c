@@ -206,16 +206,20 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     s->slot_turn++;
     s->time_stamp = timeStamp;
     slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
-    *pFrame = (SluiceStreamingFrame){s->frame, s->semaphore, s->frame};
+    *pFrame = (SluiceStreamingFrame){
+        .frameIndex = s->frame, .semaphore = s->semaphore, .signalValue = s->frame};
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)
         result = record(s, commandBuffer);
     s->manager_locked = true;
-    if (result >= 0)
-        return SLUICE_SUCCESS;
-    s->ended_frame = s->frame;
-    return result;
+    if (result < 0) {
+        s->ended_frame = s->frame;
+        return result;
+    }
+    pFrame->descriptorSet =
+        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, &s->page_views);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceEndStreamingFrame(SluiceVulkanStreamer *streamer, VkCommandBuffer commandBuffer)

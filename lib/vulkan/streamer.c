@@ -8,6 +8,8 @@
 #include "vulkan/create_checks.h"
 #include "vulkan/submitted_work.h"
 
+#include <sluice/shared/bindings.h>
+
 #include <string.h>
 
 #define MAX_TILES_PER_FRAME (1u << 14)
@@ -231,6 +233,37 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
     return result;
 }
 
+static void fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buffers)
+{
+    const struct slc_residency *residency = s->residency;
+    VkBuffer table = s->texture_table.buffer;
+    *buffers = (SluiceVulkanBuffers){.textureTable = table,
+                                     .feedback = s->feedback.buffer,
+                                     .minMip = s->min_mip.buffer,
+                                     .feedbackTurns = s->feedback_turns.buffer,
+                                     /* any buffer will do where it is not read */
+                                     .pageTable = residency->interface->page_table
+                                                      ? residency->interface->page_table(residency)
+                                                      : table};
+}
+
+/* Only paged mode has pages. Elsewhere one element makes the layout that the shaders expect. */
+static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
+{
+    bool paged = s->info.residencyMode == SLUICE_RESIDENCY_MODE_PAGED;
+    struct slc_descriptors_create_info info = {.buffer_count = SLUICE_BINDING_BUFFER_COUNT,
+                                               .page_count = paged ? s->page_views.count : 1,
+                                               .set_count = s->info.framesInFlight};
+    SluiceVulkanBuffers buffers;
+    fill_buffers(s, &buffers);
+    info.buffers[SLUICE_BINDING_TEXTURE_TABLE] = buffers.textureTable;
+    info.buffers[SLUICE_BINDING_MIN_MIP] = buffers.minMip;
+    info.buffers[SLUICE_BINDING_FEEDBACK] = buffers.feedback;
+    info.buffers[SLUICE_BINDING_FEEDBACK_TURNS] = buffers.feedbackTurns;
+    info.buffers[SLUICE_BINDING_PAGE_TABLE] = buffers.pageTable;
+    return slc_descriptors_init(&s->descriptors, &s->vk, &s->caps, &info);
+}
+
 static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
 {
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
@@ -247,6 +280,8 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
         result = create_semaphore(s);
     if (result == SLUICE_SUCCESS)
         result = create_buffers(s);
+    if (result == SLUICE_SUCCESS)
+        result = create_descriptors(s);
     if (result == SLUICE_SUCCESS)
         result = create_manager(s);
     if (result == SLUICE_SUCCESS)
@@ -333,6 +368,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
         slc_texture_destroy(s, i);
     s->manager_locked = false;
     sluiceDestroyStreamedTextureManager(s->manager); /* releases its heaps */
+    slc_descriptors_finish(&s->descriptors, &s->vk);
     slc_resolve_finish(&s->resolve, &s->vk);
     slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
     for (uint32_t i = 0; s->min_mip_staging && i < s->info.framesInFlight; i++)
@@ -372,17 +408,17 @@ SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
 {
     if (!streamer || !pBuffers)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_residency *residency = streamer->residency;
-    VkBuffer table = streamer->texture_table.buffer;
-    *pBuffers = (SluiceVulkanBuffers){.textureTable = table,
-                                      .feedback = streamer->feedback.buffer,
-                                      .minMip = streamer->min_mip.buffer,
-                                      .feedbackTurns = streamer->feedback_turns.buffer,
-                                      /* any buffer will do where it is not read */
-                                      .pageTable = residency->interface->page_table
-                                                       ? residency->interface->page_table(residency)
-                                                       : table};
+    fill_buffers(streamer, pBuffers);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceGetVulkanDescriptorSetLayout(const SluiceVulkanStreamer *streamer,
+                                                VkDescriptorSetLayout *pLayout)
+{
+    if (!streamer || !pLayout)
+        return SLUICE_ERROR_NULL_POINTER;
+    return slc_descriptors_get_layout(&streamer->descriptors, &streamer->vk, &streamer->caps,
+                                      pLayout);
 }
 
 SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVulkanPages *pPages)

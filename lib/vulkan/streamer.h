@@ -8,6 +8,7 @@
 #include "base/none.h"
 #include "vulkan/buffer.h"
 #include "vulkan/context.h"
+#include "vulkan/descriptors.h"
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
@@ -167,6 +168,7 @@ struct SluiceVulkanStreamer {
     SluiceTile *tiles;      ///< owned; tilesPerFrame
     uint32_t *tile_indices; ///< owned; tilesPerFrame
 
+    struct slc_descriptors descriptors; ///< a set per frame in flight
     struct slc_buffer texture_table, feedback, min_mip;
     struct slc_buffer *min_mip_staging; ///< owned; per frame in flight, as large as one needed it
     uint64_t min_mip_refused; ///< frame in which there was no memory for a larger one; 0: none

@@ -204,9 +204,11 @@ static void questions_take_no_memory(void **state)
     CHECK_OK(sluiceAbandonDemandLaunch(l.r.loader, &launch));
     SluiceDemandBuffers buffers;
     SluiceVulkanPages pages;
+    VkDescriptorSetLayout layout;
     SluiceDemandTicketStatus status;
     sluiceGetDemandBuffers(l.r.loader, &buffers);
     sluiceGetDemandPages(l.r.loader, &pages);
+    CHECK_OK(sluiceGetDemandDescriptorSetLayout(l.r.loader, &layout));
     (void)runner_statistics(&l.r);
     CHECK_OK(sluiceGetDemandTicketStatus(l.r.loader, l.r.ticket, &status));
     CHECK_OK(sluiceWaitDemandTicket(l.r.loader, l.r.ticket, 0, NULL));

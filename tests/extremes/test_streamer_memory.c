@@ -165,9 +165,11 @@ static void questions_take_no_memory(void **state)
         g.memory.refuse_from = 0;
         SluiceVulkanBuffers buffers;
         SluiceVulkanPages pages;
+        VkDescriptorSetLayout layout;
         SluiceTileLoaderStatistics reads;
         sluiceGetVulkanBuffers(g.streamer, &buffers);
         sluiceGetVulkanPages(g.streamer, &pages);
+        CHECK_OK(sluiceGetVulkanDescriptorSetLayout(g.streamer, &layout));
         assert_int_equal(sluiceGetVulkanResidencyMode(g.streamer), modes[i]);
         const SluiceVulkanDeviceCapabilities caps = {.sparse = true};
         assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, modes[i], 0), modes[i]);

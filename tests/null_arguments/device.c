@@ -20,6 +20,7 @@ sluiceAddVulkanTextureArray(f->streamer, &f->texture_info, 1, &f->out.texture)
 sluiceRemoveVulkanTexture(f->streamer, f->texture.textureId)
 sluiceGetVulkanBuffers(f->streamer, &f->out.buffers)
 sluiceGetVulkanPages(f->streamer, &f->out.pages)
+sluiceGetVulkanDescriptorSetLayout(f->streamer, &f->out.set_layout)
 sluiceBeginStreamingFrame(f->streamer, f->commands, 2, &f->out.frame) => sluiceAbandonStreamingFrame(f->streamer, &f->out.frame)
 !sluiceEndStreamingFrame(f->streamer, f->commands)
 !sluiceAbandonStreamingFrame(f->streamer, &f->frame)
@@ -45,6 +46,7 @@ sluiceDestroyDemandResource(f->loader, f->resource)
 sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
+sluiceGetDemandDescriptorSetLayout(f->loader, &f->out.set_layout)
 sluicePrepareDemandLaunch(f->loader, f->commands, &f->out.launch) => sluiceAbandonDemandLaunch(f->loader, &f->out.launch)
 !sluiceEndDemandLaunch(f->loader, f->commands)
 !sluiceAbandonDemandLaunch(f->loader, &f->launch)
@@ -88,6 +90,7 @@ struct fixture {
         SluiceVulkanTexture texture;
         SluiceVulkanBuffers buffers;
         SluiceVulkanPages pages;
+        VkDescriptorSetLayout set_layout;
         SluiceStreamingFrame frame;
         SluiceVulkanStreamerStatistics statistics;
         SluiceTileLoaderStatistics reads;

@@ -15,8 +15,9 @@ struct fake_object {
     uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
-    VkImage image; ///< of a view
-    bool general;  ///< the layout of an image
+    VkImage image;        ///< of a view
+    bool general;         ///< the layout of an image
+    uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
 };
 
 /* All dispatchable handles are the device itself. */
@@ -76,11 +77,57 @@ static void drop(struct fake_vulkan *fake, void *object)
         drop(fake_of(device), object);                                                             \
     }
 
-PLAIN_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
-PLAIN_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
 PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
+
+static VKAPI_ATTR VkResult VKAPI_CALL
+create_DescriptorSetLayout(VkDevice device, const VkDescriptorSetLayoutCreateInfo *info,
+                           const VkAllocationCallbacks *cb, VkDescriptorSetLayout *layout)
+{
+    (void)cb;
+    MAY_FAIL(device);
+    struct fake_object *object = make(fake_of(device), 0);
+    object->first_image = UINT32_MAX;
+    for (uint32_t i = info->bindingCount; i-- > 0;)
+        if (info->pBindings[i].descriptorType != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)
+            object->first_image = info->pBindings[i].binding;
+    *layout = (VkDescriptorSetLayout)object;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_DescriptorSetLayout(VkDevice device,
+                                                              VkDescriptorSetLayout layout,
+                                                              const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    drop(fake_of(device), layout);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_DescriptorPool(VkDevice device,
+                                                            const VkDescriptorPoolCreateInfo *info,
+                                                            const VkAllocationCallbacks *cb,
+                                                            VkDescriptorPool *pool)
+{
+    (void)info, (void)cb;
+    MAY_FAIL(device);
+    *pool = make(fake_of(device), 0);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_DescriptorPool(VkDevice device, VkDescriptorPool pool,
+                                                         const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    struct fake_vulkan *fake = fake_of(device);
+    for (uint32_t i = 0; i < FAKE_SETS; i++) {
+        if (!pool || fake->sets[i].pool != pool)
+            continue;
+        fake->sets[i].pool = VK_NULL_HANDLE;
+        fake->set_count--;
+    }
+    drop(fake, pool);
+}
 
 static VKAPI_ATTR VkResult VKAPI_CALL create_ImageView(VkDevice device,
                                                        const VkImageViewCreateInfo *info,
@@ -119,13 +166,18 @@ static VKAPI_ATTR void VKAPI_CALL get_features(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
                                                  VkPhysicalDeviceProperties2 *properties)
 {
-    (void)device;
+    const struct fake_vulkan *fake = fake_of(device);
+    const uint32_t samplers = fake->max_samplers ? fake->max_samplers : 1000000;
     properties->properties =
         (VkPhysicalDeviceProperties){.apiVersion = VK_API_VERSION_1_2,
                                      .deviceName = "fake",
                                      .limits = {.sparseAddressSpaceSize = 1ull << 40,
                                                 .maxStorageBufferRange = 1u << 27,
-                                                .maxImageArrayLayers = 256}};
+                                                .maxImageArrayLayers = 256,
+                                                .maxPerStageDescriptorSamplers = samplers,
+                                                .maxDescriptorSetSamplers = 1000000,
+                                                .maxPerStageDescriptorSampledImages = 1000000,
+                                                .maxDescriptorSetSampledImages = 1000000}};
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
@@ -453,12 +505,30 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
     }
 }
 
+static void update_set(const VkWriteDescriptorSet *write)
+{
+    struct fake_set *set = (struct fake_set *)write->dstSet;
+    set->write_count++;
+    for (uint32_t i = 0; i < write->descriptorCount; i++) {
+        if (write->descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)
+            set->buffers[write->dstBinding + i] = write->pBufferInfo[i].buffer;
+        else if (write->dstArrayElement + i < FAKE_SET_IMAGES)
+            set->images[write->dstBinding - set->first_image][write->dstArrayElement + i] =
+                write->pImageInfo[i];
+    }
+}
+
 static VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t write_count,
                                               const VkWriteDescriptorSet *writes,
                                               uint32_t copy_count,
                                               const VkCopyDescriptorSet *copies)
 {
-    (void)write_count, (void)copy_count, (void)copies;
+    (void)copy_count, (void)copies;
+    if ((void *)writes[0].dstSet != fake_of(device)) {
+        for (uint32_t i = 0; i < write_count; i++)
+            update_set(&writes[i]);
+        return;
+    }
     if (fake_of(device)->no_resolve)
         return;
     fake_of(device)->table = OBJECT(writes[0].pBufferInfo[2].buffer);
@@ -470,8 +540,18 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
                                                     VkDescriptorSet *sets)
 {
     MAY_FAIL(device);
-    (void)info;
-    sets[0] = (VkDescriptorSet)fake_of(device); /* never looked at */
+    struct fake_vulkan *fake = fake_of(device);
+    sets[0] = (VkDescriptorSet)fake; /* of passes: never looked at */
+    if (OBJECT(info->pSetLayouts[0])->first_image == UINT32_MAX)
+        return VK_SUCCESS;
+    assert_in_range(fake->set_count, 0, FAKE_SETS - 1);
+    struct fake_set *set = fake->sets;
+    while (set->pool)
+        set++;
+    *set = (struct fake_set){.pool = info->descriptorPool,
+                             .first_image = OBJECT(info->pSetLayouts[0])->first_image};
+    fake->set_count++;
+    sets[0] = (VkDescriptorSet)set;
     return VK_SUCCESS;
 }
 

@@ -36,6 +36,19 @@ struct fake_copy {
     uint32_t texel;              ///< the first four bytes
 };
 
+#define FAKE_SETS 16u
+#define FAKE_SET_BUFFERS 8u
+#define FAKE_SET_IMAGES 256u
+
+/** A descriptor set for the application's shaders: the first binding of images, and the next. */
+struct fake_set {
+    VkDescriptorPool pool; ///< VK_NULL_HANDLE: not allocated
+    uint32_t first_image;  ///< its first binding of images
+    VkBuffer buffers[FAKE_SET_BUFFERS];
+    VkDescriptorImageInfo images[2][FAKE_SET_IMAGES];
+    uint64_t write_count;
+};
+
 struct fake_vulkan {
     uint32_t tail_page_count; ///< 0: no tail
     uint64_t metadata_size;   ///< of every image; 0: none
@@ -100,6 +113,10 @@ struct fake_vulkan {
     uint8_t (*want)(void *user, uint32_t region);
     uint32_t damage_count; ///< so many results that are resolved next have a wrong checksum
     uint32_t whole_count;  ///< items of which the whole map was asked for
+
+    struct fake_set sets[FAKE_SETS]; ///< of layouts with images, first free first
+    uint32_t set_count;
+    uint32_t max_samplers; ///< per stage; 0: a million
 
     struct fake_object *table, *readback; ///< buffers of the resolve passes
     struct SluiceResolveParams push;

@@ -2,7 +2,9 @@
  * The promises of paged residency, with frames that finish when they like:
  * - what a MinMip map shows has a page in the table, and that page holds its texels,
  * - no page belongs to two tiles that are shown,
- * - no image of pages goes while a frame that may have it bound is incomplete.
+ * - no image of pages goes while a frame that may have it bound is incomplete,
+ * - the descriptor set of a frame shows all of them, and is not written until the frame is
+ * complete.
  *
  * Commands run in the order in which they were recorded, as on one queue behind barriers.
  */
@@ -11,6 +13,7 @@
 #include "support/roll.h"
 #include "support/test.h"
 
+#include <sluice/shared/bindings.h>
 #include <sluice/shared/texture_table.h>
 
 #include <string.h>
@@ -38,6 +41,10 @@ struct model {
     bool abandoned[HISTORY];
     uint32_t window;
     VkImage shown[HISTORY][CHUNKS]; ///< by frame
+    struct {
+        const struct fake_set *set;
+        uint64_t write_count;
+    } sets[HISTORY]; ///< by frame
     struct {
         VkImage image;
         uint32_t texels[LAYERS];
@@ -119,12 +126,17 @@ static void take_destroyed(struct model *m)
                 assert_ptr_not_equal(m->fake.destroyed_images[d], m->shown[f % HISTORY][c]);
 }
 
-static void take_views(struct model *m)
+static void take_views(struct model *m, const SluiceStreamingFrame *frame)
 {
+    const struct fake_set *set = (const struct fake_set *)frame->descriptorSet;
+    m->sets[m->frame % HISTORY].set = set;
+    m->sets[m->frame % HISTORY].write_count = set->write_count;
     SluiceVulkanPages pages;
     sluiceGetVulkanPages(m->streamer, &pages);
     assert_int_equal(pages.viewCount, CHUNKS);
     for (uint32_t c = 0; c < CHUNKS; c++) {
+        assert_ptr_equal(set->images[0][c].imageView, pages.pViews[c]);
+        assert_ptr_equal(set->images[0][c].sampler, pages.sampler);
         VkImage image = fake_vulkan_image_of(pages.pViews[c]);
         if (m->chunks[c].image != image) {
             m->chunks[c].image = image;
@@ -132,6 +144,14 @@ static void take_views(struct model *m)
         }
         m->shown[m->frame % HISTORY][c] = image;
     }
+}
+
+static void check_sets(const struct model *m)
+{
+    for (uint64_t f = m->fake.frame_value + 1; f < m->frame; f++)
+        if (!m->abandoned[f % HISTORY])
+            assert_int_equal(m->sets[f % HISTORY].set->write_count,
+                             m->sets[f % HISTORY].write_count);
 }
 
 static void take_copies(struct model *m)
@@ -210,7 +230,8 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
     m->frame = frame->frameIndex;
     m->abandoned[m->frame % HISTORY] = false;
     take_destroyed(m);
-    take_views(m);
+    take_views(m, frame);
+    check_sets(m);
     return result;
 }
 
@@ -268,6 +289,19 @@ static void model_step(struct model *m, uint64_t step)
         model_add(m);
 }
 
+static void check_buffers(const struct fake_vulkan *fake, const SluiceVulkanBuffers *buffers)
+{
+    assert_int_equal(fake->set_count, FRAMES_IN_FLIGHT);
+    for (uint32_t i = 0; i < fake->set_count; i++) {
+        const VkBuffer *set = fake->sets[i].buffers;
+        assert_ptr_equal(set[SLUICE_BINDING_TEXTURE_TABLE], buffers->textureTable);
+        assert_ptr_equal(set[SLUICE_BINDING_MIN_MIP], buffers->minMip);
+        assert_ptr_equal(set[SLUICE_BINDING_FEEDBACK], buffers->feedback);
+        assert_ptr_equal(set[SLUICE_BINDING_FEEDBACK_TURNS], buffers->feedbackTurns);
+        assert_ptr_equal(set[SLUICE_BINDING_PAGE_TABLE], buffers->pageTable);
+    }
+}
+
 static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
 {
     static struct model model; /* large */
@@ -306,6 +340,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.tilesRevived > 500);
     assert_true(generation >= 6); /* images came, went, and came again */
+    check_buffers(&m->fake, &buffers);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     m->fake.destroyed_count = 0;
     fake_vulkan_destroy(m->streamer);
@@ -315,6 +350,30 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
         sluiceDestroyImageSource(m->textures[i].source);
     for (uint32_t i = 0; i < m->old_count; i++)
         sluiceDestroyImageSource(m->old_sources[i]);
+}
+
+static void devices_with_few_samplers_have_no_sets(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake;
+    for (uint32_t samplers = CHUNKS - 1; samplers <= CHUNKS; samplers++) {
+        fake = (struct fake_vulkan){.max_samplers = samplers};
+        SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
+                                               .maxRegionCount = 1 << 10,
+                                               .maxPageChunkCount = CHUNKS};
+        SluiceVulkanStreamer *streamer;
+        CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
+        VkDescriptorSetLayout layout;
+        const bool enough = samplers >= CHUNKS;
+        CHECK_RESULT(sluiceGetVulkanDescriptorSetLayout(streamer, &layout),
+                     enough ? SLUICE_SUCCESS : SLUICE_ERROR_UNSUPPORTED);
+        SluiceStreamingFrame frame;
+        CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(&fake), 1, &frame));
+        assert_int_equal(frame.descriptorSet != VK_NULL_HANDLE, enough);
+        assert_int_equal(layout != VK_NULL_HANDLE, enough);
+        fake_vulkan_destroy(streamer);
+        assert_int_equal(fake.live_objects, 0);
+    }
 }
 
 static void promises_hold_with_little_memory(void **state)
@@ -339,6 +398,7 @@ static void promises_hold_where_frames_are_abandoned(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(devices_with_few_samplers_have_no_sets),
         cmocka_unit_test(promises_hold_with_little_memory),
         cmocka_unit_test(promises_hold_with_room_for_everything),
         cmocka_unit_test(promises_hold_where_frames_are_abandoned),

@@ -1,5 +1,6 @@
 /*
- * Macros to define before you include any of Sluice's files, because the buffers are yours:
+ * Macros through which Sluice's files find their buffers. bindings.glsl defines them for the
+ * descriptor set of a frame. Shaders with descriptors of their own define them:
  *
  *     #define SLUICE_TEXTURE_ENTRY(i) textureTable.entries[i]  // SluiceTextureEntry, read
  *     #define SLUICE_MIN_MIP_WORD(i) minMip.words[i]           // uint, read

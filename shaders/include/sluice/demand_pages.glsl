@@ -2,7 +2,8 @@
  * Pages of demand loading: looks up a page, or requests it. demand.glsl includes this file for
  * textures; shaders that use only resources of their own need no other file.
  *
- * Macros to define before you include it, because the buffers are yours:
+ * Macros to define before you include it. demand_bindings.glsl defines them for the descriptor set of
+ * a launch; shaders with descriptors of their own define them:
  *
  *     #define SLUICE_DEMAND_LEVEL_WORD(i) levels.words[i]         // uint, read
  *     #define SLUICE_DEMAND_DIRECTORY_WORD(i) directory.words[i]  // uint, read

@@ -1,0 +1,58 @@
+/**
+ * Descriptor sets that the application's shaders bind: one per frame or launch in flight, written
+ * as that begins, when no earlier one uses the set any more. So no binding flags are required.
+ *
+ * Bindings in this order: storage buffers, then the array of pages. shared/bindings.h has the
+ * numbers.
+ */
+#ifndef SLC_VULKAN_DESCRIPTORS_H
+#define SLC_VULKAN_DESCRIPTORS_H
+
+#include "vulkan/caps.h"
+#include "vulkan/page_views.h"
+
+#define SLC_DESCRIPTOR_BUFFERS 8u
+#define SLC_DESCRIPTOR_SETS 16u
+
+struct slc_descriptors_create_info {
+    VkBuffer buffers[SLC_DESCRIPTOR_BUFFERS]; ///< bindings 0 to buffer_count - 1
+    uint32_t buffer_count;
+    uint32_t page_count; ///< elements of the array of pages
+    uint32_t set_count;  ///< at most SLC_DESCRIPTOR_SETS
+};
+
+struct slc_descriptor_set {
+    VkDescriptorSet set;
+    uint64_t page_generation; ///< of the pages that it holds; 0: none yet
+};
+
+/** A zeroed one has no layout and no sets, and is finished with nothing to do. */
+struct slc_descriptors {
+    VkDescriptorSetLayout layout;
+    VkDescriptorPool pool;
+    uint32_t page_binding, page_count;
+    struct slc_descriptor_set sets[SLC_DESCRIPTOR_SETS];
+};
+
+/**
+ * Leaves the sets out if the device has fewer samplers per shader stage than `page_count`: layout
+ * and sets are then VK_NULL_HANDLE. After an error it can be finished.
+ *
+ * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ */
+SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const struct slc_vk *vk,
+                                  const struct slc_caps *caps,
+                                  const struct slc_descriptors_create_info *info);
+void slc_descriptors_finish(struct slc_descriptors *descriptors, const struct slc_vk *vk);
+
+/** Makes set `index` current, which no commands in progress use, and returns it. */
+VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
+                                       uint32_t index, const struct slc_page_views *pages);
+
+/** The layout for the application. Errors: UNSUPPORTED, with a log message, if there are no sets.
+ */
+SluiceResult slc_descriptors_get_layout(const struct slc_descriptors *descriptors,
+                                        const struct slc_vk *vk, const struct slc_caps *caps,
+                                        VkDescriptorSetLayout *layout);
+
+#endif /* SLC_VULKAN_DESCRIPTORS_H */

@@ -1,0 +1,75 @@
+/*
+ * Declares the descriptor set of a frame (SluiceStreamingFrame.descriptorSet), and the macros of
+ * buffers.glsl. Include it before the files that you use:
+ *
+ *     #define SLUICE_SET 0                   // set number; default 0
+ *     #define SLUICE_PAGED true              // as in buffers.glsl; leave it out: never paged mode
+ *     #define SLUICE_FEEDBACK_IN_TURNS       // for feedbackInTurns; default: every texture
+ *     #include "sluice/bindings.glsl"
+ *     #include "sluice/sample.glsl"
+ *     #include "sluice/feedback.glsl"
+ *
+ * The pipeline layout has the set layout of sluiceGetVulkanDescriptorSetLayout at that number.
+ *
+ * Requires the device features runtimeDescriptorArray and
+ * shaderSampledImageArrayNonUniformIndexing with SLUICE_PAGED. Without them define SLUICE_PAGE_LOOP
+ * as the number of pages: maxPageChunkCount in paged mode, 1 in other modes.
+ */
+#ifndef SLUICE_BINDINGS_GLSL
+#define SLUICE_BINDINGS_GLSL
+
+#extension GL_EXT_nonuniform_qualifier : require
+
+#include "shared/bindings.h"
+#include "shared/texture_table.h"
+
+#ifndef SLUICE_SET
+#define SLUICE_SET 0
+#endif
+
+layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURE_TABLE) readonly buffer SluiceTextureTable
+{
+    SluiceTextureEntry sluiceTextureEntries[];
+};
+#define SLUICE_TEXTURE_ENTRY(i) sluiceTextureEntries[i]
+
+layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_MIN_MIP) readonly buffer SluiceMinMip
+{
+    uint sluiceMinMipWords[];
+};
+#define SLUICE_MIN_MIP_WORD(i) sluiceMinMipWords[i]
+
+layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_FEEDBACK) buffer SluiceFeedback
+{
+    uint sluiceFeedbackWords[];
+};
+#define SLUICE_FEEDBACK_WORD(i) sluiceFeedbackWords[i]
+
+#ifdef SLUICE_FEEDBACK_IN_TURNS
+layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_FEEDBACK_TURNS) readonly buffer SluiceFeedbackTurns
+{
+    uint sluiceFeedbackTurnWords[];
+};
+#define SLUICE_FEEDBACK_TURN_WORD(i) sluiceFeedbackTurnWords[i]
+#endif
+
+#ifdef SLUICE_PAGED
+layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_PAGE_TABLE) readonly buffer SluicePageTable
+{
+    uint sluicePageTableWords[];
+};
+#define SLUICE_PAGE_TABLE_WORD(i) sluicePageTableWords[i]
+
+/* One array serves streaming and demand loading: their pages are the same images. */
+#ifndef SLUICE_PAGE_TEXTURE
+#ifdef SLUICE_PAGE_LOOP
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[SLUICE_PAGE_LOOP];
+#define SLUICE_PAGE_TEXTURE(i) sluicePages[i]
+#else
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[];
+#define SLUICE_PAGE_TEXTURE(i) sluicePages[nonuniformEXT(i)]
+#endif
+#endif
+#endif
+
+#endif
