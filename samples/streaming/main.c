@@ -288,7 +288,8 @@ static bool can_write_outputs(const struct settings *settings)
     snprintf(csv, sizeof csv, "%s/frames.csv", settings->output);
     return files_make_folders(settings->output) && output_can_write(report) &&
            output_can_write(csv) &&
-           (!settings->needs_trace || output_can_write(settings->needs_trace));
+           (!settings->needs_trace || output_can_write(settings->needs_trace)) &&
+           (!settings->record || output_claim(settings->record));
 }
 
 static int generate_only(const struct settings *settings)

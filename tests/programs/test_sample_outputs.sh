@@ -41,6 +41,12 @@ done
 [ "$good" = 0 ] && [ -L soft ]
 fact a_walk_replaces_none_of_its_pictures
 
+walk 1 --output same --record same/trace --needs-trace same/../same/trace &&
+    grep -q 'same/trace: two outputs of this run have this name' err && [ -z "$(ls same)" ] &&
+    walk 1 --output same --needs-trace same/report.html && grep -q 'report.html: two outputs' err && [ -z "$(ls same)" ] &&
+    walk 0 --output same --record /dev/null --needs-trace /dev/null
+fact two_outputs_of_a_walk_under_one_name_are_refused_at_once
+
 mkdir -p kept && echo "shopping list" >kept/reference.txt &&
     walk 1 --output taken --reference kept && grep -q 'was not written by this program' err &&
     [ "$(cat kept/reference.txt)" = "shopping list" ]
@@ -56,6 +62,9 @@ trace 0 --output traced && cp traced/picture.png before.png &&
     trace 1 --output traced --reference traced/picture.png &&
     grep -q 'traced/picture.png: would replace a file that is read' err && cmp traced/picture.png before.png
 fact a_tracer_does_not_replace_the_picture_that_it_compares_with
+
+trace 1 --output sheets --contact-sheet sheets/picture.exr && grep -q 'picture.exr: two outputs' err && [ -z "$(ls sheets)" ]
+fact two_outputs_of_a_tracer_under_one_name_are_refused_at_once
 
 tool=$minimal
 run 1 --output folder && grep -q 'folder: is there already and is a folder' err && [ -d folder ] &&

@@ -12,6 +12,7 @@
 
 #include "base/alloc.h"
 #include "base/part_file.h"
+#include "output_names.h"
 #include "text.h"
 
 struct output_file {
@@ -72,6 +73,34 @@ bool output_spares_inputs(const char *path)
     return spares;
 }
 
+/* Opening a pipe would wait for its reader, and closing it would tell him that this is all. */
+static bool is_stream(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode));
+}
+
+/* Several outputs may go to one pipe or device. */
+static bool take_name(const char *path, enum output_name_use use)
+{
+    if (is_stream(path))
+        return true;
+    switch (output_name_take(path, use)) {
+    case OUTPUT_NAME_FREE: return true;
+    case OUTPUT_NAME_TAKEN:
+        text_say("%s%s: two outputs of this run have this name; name another one", speaker, path);
+        return false;
+    case OUTPUT_NAME_NO_MEMORY: break;
+    }
+    text_say("%s%s: out of memory", speaker, path);
+    return false;
+}
+
+bool output_claim(const char *path)
+{
+    return output_spares_inputs(path) && take_name(path, OUTPUT_NAME_CLAIMED);
+}
+
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 {
     (void)user;
@@ -97,7 +126,7 @@ static struct output_file *begin(const char *path, uint32_t flags)
 {
     const SluiceAllocationCallbacks memory = slc_allocator(NULL);
     const SluiceLogCallback log = {.pfnLog = on_log};
-    if (!output_spares_inputs(path))
+    if (!output_spares_inputs(path) || !take_name(path, OUTPUT_NAME_BEGUN))
         return NULL;
     struct output_file *file = calloc(1, sizeof *file);
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -112,6 +141,7 @@ static struct output_file *begin(const char *path, uint32_t flags)
     if (file)
         slc_part_file_finish(&file->part, false);
     free(file);
+    output_name_give_back(path);
     return NULL;
 }
 
@@ -130,16 +160,16 @@ bool output_can_write(const char *path)
     const SluiceAllocationCallbacks memory = slc_allocator(NULL);
     const SluiceLogCallback log = {.pfnLog = on_log};
     struct slc_part_file part;
-    struct stat status;
-    /* Opening a pipe would wait for its reader, and closing it would tell him that this is all. */
-    if (stat(path, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode)))
+    if (is_stream(path))
         return true;
-    if (!output_spares_inputs(path))
+    if (!output_spares_inputs(path) || !take_name(path, OUTPUT_NAME_PROMISED))
         return false;
     SluiceResult result = slc_part_file_open(&part, path, 0, &memory, &log);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         text_say("%s%s: out of memory", speaker, path);
     slc_part_file_finish(&part, false);
+    if (result != SLUICE_SUCCESS)
+        output_name_give_back(path);
     return result == SLUICE_SUCCESS;
 }
 
@@ -166,6 +196,8 @@ bool output_file_end(struct output_file *file, bool keep)
         return false;
     keep = keep && flush(file);
     fclose(file->stream); /* the descriptor is synced by the part file, which has another one */
+    if (!keep)
+        output_name_give_back(file->part.target);
     keep = slc_part_file_finish(&file->part, keep) == SLUICE_SUCCESS && keep;
     free(file);
     return keep;

@@ -3,6 +3,7 @@
  * what was there stays. See docs/decisions/0034-one-way-to-write-a-file.md for what is refused.
  *
  * A program names its inputs once, with output_add_input. From then on no output replaces an input.
+ * A run writes a name once: a second output of the same name is refused.
  */
 #ifndef TOOLS_COMMON_OUTPUT_FILE_H
 #define TOOLS_COMMON_OUTPUT_FILE_H
@@ -25,14 +26,22 @@ bool output_add_input(const char *path);
 bool output_spares_inputs(const char *path);
 
 /**
- * Tells whether a file can be written and replaces no input: to be asked before the work whose
- * result is written there. Leaves nothing behind. Says on stderr why not.
+ * Tells whether a file can be written, replaces no input, and has a name that no other output of
+ * this run has: to be asked once, before the work whose result is written there. Leaves nothing
+ * behind. Says on stderr why not.
  */
 bool output_can_write(const char *path);
 
 /**
+ * Keeps a name for a file that a library writes. False, which stderr says, if it would replace an
+ * input or if another output of this run has the name. Any thread.
+ */
+bool output_claim(const char *path);
+
+/**
  * Begins a file. `path` with ".sluice-part" added is written, or `path` itself if it is a pipe or a
- * character device. NULL if that fails or would replace an input; stderr says why. Any thread.
+ * character device. NULL if that fails or would replace an input or an output of this run; stderr
+ * says why. Any thread.
  */
 struct output_file *output_file_begin(const char *path);
 /** Begins a file without waiting for the disk at its end, which takes tens of milliseconds: after a
