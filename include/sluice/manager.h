@@ -79,9 +79,9 @@ typedef struct SluiceStreamedTextureManagerCreateInfo {
      * Default: NULL, never locked. The bool must outlive the manager.
      *
      * Locked calls return SLUICE_ERROR_INVALID_ARGUMENT and change nothing: adding, removing and
-     * linking textures, feedback, lists of tiles and MinMip rectangles, answers, retire values and
-     * defragmentation. sluiceDestroyStreamedTextureManager does nothing. Queries, configuration,
-     * trimming, heaps, retries and recording still work.
+     * linking textures, feedback, lists of tiles and MinMip rectangles, answers, retire values,
+     * defragmentation and evacuation. sluiceDestroyStreamedTextureManager does nothing. Queries,
+     * configuration, trimming, heaps, retries and recording still work.
      */
     const bool *pLocked;
 } SluiceStreamedTextureManagerCreateInfo;
@@ -118,6 +118,17 @@ typedef struct SluiceStreamedTextureManagerConfig {
      * them loads. Default: 120 * retryDelay; never if retryDelay is 0. UINT64_MAX: never.
      */
     uint64_t givenUpRetryDelay;
+    /**
+     * Number of heaps to shrink to. While more heaps exist, tiles are evicted until the others fit
+     * into so many heaps: STANDBY tiles, oldest first, then wanted tiles, finest first. No heap is
+     * allocated meanwhile. Packed tiles stay. Make the heaps empty with sluiceEvacuateHeaps, and
+     * release them with sluiceGetEmptyHeaps and sluiceReleaseHeap. Default: 0, never shrink.
+     */
+    uint32_t targetHeapCount;
+    /** Requests never evict resident tiles: they wait for free slots. targetHeapCount still does.
+     */
+    bool noEviction;
+    bool noMipBias; ///< The global mip bias becomes 0 and stays 0.
 } SluiceStreamedTextureManagerConfig;
 
 /**
@@ -533,8 +544,21 @@ SLUICE_API SluiceResult sluiceDefragmentTiles(SluiceStreamedTextureManager *mana
                                               SluiceTileMove *pMoves);
 
 /**
- * Lists empty heaps. Keeps half a heap's worth of free slots in reserve; all heaps are listed only
- * if no slot is in use. Two-call idiom as in Vulkan.
+ * Evicts tiles of the least used heap that can be emptied, at most `maxTileCount`. They are listed
+ * for unmapping. Wanted tiles are REQUESTED afterwards, and get slots of fuller heaps.
+ *
+ * For applications that cannot make the copies of sluiceDefragmentTiles while shaders read the
+ * tiles. Does nothing if fuller heaps have no room, or if every heap holds packed tiles or tiles
+ * that are being loaded. Call it once per frame until sluiceGetEmptyHeaps lists enough heaps.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ */
+SLUICE_API SluiceResult sluiceEvacuateHeaps(SluiceStreamedTextureManager *manager,
+                                            uint32_t maxTileCount);
+
+/**
+ * Lists empty heaps. Keeps half a heap's worth of free slots in reserve, except of heaps beyond
+ * targetHeapCount; all heaps are listed only if no slot is in use. Two-call idiom as in Vulkan.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  */

@@ -26,7 +26,8 @@ enum slc_call_kind {
     SLC_CALL_RELEASE_HEAP = 18,
     SLC_CALL_GET_MINMIP_UPDATES = 19,
     /** During GET_TILES_TO_MAP, before that call itself is reported. */
-    SLC_CALL_HEAP_ANSWER = 20
+    SLC_CALL_HEAP_ANSWER = 20,
+    SLC_CALL_EVACUATE_HEAPS = 21
 };
 
 /**
@@ -45,11 +46,11 @@ struct slc_call {
     const SluiceStreamedTextureManagerConfig *config; ///< SET_CONFIG
     const SluiceStreamedTextureDesc *desc;            ///< ADD_TEXTURE
     const SluiceFeedbackDesc *feedback;               ///< UPDATE_FEEDBACK
-    uint32_t keep_count;                              ///< TRIM_STANDBY
-    uint32_t heap_id;                                 ///< RELEASE_HEAP, HEAP_ANSWER
-    uint32_t room;                                    ///< of the list calls: *pCount on entry
-    bool query;                                       ///< of the list calls: the array was NULL
-    uint32_t count; ///< list calls: *pCount on return; answers: number of tile_indices
+    uint32_t keep_count; ///< TRIM_STANDBY; EVACUATE_HEAPS: the most tiles
+    uint32_t heap_id;    ///< RELEASE_HEAP, HEAP_ANSWER
+    uint32_t room;       ///< of the list calls: *pCount on entry
+    bool query;          ///< of the list calls: the array was NULL
+    uint32_t count;      ///< list calls: *pCount on return; answers: number of tile_indices
     const uint32_t *tile_indices;  ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELLED
     const SluiceTile *tiles;       ///< out: GET_TILES_TO_*, GET_GIVEN_UP
     const SluiceTileMove *moves;   ///< out: DEFRAGMENT

@@ -1,7 +1,9 @@
 /* Heaps without tiles: the application may take them back. */
 #include "base/checked.h"
+#include "core/eviction.h"
 #include "core/observer.h"
 #include "core/state.h"
+#include "residency/defragment.h"
 
 SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, uint32_t *pHeapCount,
                                  uint32_t *pHeapIds)
@@ -14,16 +16,31 @@ SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *manager, ui
              keep = h->capacity / 2 + slc_tile_heaps_reserved(&manager->residency.heaps);
     if (rest == (uint64_t)h->live_count * h->capacity)
         keep = 0; /* no tile is left */
+    uint64_t surplus = slc_surplus_slots(manager);
     for (uint32_t i = 0; i < h->end; i++) {
-        if (h->heaps[i].free_count != h->capacity || rest - h->capacity < keep)
+        if (h->heaps[i].free_count != h->capacity || (rest - h->capacity < keep && !surplus))
             continue;
         rest -= h->capacity;
+        surplus -= surplus ? h->capacity : 0;
         if (pHeapIds && found < room)
             pHeapIds[found] = h->heaps[i].id;
         found++;
     }
     *pHeapCount = pHeapIds ? slc_min_u32(found, room) : found;
     return pHeapIds && found > room ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
+}
+
+SluiceResult sluiceEvacuateHeaps(SluiceStreamedTextureManager *manager, uint32_t maxTileCount)
+{
+    if (!manager)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (slc_is_locked(manager))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    struct slc_call call = {.kind = SLC_CALL_EVACUATE_HEAPS,
+                            .keep_count = maxTileCount,
+                            .result = slc_evacuate(&manager->residency, maxTileCount)};
+    slc_notify(manager, &call);
+    return call.result;
 }
 
 static SluiceResult release_heap(slc_manager *m, uint32_t heap_id)

@@ -21,6 +21,17 @@ static bool is_idle(const slc_manager *m, const struct slc_managed_texture *t)
     return age > 0 && age / (t->interval ? 4 : 16) >= usual; /* it may be a slow one's first */
 }
 
+uint64_t slc_surplus_slots(const slc_manager *m)
+{
+    uint32_t target = m->config.targetHeapCount, count = m->residency.heaps.live_count;
+    return target && count > target ? (uint64_t)(count - target) * m->residency.heaps.capacity : 0;
+}
+
+uint64_t slc_kept_slots(const slc_manager *m)
+{
+    return slc_tile_heaps_reserved(&m->residency.heaps) + slc_surplus_slots(m);
+}
+
 /** Tiles that one call looks at for one that is not seen any more. */
 enum { MAX_LOOKED_FOR = 1024 };
 
@@ -94,8 +105,7 @@ void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t
 {
     struct eviction d = begin_eviction(m);
     uint64_t coming = (uint64_t)m->residency.evicted.count + m->residency.retiring.count;
-    uint64_t reserved = slc_tile_heaps_reserved(&m->residency.heaps),
-             free_slots = m->residency.heaps.free_total;
+    uint64_t reserved = slc_kept_slots(m), free_slots = m->residency.heaps.free_total;
     for (; free_slots + coming < reserved; coming++) {
         uint32_t victim = finest_mapped(m, SLUICE_MAX_MIP_LEVELS);
         if (!victim)
@@ -123,7 +133,7 @@ void slc_evict_wanted_for(slc_manager *m, struct slc_request_walk walk, uint32_t
  */
 bool slc_evict_unwanted_for(slc_manager *m, uint32_t unserved)
 {
-    uint64_t needed = unserved, reserved = slc_tile_heaps_reserved(&m->residency.heaps);
+    uint64_t needed = unserved, reserved = slc_kept_slots(m);
     bool dropped = false;
     if (reserved > m->residency.heaps.free_total)
         needed += reserved - m->residency.heaps.free_total;

@@ -4,6 +4,11 @@
 
 #include "core/request_walk.h"
 
+/** Slots of heaps beyond targetHeapCount: tiles leave them, and no others come. */
+uint64_t slc_surplus_slots(const slc_manager *m);
+/** Free slots that regular tiles must not take: reserved ones for packed tiles, and surplus ones.
+ */
+uint64_t slc_kept_slots(const slc_manager *m);
 /**
  * Evicts tiles on standby, and wanted ones of textures that get no maps, for `unserved` requests.
  * Returns whether such a texture was dropped and requests with it.

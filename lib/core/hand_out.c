@@ -11,15 +11,21 @@
 #include "core/texture_tiles.h"
 #include "residency/node.h"
 
+static bool may_add_heap(const slc_manager *m)
+{
+    uint32_t most = m->config.maxHeapCount, target = m->config.targetHeapCount;
+    uint32_t count = m->residency.heaps.live_count;
+    return (!most || count < most) && (!target || count < target);
+}
+
 /**
  * Slots that a tile of `level` leaves in a call for one texture when no heap is to be had: what
  * makes room for coarser requests of other textures must not go to the texture that is asked first.
  */
 static uint64_t owed_slots(const slc_manager *m, uint32_t level)
 {
-    uint32_t limit = m->config.maxHeapCount;
     uint64_t owed = 0;
-    if (!m->refused && (!limit || m->residency.heaps.live_count < limit))
+    if (!m->refused && may_add_heap(m))
         return 0;
     for (uint32_t l = level + 1; l < SLUICE_MAX_MIP_LEVELS; l++)
         owed += m->residency.requests.counts[l];
@@ -30,8 +36,7 @@ static uint64_t owed_slots(const slc_manager *m, uint32_t level)
 static SluiceResult take_from_new_heap(slc_manager *m, struct slc_node *n, uint32_t node,
                                        bool *refused)
 {
-    uint32_t limit = m->config.maxHeapCount;
-    if (*refused || (limit && m->residency.heaps.live_count >= limit))
+    if (*refused || !may_add_heap(m))
         return SLUICE_BUDGET_REACHED;
     struct slc_call call = {.kind = SLC_CALL_HEAP_ANSWER};
     SluiceResult result = slc_tile_heaps_add(&m->residency.heaps, &call.result, &call.heap_id);
@@ -52,8 +57,7 @@ static SluiceResult take_slot(slc_manager *m, const struct slc_managed_texture *
 {
     struct slc_node *n = slc_node_at(&m->residency, node);
     bool packed = n->level == SLC_PACKED_CLASS;
-    uint64_t kept =
-        slc_tile_heaps_reserved(&m->residency.heaps) + (scope ? owed_slots(m, n->level) : 0);
+    uint64_t kept = slc_kept_slots(m) + (scope ? owed_slots(m, n->level) : 0);
     if ((packed || m->residency.heaps.free_total > kept) &&
         slc_tile_heaps_take(&m->residency.heaps, node, &n->heap, &n->slot))
         return SLUICE_SUCCESS;
@@ -116,9 +120,11 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *s
     uint32_t left = requests_in_scope(m, scope);
     if (room > 0)
         m->starved = result == SLUICE_BUDGET_REACHED;
-    if (result == SLUICE_BUDGET_REACHED) {
-        if (!slc_evict_unwanted_for(m, left)) /* whatever the room: slots come back calls later */
-            slc_evict_wanted_for(m, walk, left);
+    /* Whatever the room: slots come back calls later. */
+    bool evicts = result == SLUICE_BUDGET_REACHED && !m->config.noEviction;
+    if (evicts || slc_surplus_slots(m)) {
+        if (!slc_evict_unwanted_for(m, evicts ? left : 0))
+            slc_evict_wanted_for(m, walk, evicts ? left : 0);
     }
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY) {
         result = SLUICE_SUCCESS; /* what was handed out stands; the next call meets it first */

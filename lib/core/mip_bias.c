@@ -113,6 +113,15 @@ static void count_round(struct slc_global_bias *b)
         b->trials = 0;
 }
 
+static void turn_off(slc_manager *m)
+{
+    if (m->bias.value == 0)
+        return;
+    m->bias.value = 0;
+    m->bias.raised = false;
+    change(m);
+}
+
 /*
  * Textures that got no map since the last change want what they did before it. After a raise that
  * is more than they will want, after a step down less: what is wanted in all is a bound that may
@@ -121,6 +130,10 @@ static void count_round(struct slc_global_bias *b)
 void slc_update_bias(slc_manager *m, uint64_t limit)
 {
     struct slc_global_bias *b = &m->bias;
+    if (m->config.noMipBias) {
+        turn_off(m);
+        return;
+    }
     uint64_t wanted = (uint64_t)m->residency.state_counts[SLUICE_TILE_STATE_REQUESTED] +
                       m->residency.state_counts[SLUICE_TILE_STATE_ALLOCATED] +
                       m->residency.state_counts[SLUICE_TILE_STATE_MAPPED] +

@@ -1,5 +1,6 @@
 #include "core/prefetch.h"
 
+#include "core/eviction.h"
 #include "core/history.h"
 #include "core/texture_tiles.h"
 #include "residency/nodes.h"
@@ -12,7 +13,7 @@ static bool may_prefetch(const slc_manager *m)
     uint32_t kept =
         m->residency.standby.count + m->residency.state_counts[SLUICE_TILE_STATE_CANCELLED];
     return kept < m->config.numExtraStandbyTiles &&
-           m->residency.heaps.free_total > slc_tile_heaps_reserved(&m->residency.heaps);
+           m->residency.heaps.free_total > slc_kept_slots(m);
 }
 
 /**

@@ -26,6 +26,7 @@ static const char *const call_names[] = {
     [SLC_CALL_GET_TILES_TO_UNMAP] = "get-tiles-to-unmap",
     [SLC_CALL_COMPLETE_RETIRE] = "complete-retire",
     [SLC_CALL_TRIM_STANDBY] = "trim-standby",
+    [SLC_CALL_EVACUATE_HEAPS] = "evacuate-heaps",
     [SLC_CALL_DEFRAGMENT] = "defragment",
     [SLC_CALL_RELEASE_HEAP] = "release-heap",
     [SLC_CALL_GET_MINMIP_UPDATES] = "get-minmip-updates",
@@ -137,6 +138,9 @@ static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManager
         add(dump, " misses=%" PRIu32 " prefetch=%" PRIu32, c->missesToForget, c->prefetchLevels);
     if (c->givenUpRetryDelay != 0 && c->givenUpRetryDelay != UINT64_MAX)
         add(dump, " given-up-retry-delay=%" PRIu64, c->givenUpRetryDelay);
+    if (c->targetHeapCount)
+        add(dump, " target-heaps=%" PRIu32, c->targetHeapCount);
+    add(dump, "%s%s", c->noEviction ? " no-eviction" : "", c->noMipBias ? " no-mip-bias" : "");
 }
 
 static void add_feedback(struct slc_dump *dump, const SluiceFeedbackDesc *f)

@@ -188,6 +188,7 @@ static SluiceResult make_simple_call(struct slc_player *player, struct slc_call 
                                           call->retire_value);
     case SLC_CALL_RETRY_FAILED: return sluiceRetryFailedTiles(m, id);
     case SLC_CALL_COMPLETE_RETIRE: return sluiceCompleteRetireValue(m, call->retire_value);
+    case SLC_CALL_EVACUATE_HEAPS: return sluiceEvacuateHeaps(m, call->keep_count);
     case SLC_CALL_TRIM_STANDBY: return sluiceTrimStandbyTiles(m, call->keep_count);
     case SLC_CALL_RELEASE_HEAP: return sluiceReleaseHeap(m, call->heap_id);
     default: return SLUICE_ERROR_INVALID_ARGUMENT;

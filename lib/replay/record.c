@@ -25,6 +25,7 @@ uint32_t slc_call_fields(uint32_t kind)
         [SLC_CALL_GET_TILES_TO_UNMAP] = SLC_FIELD_TEXTURE | SLC_FIELD_RETIRE | SLC_FIELD_LIST,
         [SLC_CALL_COMPLETE_RETIRE] = SLC_FIELD_RETIRE,
         [SLC_CALL_TRIM_STANDBY] = SLC_FIELD_KEEP,
+        [SLC_CALL_EVACUATE_HEAPS] = SLC_FIELD_KEEP,
         [SLC_CALL_DEFRAGMENT] = SLC_FIELD_RETIRE | SLC_FIELD_LIST,
         [SLC_CALL_RELEASE_HEAP] = SLC_FIELD_HEAP,
         [SLC_CALL_GET_MINMIP_UPDATES] = SLC_FIELD_LIST,
@@ -42,6 +43,9 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
 /** In place of SLC_INPUT_PRESENT: a configuration with the fields that came later. */
 #define CONFIG_WITH_MORE (SLC_INPUT_PRESENT + 1)
 #define CONFIG_WITH_RETRIES (SLC_INPUT_PRESENT + 2)
+#define CONFIG_WITH_SWITCHES (SLC_INPUT_PRESENT + 3)
+
+enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2 };
 
 /* What the managers did that could not be told: with no retryDelay, 0 means the same. */
 static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
@@ -52,11 +56,13 @@ static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
 static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManagerConfig *config)
 {
     bool more = config && (config->missesToForget || config->prefetchLevels);
-    bool retries = config && config->givenUpRetryDelay != untold_retries(config);
-    slc_put_u8(out, !config   ? SLC_INPUT_NULL
-                    : retries ? CONFIG_WITH_RETRIES
-                    : more    ? CONFIG_WITH_MORE
-                              : SLC_INPUT_PRESENT);
+    bool switches = config && (config->targetHeapCount || config->noEviction || config->noMipBias);
+    bool retries = config && (switches || config->givenUpRetryDelay != untold_retries(config));
+    slc_put_u8(out, !config    ? SLC_INPUT_NULL
+                    : switches ? CONFIG_WITH_SWITCHES
+                    : retries  ? CONFIG_WITH_RETRIES
+                    : more     ? CONFIG_WITH_MORE
+                               : SLC_INPUT_PRESENT);
     if (!config)
         return;
     slc_put_varint(out, config->numExtraStandbyTiles);
@@ -69,6 +75,11 @@ static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManager
     slc_put_varint(out, config->prefetchLevels);
     if (retries)
         slc_put_varint(out, config->givenUpRetryDelay);
+    if (!switches)
+        return;
+    slc_put_varint(out, config->targetHeapCount);
+    slc_put_u8(out, (config->noEviction ? SWITCH_NO_EVICTION : 0) |
+                        (config->noMipBias ? SWITCH_NO_MIP_BIAS : 0));
 }
 
 static void put_desc(struct slc_bytes *out, const struct slc_call *call)
@@ -197,12 +208,23 @@ static enum slc_input get_input(struct slc_cursor *in)
     return in->why ? SLC_INPUT_NULL : (enum slc_input)value;
 }
 
+static void get_switches(struct slc_cursor *in, SluiceStreamedTextureManagerConfig *config)
+{
+    config->targetHeapCount = slc_get_varint32(in);
+    size_t start = in->pos;
+    uint8_t switches = slc_get_u8(in);
+    if (switches > (SWITCH_NO_EVICTION | SWITCH_NO_MIP_BIAS))
+        slc_cursor_fail(in, start, "a configuration has unknown switches");
+    config->noEviction = switches & SWITCH_NO_EVICTION;
+    config->noMipBias = switches & SWITCH_NO_MIP_BIAS;
+}
+
 static void get_config(struct slc_cursor *in, struct slc_record *record)
 {
     size_t start = in->pos;
     uint8_t mark = slc_get_u8(in);
-    if (mark > CONFIG_WITH_RETRIES)
-        slc_cursor_fail(in, start, "a configuration's mark of presence is above 4");
+    if (mark > CONFIG_WITH_SWITCHES)
+        slc_cursor_fail(in, start, "a configuration's mark of presence is above 5");
     if (in->why || mark == SLC_INPUT_NULL)
         return;
     record->config.numExtraStandbyTiles = slc_get_varint32(in);
@@ -214,8 +236,10 @@ static void get_config(struct slc_cursor *in, struct slc_record *record)
         record->config.prefetchLevels = slc_get_varint32(in);
     }
     record->config.givenUpRetryDelay = untold_retries(&record->config);
-    if (mark == CONFIG_WITH_RETRIES)
+    if (mark >= CONFIG_WITH_RETRIES)
         record->config.givenUpRetryDelay = slc_get_varint(in);
+    if (mark == CONFIG_WITH_SWITCHES)
+        get_switches(in, &record->config);
     record->call.config = &record->config;
 }
 

@@ -38,7 +38,9 @@ static void write_configuration(SluiceRecorder *recorder,
         config->maxHeapCount != none.maxHeapCount ||
         config->maxLoadAttempts != none.maxLoadAttempts || config->retryDelay != none.retryDelay ||
         config->missesToForget != none.missesToForget ||
-        config->prefetchLevels != none.prefetchLevels)
+        config->prefetchLevels != none.prefetchLevels ||
+        config->givenUpRetryDelay != none.givenUpRetryDelay || config->targetHeapCount ||
+        config->noEviction || config->noMipBias)
         notify(recorder, manager,
                &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});
 }

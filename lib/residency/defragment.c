@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "residency/node.h"
+#include "residency/node_list.h"
 #include "residency/nodes.h"
 
 #include <stdlib.h>
@@ -36,6 +37,18 @@ static bool has_only_movable_tiles(const struct slc_machine *r, uint32_t heap)
     return true;
 }
 
+static bool has_only_evictable_tiles(const struct slc_machine *r, uint32_t heap)
+{
+    for (uint32_t slot = 0; slot < r->heaps.capacity; slot++) {
+        uint32_t node = r->heaps.heaps[heap].nodes[slot];
+        bool stays = node && slc_node_at(r, node)->level == SLC_PACKED_CLASS &&
+                     slc_node_at(r, node)->state != SLC_NODE_RETIRING;
+        if (stays || (node && !is_movable(r, node)))
+            return false;
+    }
+    return true;
+}
+
 /* Surveys ----------------------------------------------------------------------------------- */
 
 enum standing {
@@ -57,6 +70,7 @@ struct survey {
     uint32_t level;     ///< live tiles of the heaps that are looked at now
     uint64_t room;      ///< free slots of heaps with at least so many live tiles
     uint64_t peer_room; ///< of these in heaps that stay and have no more
+    bool evicts;        ///< tiles are to be evicted: packed ones stay
     bool risen;         ///< a heap with fewer live tiles has come up to the level
 };
 
@@ -161,7 +175,9 @@ static uint32_t next_source(struct slc_machine *r, struct survey *s)
             return SLC_NONE; /* fuller heaps need more and have less */
         pop(r, s);
         uint32_t own = r->heaps.heaps[heap].free_count;
-        if (s->room - own >= live && has_only_movable_tiles(r, heap)) {
+        bool leaves =
+            s->evicts ? has_only_evictable_tiles(r, heap) : has_only_movable_tiles(r, heap);
+        if (s->room - own >= live && leaves) {
             s->room -= own;
             s->standing[heap] = STANDING_EMPTY;
             return heap;
@@ -281,6 +297,42 @@ SluiceResult slc_defragment(struct slc_machine *r, uint64_t retire_value, uint32
     if (!memory)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     make_moves(r, memory, &moves);
+    slc_free(r->cb, memory, 1, survey_size(r));
+    return SLUICE_SUCCESS;
+}
+
+/* Evictions --------------------------------------------------------------------------------- */
+
+/** False if it is evicted already, or leaves by itself. */
+static bool evict(struct slc_machine *r, uint32_t node)
+{
+    struct slc_node *n = slc_node_at(r, node);
+    if (n->state == SLUICE_TILE_STATE_MAPPED) {
+        slc_node_evict_wanted(r, node);
+        return true;
+    }
+    if (n->state != SLUICE_TILE_STATE_STANDBY || n->flags & SLC_NODE_LISTED)
+        return false;
+    slc_list_remove(r, &r->standby, node);
+    n->flags |= SLC_NODE_LISTED;
+    slc_list_append(r, &r->evicted, node);
+    return true;
+}
+
+SluiceResult slc_evacuate(struct slc_machine *r, uint32_t room)
+{
+    if (room == 0 || r->heaps.live_count < 2)
+        return SLUICE_SUCCESS;
+    void *memory = slc_alloc(r->cb, 1, survey_size(r));
+    if (!memory)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    struct survey s = begin_survey(r, memory);
+    s.evicts = true;
+    uint32_t heap = next_source(r, &s);
+    for (uint32_t slot = 0; heap != SLC_NONE && slot < r->heaps.capacity && room > 0; slot++) {
+        uint32_t node = r->heaps.heaps[heap].nodes[slot];
+        room -= node && evict(r, node);
+    }
     slc_free(r->cb, memory, 1, survey_size(r));
     return SLUICE_SUCCESS;
 }

@@ -1,4 +1,4 @@
-/** Copies that empty the least used heaps. */
+/** Copies, or evictions, that empty the least used heaps. */
 #ifndef SLC_RESIDENCY_DEFRAGMENT_H
 #define SLC_RESIDENCY_DEFRAGMENT_H
 
@@ -9,6 +9,13 @@ struct slc_move_listener {
     /** The node has another slot; it was in this one of the heap with this id. */
     void (*moved)(void *user, const struct slc_node *node, uint32_t heap_id, uint32_t slot);
 };
+
+/**
+ * Evicts at most `room` regular tiles of the least used heap that can be emptied: one that has no
+ * packed tile and no tile that is being loaded, while fuller heaps have room for its tiles.
+ * Errors: OUT_OF_HOST_MEMORY, with nothing changed.
+ */
+SluiceResult slc_evacuate(struct slc_machine *r, uint32_t room);
 
 /** Makes at most `room` moves. Errors: OUT_OF_HOST_MEMORY, with nothing changed. */
 SluiceResult slc_defragment(struct slc_machine *r, uint64_t retire_value, uint32_t room,

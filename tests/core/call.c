@@ -201,6 +201,9 @@ void call_print(FILE *file, const struct call *c)
     if (c->kind == CALL_SET_CONFIG)
         fprintf(file, " misses %" PRIu32 " prefetch %" PRIu32 " given up %" PRIu64,
                 c->config.missesToForget, c->config.prefetchLevels, c->config.givenUpRetryDelay);
+    if (c->kind == CALL_SET_CONFIG)
+        fprintf(file, " target %" PRIu32 " switches %d%d", c->config.targetHeapCount,
+                c->config.noEviction, c->config.noMipBias);
     fprintf(file, " time %" PRIu64 " timeout %" PRIu64 " retire %" PRIu64 " room %" PRIu32, c->time,
             c->timeout, c->retire, c->room);
     fprintf(file, " keep %" PRIu32 " heap %" PRIu32 " tile %" PRIu32, c->keep, c->heap, c->tile);

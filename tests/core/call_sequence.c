@@ -235,6 +235,9 @@ static void make_config(struct call_sequence *s, struct call *call)
     config->prefetchLevels = choice_below(c, 4);
     config->retryDelay = delays[choice_below(c, COUNT_OF(delays))];
     config->givenUpRetryDelay = delays[choice_below(c, COUNT_OF(delays))];
+    config->targetHeapCount = choice_once_in(c, 4) ? choice_range(c, 1, 3) : 0;
+    config->noEviction = choice_once_in(c, 8);
+    config->noMipBias = choice_once_in(c, 8);
 }
 
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)

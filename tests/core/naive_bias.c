@@ -114,6 +114,15 @@ void naive_look_at_bias(struct naive_manager *n)
 {
     SluiceStreamedTextureStatistics s;
     struct naive_bias *b = &n->bias;
+    if (n->config.noMipBias) {
+        if (b->value > 0) {
+            b->value = 0;
+            b->changes++;
+            b->looks_since_change = 0;
+            b->went_up = false;
+        }
+        return;
+    }
     const uint64_t holding = naive_count_holding(n);
     naive_statistics(n, &s);
     const uint64_t limit = wanted_limit(n);

@@ -119,7 +119,9 @@ static uint32_t list_empty_heaps(const struct naive_manager *n, const struct nai
         if (is_empty(n, &n->heaps[i]))
             heaps[empty++] = &n->heaps[i];
     qsort(heaps, empty, sizeof *heaps, compare_heap_numbers);
-    while (count < empty && free_slots - (uint64_t)(count + 1) * n->capacity >= keep)
+    const uint64_t too_many = naive_surplus(n) / n->capacity;
+    while (count < empty &&
+           (count < too_many || free_slots - (uint64_t)(count + 1) * n->capacity >= keep))
         count++;
     return count;
 }

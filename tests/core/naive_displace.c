@@ -126,7 +126,7 @@ void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, u
     naive_count_standby(n, &listed, &unlisted);
     struct looks looks = begin_looks(n);
     uint64_t coming = (uint64_t)listed + naive_count_all(n, NAIVE_SLOT_RETIRING);
-    const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
+    const uint32_t reserved = naive_kept(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
     for (; free_slots + coming < reserved; coming++) {
         struct naive_tile *tile = finest_mapped(n, SLUICE_MAX_MIP_LEVELS);
         if (!tile)

@@ -101,14 +101,20 @@ static bool hand_out(struct naive_manager *n, struct naive_texture *t, struct na
 
 static bool slot_for(struct naive_manager *n, bool packed)
 {
-    return naive_count_all(n, NAIVE_SLOT_FREE) > (packed ? 0 : naive_reserved(n));
+    return naive_count_all(n, NAIVE_SLOT_FREE) > (packed ? 0 : naive_kept(n));
+}
+
+static bool may_have_more_heaps(const struct naive_manager *n)
+{
+    const uint32_t most = n->config.maxHeapCount, target = n->config.targetHeapCount;
+    return (most == 0 || n->heap_count < most) && (target == 0 || n->heap_count < target);
 }
 
 /* Slots that a call for one texture leaves to coarser requests if there are no more heaps. */
 static uint32_t owed_slots(const struct naive_manager *n, const struct call *call,
                            const struct naive_tile *tile)
 {
-    const bool more = n->config.maxHeapCount == 0 || n->heap_count < n->config.maxHeapCount;
+    const bool more = may_have_more_heaps(n);
     if (call->texture == SLUICE_ALL_TEXTURES || tile->packed || (more && !n->heap_refused))
         return 0;
     uint32_t count, owed = 0;
@@ -125,11 +131,10 @@ static bool find_slot(struct naive_manager *n, const struct call *call,
 {
     const uint32_t owed = owed_slots(n, call, tile);
     if (slot_for(n, tile->packed) &&
-        (tile->packed || naive_count_all(n, NAIVE_SLOT_FREE) > naive_reserved(n) + owed))
+        (tile->packed || naive_count_all(n, NAIVE_SLOT_FREE) > naive_kept(n) + owed))
         return true;
     n->events[NAIVE_SLOT_OWED] += slot_for(n, tile->packed);
-    const uint32_t most = n->config.maxHeapCount;
-    if (!*refused && (most == 0 || n->heap_count < most)) {
+    if (!*refused && may_have_more_heaps(n)) {
         ask_for_heap(n, seen, out);
         *refused = n->heap_refused;
         if (!*refused)
@@ -190,7 +195,7 @@ void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32
 /* Room is left for `unserved` requests, but no slot. Returns whether a texture was forgotten. */
 static bool make_room(struct naive_manager *n, uint64_t unserved)
 {
-    const uint32_t reserved = naive_reserved(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
+    const uint32_t reserved = naive_kept(n), free_slots = naive_count_all(n, NAIVE_SLOT_FREE);
     const uint64_t needed = unserved + (reserved > free_slots ? reserved - free_slots : 0);
     const uint64_t retiring = naive_count_all(n, NAIVE_SLOT_RETIRING);
     uint32_t listed, unlisted;
@@ -347,11 +352,13 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     if (!only && n->config.prefetchLevels && out->count == count && prefetch(n, call, seen, out))
         result = SLUICE_INCOMPLETE;
     end_round(n);
-    if (stopped) {
-        if (!make_room(n, unserved))
-            naive_displace_for(n, refs + stopped_at, count - stopped_at, unserved);
-        result = SLUICE_BUDGET_REACHED;
+    const bool evicts = stopped && !n->config.noEviction;
+    if (evicts || naive_surplus(n)) {
+        if (!make_room(n, evicts ? unserved : 0))
+            naive_displace_for(n, refs + stopped_at, count - stopped_at, evicts ? unserved : 0);
     }
+    if (stopped)
+        result = SLUICE_BUDGET_REACHED;
     free(refs);
     return result;
 }

@@ -102,6 +102,17 @@ uint32_t naive_reserved(const struct naive_manager *n)
     return sixteenth < 64 ? sixteenth : 64;
 }
 
+uint32_t naive_surplus(const struct naive_manager *n)
+{
+    const uint32_t target = n->config.targetHeapCount;
+    return target > 0 && n->heap_count > target ? (n->heap_count - target) * n->capacity : 0;
+}
+
+uint32_t naive_kept(const struct naive_manager *n)
+{
+    return naive_reserved(n) + naive_surplus(n);
+}
+
 void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatistics *out)
 {
     *out = n->totals;

@@ -217,6 +217,10 @@ void naive_note_change(struct naive_manager *n, struct naive_texture *t, const u
                        bool held_before);
 /** Of all slots of living heaps. */
 uint32_t naive_reserved(const struct naive_manager *n);
+/** Slots of heaps beyond targetHeapCount. */
+uint32_t naive_surplus(const struct naive_manager *n);
+/** Both. */
+uint32_t naive_kept(const struct naive_manager *n);
 /** A tile with its texture, to be sorted. */
 struct naive_ref {
     struct naive_texture *texture;

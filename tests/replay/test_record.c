@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define KIND_COUNT 20
+#define KIND_COUNT 21
 
 static uint64_t next_random(uint64_t *seed)
 {
@@ -37,6 +37,10 @@ static void fill_inputs(struct example *e, uint64_t *seed)
     e->config.retryDelay = next_random(seed);
     e->config.missesToForget = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
     e->config.prefetchLevels = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
+    e->config.givenUpRetryDelay = next_random(seed);
+    e->config.targetHeapCount = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
+    e->config.noEviction = next_random(seed) % 4 == 0;
+    e->config.noMipBias = next_random(seed) % 4 == 0;
     e->feedback.width = 1 + next_random(seed) % 8;
     e->feedback.height = 1 + next_random(seed) % 8;
     e->feedback.mipBias = (int32_t)next_random(seed);
@@ -140,6 +144,10 @@ static void check_same(const struct example *e, struct slc_record *back)
             assert_true(a->config->retryDelay == b->config->retryDelay);
             assert_int_equal(a->config->missesToForget, b->config->missesToForget);
             assert_int_equal(a->config->prefetchLevels, b->config->prefetchLevels);
+            assert_true(a->config->givenUpRetryDelay == b->config->givenUpRetryDelay);
+            assert_int_equal(a->config->targetHeapCount, b->config->targetHeapCount);
+            assert_int_equal(a->config->noEviction, b->config->noEviction);
+            assert_int_equal(a->config->noMipBias, b->config->noMipBias);
         }
     }
     if (fields & SLC_FIELD_DESC) {

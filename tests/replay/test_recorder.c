@@ -102,6 +102,36 @@ static void recording_begins_with_what_was_configured_before(void **state)
     trace_buffer_free(&buffer);
 }
 
+static void what_changes_while_running_is_replayed(void **state)
+{
+    (void)state;
+    struct random_app app;
+    struct trace_buffer buffer;
+    SluiceRecorder *recorder;
+    const SluiceRecordWriter writer = trace_buffer_writer(&buffer);
+    random_app_init(&app, 8, false);
+    CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
+    for (uint32_t i = 0; i < 60; i++) {
+        SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = i % 20,
+                                                     .targetHeapCount = i % 4,
+                                                     .noEviction = i % 3 == 0,
+                                                     .noMipBias = i % 5 == 0};
+        random_app_run(&app, 50);
+        CHECK_OK(sluiceSetConfig(app.manager, &config));
+        CHECK_OK(sluiceEvacuateHeaps(app.manager, i));
+    }
+    CHECK_OK(sluiceEndRecording(recorder));
+
+    const SluiceReplayInfo info = {.pData = buffer.data, .size = buffer.size};
+    SluiceReplayResult replayed;
+    CHECK_OK(sluiceReplay(&info, &replayed));
+    assert_int_equal(replayed.divergedEvent, 0);
+    assert_true(replayed.decisionHash == replayed.recordedHash);
+    check_same_statistics(app.manager, &replayed.statistics);
+    random_app_finish(&app);
+    trace_buffer_free(&buffer);
+}
+
 static void file_appears_when_the_recording_ends(void **state)
 {
     (void)state;
@@ -376,6 +406,7 @@ int main(void)
         cmocka_unit_test(full_writer_ends_the_recording_and_the_manager_goes_on),
         cmocka_unit_test(recorder_without_memory_says_so_and_leaks_nothing),
         cmocka_unit_test(recording_begins_with_what_was_configured_before),
+        cmocka_unit_test(what_changes_while_running_is_replayed),
         cmocka_unit_test(file_appears_when_the_recording_ends),
         cmocka_unit_test(file_of_a_failed_recording_stays_away),
         cmocka_unit_test(second_recorder_is_refused_and_leaves_the_file_of_the_first),
