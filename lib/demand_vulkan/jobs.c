@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
 
 #include <assert.h>
@@ -76,7 +77,7 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
                                          .end = {loader, on_end}};
     if (info->failure.pfnFailed)
         create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
-    return sluiceCreateTileLoader(&create, &loader->reader);
+    return slc_create_shared_loader(loader->context, &create, &loader->reader);
 }
 
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
@@ -93,8 +94,9 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
         slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
                             &loader->jobs[i]);
     loader->free_tile_count = loader->free_other_count = tiles;
-    SluiceResult result = slc_staging_init(&loader->staging, &loader->vk, &loader->caps,
-                                           &loader->cb, tiles, loader->info.minStagingSize);
+    SluiceResult result =
+        slc_staging_init(&loader->staging, &loader->context->shared.staging, &loader->vk,
+                         &loader->caps, &loader->cb, tiles, loader->info.minStagingSize);
     return result == SLUICE_SUCCESS ? create_reader(loader) : result;
 }
 

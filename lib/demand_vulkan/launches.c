@@ -140,7 +140,7 @@ static void transfers_to_shaders(SluiceDemandLoader *loader, VkCommandBuffer com
 
 static void record_first(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
-    slc_page_views_record(&loader->views, &loader->vk, commands);
+    slc_page_pool_record_empty(loader->pages, loader->page_user, loader->launch, commands);
     slc_demand_scan_record_clear(&loader->scan, &loader->vk, commands);
     slc_compute_barrier(&loader->vk, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
@@ -168,7 +168,8 @@ static bool has_transfers(const SluiceDemandLoader *loader)
 /* Everything but the page table; how many tiles. Where nothing has changed there is no barrier. */
 static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
-    slc_page_cache_record(&loader->tiles.cache, loader->launch, loader->processed, commands);
+    slc_page_pool_record(loader->pages, loader->page_user, loader->launch, loader->processed,
+                         commands);
     loader->ranks[slot_of(loader, loader->launch)] = (struct slc_rank_run){0};
     if (!has_transfers(loader))
         return 0;
@@ -223,7 +224,7 @@ SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuff
                                     .signalValue = launch,
                                     .tileCount = record_transfers(loader, commandBuffer)};
     pLaunch->descriptorSet = slc_descriptors_update(&loader->descriptors, &loader->vk,
-                                                    slot_of(loader, launch), &loader->views);
+                                                    slot_of(loader, launch), &loader->pages->views);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;
 }
@@ -266,7 +267,7 @@ static SluiceResult put_back(SluiceDemandLoader *loader, uint64_t launch)
         put_ranks_back(loader, i);
     }
     loader->cleared &= loader->cleared_launch < launch;
-    slc_page_cache_abandon(&loader->tiles.cache, launch);
+    slc_page_pool_abandon(loader->pages, loader->page_user, launch);
     slc_uploads_abandon(loader, launch);
     slc_table_mirror_abandon(&loader->table, launch);
     slc_table_mirror_abandon(&loader->levels, launch);

@@ -7,6 +7,7 @@
 #include "vulkan/create_checks.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/region_arena.h"
+#include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
 #include "vulkan/submitted_work.h"
 
@@ -202,11 +203,14 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
 
 static SluiceResult create_memory(SluiceDemandLoader *loader)
 {
-    SluiceResult result = slc_page_views_init(&loader->views, &loader->vk, &loader->caps,
-                                              &loader->cb, loader->info.maxPageChunkCount);
+    SluiceResult result =
+        slc_use_pages(loader->context, loader->info.maxPageChunkCount, &loader->pages);
     if (result == SLUICE_SUCCESS)
-        result = slc_tile_memory_init(&loader->tiles, &loader->vk, &loader->caps, &loader->cb,
-                                      &loader->views, loader->info.memoryBudget);
+        result = slc_page_pool_add_user(loader->pages, loader->semaphore, loader->info.memoryBudget,
+                                        &loader->page_user);
+    if (result == SLUICE_SUCCESS)
+        slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
+                             loader->info.memoryBudget);
     return result;
 }
 
@@ -224,7 +228,7 @@ static void fill_buffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *
 static SluiceResult create_descriptors(SluiceDemandLoader *loader)
 {
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_DEMAND_BINDING_BUFFER_COUNT,
-                                               .page_count = loader->views.count,
+                                               .page_count = loader->pages->views.count,
                                                .set_count = loader->info.launchesInFlight};
     SluiceDemandBuffers buffers;
     fill_buffers(loader, &buffers);
@@ -261,6 +265,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->vk.memory_use = &loader->memory_use;
     loader->caps = context->caps;
     loader->info = *info;
+    loader->page_user = SLC_MAX_PAGE_USERS;
     loader->texture_high = 1; /* 0 is no texture's */
     loader->free_texture = loader->first_buried_texture = SLC_NONE;
     loader->free_image = loader->first_buried_image = loader->first_refresh = SLC_NONE;
@@ -313,8 +318,9 @@ static void destroy_device_parts(SluiceDemandLoader *loader)
     slc_descriptors_finish(&loader->descriptors, &loader->vk);
     slc_page_directory_finish(&loader->directory);
     slc_demand_scan_finish(&loader->scan, &loader->vk);
-    slc_tile_memory_finish(&loader->tiles);
-    slc_page_views_finish(&loader->views, &loader->vk, &loader->cb);
+    if (loader->page_user < SLC_MAX_PAGE_USERS)
+        slc_page_pool_remove_user(loader->pages, loader->page_user);
+    slc_drop_pages(loader->context, loader->pages);
     slc_buffer_finish(&loader->table_buffer, &loader->vk);
     slc_buffer_finish(&loader->levels_buffer, &loader->vk);
     loader->vk.DestroySemaphore(loader->vk.device, loader->semaphore, NULL);
@@ -332,9 +338,9 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_demand_textures_finish(loader);
     slc_preloads_finish(loader);
     slc_retries_finish(loader);
-    sluiceDestroyTileLoader(loader->reader);
+    slc_destroy_shared_loader(loader->context, loader->reader);
     slc_jobs_finish(loader);
-    slc_residency_destroy(loader->residency); /* gives its places back */
+    slc_residency_destroy(loader->residency);
     slc_page_space_destroy(loader->space);
     destroy_device_parts(loader);
     slc_table_mirror_finish(&loader->table);
@@ -369,7 +375,7 @@ SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkan
 {
     if (!loader || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_page_views *views = &loader->views;
+    const struct slc_page_views *views = &loader->pages->views;
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,
@@ -389,11 +395,12 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     pStatistics->virtualPageCount = slc_page_space_used(loader->space);
     pStatistics->residentTileCount = tiles.resident;
     pStatistics->residentResourcePageCount = loader->held_count;
-    pStatistics->tileMemorySize = loader->tiles.cache.memory.total_size;
-    pStatistics->deviceMemorySize = loader->memory_use.device;
+    struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);
+    pStatistics->tileMemorySize = pool.tile_memory_size;
+    pStatistics->deviceMemorySize = loader->memory_use.device + pool.device_memory_size;
     pStatistics->hostVisibleMemorySize = loader->memory_use.host;
-    pStatistics->pageChunkCount = loader->tiles.cache.chunk_count;
-    pStatistics->pageChunkShortages = loader->tiles.cache.shortages;
+    pStatistics->pageChunkCount = pool.chunk_count;
+    pStatistics->pageChunkShortages = pool.shortages;
     pStatistics->lodBias = slc_residency_lod_bias(loader->residency);
     pthread_mutex_lock(&loader->tickets.mutex);
     memcpy(pStatistics->latencyHistogram, loader->tickets.latency,

@@ -213,7 +213,8 @@ struct SluiceDemandLoader {
     bool usable[SLUICE_FORMAT_COUNT]; ///< formats that the device samples and filters
     VkSemaphore semaphore;
 
-    struct slc_page_views views;
+    struct slc_page_pool *pages; ///< of the context; NULL: not yet
+    uint32_t page_user;          ///< of these; SLC_MAX_PAGE_USERS: not yet
     struct slc_tile_memory tiles;
     struct slc_descriptors descriptors; ///< a set per launch in flight
     struct slc_buffer table_buffer, levels_buffer;

@@ -4,46 +4,37 @@
 
 #include <sluice/shared/texture_table.h>
 
-SluiceResult slc_tile_memory_init(struct slc_tile_memory *memory, const struct slc_vk *vk,
-                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
-                                  struct slc_page_views *views, uint64_t budget)
+void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
+                          uint64_t budget)
 {
-    uint64_t most = slc_page_chunks_capacity(views->count, caps->max_image_array_layers);
+    uint64_t most = slc_page_chunks_capacity(pool->views.count, pool->caps->max_image_array_layers);
     uint64_t limit = budget / SLC_TILE_SIZE;
-    *memory = (struct slc_tile_memory){.limit = limit < most ? limit : most};
-    SluiceResult result = slc_page_cache_init(&memory->cache, vk, caps, cb, views);
-    memory->cache.max_size = budget;
-    return result;
-}
-
-void slc_tile_memory_finish(struct slc_tile_memory *memory)
-{
-    slc_page_cache_finish(&memory->cache);
-    *memory = (struct slc_tile_memory){0};
+    *memory =
+        (struct slc_tile_memory){.pool = pool, .user = user, .limit = limit < most ? limit : most};
 }
 
 static uint32_t take(void *user, uint32_t kind)
 {
     struct slc_tile_memory *memory = user;
-    uint32_t place = slc_page_cache_take(&memory->cache, (SluiceFormat)kind);
+    uint32_t place = slc_page_pool_take(memory->pool, memory->user, (SluiceFormat)kind);
     if (place != SLUICE_PAGE_NONE)
         return place;
     memory->short_of = true;
     memory->wanted = kind;
-    memory->cache.hurry = true; /* what is empty may go to another format */
+    slc_page_pool_hurry(memory->pool); /* what is empty may go to another format */
     return SLC_NO_PLACE;
 }
 
 static void give(void *user, uint32_t place, uint32_t page)
 {
     struct slc_tile_memory *memory = user;
-    slc_page_cache_give(&memory->cache, place, page);
+    slc_page_pool_give(memory->pool, memory->user, place, page);
 }
 
 static bool retake(void *user, uint32_t place, uint32_t page)
 {
     struct slc_tile_memory *memory = user;
-    return slc_page_cache_retake(&memory->cache, place, page);
+    return slc_page_pool_retake(memory->pool, memory->user, place, page);
 }
 
 struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory)
@@ -53,7 +44,6 @@ struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory)
 
 uint64_t slc_tile_memory_limit(const struct slc_tile_memory *memory)
 {
-    uint64_t there = slc_page_cache_layer_count(&memory->cache);
-    uint64_t more = slc_page_cache_room(&memory->cache);
-    return there + more < memory->limit ? there + more : memory->limit;
+    uint64_t capacity = slc_page_pool_capacity(memory->pool, memory->user);
+    return capacity < memory->limit ? capacity : memory->limit;
 }

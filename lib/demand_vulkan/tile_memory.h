@@ -5,20 +5,19 @@
 #define SLC_DEMAND_VULKAN_TILE_MEMORY_H
 
 #include "demand/page_residency.h"
-#include "vulkan/page_cache.h"
+#include "vulkan/page_pool.h"
 
 struct slc_tile_memory {
-    struct slc_page_cache cache;
-    uint64_t limit;  ///< tiles that the budget and the chunks hold
-    bool short_of;   ///< a place was asked for and not there since the last look
-    uint32_t wanted; ///< the format it was asked for
+    struct slc_page_pool *pool; ///< borrowed
+    uint32_t user;              ///< of the pool
+    uint64_t limit;             ///< tiles that the budget and the chunks hold
+    bool short_of;              ///< a place was asked for and not there since the last look
+    uint32_t wanted;            ///< the format it was asked for
 };
 
-/** `budget`: bytes. Errors: OUT_OF_HOST_MEMORY. */
-SluiceResult slc_tile_memory_init(struct slc_tile_memory *memory, const struct slc_vk *vk,
-                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
-                                  struct slc_page_views *views, uint64_t budget);
-void slc_tile_memory_finish(struct slc_tile_memory *memory);
+/** `user` of the pool was added with `budget`, bytes. */
+void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
+                          uint64_t budget);
 
 /** For slc_residency_set_class: the kind of a page is its format. */
 struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory);

@@ -68,7 +68,7 @@ static uint32_t round_up(uint32_t size, uint32_t to)
 static void add(struct copies *c, const struct slc_demand_job *job,
                 const struct slc_tile_part *part)
 {
-    VkImage target = slc_page_image(&c->loader->tiles.cache, job->place);
+    VkImage target = slc_page_image(c->loader->pages, job->place);
     uint32_t block = job->image->blocks ? 4 : 1;
     uint32_t slot = slc_job_index(c->loader, job);
     VkBuffer source = slc_staging_buffer(&c->loader->staging, slot);

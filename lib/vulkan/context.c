@@ -39,6 +39,8 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         return result;
     slc_caps_init(&context->caps, &context->vk);
     context->sparse_queue = info->sparseQueue;
+    pthread_mutex_init(&context->shared.mutex, NULL);
+    slc_staging_group_init(&context->shared.staging);
     atomic_init(&context->child_count, 0);
     return SLUICE_SUCCESS;
 }
@@ -82,6 +84,8 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
         return;
     }
     SluiceAllocationCallbacks cb = context->cb;
+    slc_staging_group_finish(&context->shared.staging);
+    pthread_mutex_destroy(&context->shared.mutex);
     slc_free(&cb, context, 1, sizeof *context);
 }
 

@@ -136,7 +136,7 @@ static void barrier_after(SluiceVulkanStreamer *s, VkCommandBuffer commands,
 
 static void clear_buffers(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
-    slc_page_views_record(&s->page_views, &s->vk, commands);
+    slc_page_pool_record_empty(s->pages, s->page_user, s->frame, commands);
     s->vk.CmdFillBuffer(commands, s->feedback.buffer, 0, VK_WHOLE_SIZE,
                         slc_feedback_clear_value(s));
     s->vk.CmdFillBuffer(commands, s->min_mip.buffer, 0, VK_WHOLE_SIZE, 0xFFFFFFFFu);
@@ -153,6 +153,7 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
         clear_buffers(s, commands);
         s->cleared_frame = s->frame;
     }
+    slc_page_pool_record(s->pages, s->page_user, s->frame, s->completed_frame, commands);
     if (residency->record_begin)
         residency->record_begin(s->residency, s->frame, commands);
     slc_textures_record_new(s, commands);
@@ -218,7 +219,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         return result;
     }
     pFrame->descriptorSet =
-        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, &s->page_views);
+        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, &s->pages->views);
     return SLUICE_SUCCESS;
 }
 
@@ -284,6 +285,7 @@ SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
     slc_loads_abandon(s, frame);
     slc_min_mip_abandon(s, frame);
     slc_feedback_abandon(s, frame);
+    slc_page_pool_abandon(s->pages, s->page_user, frame);
     if (s->residency->interface->abandon)
         s->residency->interface->abandon(s->residency, frame);
     return SLUICE_SUCCESS;

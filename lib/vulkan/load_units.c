@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "vulkan/shared_parts.h"
 
 #include <assert.h>
 #include <string.h>
@@ -108,7 +109,8 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_staging_init(&s->staging, &s->vk, &s->caps, &s->cb, count, s->info.minStagingSize);
+    result = slc_staging_init(&s->staging, &s->context->shared.staging, &s->vk, &s->caps, &s->cb,
+                              count, s->info.minStagingSize);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
@@ -117,12 +119,13 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
                                          .retry = s->info.readRetry,
                                          .maxReadsPerSource = s->info.maxReadsPerSource,
                                          .maxSourceCount = s->info.maxTextureCount};
-    return sluiceCreateTileLoader(&loader, &s->loader);
+    return slc_create_shared_loader(s->context, &loader, &s->loader);
 }
 
 void slc_loads_finish(SluiceVulkanStreamer *s)
 {
-    sluiceDestroyTileLoader(s->loader); /* first: its threads write into the staging slots */
+    slc_destroy_shared_loader(s->context,
+                              s->loader); /* first: its threads write into the staging slots */
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
     slc_deferred_tiles_finish(&s->deferred, &s->cb);

@@ -32,3 +32,12 @@ void slc_memory_free(const struct slc_vk *vk, VkDeviceMemory memory, uint64_t si
     assert(*counter(vk, kind) >= size);
     *counter(vk, kind) -= size;
 }
+
+void slc_memory_move(const struct slc_vk *from, const struct slc_vk *to, uint64_t size,
+                     enum slc_memory_kind kind)
+{
+    if (from->memory_use)
+        *counter(from, kind) -= size;
+    if (to->memory_use)
+        *counter(to, kind) += size;
+}

@@ -18,4 +18,8 @@ VkResult slc_memory_allocate(const struct slc_vk *vk, uint64_t size, uint32_t ty
 void slc_memory_free(const struct slc_vk *vk, VkDeviceMemory memory, uint64_t size,
                      enum slc_memory_kind kind);
 
+/** Memory that `from` counts is counted by `to` from now on. */
+void slc_memory_move(const struct slc_vk *from, const struct slc_vk *to, uint64_t size,
+                     enum slc_memory_kind kind);
+
 #endif /* SLC_VULKAN_MEMORY_H */

@@ -96,5 +96,11 @@ void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands
 void slc_page_views_record(const struct slc_page_views *views, const struct slc_vk *vk,
                            VkCommandBuffer commands)
 {
+    /* Several front ends may do this before any of them is over. */
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+                              .dstAccessMask = VK_ACCESS_MEMORY_WRITE_BIT};
+    vk->CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &memory, 0, NULL, 0, NULL);
     slc_record_general_layout(vk, commands, views->image.image);
 }

@@ -21,7 +21,7 @@
 
 #include "vulkan/caps.h"
 
-struct slc_page_views;
+struct slc_page_pool;
 struct slc_residency;
 
 /** The image of one streamed texture. */
@@ -126,7 +126,8 @@ struct slc_residency_create_info {
     uint32_t max_changes;       ///< maps and unmaps per frame
     uint32_t max_touched_tiles; ///< 0: no limit
     uint32_t max_region_count;
-    struct slc_page_views *page_views; ///< where pages are shown
+    struct slc_page_pool *pages; ///< borrowed
+    uint32_t page_user;          ///< of these
 };
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,

@@ -1,5 +1,5 @@
 /*
- * Residency by a page table that shaders read: tiles are layers of array images (page_cache.h), and
+ * Residency by a page table that shaders read: tiles are layers of array images (page_pool.h), and
  * a table in a storage buffer says which. The packed levels are an ordinary image of their own.
  *
  * Nothing has to be waited for: copies and stores to the table are recorded behind a barrier on the
@@ -11,7 +11,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "vulkan/buffer.h"
-#include "vulkan/page_cache.h"
+#include "vulkan/page_pool.h"
 #include "vulkan/sparse_layout.h"
 
 #include <sluice/shared/texture_table.h>
@@ -54,9 +54,10 @@ struct paged_residency {
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     struct slc_image_memory memory; ///< of tails
-    struct slc_page_cache cache;
-    struct paged_image *images; ///< owned
-    uint32_t *new_images;       ///< owned; whose part of the table is not written yet
+    struct slc_page_pool *pool;     ///< borrowed
+    uint32_t user;                  ///< of the pool
+    struct paged_image *images;     ///< owned
+    uint32_t *new_images;           ///< owned; whose part of the table is not written yet
     uint32_t new_image_count, max_image_count;
 
     struct slc_buffer table;
@@ -77,10 +78,11 @@ static struct paged_residency *paged(struct slc_residency *residency)
 
 static void count_memory(struct paged_residency *p)
 {
+    struct slc_page_pool_counts pool = slc_page_pool_get_counts(p->pool);
     p->base.counters.device_memory_size =
-        p->memory.total_size + p->cache.memory.total_size + p->table.size;
-    p->base.counters.page_chunks = p->cache.chunk_count;
-    p->base.counters.page_chunk_shortages = p->cache.shortages;
+        p->memory.total_size + pool.tile_memory_size + p->table.size;
+    p->base.counters.page_chunks = pool.chunk_count;
+    p->base.counters.page_chunk_shortages = pool.shortages;
 }
 
 static uint32_t level_width(const SluiceStreamedTextureDesc *desc, uint32_t level)
@@ -132,7 +134,8 @@ static void give_words(struct paged_residency *p, const struct paged_image *imag
 {
     for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
         if (is_taken(p->pages[image->first_word + i]))
-            slc_page_cache_give(&p->cache, page_of(p->pages[image->first_word + i]), SLC_NO_OWNER);
+            slc_page_pool_give(p->pool, p->user, page_of(p->pages[image->first_word + i]),
+                               SLC_NO_OWNER);
     if (image->word_count)
         slc_region_arena_give(&p->arena, image->first_word, image->word_count);
 }
@@ -215,11 +218,11 @@ static bool image_is_idle(const struct slc_residency *residency, uint32_t index)
 static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size, uint32_t *heap_id)
 {
     struct paged_residency *p = paged(residency);
-    if (slc_page_cache_is_refused(&p->cache) || size > slc_device_memory_size(p->caps))
+    if (slc_page_pool_is_refused(p->pool) || size > slc_device_memory_size(p->caps))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     /* After a refusal slots must not run ahead of the pages that there are. */
     uint64_t slots = p->heap_count * (size / SLC_TILE_SIZE);
-    if (p->cache.refused_frame && slots > slc_page_cache_layer_count(&p->cache))
+    if (slc_page_pool_was_refused(p->pool) && slots > slc_page_pool_present(p->pool, p->user))
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
     *heap_id = p->next_heap++;
     p->heap_count++;
@@ -235,7 +238,7 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
 static uint32_t page_room(const struct slc_residency *residency, uint32_t index)
 {
     const struct paged_residency *p = (const struct paged_residency *)residency;
-    return slc_page_cache_free_count(&p->cache, p->images[index].format);
+    return slc_page_pool_free_count(p->pool, p->user, p->images[index].format);
 }
 
 static SluiceResult update(struct slc_residency *residency, uint64_t frame,
@@ -254,7 +257,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
         return SLUICE_SUCCESS; /* the packed levels have their own image */
     uint32_t *page = &p->pages[tile_word(image, tile->mipLevel, tile->x, tile->y)];
     assert(!is_taken(*page));
-    *page = slc_page_cache_take(&p->cache, image->format);
+    *page = slc_page_pool_take(p->pool, p->user, image->format);
     count_memory(p);
     return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
 }
@@ -281,7 +284,7 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
     assert(is_taken(p->pages[word]));
     uint32_t page = page_of(p->pages[word]);
-    slc_page_cache_give(&p->cache, page, filled ? word : SLC_NO_OWNER);
+    slc_page_pool_give(p->pool, p->user, page, filled ? word : SLC_NO_OWNER);
     p->pages[word] = filled ? page | PAGE_GIVEN : SLUICE_PAGE_NONE;
     store(p, image, word);
 }
@@ -295,7 +298,7 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
     if (p->pages[word] == SLUICE_PAGE_NONE)
         return false;
     uint32_t page = page_of(p->pages[word]);
-    bool there = slc_page_cache_retake(&p->cache, page, word);
+    bool there = slc_page_pool_retake(p->pool, p->user, page, word);
     p->pages[word] = there ? page | PAGE_SHOWN : SLUICE_PAGE_NONE;
     if (there)
         store(p, &p->images[index], word);
@@ -398,7 +401,6 @@ static void record_lost(struct paged_residency *p, uint64_t frame, VkCommandBuff
 static void record_begin(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands)
 {
     struct paged_residency *p = paged(residency);
-    slc_page_cache_record(&p->cache, frame, p->completed_frame, commands);
     for (uint32_t i = 0; i < p->new_image_count; i++) {
         struct paged_image *image = &p->images[p->new_images[i]];
         record_header(p, image, commands);
@@ -415,7 +417,6 @@ static void record_begin(struct slc_residency *residency, uint64_t frame, VkComm
 static void abandon(struct slc_residency *residency, uint64_t frame)
 {
     struct paged_residency *p = paged(residency);
-    slc_page_cache_abandon(&p->cache, frame);
     for (uint32_t i = 0; i < p->max_image_count; i++) {
         struct paged_image *image = &p->images[i];
         if (image->recorded_frame >= frame) {
@@ -456,7 +457,7 @@ static VkImage place_copy(struct paged_residency *p, struct paged_image *image,
     copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
     copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
     store(p, image, word);
-    return slc_page_image(&p->cache, page);
+    return slc_page_image(p->pool, page);
 }
 
 static void record_uploads(struct slc_residency *residency, uint32_t index,
@@ -535,7 +536,6 @@ static void destroy(struct slc_residency *residency)
         for (uint32_t i = 0; i < p->max_image_count; i++)
             slc_plain_image_destroy(&p->images[i].own_tail, &p->memory, p->vk, cb);
     slc_image_memory_finish(&p->memory, cb);
-    slc_page_cache_finish(&p->cache);
     slc_buffer_finish(&p->table, p->vk);
     slc_free(cb, p->stores, p->store_capacity, sizeof *p->stores);
     slc_free(cb, p->pages, p->arena.size, sizeof *p->pages);
@@ -607,9 +607,9 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->vk = info->vk;
     p->caps = info->caps;
     p->cb = info->cb;
+    p->pool = info->pages;
+    p->user = info->page_user;
     SluiceResult result = create_arrays(p, info);
-    if (result == SLUICE_SUCCESS)
-        result = slc_page_cache_init(&p->cache, p->vk, p->caps, p->cb, info->page_views);
     if (result == SLUICE_SUCCESS)
         result =
             slc_buffer_init(&p->table, p->vk, p->caps, (uint64_t)p->arena.size * 4,

@@ -3,11 +3,16 @@
  * blocks are kept from the start. The others are made when a slot of theirs is first needed, and
  * freed when all of their slots are idle for a while. The user chooses slots, and should prefer
  * those that were used last.
+ *
+ * The staging memories of a group share blocks: one that needs a block takes an idle one from
+ * another before it allocates. The blocks that are kept from the start are never taken.
  */
 #ifndef SLC_VULKAN_STAGING_H
 #define SLC_VULKAN_STAGING_H
 
 #include "vulkan/buffer.h"
+
+#include <pthread.h>
 
 #define SLC_STAGING_BLOCK_SLOTS 64u
 
@@ -17,7 +22,16 @@ struct slc_staging_block {
     uint64_t idle_since;      ///< tick of slc_staging_trim
 };
 
+struct slc_staging;
+
+struct slc_staging_group {
+    pthread_mutex_t mutex; ///< around the blocks of all members
+    struct slc_staging *first;
+};
+
 struct slc_staging {
+    struct slc_staging_group *group; ///< borrowed
+    struct slc_staging *next;        ///< of the group
     const struct slc_vk *vk;
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
@@ -28,13 +42,19 @@ struct slc_staging {
     bool refused; ///< since the last tick: the device is not asked again before the next
 };
 
+void slc_staging_group_init(struct slc_staging_group *group);
+/** It has no members. */
+void slc_staging_group_finish(struct slc_staging_group *group);
+
 /**
  * Makes blocks for `kept_size` bytes: at least one, at most all. Errors: OUT_OF_HOST_MEMORY,
  * OUT_OF_DEVICE_MEMORY, VULKAN; finish it then, too.
  */
-SluiceResult slc_staging_init(struct slc_staging *staging, const struct slc_vk *vk,
-                              const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
-                              uint32_t slot_count, uint64_t kept_size);
+SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_group *group,
+                              const struct slc_vk *vk, const struct slc_caps *caps,
+                              const SluiceAllocationCallbacks *cb, uint32_t slot_count,
+                              uint64_t kept_size);
+/** Threads no longer write into it and the GPU no longer reads it. */
 void slc_staging_finish(struct slc_staging *staging);
 
 /** Whether a slot has memory. */

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "vulkan/around.h"
 #include "vulkan/create_checks.h"
+#include "vulkan/shared_parts.h"
 #include "vulkan/submitted_work.h"
 
 #include <sluice/shared/bindings.h>
@@ -99,12 +100,9 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
         .max_touched_tiles =
             s->info.maxTouchedTiles ? s->info.maxTouchedTiles : s->caps.public.maxTouchedTiles,
         .max_region_count = s->info.maxRegionCount,
-        .page_views = &s->page_views,
+        .pages = s->pages,
+        .page_user = s->page_user,
     };
-    result =
-        slc_page_views_init(&s->page_views, &s->vk, &s->caps, &s->cb, s->info.maxPageChunkCount);
-    if (result != SLUICE_SUCCESS)
-        return result;
     switch (s->info.residencyMode) {
     case SLUICE_RESIDENCY_MODE_PAGED: return slc_create_paged_residency(&info, &s->residency);
     case SLUICE_RESIDENCY_MODE_DENSE: return slc_create_dense_residency(&info, &s->residency);
@@ -252,7 +250,7 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
 {
     bool paged = s->info.residencyMode == SLUICE_RESIDENCY_MODE_PAGED;
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_BINDING_BUFFER_COUNT,
-                                               .page_count = paged ? s->page_views.count : 1,
+                                               .page_count = paged ? s->pages->views.count : 1,
                                                .set_count = s->info.framesInFlight};
     SluiceVulkanBuffers buffers;
     fill_buffers(s, &buffers);
@@ -275,9 +273,13 @@ static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
 
 static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
 {
-    SluiceResult result = create_residency(s);
+    SluiceResult result = create_semaphore(s);
     if (result == SLUICE_SUCCESS)
-        result = create_semaphore(s);
+        result = slc_use_pages(s->context, s->info.maxPageChunkCount, &s->pages);
+    if (result == SLUICE_SUCCESS)
+        result = slc_page_pool_add_user(s->pages, s->semaphore, 0, &s->page_user);
+    if (result == SLUICE_SUCCESS)
+        result = create_residency(s);
     if (result == SLUICE_SUCCESS)
         result = create_buffers(s);
     if (result == SLUICE_SUCCESS)
@@ -312,6 +314,7 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->vk.memory_use = &s->memory_use;
     s->caps = context->caps;
     s->info = info;
+    s->page_user = SLC_MAX_PAGE_USERS;
     s->time_check.on = pCreateInfo->timeStampsPerSecond == 0;
     result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
@@ -377,10 +380,12 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     slc_buffer_finish(&s->feedback_turns, &s->vk);
     slc_buffer_finish(&s->feedback, &s->vk);
     slc_buffer_finish(&s->texture_table, &s->vk);
-    s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
     if (s->residency)
         s->residency->interface->destroy(s->residency);
-    slc_page_views_finish(&s->page_views, &s->vk, &s->cb);
+    if (s->page_user < SLC_MAX_PAGE_USERS)
+        slc_page_pool_remove_user(s->pages, s->page_user);
+    slc_drop_pages(s->context, s->pages);
+    s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
 }
 
 void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
@@ -425,7 +430,7 @@ SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVu
 {
     if (!streamer || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_page_views *views = &streamer->page_views;
+    const struct slc_page_views *views = &streamer->pages->views;
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,
@@ -446,7 +451,8 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     pStatistics->unbinds = counters->unbinds;
     pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->tileMemorySize = counters->device_memory_size;
-    pStatistics->deviceMemorySize = streamer->memory_use.device;
+    pStatistics->deviceMemorySize =
+        streamer->memory_use.device + slc_page_pool_get_counts(streamer->pages).device_memory_size;
     pStatistics->hostVisibleMemorySize = streamer->memory_use.host;
     pStatistics->pageChunkCount = counters->page_chunks;
     pStatistics->pageChunkShortages = counters->page_chunk_shortages;

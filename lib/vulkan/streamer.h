@@ -12,8 +12,7 @@
 #include "vulkan/fade.h"
 #include "vulkan/feedback_map.h"
 #include "vulkan/packed_units.h"
-#include "vulkan/page_cache.h"
-#include "vulkan/page_views.h"
+#include "vulkan/page_pool.h"
 #include "vulkan/deferred_tiles.h"
 #include "vulkan/read_health.h"
 #include "vulkan/readback_ring.h"
@@ -117,7 +116,8 @@ struct SluiceVulkanStreamer {
     struct slc_vk vk;                 ///< the context's, but for memory_use
     struct slc_memory_use memory_use; ///< of vk
     struct slc_caps caps;             ///< the context's
-    struct slc_page_views page_views;
+    struct slc_page_pool *pages;      ///< of the context; NULL: not yet
+    uint32_t page_user;               ///< of these; SLC_MAX_PAGE_USERS: not yet
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;
     bool manager_locked; ///< for the application, but inside of the streamer's own calls

@@ -1,0 +1,160 @@
+/**
+ * The physical pages of a context: layers of array images, each as large as a tile. Images
+ * ("chunks") are made when pages of a format run out. They are destroyed when they have been empty
+ * for a while.
+ *
+ * Users (streamers in paged mode, demand loaders) record independently of each other: each has its
+ * own timeline of frames or launches. A page that a user gives back can be taken by the same user
+ * at once, because its own barriers order the copy behind earlier reads. Another user can take it
+ * when the last frame that could read it is complete.
+ *
+ * A page that was given back keeps its texels until it is taken again, and those that were given
+ * back longest ago are taken first: until then its last owner can have it back as it was.
+ */
+#ifndef SLC_VULKAN_PAGE_POOL_H
+#define SLC_VULKAN_PAGE_POOL_H
+
+#include "vulkan/memory.h"
+#include "vulkan/page_views.h"
+
+#include <pthread.h>
+
+#define SLC_PAGE_FORMATS 64u
+#define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
+#define SLC_MAX_PAGE_CHUNKS (1u << 10)
+#define SLC_MAX_PAGE_USERS 16u
+#define SLC_NO_OWNER UINT32_MAX
+
+enum slc_page_chunk_state {
+    SLC_CHUNK_FREE = 0,
+    SLC_CHUNK_LIVE,
+    SLC_CHUNK_RETIRING, ///< no shader of new frames sees it; waits for the others
+};
+
+struct slc_page_layer {
+    uint16_t previous, next; ///< free: in the ring
+    uint32_t owner;          ///< free: whose texels it has, SLC_NO_OWNER for nobody's
+    uint64_t value;          ///< free: the last frame of `user` that could read it; 0: none could
+    uint8_t user;            ///< that holds it, or gave it back
+    bool held;
+};
+
+struct slc_page_chunk {
+    enum slc_page_chunk_state state;
+    SluiceFormat format;
+    struct slc_plain_image image;
+    VkImageView view;
+    struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
+    uint32_t free_count, layer_count;
+    bool fresh;            ///< not yet in the layout in which it stays
+    uint8_t maker;         ///< user that puts it there; SLC_MAX_PAGE_USERS: whoever records next
+    uint64_t layout_frame; ///< of the maker, that did; 0: none yet
+    uint64_t tick;         ///< LIVE: the last in which it was not empty
+    uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: each user's last frame that sees it
+};
+
+/** One timeline. */
+struct slc_page_user {
+    VkSemaphore semaphore; ///< VK_NULL_HANDLE: the place is free
+    uint64_t recorded;     ///< the last frame that was recorded
+    uint64_t completed;
+    uint32_t held_count;  ///< pages
+    uint64_t max_size;    ///< bytes; 0: no limit of its own
+    uint64_t empty_frame; ///< that put the image of empty places into its layout; 0: none did
+};
+
+struct slc_page_pool {
+    struct slc_vk vk; ///< the context's, but for memory_use
+    struct slc_memory_use memory_use;
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    pthread_mutex_t mutex; ///< around everything below; users may be on different threads
+    bool has_mutex;
+    struct slc_page_views views;   ///< one per chunk
+    struct slc_page_chunk *chunks; ///< owned; views.count
+    struct slc_image_memory memory;
+    struct slc_page_user users[SLC_MAX_PAGE_USERS];
+    uint32_t user_count;
+    uint32_t last_chunk[SLC_PAGE_FORMATS]; ///< that a page was taken from
+    uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
+    uint32_t held_count;                   ///< pages, each once
+    bool empty_is_ready;                   ///< the image of empty places is in its layout
+    uint64_t tick;                         ///< frames recorded, of all users
+    uint64_t refused_tick; ///< the last in which the device had no memory; 0: it had some then
+    bool has_freed;        ///< a chunk has gone since then: one may be made at once
+    uint32_t max_layer_count;
+    uint64_t max_size;    ///< bytes of device memory, a hard limit; 0: none
+    uint32_t chunk_count; ///< that have an image
+    uint64_t shortages;   ///< pages that were not there because all chunks were in use
+    bool hurry;           ///< chunks that are empty are retired with the next record
+};
+
+/** After an error it can be finished. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk *vk,
+                                const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                                uint32_t chunk_count);
+/** It has no users. */
+void slc_page_pool_finish(struct slc_page_pool *pool);
+
+/** `semaphore`: timeline that the user's frames signal with their numbers. `max_size`: bytes that
+ *  the pool may allocate for the user; 0: no limit. Errors: LIMIT_EXCEEDED. */
+SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
+                                    uint64_t max_size, uint32_t *user);
+/** The user's frames are complete. Pages that it still holds are given back. */
+void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
+
+/** Pages that so many chunks hold, at most: if all are of one format. */
+uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
+
+/** Pages that the user could hold: those of all chunks, and those that chunks could still be made
+ *  for, without pages that others hold. */
+uint64_t slc_page_pool_capacity(struct slc_page_pool *pool, uint32_t user);
+/** Pages of all chunks that are in use, free ones included, without pages that others hold. */
+uint32_t slc_page_pool_present(struct slc_page_pool *pool, uint32_t user);
+
+/** The device had no memory for a chunk a short while ago. */
+bool slc_page_pool_is_refused(struct slc_page_pool *pool);
+
+/** The device had no memory for the last chunk that was asked for. */
+bool slc_page_pool_was_refused(struct slc_page_pool *pool);
+
+/** Pages of the format that the user can take now, with those that chunks can still be made for if
+ *  the pool has a limit. Without one: UINT32_MAX until the device refuses a chunk, and one more
+ * than are free later, so that the device is asked again. */
+uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
+
+/** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
+uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
+/** `owner` may ask for it again; or SLC_NO_OWNER. */
+void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
+/** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
+ *  again. */
+bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
+/** Chunks that are empty may go to another format. */
+void slc_page_pool_hurry(struct slc_page_pool *pool);
+
+/** First frame of a user: shaders may read the image of empty places from now on. */
+void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
+                                VkCommandBuffer commands);
+
+/** The image of a page that is held. */
+static inline VkImage slc_page_image(const struct slc_page_pool *pool, uint32_t page)
+{
+    return pool->chunks[page >> 16].image.image;
+}
+
+/** Begins a frame of the user: new chunks into their layout, empty ones are retired. Before
+ *  anything that `frame` copies or draws. */
+void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
+                          uint64_t completed_frame, VkCommandBuffer commands);
+/** Nothing that the user's frames from `frame` on recorded has happened. */
+void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t frame);
+
+struct slc_page_pool_counts {
+    uint64_t tile_memory_size, device_memory_size; ///< bytes; of pages, and with all else
+    uint32_t chunk_count;
+    uint64_t shortages;
+};
+struct slc_page_pool_counts slc_page_pool_get_counts(struct slc_page_pool *pool);
+
+#endif /* SLC_VULKAN_PAGE_POOL_H */

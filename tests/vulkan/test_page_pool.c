@@ -1,0 +1,215 @@
+/* Pages that users with timelines of their own share. */
+#include "vulkan/page_pool.h"
+
+#include "vulkan/context.h"
+#include "vulkan/fake_vulkan.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include "support/test.h"
+
+#define FORMAT SLUICE_FORMAT_R8G8B8A8_UNORM
+
+enum { USERS = 2, CHUNKS = 3, LAYERS = 64, NONE = SLC_MAX_PAGE_USERS };
+
+static uint64_t timelines[USERS]; ///< what the semaphores 1, 2, ... have reached
+static uint32_t layout_count;     ///< images put into their layout since it was set to 0
+static const VkCommandBuffer commands = (VkCommandBuffer)(uintptr_t)64;
+
+static VkResult VKAPI_CALL get_value(VkDevice device, VkSemaphore semaphore, uint64_t *value)
+{
+    (void)device;
+    *value = timelines[(uintptr_t)semaphore - 1];
+    return VK_SUCCESS;
+}
+
+static void VKAPI_CALL barrier(VkCommandBuffer buffer, VkPipelineStageFlags before,
+                               VkPipelineStageFlags after, VkDependencyFlags flags,
+                               uint32_t memory_count, const VkMemoryBarrier *memory,
+                               uint32_t buffer_count, const VkBufferMemoryBarrier *buffers,
+                               uint32_t image_count, const VkImageMemoryBarrier *images)
+{
+    (void)buffer, (void)before, (void)after, (void)flags, (void)memory_count, (void)memory;
+    (void)buffer_count, (void)buffers, (void)images;
+    layout_count += image_count;
+}
+
+static struct fake_vulkan fake; /* large */
+
+struct rig {
+    SluiceVulkanContext *context;
+    struct slc_page_pool pool;
+    uint32_t users[USERS];
+};
+
+static void init(struct rig *r, uint64_t max_size)
+{
+    *r = (struct rig){0};
+    fake = (struct fake_vulkan){.tail_page_count = 1, .layer_size = 65536};
+    const SluiceVulkanContextCreateInfo info = fake_vulkan_context_info(&fake);
+    CHECK_OK(sluiceCreateVulkanContext(&info, &r->context));
+    CHECK_OK(
+        slc_page_pool_init(&r->pool, &r->context->vk, &r->context->caps, &r->context->cb, CHUNKS));
+    r->pool.vk.GetSemaphoreCounterValue = get_value;
+    r->pool.vk.CmdPipelineBarrier = barrier;
+    for (uintptr_t i = 0; i < USERS; i++) {
+        timelines[i] = 0;
+        CHECK_OK(slc_page_pool_add_user(&r->pool, (VkSemaphore)(i + 1), max_size, &r->users[i]));
+    }
+}
+
+static void finish(struct rig *r)
+{
+    for (uint32_t i = 0; i < USERS; i++)
+        if (r->users[i] != NONE)
+            slc_page_pool_remove_user(&r->pool, r->users[i]);
+    slc_page_pool_finish(&r->pool);
+    sluiceDestroyVulkanContext(r->context);
+    assert_int_equal(fake.live_objects, 0);
+}
+
+static uint32_t record(struct rig *r, uint32_t user, uint64_t frame)
+{
+    layout_count = 0;
+    slc_page_pool_record(&r->pool, r->users[user], frame, timelines[user], commands);
+    return layout_count;
+}
+
+/* All pages of the first chunk, by this user, with the chunk in its layout. */
+static void take_all(struct rig *r, uint32_t user, uint32_t pages[LAYERS])
+{
+    for (uint32_t i = 0; i < LAYERS; i++) {
+        pages[i] = slc_page_pool_take(&r->pool, r->users[user], FORMAT);
+        assert_int_equal(pages[i] >> 16, 0);
+    }
+    assert_int_equal(record(r, user, 1), 1);
+    timelines[user] = 1;
+}
+
+static void a_page_of_another_user_waits_for_its_frames(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, LAYERS * 65536);
+    take_all(&r, 0, pages);
+    record(&r, 0, 2);
+    record(&r, 1, 1);
+    r.pool.max_size = LAYERS * 65536;
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), SLUICE_PAGE_NONE);
+    slc_page_pool_give(&r.pool, r.users[0], pages[5], SLC_NO_OWNER); /* frame 2 may read it */
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), SLUICE_PAGE_NONE);
+    assert_int_equal(slc_page_pool_free_count(&r.pool, r.users[1], FORMAT), 0);
+    assert_int_equal(slc_page_pool_free_count(&r.pool, r.users[0], FORMAT), 1);
+    timelines[0] = 2;
+    record(&r, 1, 2);
+    assert_int_equal(slc_page_pool_free_count(&r.pool, r.users[1], FORMAT), 1);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), pages[5]);
+    finish(&r);
+}
+
+static void a_user_takes_its_own_page_at_once(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, 0);
+    take_all(&r, 0, pages);
+    record(&r, 0, 2);
+    slc_page_pool_give(&r.pool, r.users[0], pages[9], 77);
+    assert_false(slc_page_pool_retake(&r.pool, r.users[1], pages[9], 77));
+    assert_true(slc_page_pool_retake(&r.pool, r.users[0], pages[9], 77));
+    slc_page_pool_give(&r.pool, r.users[0], pages[9], 77);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[0], FORMAT), pages[9]);
+    finish(&r);
+}
+
+static void a_new_image_belongs_to_its_maker_until_it_is_in_its_layout(void **state)
+{
+    (void)state;
+    struct rig r;
+    init(&r, 0);
+    uint32_t first = slc_page_pool_take(&r.pool, r.users[0], FORMAT);
+    uint32_t other = slc_page_pool_take(&r.pool, r.users[1], FORMAT);
+    assert_int_not_equal(first >> 16, other >> 16);
+    assert_int_equal(record(&r, 0, 1), 1); /* each user its own */
+    assert_int_equal(record(&r, 1, 1), 1);
+    slc_page_pool_abandon(&r.pool, r.users[0], 1);
+    timelines[0] = 2; /* a later frame; the abandoned one never ran */
+    slc_page_pool_give(&r.pool, r.users[1], other, SLC_NO_OWNER);
+    record(&r, 1, 2);
+    for (uint32_t i = 0; i < LAYERS; i++)
+        assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, other >> 16);
+    assert_int_equal(record(&r, 0, 3), 1);
+    timelines[0] = 3;
+    assert_int_equal(record(&r, 1, 3), 0);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, first >> 16);
+    finish(&r);
+}
+
+static void an_empty_image_goes_when_no_user_can_see_it(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, 0);
+    take_all(&r, 0, pages);
+    record(&r, 1, 1); /* frame 1 of the other user sees the image */
+    for (uint32_t i = 0; i < LAYERS; i++)
+        slc_page_pool_give(&r.pool, r.users[0], pages[i], SLC_NO_OWNER);
+    uint64_t frame = 2;
+    for (; frame < 200; frame++) {
+        timelines[0] = frame - 1;
+        record(&r, 0, frame);
+    }
+    assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
+    assert_ptr_equal(r.pool.views.views[0], r.pool.views.empty);
+    timelines[1] = 1;
+    record(&r, 0, frame);
+    assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 0);
+    finish(&r);
+}
+
+static void a_user_that_goes_gives_its_pages_back(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, 0);
+    take_all(&r, 0, pages);
+    record(&r, 1, 1);
+    slc_page_pool_remove_user(&r.pool, r.users[0]);
+    r.users[0] = NONE;
+    for (uint32_t i = 0; i < LAYERS; i++)
+        assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, 0);
+    finish(&r);
+}
+
+/* Its own limit is not what others leave of the pool's. */
+static void pages_that_others_hold_are_no_capacity(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, LAYERS * 65536); /* two users: as much again */
+    take_all(&r, 0, pages);
+    uint64_t all = slc_page_pool_capacity(&r.pool, r.users[0]);
+    assert_int_equal(all, 2 * LAYERS);
+    assert_int_equal(slc_page_pool_capacity(&r.pool, r.users[1]), all - LAYERS);
+    assert_int_equal(slc_page_pool_present(&r.pool, r.users[1]), 0);
+    assert_int_equal(slc_page_pool_present(&r.pool, r.users[0]), LAYERS);
+    finish(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_page_of_another_user_waits_for_its_frames),
+        cmocka_unit_test(a_user_takes_its_own_page_at_once),
+        cmocka_unit_test(a_new_image_belongs_to_its_maker_until_it_is_in_its_layout),
+        cmocka_unit_test(an_empty_image_goes_when_no_user_can_see_it),
+        cmocka_unit_test(a_user_that_goes_gives_its_pages_back),
+        cmocka_unit_test(pages_that_others_hold_are_no_capacity),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
