@@ -28,7 +28,11 @@ static void give_place(struct slc_demand_residency *r, uint32_t index, bool evic
 {
     struct slc_page_class *c = slc_class_of(r, index);
     struct slc_page_node *node = slc_node(r, index);
-    c->memory.give(c->memory.user, node->place, evicted ? node->page : SLC_NO_PAGE);
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_GIVE,
+                                 .place = node->place,
+                                 .page = evicted ? node->page : SLC_NO_PAGE};
+    c->memory.give(c->memory.user, call.place, call.page);
+    slc_notify_pages(r, &call);
     if (evicted)
         slc_residency_become_ghost(r, index, node->place);
     else
@@ -84,6 +88,8 @@ void slc_residency_loaded(struct slc_demand_residency *residency, uint32_t page,
     if (slc_node(residency, index)->dropped)
         slc_residency_release(residency, index, false);
     slc_residency_note(residency, index);
+    slc_notify_pages(residency, &(struct slc_page_call){
+                                    .kind = SLC_PAGE_CALL_LOADED, .page = page, .value = value});
 }
 
 void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page, bool refuse)
@@ -91,6 +97,7 @@ void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page,
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);
     assert(index != SLC_NO_NODE && slc_node(residency, index)->state == SLC_PAGE_LOADING);
     struct slc_page_node *node = slc_node(residency, index);
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_FAILED, .page = page, .flag = refuse};
     refuse = refuse && !node->dropped;
     residency->failed_loads += node->class_index == SLC_TILES;
     slc_residency_release(residency, index, false);
@@ -99,6 +106,7 @@ void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page,
         slc_class_of(residency, index)->counts.refused++;
     }
     slc_residency_note(residency, index);
+    slc_notify_pages(residency, &call);
 }
 
 static void forget(struct slc_demand_residency *r, uint32_t index)
@@ -124,7 +132,7 @@ static void forget(struct slc_demand_residency *r, uint32_t index)
     }
 }
 
-void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count)
+static void forget_range(struct slc_demand_residency *residency, uint32_t first, uint64_t count)
 {
     struct slc_page_nodes *nodes = &residency->nodes;
     if (count > nodes->end) { /* ids are many, what is kept is little */
@@ -142,11 +150,20 @@ void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first
     }
 }
 
+void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count)
+{
+    forget_range(residency, first, count);
+    slc_notify_pages(residency, &(struct slc_page_call){
+                                    .kind = SLC_PAGE_CALL_FORGET, .page = first, .count = count});
+}
+
 bool slc_residency_retry(struct slc_demand_residency *residency, uint32_t page)
 {
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_RETRY, .page = page};
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);
-    if (index == SLC_NO_NODE || slc_node(residency, index)->state != SLC_PAGE_REFUSED)
-        return false;
-    forget(residency, index);
-    return true;
+    call.answer = index != SLC_NO_NODE && slc_node(residency, index)->state == SLC_PAGE_REFUSED;
+    if (call.answer)
+        forget(residency, index);
+    slc_notify_pages(residency, &call);
+    return call.answer;
 }

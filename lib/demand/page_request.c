@@ -22,7 +22,7 @@ static void touch(struct slc_demand_residency *r, uint32_t index)
     }
 }
 
-void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
+static void use(struct slc_demand_residency *residency, uint32_t page)
 {
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);
     if (index == SLC_NO_NODE || slc_node(residency, index)->state != SLC_PAGE_RESIDENT)
@@ -33,6 +33,14 @@ void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
         residency->use.used_pinned += node->pinned;
     }
     touch(residency, index);
+}
+
+void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
+{
+    use(residency, page);
+    if (residency->observer.notify)
+        slc_notify_pages(residency,
+                         &(struct slc_page_call){.kind = SLC_PAGE_CALL_USE, .page = page});
 }
 
 /* It was asked for as any other page, and now as one that stays. */
@@ -71,6 +79,24 @@ static bool make_room(struct slc_demand_residency *r, uint32_t class_index)
     return true;
 }
 
+static uint32_t take(struct slc_demand_residency *r, const struct slc_page_memory *memory,
+                     uint32_t kind)
+{
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_TAKE, .page_kind = kind};
+    call.place = memory->take(memory->user, kind);
+    slc_notify_pages(r, &call);
+    return call.place;
+}
+
+static bool retake(struct slc_demand_residency *r, const struct slc_page_memory *memory,
+                   uint32_t place, uint32_t page)
+{
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_RETAKE, .place = place, .page = page};
+    call.answer = memory->retake(memory->user, place, page);
+    slc_notify_pages(r, &call);
+    return call.answer;
+}
+
 /* There may be memory for one kind and not for another: places of the same kind help at once,
  * others when all that lies beside them is free, too. */
 static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uint32_t pool,
@@ -81,12 +107,12 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
     *place = SLC_NO_PLACE;
     if (!c->has_memory)
         return true;
-    *place = memory->take(memory->user, r->pools[pool].kind);
+    *place = take(r, memory, r->pools[pool].kind);
     if (*place != SLC_NO_PLACE)
         return true;
     if (slc_residency_evict(r, class_index, pool) ||
         slc_residency_evict(r, class_index, SLC_NO_POOL))
-        *place = memory->take(memory->user, r->pools[pool].kind);
+        *place = take(r, memory, r->pools[pool].kind);
     else if (class_index == SLC_TILES && c->held < r->use.full_at)
         r->use.full_at = c->held;
     return *place != SLC_NO_PLACE;
@@ -178,7 +204,8 @@ static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uin
     count_missing(r, request);
     if (index != SLC_NO_NODE) { /* no ghost while others go: it could be dropped for them */
         slc_residency_leave_home(r, index);
-        old_place = slc_node(r, index)->place;
+        if (slc_node(r, index)->class_index == request->class_index)
+            old_place = slc_node(r, index)->place;
         slc_node(r, index)->place = SLC_NO_PLACE;
     }
     if (!make_room(r, request->class_index)) {
@@ -186,18 +213,16 @@ static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uin
             slc_residency_become_ghost(r, index, old_place);
         return turn_away(r, index, request);
     }
-    if (old_place != SLC_NO_PLACE && memory->retake(memory->user, old_place, request->page))
+    if (old_place != SLC_NO_PLACE && retake(r, memory, old_place, request->page))
         return restore(r, index, request, pool, old_place);
     if (!take_place(r, request->class_index, pool, &place))
         return turn_away(r, index, request);
     return load(r, index, request, pool, place);
 }
 
-enum slc_request_answer slc_residency_request(struct slc_demand_residency *residency,
-                                              const struct slc_page_request *request,
-                                              SluiceResult *result)
+static enum slc_request_answer answer(struct slc_demand_residency *r,
+                                      const struct slc_page_request *request, SluiceResult *result)
 {
-    struct slc_demand_residency *r = residency;
     assert(request->class_index < r->class_count);
     *result = SLUICE_SUCCESS;
     uint32_t index = slc_page_nodes_find(&r->nodes, request->page);
@@ -213,6 +238,18 @@ enum slc_request_answer slc_residency_request(struct slc_demand_residency *resid
     }
     r->use.requests++;
     return answer_absent(r, index, request, pool);
+}
+
+enum slc_request_answer slc_residency_request(struct slc_demand_residency *residency,
+                                              const struct slc_page_request *request,
+                                              SluiceResult *result)
+{
+    struct slc_page_call call = {.kind = SLC_PAGE_CALL_REQUEST, .request = *request};
+    residency->used = true;
+    call.request_answer = answer(residency, request, &call.result);
+    *result = call.result;
+    slc_notify_pages(residency, &call);
+    return call.request_answer;
 }
 
 uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint32_t page)

@@ -12,6 +12,7 @@ void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch
 {
     struct slc_demand_residency *r = residency;
     assert(launch > r->launch);
+    r->used = true;
     r->launch = launch;
     r->use = (struct slc_launch_use){.full_at = UINT64_MAX};
     if (!r->bias_shown && r->prepared < launch) {
@@ -26,17 +27,22 @@ void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch
         slc_residency_leave_home(r, index);
         slc_residency_enter_pool(r, index, launch - 1);
     }
+    slc_notify_pages(r, &(struct slc_page_call){.kind = SLC_PAGE_CALL_BEGIN, .launch = launch});
 }
 
 float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t launch)
 {
     assert(launch > residency->launch && launch >= residency->prepared);
+    residency->used = true;
     residency->prepared = launch;
     if (!residency->bias_shown) {
         residency->bias_shown = true;
         residency->bias_from = launch;
     }
-    return slc_residency_lod_bias(residency);
+    float bias = slc_residency_lod_bias(residency);
+    slc_notify_pages(residency, &(struct slc_page_call){
+                                    .kind = SLC_PAGE_CALL_PREPARE, .launch = launch, .bias = bias});
+    return bias;
 }
 
 void slc_residency_abandon(struct slc_demand_residency *residency, uint64_t launch)
@@ -44,6 +50,8 @@ void slc_residency_abandon(struct slc_demand_residency *residency, uint64_t laun
     assert(launch > residency->launch);
     if (residency->prepared >= launch)
         residency->prepared = launch - 1;
+    slc_notify_pages(residency,
+                     &(struct slc_page_call){.kind = SLC_PAGE_CALL_ABANDON, .launch = launch});
 }
 
 float slc_residency_lod_bias(const struct slc_demand_residency *residency)
@@ -108,15 +116,21 @@ static void lift_refusals(struct slc_demand_residency *r)
     }
 }
 
-void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing)
+static void trim_classes(struct slc_demand_residency *residency)
 {
-    decide_bias(residency, missing);
-    lift_refusals(residency);
-    if (!residency->over_limit)
-        return;
     residency->over_limit = false;
     for (uint32_t i = 0; i < residency->class_count; i++) {
         slc_residency_trim(residency, i);
         residency->over_limit |= residency->classes[i].held > residency->classes[i].limit;
     }
+}
+
+void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missing)
+{
+    decide_bias(residency, missing);
+    lift_refusals(residency);
+    if (residency->over_limit)
+        trim_classes(residency);
+    slc_notify_pages(residency,
+                     &(struct slc_page_call){.kind = SLC_PAGE_CALL_SETTLE, .value = missing});
 }

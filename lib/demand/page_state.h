@@ -3,6 +3,7 @@
 #define SLC_DEMAND_PAGE_STATE_H
 
 #include "demand/lod_bias.h"
+#include "demand/page_calls.h"
 #include "demand/page_nodes.h"
 
 #define SLC_TILES 0u /* the class that the bias is about */
@@ -41,6 +42,8 @@ struct slc_launch_use {
 
 struct slc_demand_residency {
     SluiceAllocationCallbacks cb;
+    struct slc_page_observer observer;
+    bool used; ///< see slc_residency_is_used
     bool no_eviction, no_lod_bias;
     struct slc_page_nodes nodes;
     struct slc_page_class *classes; ///< owned
@@ -70,6 +73,14 @@ static inline struct slc_page_node *slc_node(struct slc_demand_residency *r, uin
 static inline struct slc_page_class *slc_class_of(struct slc_demand_residency *r, uint32_t index)
 {
     return &r->classes[r->nodes.at[index].class_index];
+}
+
+/** Tells the observer, if there is one. */
+static inline void slc_notify_pages(const struct slc_demand_residency *r,
+                                    const struct slc_page_call *call)
+{
+    if (r->observer.notify)
+        r->observer.notify(r->observer.user, call);
 }
 
 #endif /* SLC_DEMAND_PAGE_STATE_H */
