@@ -1,6 +1,6 @@
 /**
- * Records all input of a manager and replays it. The same input gives the same decisions on every
- * machine. docs/replay.md specifies the format.
+ * Records all input of a manager or a demand loader and replays it. The same input gives the same
+ * decisions on every machine. docs/replay.md specifies the format.
  */
 #ifndef SLUICE_REPLAY_H
 #define SLUICE_REPLAY_H
@@ -82,8 +82,9 @@ SLUICE_API SluiceResult sluiceEndRecording(SluiceRecorder *recorder);
 
 /** Settings of a replay. A field of zero selects its default. */
 typedef struct SluiceReplayInfo {
-    const void *pData; ///< Whole trace: a "SLUICERT" recording or "SLTRACE1" feedback trace.
-    size_t size;       ///< Bytes of the trace.
+    /** Whole trace: a "SLUICERT" or "SLUICEDR" recording or an "SLTRACE1" feedback trace. */
+    const void *pData;
+    size_t size;                                 ///< Bytes of the trace.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;                       ///< Problems of the trace, with the byte offset.
     void *pUserData;
@@ -96,10 +97,34 @@ typedef struct SluiceReplayInfo {
     uint32_t tilesPerFrame;    ///< Most tiles answered per frame. Default: 256.
     uint32_t latency;          ///< Frames from hand-out to answer. 0: at once.
     uint64_t timeoutMicros;    ///< Microseconds. Default: 1 000 000.
-    /* For both formats: */
+    /* For all kinds: */
     /** File to record the replay into, like sluiceBeginFileRecording. May be NULL. */
     const char *pRecordPath;
 } SluiceReplayInfo;
+
+typedef enum SluiceTraceKind {
+    SLUICE_TRACE_KIND_UNKNOWN = 0,
+    SLUICE_TRACE_KIND_RECORDING = 1,       ///< "SLUICERT": calls of a manager.
+    SLUICE_TRACE_KIND_FEEDBACK = 2,        ///< "SLTRACE1": feedback for a manager.
+    SLUICE_TRACE_KIND_DEMAND_RECORDING = 3 ///< "SLUICEDR": calls of a demand loader.
+} SluiceTraceKind;
+
+/** Figures of a recording of demand loading. All classes of pages count together. Never grows. */
+typedef struct SluiceDemandReplayStatistics {
+    uint64_t launchCount;    ///< Launches that were processed.
+    uint64_t useCount;       ///< Uses of resident pages by launches.
+    uint64_t requestCount;   ///< Requests for pages.
+    uint64_t loadCount;      ///< Requests that began a read.
+    uint64_t refusalCount;   ///< Requests that were refused.
+    uint64_t postponedCount; ///< Requests that found no place.
+    uint64_t failureCount;   ///< Reads that failed.
+    uint64_t evictedCount;   ///< Pages evicted, ever.
+    uint64_t restoredCount;  ///< Pages restored without a read, ever.
+    uint64_t residentCount;  ///< Pages resident at the end.
+    uint64_t loadingCount;   ///< Pages being read at the end.
+    uint64_t refusedCount;   ///< Pages refused at the end.
+    float lodBias;           ///< In levels, at the end.
+} SluiceDemandReplayStatistics;
 
 /** Result of a replay. */
 typedef struct SluiceReplayResult {
@@ -107,14 +132,16 @@ typedef struct SluiceReplayResult {
     uint64_t recordedHash; ///< From the end mark. 0 if there is none.
     uint64_t eventCount;
     uint64_t errorOffset; ///< Byte offset of the defect, after SLUICE_ERROR_CORRUPT_DATA.
-    SluiceStreamedTextureStatistics statistics; ///< At the end of the replay.
+    SluiceStreamedTextureStatistics statistics; ///< At the end. Zero for demand loading.
     /** First call, counted from 1, whose decisions differ from the recording. 0: none. */
     uint64_t divergedEvent;
     uint64_t divergedOffset; ///< Byte offset of that call in the trace.
+    SluiceTraceKind kind;
+    SluiceDemandReplayStatistics demand; ///< At the end. Zero for the other kinds.
 } SluiceReplayResult;
 
 /**
- * Replays a trace with a manager of its own.
+ * Replays a trace with a manager of its own, or with the residency of a demand loader.
  *
  * Decisions that differ from the recording are not an error: compare decisionHash with
  * recordedHash, and see divergedEvent. After an error `*pResult` holds the decisions made before

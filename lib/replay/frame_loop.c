@@ -272,6 +272,7 @@ SluiceResult slc_play_feedback_trace(struct slc_replay *replay)
 {
     struct frame_loop loop = {.replay = replay};
     const SluiceAllocationCallbacks *cb = &replay->cb;
+    replay->out->kind = SLUICE_TRACE_KIND_FEEDBACK;
     SluiceResult result = slc_feedback_trace_open(&loop.trace, cb, replay->in);
     if (result == SLUICE_SUCCESS)
         result = slc_replay_check(replay, &loop.trace.in);

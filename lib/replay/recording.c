@@ -116,6 +116,7 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     SluiceResult result = slc_read_trace_header(replay, SLC_TRACE_VERSION, &checksum, words);
     if (result != SLUICE_SUCCESS)
         return result;
+    replay->out->kind = SLUICE_TRACE_KIND_RECORDING;
     if (words[2] > SLC_TRACE_FLAG_PACKED || words[3] != 0)
         return slc_replay_corrupt(replay, 24, "unknown flags");
     const SluiceStreamedTextureManagerCreateInfo info = {.heapTileCapacity = words[0],

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/log.h"
 #include "replay/decisions.h"
+#include "replay/demand_record.h"
 #include "replay/record.h"
 
 #include <inttypes.h>
@@ -46,15 +47,33 @@ static SluiceResult play(struct slc_replay *replay)
     const SluiceReplayInfo *info = replay->info;
     if (info->size >= 8 && memcmp(info->pData, SLC_TRACE_MAGIC, 8) == 0)
         return slc_play_recording(replay);
+    if (info->size >= 8 && memcmp(info->pData, SLC_DEMAND_TRACE_MAGIC, 8) == 0)
+        return slc_play_demand_recording(replay);
     if (info->size >= 8 && memcmp(info->pData, "SLTRACE1", 8) == 0)
         return slc_play_feedback_trace(replay);
-    return slc_replay_corrupt(replay, 0, "it begins with neither SLUICERT nor SLTRACE1");
+    return slc_replay_corrupt(replay, 0, "it begins with none of SLUICERT, SLUICEDR, SLTRACE1");
+}
+
+static SluiceResult finish_demand(struct slc_replay *replay, SluiceResult result)
+{
+    struct slc_demand_player *player = &replay->demand;
+    SluiceResult recorded = sluiceEndRecording(replay->recorder);
+    replay->out->decisionHash = player->hash;
+    replay->out->eventCount = player->event_count;
+    slc_demand_player_statistics(player, &replay->out->demand);
+    if (result == SLUICE_SUCCESS)
+        slc_dump_line(&player->dump, "hash %016" PRIx64 " events %" PRIu64, player->hash,
+                      player->event_count);
+    slc_demand_player_finish(player);
+    return result == SLUICE_SUCCESS ? recorded : result;
 }
 
 /* Also after an error: what was decided up to there is of use, and so is a recording of it. */
 static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
 {
     struct slc_player *player = &replay->player;
+    if (replay->playing_demand)
+        return finish_demand(replay, result);
     if (!replay->playing)
         return result;
     SluiceResult recorded = sluiceEndRecording(replay->recorder);

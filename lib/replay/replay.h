@@ -1,8 +1,9 @@
-/** What both kinds of traces are played with. */
+/** What all kinds of traces are played with. */
 #ifndef SLC_REPLAY_REPLAY_H
 #define SLC_REPLAY_REPLAY_H
 
 #include "replay/bytes.h"
+#include "replay/demand_player.h"
 #include "replay/player.h"
 
 #include <sluice/replay.h>
@@ -13,7 +14,10 @@ struct slc_replay {
     SluiceAllocationCallbacks cb;
     struct slc_cursor in; ///< the trace
     struct slc_player player;
-    bool playing;             ///< the player is there
+    bool playing; ///< the player is there
+    struct slc_demand_player demand;
+    bool playing_demand;      ///< that one is
+    uint32_t last_page;       ///< see slc_get_demand_record
     SluiceRecorder *recorder; ///< owned; NULL unless the run is to be recorded
 };
 
@@ -29,6 +33,9 @@ SluiceResult slc_replay_check(struct slc_replay *replay, const struct slc_cursor
 
 /** Plays a "SLUICERT" recording, from its header on. */
 SluiceResult slc_play_recording(struct slc_replay *replay);
+
+/** Plays a "SLUICEDR" recording of demand loading. */
+SluiceResult slc_play_demand_recording(struct slc_replay *replay);
 
 /** Plays an "SLTRACE1" trace in a frame loop. */
 SluiceResult slc_play_feedback_trace(struct slc_replay *replay);

@@ -3,6 +3,7 @@
  * only; each scene is a few calls that show one thing.
  */
 #include "feedback_scene.h"
+#include "golden_demand.h"
 #include "random_app.h"
 
 #include "support/test.h"
@@ -272,6 +273,7 @@ static void write_all(void **state)
     record(folder_argument, "defragment", play_defragment, 4, false);
     record_random(folder_argument);
     write_feedback_scene(folder_argument);
+    write_golden_demand(folder_argument);
 }
 
 int main(int argc, char **argv)

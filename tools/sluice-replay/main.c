@@ -1,4 +1,4 @@
-/* Plays a trace and prints what a manager decides: see --help and docs/replay.md. */
+/* Plays a trace and prints what is decided: see --help and docs/replay.md. */
 #include "expect.h"
 #include "options.h"
 #include "report.h"

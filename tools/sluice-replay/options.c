@@ -5,9 +5,9 @@
 static const char usage[] =
     "usage: sluice-replay TRACE [options]\n"
     "\n"
-    "Plays a trace of a texture manager and prints statistics and a hash over all of its\n"
-    "decisions. TRACE is a recording (SLUICERT) or a feedback trace (SLTRACE1), - the\n"
-    "standard input. Options end at --.\n";
+    "Plays a trace and prints statistics and a hash over all decisions. TRACE is a\n"
+    "recording of a texture manager (SLUICERT), of demand loading (SLUICEDR), or a\n"
+    "feedback trace (SLTRACE1); - is the standard input. Options end at --.\n";
 
 static const char notes[] =
     "Exit status: 0 all is well; 1 the trace is damaged, its decisions differ from those\n"
@@ -24,7 +24,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_TEXT, "expect", "FILE", "(none)", &o->expect,
          "compare the dump, or if FILE begins with 'hash' just that line, and name the first line "
          "that differs"},
-        {OPTION_TEXT, "record", "FILE", "(none)", &o->record, "record what is played as SLUICERT"},
+        {OPTION_TEXT, "record", "FILE", "(none)", &o->record, "record what is played"},
         option_memory(&o->memory, "host memory for trace, manager and --expect together"),
         {OPTION_SECTION,
          .help = "For SLTRACE1, which has feedback but no frame loop (see docs/replay.md)"},

@@ -1,7 +1,9 @@
 #include "report.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 struct figure {
     const char *name;
@@ -9,12 +11,12 @@ struct figure {
     const char *unit;
 };
 
-#define FIGURE_COUNT 20
+#define FIGURES_MOST 20
 
-static void get_figures(const SluiceReplayResult *result, struct figure figures[FIGURE_COUNT])
+static size_t get_manager_figures(const SluiceReplayResult *result, struct figure *figures)
 {
     const SluiceStreamedTextureStatistics *s = &result->statistics;
-    const struct figure all[FIGURE_COUNT] = {
+    const struct figure all[] = {
         {"events", result->eventCount, "calls"},
         {"textures", s->textureCount, "textures"},
         {"tiles", s->tileCount, "tiles"},
@@ -36,29 +38,66 @@ static void get_figures(const SluiceReplayResult *result, struct figure figures[
         {"restored_total", s->restoredTotal, "tiles"},
         {"moved_total", s->movedTotal, "tiles"},
     };
-    for (int i = 0; i < FIGURE_COUNT; i++)
-        figures[i] = all[i];
+    memcpy(figures, all, sizeof all);
+    return sizeof all / sizeof *all;
+}
+
+static size_t get_demand_figures(const SluiceReplayResult *result, struct figure *figures)
+{
+    const SluiceDemandReplayStatistics *s = &result->demand;
+    const struct figure all[] = {
+        {"events", result->eventCount, "calls"},
+        {"launches", s->launchCount, "launches"},
+        {"uses", s->useCount, "pages"},
+        {"requests", s->requestCount, "requests"},
+        {"loads", s->loadCount, "pages"},
+        {"refusals", s->refusalCount, "requests"},
+        {"postponed", s->postponedCount, "requests"},
+        {"failures", s->failureCount, "pages"},
+        {"evicted_total", s->evictedCount, "pages"},
+        {"restored_total", s->restoredCount, "pages"},
+        {"pages_resident", s->residentCount, "pages"},
+        {"pages_loading", s->loadingCount, "pages"},
+        {"pages_refused", s->refusedCount, "pages"},
+        {"lod_bias", (uint64_t)(4 * s->lodBias), "quarters"},
+    };
+    memcpy(figures, all, sizeof all);
+    return sizeof all / sizeof *all;
+}
+
+static size_t get_figures(const SluiceReplayResult *result, struct figure figures[FIGURES_MOST])
+{
+    return result->kind == SLUICE_TRACE_KIND_DEMAND_RECORDING
+               ? get_demand_figures(result, figures)
+               : get_manager_figures(result, figures);
+}
+
+static bool has_host_memory(const SluiceReplayResult *result)
+{
+    return result->kind != SLUICE_TRACE_KIND_DEMAND_RECORDING;
 }
 
 void print_report(const SluiceReplayResult *result)
 {
-    struct figure figures[FIGURE_COUNT];
-    get_figures(result, figures);
-    for (int i = 0; i < FIGURE_COUNT; i++)
+    struct figure figures[FIGURES_MOST];
+    size_t count = get_figures(result, figures);
+    for (size_t i = 0; i < count; i++)
         printf("%-18s %12" PRIu64 " %s\n", figures[i].name, figures[i].value, figures[i].unit);
-    printf("%-18s %12" PRIu64 " bytes\n", "host_memory", result->statistics.hostMemorySize);
+    if (has_host_memory(result))
+        printf("%-18s %12" PRIu64 " bytes\n", "host_memory", result->statistics.hostMemorySize);
     printf("hash %016" PRIx64 " events %" PRIu64 "\n", result->decisionHash, result->eventCount);
 }
 
 void print_json(const SluiceReplayResult *result)
 {
-    struct figure figures[FIGURE_COUNT];
-    get_figures(result, figures);
-    for (int i = 0; i < FIGURE_COUNT; i++)
+    struct figure figures[FIGURES_MOST];
+    size_t count = get_figures(result, figures);
+    for (size_t i = 0; i < count; i++)
         printf("{\"name\": \"%s\", \"value\": %" PRIu64 ", \"unit\": \"%s\"}\n", figures[i].name,
                figures[i].value, figures[i].unit);
-    printf("{\"name\": \"host_memory\", \"value\": %" PRIu64 ", \"unit\": \"bytes\"}\n",
-           result->statistics.hostMemorySize);
+    if (has_host_memory(result))
+        printf("{\"name\": \"host_memory\", \"value\": %" PRIu64 ", \"unit\": \"bytes\"}\n",
+               result->statistics.hostMemorySize);
     printf("{\"name\": \"hash\", \"value\": \"%016" PRIx64 "\", \"unit\": \"fnv1a64\"}\n",
            result->decisionHash);
 }

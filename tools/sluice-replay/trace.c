@@ -34,9 +34,11 @@ static bool read_magic(FILE *stream, const char *path, char **data, size_t *size
     *size = fread(*data, 1, MAGIC_SIZE, stream);
     if (ferror(stream))
         return fail(path, strerror(errno));
-    return (*size == MAGIC_SIZE && (memcmp(*data, "SLUICERT", MAGIC_SIZE) == 0 ||
-                                    memcmp(*data, "SLTRACE1", MAGIC_SIZE) == 0)) ||
-           fail(path, "is no trace: it begins with neither SLUICERT nor SLTRACE1");
+    static const char *const magics[] = {"SLUICERT", "SLUICEDR", "SLTRACE1"};
+    for (size_t i = 0; *size == MAGIC_SIZE && i < sizeof magics / sizeof *magics; i++)
+        if (memcmp(*data, magics[i], MAGIC_SIZE) == 0)
+            return true;
+    return fail(path, "is no trace: it begins with none of SLUICERT, SLUICEDR, SLTRACE1");
 }
 
 static bool read_all(FILE *stream, const char *path, uint64_t memory, char **data, size_t *size)
