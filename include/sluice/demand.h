@@ -25,6 +25,7 @@
 #ifndef SLUICE_DEMAND_H
 #define SLUICE_DEMAND_H
 
+#include <sluice/replay.h>
 #include <sluice/vulkan.h>
 
 #ifdef __cplusplus
@@ -561,6 +562,26 @@ typedef struct SluiceDemandStatistics {
  */
 SLUICE_API SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
                                                   SluiceDemandStatistics *pStatistics);
+
+/**
+ * Starts to record a loader into a file that sluice-replay plays without a GPU. docs/replay.md has
+ * the format: which pages launches used and requested, when reads ended, and which pages got
+ * memory. Neither texels nor shaders nor file names are in it.
+ *
+ * Call it before the first launch is prepared and before anything is preloaded. Textures and
+ * resources may exist. End the recording with sluiceEndRecording, before you destroy the loader.
+ * The file is written as by sluiceBeginFileRecording.
+ *
+ * Returns SLUICE_NOT_READY, with nothing recorded, if no file descriptor is free.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if the loader was used before or
+ *         is being recorded; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_BUSY if another writer
+ *         has the file open; SLUICE_ERROR_IO.
+ * Thread safety: external on `loader`.
+ */
+SLUICE_API SluiceResult sluiceBeginDemandRecording(SluiceDemandLoader *loader,
+                                                   const SluiceFileRecordingInfo *pInfo,
+                                                   SluiceRecorder **pRecorder);
 
 #ifdef __cplusplus
 } /* extern "C" */

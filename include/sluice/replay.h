@@ -71,12 +71,12 @@ SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager 
                                                    SluiceRecorder **pRecorder);
 
 /**
- * Ends a recording: writes the end mark with the hash of all decisions, and releases the recorder.
- * NULL is allowed.
+ * Ends a recording of a manager or a demand loader: writes the end mark with the hash of all
+ * decisions, and releases the recorder. NULL is allowed.
  *
  * Returns the first error since the recording began: SLUICE_ERROR_OUT_OF_HOST_MEMORY,
  * SLUICE_ERROR_IO, or the result of the writer.
- * Thread safety: external on the manager.
+ * Thread safety: external on the manager or the demand loader.
  */
 SLUICE_API SluiceResult sluiceEndRecording(SluiceRecorder *recorder);
 

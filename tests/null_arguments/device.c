@@ -4,6 +4,8 @@
 
 #include <sluice/demand.h>
 
+#include <stdio.h>
+
 /* clang-format off */
 /* CALLS
 sluiceGetVulkanDeviceCapabilities(f->h->instance, f->h->physical_device, f->h->get, &f->out.caps)
@@ -55,6 +57,7 @@ sluiceGetDemandTicketStatus(f->loader, 0, &f->out.ticket_status)
 sluiceWaitDemandTicket(f->loader, 0, 1, ?&f->out.ticket_status)
 sluiceCancelDemandTicket(f->loader, 0)
 !sluiceAbortDemandLoader(f->loader)
+sluiceBeginDemandRecording(f->fresh_loader, &f->recording, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
 sluiceGetDemandStatistics(f->loader, &f->out.demand_statistics)
 */
 /* clang-format on */
@@ -71,7 +74,8 @@ struct fixture {
     SluiceVulkanTextureCreateInfo texture_info;
     SluiceVulkanTexture texture;
     SluiceDemandLoaderCreateInfo loader_info;
-    SluiceDemandLoader *loader;
+    SluiceDemandLoader *loader, *fresh_loader;
+    SluiceFileRecordingInfo recording;
     SluiceDemandTextureCreateInfo demand_info;
     SluiceDemandSampler sampler;
     SluiceDemandTextureId id;
@@ -102,6 +106,7 @@ struct fixture {
         SluiceDemandBuffers demand_buffers;
         SluiceDemandLaunch launch;
         SluiceDemandRequests requests;
+        SluiceRecorder *recorder;
         SluiceDemandTicketStatus ticket_status;
         SluiceDemandStatistics demand_statistics;
     } out;
@@ -144,6 +149,8 @@ static void init_loader(struct fixture *f)
                                                     .memoryBudget = 4 << 20,
                                                     .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
+    CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
+    f->recording = (SluiceFileRecordingInfo){.pPath = "null_arguments_demand.trace"};
     f->demand_info.image.source = f->source;
     CHECK_OK(sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->id));
     f->resource_info = (SluiceDemandResourceCreateInfo){.pageCount = 4, .pfnFill = fill};
@@ -173,6 +180,8 @@ static void fixture_finish(struct fixture *f)
 {
     assert_int_equal(h.ResetCommandBuffer(f->commands, 0), VK_SUCCESS);
     sluiceDestroyDemandLoader(f->loader);
+    sluiceDestroyDemandLoader(f->fresh_loader);
+    remove(f->recording.pPath);
     sluiceDestroyVulkanStreamer(f->streamer);
     sluiceDestroyImageSource(f->source);
     h.quiet = false;

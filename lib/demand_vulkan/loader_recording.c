@@ -1,0 +1,24 @@
+#include "base/alloc.h"
+#include "base/log.h"
+#include "demand/page_observer.h"
+#include "demand_vulkan/loader.h"
+#include "replay/demand_recorder.h"
+
+SluiceResult sluiceBeginDemandRecording(SluiceDemandLoader *loader,
+                                        const SluiceFileRecordingInfo *pInfo,
+                                        SluiceRecorder **pRecorder)
+{
+    if (pRecorder)
+        *pRecorder = NULL;
+    if (!loader || !pInfo || !pInfo->pPath || !pRecorder)
+        return SLUICE_ERROR_NULL_POINTER;
+    if (!slc_allocator_is_valid(pInfo->pAllocator))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (slc_residency_is_used(loader->residency)) {
+        slc_log(&pInfo->log, SLUICE_LOG_ERROR,
+                "%s: cannot record: the demand loader was used before or is being recorded already",
+                pInfo->pPath);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    return slc_begin_demand_file_recording(loader->residency, pInfo, pRecorder);
+}
