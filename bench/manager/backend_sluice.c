@@ -120,13 +120,15 @@ static void *create(uint32_t heap_tiles, uint32_t standby_tiles)
     init_list(&m->map, IN_FLIGHT);
     init_list(&m->unmap, UNMAP_ROOM);
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {m, take_spare_heap, release_heap},
         .heapTileCapacity = heap_tiles,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
         .alwaysMapPackedTiles = true,
     };
     check(sluiceCreateStreamedTextureManager(&info, &m->manager), "create");
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = standby_tiles,
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = standby_tiles,
                                                  .prefetchLevels = levels_to_prefetch()};
     check(sluiceSetConfig(m->manager, &config), "config");
     return m;
@@ -186,8 +188,10 @@ static void feedback(void *backend_manager, uint32_t id, uint8_t *map, double se
 {
     struct bench_manager *m = backend_manager;
     const struct per_texture *t = &m->textures[id];
-    SluiceFeedbackDesc desc = {
-        .pMinMip = map, .width = t->feedback_width, .height = t->feedback_height};
+    SluiceFeedbackDesc desc = {.structSize = sizeof desc,
+                               .pMinMip = map,
+                               .width = t->feedback_width,
+                               .height = t->feedback_height};
     check(sluiceUpdateWithSamplerFeedback(m->manager, t->id, &desc, (uint64_t)(seconds * 1e6),
                                           (uint64_t)(timeout * 1e6)),
           "feedback");
@@ -207,7 +211,7 @@ static void follow(void *backend_manager, uint32_t primary, uint32_t follower, d
 static uint32_t desired_heaps(void *backend_manager)
 {
     struct bench_manager *m = backend_manager;
-    SluiceStreamedTextureStatistics s;
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
     check(sluiceGetStatistics(m->manager, &s), "statistics");
     uint64_t used = (uint64_t)s.heapCount * m->heap_tiles - s.freeSlotCount;
     return (uint32_t)((used + s.requestedTileCount + m->heap_tiles - 1) / m->heap_tiles);
@@ -336,7 +340,7 @@ static void minmip(void *backend_manager, uint32_t id, uint8_t *out, uint32_t *w
 static be_stats stats(void *backend_manager)
 {
     struct bench_manager *m = backend_manager;
-    SluiceStreamedTextureStatistics s;
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
     check(sluiceGetStatistics(m->manager, &s), "statistics");
     return (be_stats){(uint32_t)s.tileCount, s.heapCount * m->heap_tiles - s.freeSlotCount,
                       s.standbyTileCount, s.freeSlotCount};

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const SluiceStreamedTextureManagerConfig plain = {.missesToForget = 1};
+static const SluiceStreamedTextureManagerConfig plain = {.structSize = sizeof plain,
+                                                         .missesToForget = 1};
 
 /** One packed tile. */
 static SluiceStreamedTextureDesc one_tile(void)

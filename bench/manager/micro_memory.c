@@ -58,7 +58,7 @@ void bench_memory(void)
     uint32_t tile_target = options.quick ? 1000000 : 10000000;
     uint32_t texture_room = tile_target / 900;
     struct scene scene = {0};
-    SluiceStreamedTextureManagerConfig config = {0};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config};
     rig_init(&scene.rig, 1024, &config, ROOM);
     scene.textures = must_allocate(texture_room * sizeof *scene.textures);
     scene.map = must_allocate(ROOM);

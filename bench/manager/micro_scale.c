@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const SluiceStreamedTextureManagerConfig no_standby = {0};
+static const SluiceStreamedTextureManagerConfig no_standby = {.structSize = sizeof no_standby};
 
 /** The calls of a frame in which nothing happens. */
 static void idle_frame(struct rig *rig, SluiceMinMipRect *rects, uint64_t frame)

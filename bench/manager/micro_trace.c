@@ -59,7 +59,8 @@ static SluiceStreamedTextureDesc desc_of(const slt_texture *t)
 static void cut_init(struct cut *cut)
 {
     const slt_params *p = &cut_scene;
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 1000};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = 1000};
     *cut = (struct cut){0};
     rig_init(&cut->rig, 1024, &config, ROOM);
     cut->textures = must_allocate(p->textureCount * sizeof *cut->textures);

@@ -42,6 +42,7 @@ void rig_init(struct rig *rig, uint32_t heap_capacity,
     rig->tiles = must_allocate(room * sizeof *rig->tiles);
     rig->indices = must_allocate(room * sizeof *rig->indices);
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {rig, allocate_heap, release_heap},
         .heapTileCapacity = heap_capacity,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
@@ -126,7 +127,7 @@ void rig_feedback(struct rig *rig, SluiceTextureId id, const SluiceFeedbackDesc 
 
 SluiceStreamedTextureStatistics rig_statistics(const struct rig *rig)
 {
-    SluiceStreamedTextureStatistics statistics;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     must(sluiceGetStatistics(rig->manager, &statistics), "statistics");
     return statistics;
 }
@@ -139,7 +140,8 @@ uint32_t region_count(const SluiceStreamedTextureDesc *desc)
 
 SluiceFeedbackDesc map_for(const SluiceStreamedTextureDesc *desc, const uint8_t *map)
 {
-    return (SluiceFeedbackDesc){.pMinMip = map,
+    return (SluiceFeedbackDesc){.structSize = sizeof(SluiceFeedbackDesc),
+                                .pMinMip = map,
                                 .width = regions(desc->width, desc->feedbackRegionWidth),
                                 .height = regions(desc->height, desc->feedbackRegionHeight)};
 }

@@ -61,7 +61,8 @@ static unsigned char *read_ppm(FILE *file, uint32_t *width, uint32_t *height)
 static SluiceImageSource *open_ppm(const char *path)
 {
     FILE *file = fopen(path, "rb");
-    SluiceImageInfo info = {.format = SLUICE_FORMAT_R8G8B8A8_SRGB, .pName = path};
+    SluiceImageInfo info = {
+        .structSize = sizeof info, .format = SLUICE_FORMAT_R8G8B8A8_SRGB, .pName = path};
     unsigned char *texels = file ? read_ppm(file, &info.width, &info.height) : NULL;
     SluiceImageSource *source = NULL;
     if (texels)
@@ -76,8 +77,11 @@ static SluiceImageSource *open_ppm(const char *path)
 
 SluiceImageSource *open_exr(const char *path, SluiceFormat format)
 {
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .format = format, .log = log_to_stderr, .maxMemorySize = UINT64_MAX};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = path,
+                                             .format = format,
+                                             .log = log_to_stderr,
+                                             .maxMemorySize = UINT64_MAX};
     SluiceImageSource *source = NULL;
     return sluiceCreateExrImageSource(&create, &source) == SLUICE_SUCCESS ? source : NULL;
 }
@@ -92,7 +96,8 @@ SluiceImageSource *open_picture(const char *path)
 
 SluiceImageSource *open_store(const char *path, SluiceStoreReadPool *pool, bool checks_always)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path,
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = path,
                                                .log = log_to_stderr,
                                                .readPool = pool,
                                                .alwaysCheckRawTiles = checks_always};
@@ -132,9 +137,10 @@ static void write_tail(SluiceStoreWriter *writer, SluiceImageSource *source,
 void write_store(const char *path, SluiceImageSource *source, uint32_t compression)
 {
     static unsigned char texels[1 << 17];
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     must(sluiceGetImageInfo(source, &info), path);
-    SluiceStoreCreateInfo create = {.pPath = path,
+    SluiceStoreCreateInfo create = {.structSize = sizeof create,
+                                    .pPath = path,
                                     .width = info.width,
                                     .height = info.height,
                                     .format = info.format,
@@ -155,7 +161,7 @@ void write_store(const char *path, SluiceImageSource *source, uint32_t compressi
 
 void write_exr(const char *path, SluiceImageSource *source)
 {
-    SluiceExrWriteInfo info = {.pPath = path, .log = log_to_stderr};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = path, .log = log_to_stderr};
     must(sluiceGetStandardTileShape(SLUICE_FORMAT_R16G16B16A16_SFLOAT, &info.tileWidth,
                                     &info.tileHeight),
          path);

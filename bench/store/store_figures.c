@@ -138,7 +138,7 @@ static void race(const struct picture *pictures, size_t count, way *const *ways,
 
 static void find_tiles(struct picture *p)
 {
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     if (sluiceGetStoreInfo(p->store, &info))
         fail("asking the store");
     p->tiles = calloc(info.layout.tileCount, sizeof *p->tiles);

@@ -60,7 +60,7 @@ static bool fill_create(struct fill *fill, const struct rig_info *info)
     patch[0] = rig->map_width / 4;
     patch[1] = rig->map_height * 9 / 32 / 2 * 2; /* in whole tiles of LEVEL - 1 */
     fill->wants.pipeline = rig_wants_pipeline(rig);
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (!fill->wants.pipeline ||
         !check(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(rig->streamer),
                                       rig->textures[0].textureId, &layout),

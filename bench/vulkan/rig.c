@@ -63,7 +63,7 @@ static bool add_textures(struct rig *rig, const struct rig_info *info)
                 sluiceAddVulkanTexture(rig->streamer, &create, &rig->textures[rig->texture_count]),
                 "sluiceAddVulkanTexture"))
             return false;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (!check(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(rig->streamer),
                                       rig->textures[0].textureId, &layout),
                "sluiceGetTextureLayout"))

@@ -26,7 +26,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
                                 void *texels, size_t row_pitch)
 {
     const struct free_source *source = (struct free_source *)base;
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     sluiceGetFormatInfo(source->info.format, &format);
     size_t row = (size_t)sluiceFormatRegionSize(source->info.format, region->width, 1);
     uint32_t rows = (region->height + format.blockHeight - 1) / format.blockHeight;
@@ -48,7 +48,8 @@ static void destroy(SluiceImageSource *source)
 
 void free_source_init(struct free_source *source, SluiceFormat format, uint32_t size)
 {
-    static const SluiceImageSourceInterface interface = {get_info, read_region, destroy};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                         destroy};
     uint32_t levels = 1;
     while (size >> levels)
         levels++;

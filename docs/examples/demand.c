@@ -128,8 +128,11 @@ static void paint_ramp(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t 
 static SluiceResult open_image(void *pUserData, SluiceImageSource **pSource)
 {
     const SluiceProceduralImage image = {NULL, paint_ramp};
-    const SluiceImageInfo info = {
-        .width = 8192, .height = 8192, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "ramp"};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 8192,
+                                  .height = 8192,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "ramp"};
     (void)pUserData;
     return sluiceCreateProceduralImageSource(&image, &info, NULL, pSource);
 }

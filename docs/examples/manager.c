@@ -21,6 +21,7 @@ int main(void)
 {
     uint32_t heapCount = 0;
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {&heapCount, allocate_heap, release_heap},
         .heapTileCapacity = SLUICE_DEFAULT_HEAP_TILE_CAPACITY,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
@@ -46,7 +47,8 @@ int main(void)
     static uint8_t map[32 * 32];
     memset(map, SLUICE_MIP_UNTOUCHED, sizeof map);
     map[0] = 0;
-    SluiceFeedbackDesc feedback = {.pMinMip = map, .width = 32, .height = 32};
+    SluiceFeedbackDesc feedback = {
+        .structSize = sizeof feedback, .pMinMip = map, .width = 32, .height = 32};
 
     for (uint64_t frame = 1; frame <= 3; frame++) {
         SluiceTile tiles[4]; /* at most so many loads per frame */

@@ -42,7 +42,7 @@ SluiceDemandLoader *page_create_loader(VkInstance instance, VkPhysicalDevice phy
 /* On a worker thread. SLUICE_NOT_READY: ask again later. */
 static SluiceResult open_texture(void *user, SluiceImageSource **source)
 {
-    SluiceStoreImageSourceCreateInfo info = {.pPath = user};
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = user};
     return sluiceCreateStoreImageSource(&info, source);
 }
 

@@ -351,8 +351,11 @@ static void paint_ramp(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t 
 int main(void)
 {
     const SluiceProceduralImage image = {NULL, paint_ramp};
-    const SluiceImageInfo info = {
-        .width = 4096, .height = 4096, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "ramp"};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 4096,
+                                  .height = 4096,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "ramp"};
     SluiceImageSource *source = NULL;
     SLUICE(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
 

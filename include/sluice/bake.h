@@ -58,6 +58,7 @@ typedef enum SluiceBakeAlpha {
 
 /** Settings of one picture. A field of zero selects its default. */
 typedef struct SluiceBakeSettings {
+    uint32_t structSize; ///< sizeof(SluiceBakeSettings).
     /**
      * Format of the store: any but BC2, BC6H, BC7 and the signed BC4 and BC5. Of a format and its
      * sRGB twin, `transfer` selects one, whichever you name. Formats without a twin hold linear
@@ -99,6 +100,7 @@ typedef struct SluiceBakeSettings {
 
 /** Settings of a baker. A field of zero selects its default. */
 typedef struct SluiceBakerCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceBakerCreateInfo).
     uint32_t
         threadCount; ///< Threads that make tiles, including callers. Default: one per processor.
     /**
@@ -137,13 +139,14 @@ SLUICE_API void sluiceDestroyBaker(SluiceBaker *baker);
 
 /** Input and output of one bake. A field of zero selects its default. */
 typedef struct SluiceBakeInfo {
+    uint32_t structSize; ///< sizeof(SluiceBakeInfo).
     /** Path of the picture. NULL: bake `source`. */
     const char *pInputPath;
     /** Source to bake if pInputPath is NULL: level 0, or all levels unchanged if they are
      *  block-compressed. Not owned. */
     SluiceImageSource *source;
-    const char *pOutputPath; ///< Required.
-    SluiceBakeSettings settings;
+    const char *pOutputPath;             ///< Required.
+    const SluiceBakeSettings *pSettings; ///< Default: every setting has its default.
     /** Bake even if the output was made from this input with these settings. */
     bool force;
     void *pUserData;
@@ -154,7 +157,8 @@ typedef struct SluiceBakeInfo {
 
 /** Result of one bake. */
 typedef struct SluiceBakeReport {
-    bool skipped; ///< Output was up to date: same size, time and settings hash of the input.
+    uint32_t structSize; ///< sizeof(SluiceBakeReport).
+    bool skipped;        ///< Output was up to date: same size, time and settings hash of the input.
     uint32_t width, height, mipLevelCount, arrayLayerCount;
     SluiceFormat format;
     uint64_t inputSize, outputSize; ///< Bytes of the files. 0 for a source.
@@ -199,10 +203,13 @@ SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo 
                                        SluiceBakeReport *pReport);
 
 /**
- * Returns a hash of all settings that determine the texels, as recorded in stores. 0 for NULL.
+ * Computes the hash of all settings that determine the texels, as recorded in stores.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
-SLUICE_API uint64_t sluiceHashBakeSettings(const SluiceBakeSettings *pSettings);
+SLUICE_API SluiceResult sluiceHashBakeSettings(const SluiceBakeSettings *pSettings,
+                                               uint64_t *pHash);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -3,6 +3,18 @@
  *
  * Thread safety of the whole library: external on each object, unless its header says otherwise.
  * Calls that take a const handle may run at the same time. There are no mutable globals.
+ *
+ * Structs that begin with `structSize` may get fields at their end in later versions. Set
+ * structSize to the sizeof of the struct, and zero the fields that you do not set. This holds for
+ * structs that Sluice reads and for structs that Sluice writes.
+ * - Read: fields that the caller's struct does not have count as 0. A larger struct of a newer
+ *   version is accepted if the fields that this version does not have are 0; otherwise the call
+ *   returns SLUICE_ERROR_UNSUPPORTED.
+ * - Written: at most structSize bytes. Fields that this version does not have become 0.
+ * - The call returns SLUICE_ERROR_INVALID_ARGUMENT if structSize is 0 or less than the first
+ *   release had. Nothing has changed then. The log, if there is one, names the struct.
+ *
+ * All other structs never grow.
  */
 #ifndef SLUICE_BASE_H
 #define SLUICE_BASE_H
@@ -88,7 +100,7 @@ SLUICE_API const char *sluiceResultString(SluiceResult result);
 /**
  * Functions that allocate and free host memory. Sluice calls them on the threads that use the
  * owning object and on the threads that the object started. Wherever a create-info takes a pointer
- * to this struct, NULL means malloc and free.
+ * to this struct, NULL means malloc and free. Never grows.
  */
 typedef struct SluiceAllocationCallbacks {
     void *pUserData;
@@ -107,7 +119,7 @@ typedef enum SluiceLogSeverity {
 
 /**
  * Receives log messages. Off if `pfnLog` is NULL. Called on the thread that reports the message;
- * several threads may call at the same time.
+ * several threads may call at the same time. Never grows.
  */
 typedef struct SluiceLogCallback {
     void *pUserData;

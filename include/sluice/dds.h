@@ -12,7 +12,8 @@ extern "C" {
 
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceDdsImageSourceCreateInfo {
-    const char *pPath; ///< Required. Copied.
+    uint32_t structSize; ///< sizeof(SluiceDdsImageSourceCreateInfo).
+    const char *pPath;   ///< Required. Copied.
     /**
      * Format to return. Default: the file's. Another value must name the same bytes: UNORM for SRGB
      * or the reverse (only DX10 headers distinguish them), or BC1_RGB for BC1_RGBA.

@@ -42,7 +42,8 @@ SLUICE_API void sluiceDestroyExrMemoryBudget(SluiceExrMemoryBudget *budget);
 
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceExrImageSourceCreateInfo {
-    const char *pPath; ///< Required. Copied.
+    uint32_t structSize; ///< sizeof(SluiceExrImageSourceCreateInfo).
+    const char *pPath;   ///< Required. Copied.
     /**
      * Format of the texels that the source returns. Default: UNDEFINED, which selects a float
      * format by the widest channel of the file: R16_SFLOAT or R32_SFLOAT for one channel,
@@ -126,6 +127,7 @@ typedef enum SluiceExrStorage {
 
 /** Properties of a file, and the memory that reading it takes. */
 typedef struct SluiceExrInfo {
+    uint32_t structSize; ///< sizeof(SluiceExrInfo).
     SluiceExrStorage storage;
     uint32_t chunkWidth, chunkHeight; ///< Texels of a tile or of a block of scanlines.
     const char *pCompression;         ///< "NONE", "ZIP" and so on.
@@ -151,6 +153,7 @@ SLUICE_API SluiceResult sluiceGetExrInfo(SluiceImageSource *source, SluiceExrInf
 
 /** Settings of a file to write. A field of zero selects its default. */
 typedef struct SluiceExrWriteInfo {
+    uint32_t structSize;  ///< sizeof(SluiceExrWriteInfo).
     const char *pPath;    ///< Required. The file is complete or absent.
     uint32_t tileWidth;   ///< Texels. Default: 128.
     uint32_t tileHeight;  ///< Texels. Default: 128.

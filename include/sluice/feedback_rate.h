@@ -43,6 +43,7 @@ typedef enum SluiceFeedbackSelection {
 
 /** Parameters of the prediction, except the probability. */
 typedef struct SluiceFeedbackRate {
+    uint32_t structSize; ///< sizeof(SluiceFeedbackRate).
     SluiceFeedbackSelection selection;
     /**
      * Size in pixels, at least 1, of the smallest region that matters: the rectangle of pixels
@@ -91,6 +92,7 @@ SLUICE_API SluiceResult sluiceChooseFeedbackProbability(const SluiceFeedbackRate
  * counting both. Infinity if that may never happen.
  */
 typedef struct SluiceFeedbackDelay {
+    uint32_t structSize; ///< sizeof(SluiceFeedbackDelay).
     double median;       ///< Half of the regions take no longer.
     double percentile99; ///< 99 of 100 regions take no longer.
 } SluiceFeedbackDelay;

@@ -12,6 +12,7 @@ extern "C" {
  * Allocates and releases heaps. A heap is an array of `heapTileCapacity` slots of `tileSize` bytes.
  *
  * Called on the thread that calls the manager. The callbacks must not call the manager.
+ * Never grows.
  */
 typedef struct SluiceHeapAllocator {
     void *pUserData;

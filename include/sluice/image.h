@@ -63,6 +63,7 @@ typedef enum SluiceFormat {
 
 /** Memory layout of a format: blocks of texels. Blocks of uncompressed formats are 1x1. */
 typedef struct SluiceFormatInfo {
+    uint32_t structSize;              ///< sizeof(SluiceFormatInfo).
     uint32_t blockSize;               ///< Bytes.
     uint32_t blockWidth, blockHeight; ///< Texels.
     uint32_t channelCount;            ///< 1 to 4. Missing G and B read as 0, missing A as 1.
@@ -118,6 +119,7 @@ typedef enum SluiceImageAddressMode {
  * Arrays, streamer, demand loader and baker check every field and refuse values out of range.
  */
 typedef struct SluiceImageInfo {
+    uint32_t structSize;    ///< sizeof(SluiceImageInfo).
     uint32_t width, height; ///< Texels of level 0, 1 to 2^20. Level l has max(1, size >> l).
     /** Full chain: floor(log2(max(width, height))) + 1. Arrays and the baker also accept 1 (only
      *  level 0). */
@@ -134,7 +136,7 @@ typedef struct SluiceImageInfo {
  * Rectangle of texels of one level and layer. It is not empty and does not leave the level.
  *
  * In compressed formats, x, y, width and height are multiples of the block size. Exception: width
- * and height of a region that ends at the right or lower edge of the level.
+ * and height of a region that ends at the right or lower edge of the level. Never grows.
  */
 typedef struct SluiceImageRegion {
     uint32_t mipLevel;
@@ -147,7 +149,7 @@ typedef struct SluiceImageSource SluiceImageSource;
 /** File offset of a failure whose position is unknown, or of data that is not in a file. */
 #define SLUICE_UNKNOWN_OFFSET UINT64_MAX
 
-/** Position of a failed read. */
+/** Position of a failed read. Never grows. */
 typedef struct SluiceImageFault {
     const char *pName; ///< Name of the source, or of the array's layer. "" if unknown.
     uint64_t offset;   ///< Bytes from the start of the file, or SLUICE_UNKNOWN_OFFSET.
@@ -158,7 +160,11 @@ typedef struct SluiceImageFault {
  * pfnReadRegion and pfnReadRegionLocated.
  */
 typedef struct SluiceImageSourceInterface {
-    /** Describes the image, and opens it first if necessary. Thread safety: any thread. */
+    uint32_t structSize; ///< sizeof(SluiceImageSourceInterface).
+    /**
+     * Describes the image, and opens it first if necessary. On entry `*pInfo` is 0 except its
+     * structSize. Thread safety: any thread.
+     */
     SluiceResult (*pfnGetInfo)(SluiceImageSource *source, SluiceImageInfo *pInfo);
     /**
      * Fills `pTexels` with the rows of a region, `rowPitch` bytes apart. Rows of compressed formats
@@ -230,7 +236,7 @@ SLUICE_API void sluiceDestroyImageSource(SluiceImageSource *source);
 
 /**
  * Function that computes the texels of a procedural image. Called on any thread, several at the
- * same time.
+ * same time. Never grows.
  */
 typedef struct SluiceProceduralImage {
     void *pUserData;

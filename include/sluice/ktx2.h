@@ -12,7 +12,8 @@ extern "C" {
 
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceKtx2ImageSourceCreateInfo {
-    const char *pPath; ///< Required. Copied.
+    uint32_t structSize; ///< sizeof(SluiceKtx2ImageSourceCreateInfo).
+    const char *pPath;   ///< Required. Copied.
     /**
      * Format to return. Default: the file's. Another value must name the same bytes: UNORM for
      * SRGB, BC1_RGB for BC1_RGBA, or the reverse.

@@ -21,6 +21,7 @@ typedef struct SluiceTileLoader SluiceTileLoader;
  * SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and SLUICE_NOT_READY are temporary: up to
  * maxAttempts are made. SLUICE_ERROR_CORRUPT_DATA is retried once, because a file that is being
  * written looks damaged. Other errors are final. A retry skips regions that were already read.
+ * Never grows.
  */
 typedef struct SluiceTileRetryPolicy {
     uint32_t maxAttempts; ///< Default: 4. 1: no retry.
@@ -30,6 +31,7 @@ typedef struct SluiceTileRetryPolicy {
 
 /** Failed attempt to read. Pointers are valid during the call. */
 typedef struct SluiceTileReadFailure {
+    uint32_t structSize; ///< Set by Sluice. sizeof(SluiceTileReadFailure).
     SluiceImageSource *source;
     const char *pName;        ///< Name of the source, or of the array's layer. "" if unknown.
     SluiceImageRegion region; ///< Region that failed.
@@ -47,7 +49,7 @@ typedef struct SluiceTileReadFailure {
  *
  * SLUICE_ERROR_CANCELLED is not reported. SLUICE_NOT_READY is reported only if it ends the read.
  * Called on worker threads, several at the same time. The callback may use the source and the
- * loader, except sluiceDestroyTileLoader and sluiceWaitTileLoaderIdle.
+ * loader, except sluiceDestroyTileLoader and sluiceWaitTileLoaderIdle. Never grows.
  */
 typedef struct SluiceTileReadFailureCallback {
     void *pUserData;
@@ -60,7 +62,7 @@ typedef struct SluiceTileReadFailureCallback {
  *
  * Called on the thread that ends the read; this includes callers of sluiceCancelTileRead and
  * sluiceDestroyTileLoader. The loader is locked: the callback must not call the loader, and other
- * reads wait until the callback returns.
+ * reads wait until the callback returns. Never grows.
  */
 typedef struct SluiceTileReadEndCallback {
     void *pUserData;
@@ -69,6 +71,7 @@ typedef struct SluiceTileReadEndCallback {
 
 /** Settings of a loader. A field of zero selects its default. */
 typedef struct SluiceTileLoaderCreateInfo {
+    uint32_t structSize;      ///< sizeof(SluiceTileLoaderCreateInfo).
     uint32_t threadCount;     ///< Default: processors - 1, at least 2.
     uint32_t requestCapacity; ///< Most uncollected reads. At most 2^29. Default: 1024.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
@@ -87,7 +90,10 @@ typedef struct SluiceTileLoaderCreateInfo {
     SluiceTileReadEndCallback end;
 } SluiceTileLoaderCreateInfo;
 
-/** One or more regions that are read together: one tile, or the mip tail of a texture. */
+/**
+ * One or more regions that are read together: one tile, or the mip tail of a texture. Never
+ * grows.
+ */
 typedef struct SluiceTileRead {
     SluiceImageSource *source;         ///< Must live until the read is collected.
     uint32_t regionCount;              ///< 1 to SLUICE_MAX_READ_REGIONS.
@@ -100,7 +106,7 @@ typedef struct SluiceTileRead {
 
 #define SLUICE_MAX_READ_REGIONS 24
 
-/** Result of a read. */
+/** Result of a read. Never grows. */
 typedef struct SluiceTileReadResult {
     uint64_t ticket;
     uint64_t userValue;
@@ -183,7 +189,8 @@ SLUICE_API void sluiceWaitTileLoaderIdle(SluiceTileLoader *loader);
  * 2^47 ns.
  */
 typedef struct SluiceTileLoaderStatistics {
-    uint64_t readCount; ///< Submitted. Reads that none of the next three counts are still open.
+    uint32_t structSize; ///< sizeof(SluiceTileLoaderStatistics).
+    uint64_t readCount;  ///< Submitted. Reads that none of the next three counts are still open.
     uint64_t succeededCount; ///< Ended with SLUICE_SUCCESS.
     uint64_t givenUpCount;   ///< Ended with an error or SLUICE_NOT_READY.
     uint64_t cancelledCount; ///< Ended with SLUICE_ERROR_CANCELLED.

@@ -68,6 +68,7 @@ typedef uint64_t SluiceTextureId;
 
 /** Settings that are fixed at creation. */
 typedef struct SluiceStreamedTextureManagerCreateInfo {
+    uint32_t structSize;               ///< sizeof(SluiceStreamedTextureManagerCreateInfo).
     SluiceHeapAllocator heapAllocator; ///< Both functions are required.
     /** Must outlive the manager. Default: malloc and free. */
     const SluiceAllocationCallbacks *pAllocator;
@@ -92,6 +93,7 @@ typedef struct SluiceStreamedTextureManagerCreateInfo {
 
 /** Settings that can change at any time. All are 0 after creation. */
 typedef struct SluiceStreamedTextureManagerConfig {
+    uint32_t structSize; ///< sizeof(SluiceStreamedTextureManagerConfig).
     /** Most tiles that stay STANDBY. Further ones are listed for unmapping, oldest first.
      *  Default: 0, none. */
     uint32_t numExtraStandbyTiles;
@@ -138,7 +140,7 @@ typedef struct SluiceStreamedTextureManagerConfig {
  * at the right and bottom edge. Levels [regularMipCount, mipLevelCount) are packed: they form the
  * mip tail, and share packedTileCount tiles.
  *
- * Tiles are numbered level by level from level 0, row by row. Packed tiles come last.
+ * Tiles are numbered level by level from level 0, row by row. Packed tiles come last. Never grows.
  */
 typedef struct SluiceStreamedTextureDesc {
     uint32_t width, height;         ///< Texels of level 0, 1 to SLUICE_MAX_TEXTURE_SIZE.
@@ -152,6 +154,7 @@ typedef struct SluiceStreamedTextureDesc {
 
 /** Layout computed from a SluiceStreamedTextureDesc. */
 typedef struct SluiceStreamedTextureLayout {
+    uint32_t structSize;            ///< sizeof(SluiceStreamedTextureLayout).
     SluiceStreamedTextureDesc desc; ///< With region sizes filled in.
     uint32_t regularTileCount; ///< Tiles of all regular levels. Index of the first packed tile.
     uint32_t tileCount;        ///< regularTileCount + packedTileCount.
@@ -165,6 +168,7 @@ typedef struct SluiceStreamedTextureLayout {
 
 /** Resolved feedback map. */
 typedef struct SluiceFeedbackDesc {
+    uint32_t structSize; ///< sizeof(SluiceFeedbackDesc).
     /**
      * [height][width] bytes, row 0 first, tightly packed. A texel is the finest mip level that its
      * region requests, or SLUICE_MIP_UNTOUCHED if nothing was sampled there. Values above the last
@@ -189,7 +193,7 @@ typedef enum SluiceTileState {
     SLUICE_TILE_STATE_GIVEN_UP = 7   ///< Its load failed too often. See givenUpRetryDelay.
 } SluiceTileState;
 
-/** Tile, and its slot if it has one. */
+/** Tile, and its slot if it has one. Never grows. */
 typedef struct SluiceTile {
     SluiceTextureId textureId;
     uint32_t tileIndex;
@@ -199,14 +203,17 @@ typedef struct SluiceTile {
     uint32_t slot; ///< Index in the heap, 0 to heapTileCapacity - 1.
 } SluiceTile;
 
-/** Move of a tile: copy the contents of `from` to (heapId, slot) and bind the tile there. */
+/**
+ * Move of a tile: copy the contents of `from` to (heapId, slot) and bind the tile there. Never
+ * grows.
+ */
 typedef struct SluiceTileMove {
     SluiceTile from; ///< Tile and its old slot.
     uint32_t heapId;
     uint32_t slot;
 } SluiceTileMove;
 
-/** Rectangle of a MinMip map, in its texels. */
+/** Rectangle of a MinMip map, in its texels. Never grows. */
 typedef struct SluiceMinMipRect {
     SluiceTextureId textureId;
     uint32_t x, y, width, height;
@@ -214,6 +221,7 @@ typedef struct SluiceMinMipRect {
 
 /** Statistics. `...Total` counts since creation and wraps at 2^64; other counts are current. */
 typedef struct SluiceStreamedTextureStatistics {
+    uint32_t structSize; ///< sizeof(SluiceStreamedTextureStatistics).
     uint32_t textureCount;
     uint64_t tileCount; ///< All tiles of all textures, resident or not.
     uint32_t requestedTileCount, allocatedTileCount, mappedTileCount, standbyTileCount;

@@ -36,6 +36,7 @@ typedef enum SluicePixelFormat {
  * peak or 0, and NaN becomes 0. If NaN matters, check for it beforehand.
  */
 typedef struct SluicePicturePair {
+    uint32_t structSize; ///< sizeof(SluicePicturePair).
     const void *pA, *pB;
     size_t rowPitchA, rowPitchB; ///< Bytes between rows. Default: tightly packed.
     uint32_t width, height;      ///< Pixels, at least 1.
@@ -43,7 +44,7 @@ typedef struct SluicePicturePair {
     float peak; ///< Finite and above 0. Ignored for RGBA8_SRGB.
 } SluicePicturePair;
 
-/** Destination of one value per pixel: [height][width], the size of the pictures. */
+/** Destination of one value per pixel: [height][width], the size of the pictures. Never grows. */
 typedef struct SluiceMetricMap {
     float *pValues;
     size_t rowPitch; ///< Bytes between rows, a multiple of 4. Default: tightly packed.

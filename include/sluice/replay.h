@@ -15,7 +15,7 @@ typedef struct SluiceRecorder SluiceRecorder;
 
 /**
  * Destination of a recording. Any result but SLUICE_SUCCESS ends the recording. The manager
- * continues, and sluiceEndRecording returns that result.
+ * continues, and sluiceEndRecording returns that result. Never grows.
  */
 typedef struct SluiceRecordWriter {
     void *pUserData;
@@ -37,6 +37,7 @@ SLUICE_API SluiceResult sluiceBeginRecording(SluiceStreamedTextureManager *manag
 
 /** Settings of a recording into a file. A field of zero selects its default. */
 typedef struct SluiceFileRecordingInfo {
+    uint32_t structSize;                         ///< sizeof(SluiceFileRecordingInfo).
     const char *pPath;                           ///< Required.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     /** Names a file that cannot be written, and why. Called until sluiceEndRecording returns. */
@@ -82,6 +83,7 @@ SLUICE_API SluiceResult sluiceEndRecording(SluiceRecorder *recorder);
 
 /** Settings of a replay. A field of zero selects its default. */
 typedef struct SluiceReplayInfo {
+    uint32_t structSize; ///< sizeof(SluiceReplayInfo).
     /** Whole trace: a "SLUICERT" or "SLUICEDR" recording or an "SLTRACE1" feedback trace. */
     const void *pData;
     size_t size;                                 ///< Bytes of the trace.
@@ -100,6 +102,8 @@ typedef struct SluiceReplayInfo {
     /* For all kinds: */
     /** File to record the replay into, like sluiceBeginFileRecording. May be NULL. */
     const char *pRecordPath;
+    /** Receives the manager's statistics at the end. Zero for demand loading. May be NULL. */
+    SluiceStreamedTextureStatistics *pStatistics;
 } SluiceReplayInfo;
 
 typedef enum SluiceTraceKind {
@@ -128,11 +132,11 @@ typedef struct SluiceDemandReplayStatistics {
 
 /** Result of a replay. */
 typedef struct SluiceReplayResult {
+    uint32_t structSize;   ///< sizeof(SluiceReplayResult).
     uint64_t decisionHash; ///< Hash of every output of every call, in order.
     uint64_t recordedHash; ///< From the end mark. 0 if there is none.
     uint64_t eventCount;
     uint64_t errorOffset; ///< Byte offset of the defect, after SLUICE_ERROR_CORRUPT_DATA.
-    SluiceStreamedTextureStatistics statistics; ///< At the end. Zero for demand loading.
     /** First call, counted from 1, whose decisions differ from the recording. 0: none. */
     uint64_t divergedEvent;
     uint64_t divergedOffset; ///< Byte offset of that call in the trace.

@@ -80,6 +80,7 @@ typedef enum SluiceStoreAddressMode {
 
 /**
  * Division of a texture into tiles. Level l has max(1, width >> l) x max(1, height >> l) texels.
+ * Never grows.
  */
 typedef struct SluiceStoreLayout {
     uint32_t width, height;
@@ -128,6 +129,7 @@ typedef enum SluiceStoreWriterFlags {
 
 /** Settings of a file to write. A field of zero selects its default. */
 typedef struct SluiceStoreCreateInfo {
+    uint32_t structSize;      ///< sizeof(SluiceStoreCreateInfo).
     const char *pPath;        ///< Required. Copied.
     uint32_t width, height;   ///< Required. 1 to SLUICE_STORE_MAX_SIZE.
     uint32_t mipLevelCount;   ///< Must be the full chain. Default: full chain.
@@ -292,6 +294,7 @@ SLUICE_API void sluiceDestroyStoreReadPool(SluiceStoreReadPool *pool);
 
 /** Settings of a source. A field of zero selects its default. */
 typedef struct SluiceStoreImageSourceCreateInfo {
+    uint32_t structSize;                         ///< sizeof(SluiceStoreImageSourceCreateInfo).
     const char *pPath;                           ///< Required. Copied.
     const SluiceAllocationCallbacks *pAllocator; ///< Default: malloc and free.
     SluiceLogCallback log;                       ///< Problems of the file, with the byte offset.
@@ -343,6 +346,7 @@ SLUICE_API SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourc
  * versions read as UNDEFINED, DATA or CLAMP_TO_EDGE.
  */
 typedef struct SluiceStoreInfo {
+    uint32_t structSize; ///< sizeof(SluiceStoreInfo).
     uint32_t versionMajor, versionMinor;
     SluiceStoreLayout layout;
     uint32_t arrayLayerCount;
@@ -367,6 +371,7 @@ SLUICE_API SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStor
 
 /** Tile that cannot be read. */
 typedef struct SluiceStoreDefect {
+    uint32_t structSize;                         ///< Set by Sluice. sizeof(SluiceStoreDefect).
     uint32_t arrayLayer, mipLevel, tileX, tileY; ///< For a mip tail: its first level, 0 and 0.
     uint64_t offset;     ///< Byte offset of the tile, or of the defective part of the index.
     SluiceResult result; ///< SLUICE_ERROR_CORRUPT_DATA or SLUICE_ERROR_IO.
@@ -374,7 +379,8 @@ typedef struct SluiceStoreDefect {
 
 /** Settings of sluiceVerifyStore. A field of zero selects its default. */
 typedef struct SluiceStoreVerifyInfo {
-    const char *pPath; ///< Required.
+    uint32_t structSize; ///< sizeof(SluiceStoreVerifyInfo).
+    const char *pPath;   ///< Required.
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log;
     void *pUserData;
@@ -386,6 +392,7 @@ typedef struct SluiceStoreVerifyInfo {
 
 /** Findings of sluiceVerifyStore up to its end or the point where it stopped. */
 typedef struct SluiceStoreReport {
+    uint32_t structSize;   ///< sizeof(SluiceStoreReport).
     uint64_t tileCount;    ///< Tiles checked, mip tails included.
     uint64_t defectCount;  ///< Tiles that cannot be read.
     uint64_t storedSize;   ///< Bytes of the good tiles in the file.

@@ -21,7 +21,7 @@ typedef struct SluiceVulkanContext SluiceVulkanContext;
 
 /** Settings of a context. A field of zero selects its default. */
 typedef struct SluiceVulkanContextCreateInfo {
-    uint32_t structSize;             ///< Required. sizeof(SluiceVulkanContextCreateInfo).
+    uint32_t structSize;             ///< sizeof(SluiceVulkanContextCreateInfo).
     uint32_t queueFamilyIndex;       ///< Family of the queue for frames and launches. Must support
                                      ///< compute.
     VkInstance instance;             ///< Required. Vulkan 1.2.
@@ -40,11 +40,9 @@ typedef struct SluiceVulkanContextCreateInfo {
 /**
  * Creates a context.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for another structSize, or for a
- *         queue family that does not exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if
- *         instance or device were created for less than Vulkan 1.2;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
- * Thread safety: any thread.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a queue family that does not
+ * exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance or device were created for less
+ * than Vulkan 1.2; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCreateInfo,
                                                   SluiceVulkanContext **pContext);

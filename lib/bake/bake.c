@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/part_file.h"
 #include "base/same_file.h"
+#include "base/struct_size.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -21,6 +22,7 @@
 struct bake {
     SluiceBaker *baker;
     const SluiceBakeInfo *info;
+    SluiceBakeSettings settings; ///< of `info`
     SluiceBakeReport report;
     uint64_t source_size, settings_hash;
     int64_t source_time;
@@ -62,10 +64,11 @@ static void report_image(struct bake *bake, const SluiceStoreLayout *layout, uin
 /* Whether a store is there that was made from the same input in the same way. */
 static bool is_up_to_date(struct bake *bake)
 {
-    SluiceStoreImageSourceCreateInfo info = {.pPath = bake->info->pOutputPath,
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info,
+                                             .pPath = bake->info->pOutputPath,
                                              .pAllocator = &bake->baker->allocator};
     SluiceImageSource *source;
-    SluiceStoreInfo store;
+    SluiceStoreInfo store = {.structSize = sizeof store};
     if (!bake->info->pInputPath || bake->info->force ||
         sluiceCreateStoreImageSource(&info, &source) != SLUICE_SUCCESS)
         return false;
@@ -88,7 +91,7 @@ static SluiceResult open_picture(struct bake *bake)
     const SluiceAllocationCallbacks *cb = &bake->baker->allocator;
     struct slc_picture_opening opening = {
         .max_memory = bake->baker->max_memory,
-        .keep_primaries = info->settings.keepPrimaries || info->settings.normalMap,
+        .keep_primaries = bake->settings.keepPrimaries || bake->settings.normalMap,
     };
     if (info->pInputPath)
         return slc_picture_open(info->pInputPath, &opening, cb, &bake->baker->log, &bake->picture);
@@ -112,8 +115,9 @@ static const char *base_name(const char *path)
 
 static void describe_store(struct bake *bake, const SluiceImageInfo *image)
 {
-    const SluiceBakeSettings *settings = &bake->info->settings;
+    const SluiceBakeSettings *settings = &bake->settings;
     bake->store = (SluiceStoreCreateInfo){
+        .structSize = sizeof(SluiceStoreCreateInfo),
         .pPath = bake->info->pOutputPath,
         .width = image->width,
         .height = image->height,
@@ -139,7 +143,7 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
 /* By the channels alone: nobody says more. */
 static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
 {
-    SluiceFormatInfo info = {0};
+    SluiceFormatInfo info = {.structSize = sizeof info};
     (void)sluiceGetFormatInfo(format, &info);
     if (normals)
         return SLUICE_STORE_MEANING_NORMAL;
@@ -151,8 +155,8 @@ static SluiceStoreMeaning meaning_of_blocks(SluiceFormat format, bool normals)
 /* Many files of blocks do not know whether they hold sRGB; the settings may say so. */
 static SluiceResult describe_blocks(struct bake *bake)
 {
-    const SluiceBakeSettings *settings = &bake->info->settings;
-    SluiceImageInfo image;
+    const SluiceBakeSettings *settings = &bake->settings;
+    SluiceImageInfo image = {.structSize = sizeof image};
     SluiceResult result = sluiceGetImageInfo(bake->picture->blocks, &image);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -169,11 +173,12 @@ static SluiceResult describe_blocks(struct bake *bake)
 static SluiceResult describe_picture(struct bake *bake)
 {
     struct slc_picture *picture = bake->picture;
-    SluiceImageInfo image = {.width = picture->width, .height = picture->height};
+    SluiceImageInfo image = {
+        .structSize = sizeof image, .width = picture->width, .height = picture->height};
     if (picture->blocks)
         return describe_blocks(bake);
     SluiceResult result =
-        slc_plan_make(picture, &bake->info->settings, bake->baker->decoded16, &bake->plan);
+        slc_plan_make(picture, &bake->settings, bake->baker->decoded16, &bake->plan);
     image.format = bake->plan.format;
     if (result == SLUICE_SUCCESS)
         describe_store(bake, &image);
@@ -283,7 +288,7 @@ static SluiceResult bake_file(struct bake *bake)
     SluiceResult result = look_at_input(bake);
     if (result != SLUICE_SUCCESS)
         return result;
-    bake->settings_hash = sluiceHashBakeSettings(&bake->info->settings);
+    bake->settings_hash = slc_hash_settings(&bake->settings);
     bake->report.inputSize = bake->source_size;
     if (is_up_to_date(bake))
         return SLUICE_SUCCESS;
@@ -294,17 +299,27 @@ static SluiceResult bake_file(struct bake *bake)
     return result;
 }
 
+static const SluiceBakeSettings default_settings = {.structSize = sizeof default_settings};
+
 SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,
                             SluiceBakeReport *pReport)
 {
     if (!baker || !pInfo || !pInfo->pOutputPath || (!pInfo->pInputPath && !pInfo->source))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_check_settings(&pInfo->settings);
+    SluiceBakeInfo info = {.structSize = sizeof info};
+    struct bake bake = {.baker = baker, .info = &info, .settings = default_settings};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceBakeInfo), &info, pInfo, &baker->log);
+    if (result == SLUICE_SUCCESS && info.pSettings)
+        result = slc_struct_read(SLC_STRUCT(SluiceBakeSettings), &bake.settings, info.pSettings,
+                                 &baker->log);
+    if (result == SLUICE_SUCCESS && pReport)
+        result = slc_struct_check(SLC_STRUCT(SluiceBakeReport), pReport, &baker->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_check_settings(&bake.settings);
     if (result != SLUICE_SUCCESS)
         return result;
-    struct bake bake = {.baker = baker, .info = pInfo};
     result = bake_file(&bake);
     if (pReport)
-        *pReport = bake.report;
+        slc_struct_write(SLC_STRUCT(SluiceBakeReport), pReport, &bake.report);
     return result;
 }

@@ -5,6 +5,7 @@
 #include "bake/texels.h"
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 
 #include <unistd.h>
 
@@ -37,15 +38,20 @@ SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker *
 {
     if (!pInfo || !pBaker || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
-    SluiceResult result = start_vips(&pInfo->log);
+    SluiceBakerCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceBakerCreateInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
+    result = start_vips(&info.log);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceBaker *baker = slc_calloc(&cb, 1, sizeof *baker);
     float *decoded16 = slc_alloc(&cb, 65536, sizeof *decoded16);
     result = baker && decoded16 ? SLUICE_SUCCESS : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (result == SLUICE_SUCCESS)
-        result = slc_bake_jobs_init(&baker->jobs, &cb, count_threads(pInfo->threadCount) - 1);
+        result = slc_bake_jobs_init(&baker->jobs, &cb, count_threads(info.threadCount) - 1);
     if (result != SLUICE_SUCCESS) {
         slc_free(&cb, decoded16, 65536, sizeof *decoded16);
         slc_free(&cb, baker, 1, sizeof *baker);
@@ -53,8 +59,8 @@ SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker *
     }
     slc_decode_srgb16(decoded16);
     baker->allocator = cb;
-    baker->log = pInfo->log;
-    baker->max_memory = pInfo->maxMemory ? pInfo->maxMemory : DEFAULT_MEMORY;
+    baker->log = info.log;
+    baker->max_memory = info.maxMemory ? info.maxMemory : DEFAULT_MEMORY;
     baker->decoded16 = decoded16;
     *pBaker = baker;
     return SLUICE_SUCCESS;

@@ -60,7 +60,7 @@ void slc_encode_blocks(SluiceFormat format, const void *texels, size_t pitch, ui
                        uint32_t height, void *blocks)
 {
     enum slc_block_kind kind = SLC_BLOCK_BC1;
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     uint8_t rgba[64];
     char *out = blocks;
     if (!find_kind(format, &kind) || sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS)

@@ -54,7 +54,8 @@ static SluiceResult open_exr(const char *path, const struct slc_picture_opening 
                              SluiceImageSource **source)
 {
 #ifdef SLC_HAVE_EXR
-    SluiceExrImageSourceCreateInfo info = {.pPath = path,
+    SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
+                                           .pPath = path,
                                            .pAllocator = cb,
                                            .log = *log,
                                            .maxImageSize = UINT64_MAX,
@@ -72,7 +73,7 @@ static SluiceResult open_exr(const char *path, const struct slc_picture_opening 
 static void describe_exr(SluiceImageSource *source, struct slc_picture *picture)
 {
 #ifdef SLC_HAVE_EXR
-    SluiceExrInfo info;
+    SluiceExrInfo info = {.structSize = sizeof info};
     if (sluiceGetExrInfo(source, &info) != SLUICE_SUCCESS)
         return;
     picture->memory += info.readSize;
@@ -88,10 +89,12 @@ static SluiceResult open_container(const char *path, enum kind kind,
 {
 #ifdef SLC_HAVE_CONTAINER
     if (kind == DDS) {
-        SluiceDdsImageSourceCreateInfo info = {.pPath = path, .pAllocator = cb, .log = *log};
+        SluiceDdsImageSourceCreateInfo info = {
+            .structSize = sizeof info, .pPath = path, .pAllocator = cb, .log = *log};
         return sluiceCreateDdsImageSource(&info, source);
     }
-    SluiceKtx2ImageSourceCreateInfo info = {.pPath = path, .pAllocator = cb, .log = *log};
+    SluiceKtx2ImageSourceCreateInfo info = {
+        .structSize = sizeof info, .pPath = path, .pAllocator = cb, .log = *log};
     return sluiceCreateKtx2ImageSource(&info, source);
 #else
     (void)cb, (void)source;

@@ -80,7 +80,7 @@ static SluiceResult unsupported(const struct source_picture *picture, const char
 static SluiceResult describe(struct source_picture *picture, const SluiceImageInfo *info)
 {
     struct slc_picture *base = &picture->base;
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     SluiceResult result = slc_image_info_check(info, SLC_LEVELS_ALL_OR_ONE, &base->log);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -116,7 +116,7 @@ SluiceResult slc_picture_of_source(SluiceImageSource *source, bool owned, const 
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceLogCallback *log, struct slc_picture **opened)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     struct source_picture *picture = slc_calloc(cb, 1, sizeof *picture);
     if (!picture) {
         if (owned)

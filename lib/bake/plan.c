@@ -82,7 +82,7 @@ static SluiceFormat natural_format(const struct slc_picture *picture, bool norma
 /* Of texels in memory; blocks are made from RGBA bytes. */
 static SluiceFormat texel_format(SluiceFormat format, bool srgb)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     if (sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS || !slc_format_is_compressed(&info))
         return format;
     return slc_format_twin(SLUICE_FORMAT_R8G8B8A8_UNORM, srgb && has_srgb_twin(format));
@@ -98,7 +98,7 @@ static void find_rules(const struct slc_picture *picture, struct slc_plan *plan)
 {
     const SluiceBakeSettings *settings = &plan->settings;
     struct slc_rules *rules = &plan->rules;
-    SluiceFormatInfo info = {0};
+    SluiceFormatInfo info = {.structSize = sizeof info};
     (void)sluiceGetFormatInfo(plan->format, &info);
     bool is_straight = settings->alpha == SLUICE_BAKE_ALPHA_AUTO
                            ? !picture->premultiplied

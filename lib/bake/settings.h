@@ -2,7 +2,12 @@
 #ifndef SLC_BAKE_SETTINGS_H
 #define SLC_BAKE_SETTINGS_H
 
+#include <sluice/bake.h>
+
 /** Part of every hash; raised when the same settings give other texels. */
 #define SLC_BAKE_REVISION 2
+
+/** Of all settings that determine the texels. */
+uint64_t slc_hash_settings(const SluiceBakeSettings *settings);
 
 #endif /* SLC_BAKE_SETTINGS_H */

@@ -1,5 +1,6 @@
 #include <sluice/dds.h>
 
+#include "base/struct_size.h"
 #include "container/dds_format.h"
 #include "container/source.h"
 
@@ -175,11 +176,16 @@ SluiceResult sluiceCreateDdsImageSource(const SluiceDdsImageSourceCreateInfo *pI
 {
     if (!pInfo)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceDdsImageSourceCreateInfo given = {.structSize = sizeof given};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceDdsImageSourceCreateInfo), &given, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
     struct slc_container_create_info info = {
-        .path = pInfo->pPath,
-        .format = pInfo->format,
-        .allocator = pInfo->pAllocator,
-        .log = &pInfo->log,
+        .path = given.pPath,
+        .format = given.format,
+        .allocator = given.pAllocator,
+        .log = &given.log,
         .read_header = read_header,
     };
     return slc_container_source_create(&info, pSource);

@@ -1,5 +1,6 @@
 #include <sluice/ktx2.h>
 
+#include "base/struct_size.h"
 #include "container/source.h"
 
 #include <string.h>
@@ -158,12 +159,17 @@ SluiceResult sluiceCreateKtx2ImageSource(const SluiceKtx2ImageSourceCreateInfo *
 {
     if (!pInfo)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceKtx2ImageSourceCreateInfo given = {.structSize = sizeof given};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceKtx2ImageSourceCreateInfo), &given, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
     struct slc_container_create_info info = {
-        .path = pInfo->pPath,
-        .format = pInfo->format,
-        .allocator = pInfo->pAllocator,
-        .log = &pInfo->log,
-        .max_cache_size = pInfo->maxCacheSize ? pInfo->maxCacheSize : (uint64_t)1 << 29,
+        .path = given.pPath,
+        .format = given.format,
+        .allocator = given.pAllocator,
+        .log = &given.log,
+        .max_cache_size = given.maxCacheSize ? given.maxCacheSize : (uint64_t)1 << 29,
         .read_header = read_header,
     };
     return slc_container_source_create(&info, pSource);

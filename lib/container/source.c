@@ -70,7 +70,7 @@ static SluiceResult fetch_region(const struct slc_container_layout *layout,
                                  const struct level_bytes *from, const SluiceImageRegion *region,
                                  char *texels, size_t row_pitch, uint64_t *failed)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     sluiceGetFormatInfo(layout->format, &format);
     uint64_t stride = slc_format_row_size(&format, slc_mip_size(layout->width, region->mipLevel));
     uint64_t offset = region->arrayLayer * layout->levels[region->mipLevel].layer_stride +
@@ -105,6 +105,7 @@ static SluiceResult read_layout(struct container_source *source)
     if (result != SLUICE_SUCCESS)
         return result;
     source->info = (SluiceImageInfo){
+        .structSize = sizeof(SluiceImageInfo),
         .width = layout->width,
         .height = layout->height,
         .mipLevelCount = layout->level_count,
@@ -187,8 +188,11 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface container_interface = {
-    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
+static const SluiceImageSourceInterface container_interface = {.structSize =
+                                                                   sizeof container_interface,
+                                                               .pfnGetInfo = get_info,
+                                                               .pfnDestroy = destroy,
+                                                               .pfnReadRegionLocated = read_region};
 
 SluiceResult slc_container_source_create(const struct slc_container_create_info *info,
                                          SluiceImageSource **source_out)

@@ -1,3 +1,4 @@
+#include "base/struct_size.h"
 #include "core/feedback_lattice.h"
 
 #include <sluice/feedback_rate.h>
@@ -131,14 +132,22 @@ static double predict_miss(const SluiceFeedbackRate *rate, double probability)
     return draws_miss(count_draws(rate), probability);
 }
 
+static SluiceResult read_rate(const SluiceFeedbackRate *given, double probability,
+                              SluiceFeedbackRate *rate)
+{
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceFeedbackRate), rate, given, NULL);
+    return result == SLUICE_SUCCESS ? check_rate(rate, probability) : result;
+}
+
 SluiceResult sluicePredictFeedbackMiss(const SluiceFeedbackRate *pRate, double probability,
                                        double *pMiss)
 {
     if (!pRate || !pMiss)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = check_rate(pRate, probability);
+    SluiceFeedbackRate rate = {.structSize = sizeof rate};
+    SluiceResult result = read_rate(pRate, probability, &rate);
     if (result == SLUICE_SUCCESS)
-        *pMiss = predict_miss(pRate, probability);
+        *pMiss = predict_miss(&rate, probability);
     return result;
 }
 
@@ -168,14 +177,18 @@ SluiceResult sluiceChooseFeedbackProbability(const SluiceFeedbackRate *pRate, do
 {
     if (!pRate || !pProbability)
         return SLUICE_ERROR_NULL_POINTER;
-    if (check_rate(pRate, 0) != SLUICE_SUCCESS || !(allowedMiss >= 0 && allowedMiss < 1))
+    SluiceFeedbackRate rate = {.structSize = sizeof rate};
+    SluiceResult result = read_rate(pRate, 0, &rate);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!(allowedMiss >= 0 && allowedMiss < 1))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (predict_miss(pRate, 1) > allowedMiss)
+    if (predict_miss(&rate, 1) > allowedMiss)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
-    if (pRate->selection == SLUICE_FEEDBACK_SELECTION_LATTICE)
+    if (rate.selection == SLUICE_FEEDBACK_SELECTION_LATTICE)
         *pProbability = 1.0f / SLC_LATTICE_PHASES;
     else
-        *pProbability = (float)choose_probability(count_draws(pRate), allowedMiss);
+        *pProbability = (float)choose_probability(count_draws(&rate), allowedMiss);
     return SLUICE_SUCCESS;
 }
 
@@ -209,7 +222,8 @@ static SluiceFeedbackDelay predict_delay(const SluiceFeedbackRate *rate, double 
         median = frames_to_mark(rate, probability, 0.5);
         late = frames_to_mark(rate, probability, 0.01);
     }
-    return (SluiceFeedbackDelay){.median = frames_to_notice(rate, median),
+    return (SluiceFeedbackDelay){.structSize = sizeof(SluiceFeedbackDelay),
+                                 .median = frames_to_notice(rate, median),
                                  .percentile99 = frames_to_notice(rate, late)};
 }
 
@@ -218,8 +232,13 @@ SluiceResult sluicePredictFeedbackDelay(const SluiceFeedbackRate *pRate, double 
 {
     if (!pRate || !pDelay)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = check_rate(pRate, probability);
+    SluiceFeedbackRate rate = {.structSize = sizeof rate};
+    SluiceResult result = read_rate(pRate, probability, &rate);
     if (result == SLUICE_SUCCESS)
-        *pDelay = predict_delay(pRate, probability);
-    return result;
+        result = slc_struct_check(SLC_STRUCT(SluiceFeedbackDelay), pDelay, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceFeedbackDelay delay = predict_delay(&rate, probability);
+    slc_struct_write(SLC_STRUCT(SluiceFeedbackDelay), pDelay, &delay);
+    return SLUICE_SUCCESS;
 }

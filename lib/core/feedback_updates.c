@@ -1,4 +1,5 @@
 #include "base/bytes.h"
+#include "base/struct_size.h"
 #include "core/clock.h"
 #include "core/follower.h"
 #include "core/history.h"
@@ -166,12 +167,20 @@ SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureManager *manag
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    SluiceFeedbackDesc given = {.structSize = sizeof given};
+    if (pFeedback) {
+        SluiceResult result =
+            slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, pFeedback, NULL);
+        if (result != SLUICE_SUCCESS)
+            return result; /* a recording has no form for it */
+    }
+    const SluiceFeedbackDesc *feedback = pFeedback ? &given : NULL;
     struct slc_call call = {.kind = SLC_CALL_UPDATE_FEEDBACK,
                             .texture_id = textureId,
-                            .feedback = pFeedback,
+                            .feedback = feedback,
                             .time_stamp = timeStamp,
                             .timeout = timeout,
-                            .result = update(manager, textureId, pFeedback, timeStamp, timeout)};
+                            .result = update(manager, textureId, feedback, timeStamp, timeout)};
     slc_notify(manager, &call);
     return call.result;
 }

@@ -1,6 +1,7 @@
 #include "core/layout.h"
 
 #include "base/checked.h"
+#include "base/struct_size.h"
 
 static SluiceResult check_desc(const SluiceStreamedTextureDesc *d)
 {
@@ -62,9 +63,13 @@ SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct sl
     return SLUICE_SUCCESS;
 }
 
-void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *layout)
+SluiceResult slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *out)
 {
-    *layout = (SluiceStreamedTextureLayout){
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStreamedTextureLayout), out, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceStreamedTextureLayout layout = {
+        .structSize = sizeof layout,
         .desc = s->desc,
         .regularTileCount = s->regular_tile_count,
         .tileCount = s->tile_count,
@@ -74,10 +79,12 @@ void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *la
         .minMipHeight = s->min_mip_height,
     };
     for (uint32_t l = 0; l < s->desc.regularMipCount; l++) {
-        layout->levelWidthInTiles[l] = s->levels[l].width;
-        layout->levelHeightInTiles[l] = s->levels[l].height;
-        layout->levelFirstTile[l] = s->levels[l].first_tile;
+        layout.levelWidthInTiles[l] = s->levels[l].width;
+        layout.levelHeightInTiles[l] = s->levels[l].height;
+        layout.levelFirstTile[l] = s->levels[l].first_tile;
     }
+    slc_struct_write(SLC_STRUCT(SluiceStreamedTextureLayout), out, &layout);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceGetStreamedTextureLayout(const SluiceStreamedTextureDesc *pDesc,
@@ -87,9 +94,7 @@ SluiceResult sluiceGetStreamedTextureLayout(const SluiceStreamedTextureDesc *pDe
         return SLUICE_ERROR_NULL_POINTER;
     struct slc_shape shape = {0};
     SluiceResult result = slc_layout_texture(pDesc, &shape);
-    if (result == SLUICE_SUCCESS)
-        slc_write_layout(&shape, pLayout);
-    return result;
+    return result == SLUICE_SUCCESS ? slc_write_layout(&shape, pLayout) : result;
 }
 
 struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile)

@@ -5,7 +5,8 @@
 #include "core/state.h"
 
 SluiceResult slc_layout_texture(const SluiceStreamedTextureDesc *desc, struct slc_shape *s);
-void slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *layout);
+/** Errors: SLUICE_ERROR_INVALID_ARGUMENT for the structSize of `out`. */
+SluiceResult slc_write_layout(const struct slc_shape *s, SluiceStreamedTextureLayout *out);
 /** `level` is regularMipCount for packed tiles. */
 struct slc_place slc_tile_place(const struct slc_managed_texture *t, uint32_t tile);
 

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/struct_size.h"
 #include "core/observer.h"
 #include "core/managed_textures.h"
 #include "core/texture_tiles.h"
@@ -61,23 +62,27 @@ sluiceCreateStreamedTextureManager(const SluiceStreamedTextureManagerCreateInfo 
         *pManager = NULL;
     if (!pCreateInfo || !pManager)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = check_create_info(pCreateInfo);
+    SluiceStreamedTextureManagerCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceStreamedTextureManagerCreateInfo), &info,
+                                          pCreateInfo, NULL);
+    if (result == SLUICE_SUCCESS)
+        result = check_create_info(&info);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceAllocationCallbacks cb = slc_allocator(pCreateInfo->pAllocator);
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     slc_manager *m = slc_calloc(&cb, 1, sizeof *m);
     if (!m)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    m->info = *pCreateInfo;
+    m->info = info;
     m->given = cb;
-    m->info.pAllocator = pCreateInfo->pAllocator ? &m->given : NULL;
+    m->info.pAllocator = info.pAllocator ? &m->given : NULL;
     m->cb = (SluiceAllocationCallbacks){m, count_allocate, count_free};
     m->host_memory_size = sizeof *m;
     m->dirty_first = m->dirty_last = m->visit_first = m->visit_last = SLC_NONE;
     set_limits(m);
     struct slc_machine_user user = slc_tiles_user(m);
-    result = slc_machine_init(&m->residency, &m->cb, &user, &pCreateInfo->heapAllocator,
-                              pCreateInfo->heapTileCapacity, pCreateInfo->tileSize);
+    result = slc_machine_init(&m->residency, &m->cb, &user, &info.heapAllocator,
+                              info.heapTileCapacity, info.tileSize);
     if (result != SLUICE_SUCCESS)
         goto fail;
     *pManager = m;
@@ -99,13 +104,18 @@ SluiceResult sluiceSetConfig(SluiceStreamedTextureManager *manager,
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
-    struct slc_call call = {.kind = SLC_CALL_SET_CONFIG, .config = pConfig};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config};
+    struct slc_call call = {.kind = SLC_CALL_SET_CONFIG, .config = pConfig ? &config : NULL};
     if (!pConfig) {
         call.result = SLUICE_ERROR_NULL_POINTER;
     } else {
-        manager->config = *pConfig;
+        SluiceResult result =
+            slc_struct_read(SLC_STRUCT(SluiceStreamedTextureManagerConfig), &config, pConfig, NULL);
+        if (result != SLUICE_SUCCESS)
+            return result; /* a recording has no form for it */
+        manager->config = config;
         set_limits(manager);
-        slc_evict_standby(&manager->residency, pConfig->numExtraStandbyTiles);
+        slc_evict_standby(&manager->residency, config.numExtraStandbyTiles);
     }
     slc_notify(manager, &call);
     return call.result;

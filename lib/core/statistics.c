@@ -1,3 +1,4 @@
+#include "base/struct_size.h"
 #include "core/state.h"
 
 SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
@@ -5,8 +6,13 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
 {
     if (!manager || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result =
+        slc_struct_check(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
     const slc_manager *m = manager;
-    *pStatistics = (SluiceStreamedTextureStatistics){
+    SluiceStreamedTextureStatistics statistics = {
+        .structSize = sizeof statistics,
         .textureCount = m->texture_count,
         .tileCount = m->tile_count,
         .requestedTileCount = m->residency.state_counts[SLUICE_TILE_STATE_REQUESTED],
@@ -33,5 +39,6 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
         .givenUpRetriedTotal = m->given_up_retried_total,
         .hostMemorySize = m->host_memory_size,
     };
+    slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }

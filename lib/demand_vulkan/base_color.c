@@ -96,7 +96,7 @@ static bool block_color(SluiceFormat format, const uint8_t *block, float rgba[4]
 
 void slc_base_color(SluiceFormat format, const void *texel, float rgba[4])
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     rgba[0] = rgba[1] = rgba[2] = 0;
     rgba[3] = 1;
     if (sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.blockWidth == 1)

@@ -147,7 +147,7 @@ static void note_opened(SluiceDemandLoader *loader, const struct slc_demand_imag
 /* Pages and what shaders see. */
 static SluiceResult lay_out(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     SluiceResult result = sluiceGetFormatInfo(image->info.format, &format);
     if (result == SLUICE_SUCCESS)
         result =

@@ -69,7 +69,8 @@ static void on_failure(void *user, const SluiceTileReadFailure *failure)
 static SluiceResult create_reader(SluiceDemandLoader *loader)
 {
     const SluiceDemandLoaderCreateInfo *info = &loader->info;
-    SluiceTileLoaderCreateInfo create = {.threadCount = info->loaderThreadCount,
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
+                                         .threadCount = info->loaderThreadCount,
                                          .requestCapacity = loader->job_count,
                                          .pAllocator = &loader->cb,
                                          .retry = info->readRetry,

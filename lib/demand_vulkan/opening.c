@@ -12,7 +12,8 @@
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 {
     (void)source;
-    *info = (SluiceImageInfo){.width = 1,
+    *info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                              .width = 1,
                               .height = 1,
                               .mipLevelCount = 1,
                               .format = SLUICE_FORMAT_R32G32B32A32_SFLOAT,
@@ -44,7 +45,7 @@ static SluiceResult open_source(struct slc_demand_image *image)
             return SLUICE_ERROR_NULL_POINTER;
         image->source = source;
     }
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceGetImageInfo(image->source, &info);
     if (result != SLUICE_SUCCESS || image->info.width)
         return result;
@@ -78,7 +79,8 @@ static void destroy(SluiceImageSource *source)
     (void)source;
 }
 
-static const SluiceImageSourceInterface interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                     destroy};
 
 void slc_image_opener_init(SluiceImageSource *opener)
 {

@@ -12,7 +12,8 @@
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 {
     const struct slc_demand_resource *resource = (const struct slc_demand_resource *)source;
-    *info = (SluiceImageInfo){.width = resource->info.pageCount,
+    *info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                              .width = resource->info.pageCount,
                               .height = 1,
                               .mipLevelCount = 1,
                               .format = SLUICE_FORMAT_R32G32_SFLOAT, /* 64 bits */
@@ -33,7 +34,8 @@ static void destroy_source(SluiceImageSource *source)
     (void)source;
 }
 
-static const SluiceImageSourceInterface interface = {get_info, read_region, destroy_source};
+static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                     destroy_source};
 
 static SluiceDemandResourceId resource_id(const struct slc_demand_resource *resource)
 {

@@ -178,7 +178,7 @@ static void show_image(SluiceDemandLoader *loader, uint32_t index,
                        const struct slc_demand_image *image)
 {
     struct SluiceDemandTexture *entry = change_entry(loader, index);
-    SluiceFormatInfo format = {0};
+    SluiceFormatInfo format = {.structSize = sizeof format};
     sluiceGetFormatInfo(image->info.format, &format);
     entry->state = SLUICE_DEMAND_TEXTURE_OPEN;
     entry->width = image->info.width;

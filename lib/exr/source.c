@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/struct_size.h"
 #include "exr/decode.h"
 #include "exr/memory_budget.h"
 #include "image/format.h"
@@ -150,7 +151,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface exr_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface exr_interface = {sizeof exr_interface, get_info,
+                                                         read_region, destroy};
 
 static const char *const storage_names[] = {
     [SLC_EXR_SCANLINES] = "scanlines",
@@ -233,6 +235,7 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
     if (format == SLUICE_FORMAT_UNDEFINED)
         format = slc_exr_natural_format(file);
     source->info = (SluiceImageInfo){
+        .structSize = sizeof(SluiceImageInfo),
         .width = file->width,
         .height = file->height,
         .mipLevelCount = slc_mip_count(slc_max_u32(file->width, file->height)),
@@ -258,26 +261,31 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
 {
     if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    if (pInfo->format != SLUICE_FORMAT_UNDEFINED &&
-        (sluiceFormatTexelSize(pInfo->format) == 0 || slc_format_is_packed(pInfo->format)))
+    SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceExrImageSourceCreateInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (info.format != SLUICE_FORMAT_UNDEFINED &&
+        (sluiceFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &exr_interface;
     pthread_mutex_init(&source->mutex, NULL);
-    SluiceResult result = slc_exr_file_open(&source->file, pInfo->pPath, &cb, &pInfo->log);
-    if (pInfo->keepPrimaries && source->file.converts) {
+    result = slc_exr_file_open(&source->file, info.pPath, &cb, &info.log);
+    if (info.keepPrimaries && source->file.converts) {
         source->file.converts = false;
         source->file.is_foreign = true;
     }
     if (result == SLUICE_SUCCESS)
-        result = describe(source, pInfo->format,
-                          pInfo->maxImageSize ? pInfo->maxImageSize : (uint64_t)1 << 34,
-                          pInfo->levelZeroAlone);
+        result =
+            describe(source, info.format, info.maxImageSize ? info.maxImageSize : (uint64_t)1 << 34,
+                     info.levelZeroAlone);
     if (result == SLUICE_SUCCESS)
-        result = reserve_memory(source, pInfo);
+        result = reserve_memory(source, &info);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;
@@ -311,7 +319,11 @@ SluiceResult sluiceGetExrInfo(SluiceImageSource *source, SluiceExrInfo *pInfo)
     if (source->pInterface != &exr_interface)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     const struct exr_source *exr = (const struct exr_source *)source;
-    *pInfo = (SluiceExrInfo){
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceExrInfo), pInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceExrInfo info = {
+        .structSize = sizeof info,
         .storage = storage_of(exr->file.layout),
         .chunkWidth = exr->file.chunk_width,
         .chunkHeight = exr->file.chunk_height,
@@ -326,6 +338,7 @@ SluiceResult sluiceGetExrInfo(SluiceImageSource *source, SluiceExrInfo *pInfo)
     const struct slc_chromaticities *from = &exr->file.chromaticities;
     const double *const points[4] = {from->red, from->green, from->blue, from->white};
     for (int i = 0; i < 8; i++)
-        pInfo->chromaticities[i] = (float)points[i / 2][i % 2];
+        info.chromaticities[i] = (float)points[i / 2][i % 2];
+    slc_struct_write(SLC_STRUCT(SluiceExrInfo), pInfo, &info);
     return SLUICE_SUCCESS;
 }

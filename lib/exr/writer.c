@@ -4,6 +4,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/part_file.h"
+#include "base/struct_size.h"
 #include "image/convert.h"
 #include "image/half.h"
 
@@ -405,6 +406,7 @@ static SluiceResult prepare(struct writer *writer)
         info->threadCount = 1;
     if ((uint64_t)info->tileWidth * info->tileHeight > 1u << 24)
         return fail(writer, SLUICE_ERROR_INVALID_ARGUMENT, "tiles have at most 2^24 texels");
+    writer->image.structSize = sizeof writer->image;
     SluiceResult result = sluiceGetImageInfo(writer->source, &writer->image);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -430,9 +432,11 @@ SluiceResult sluiceWriteExrFile(const SluiceExrWriteInfo *pInfo, SluiceImageSour
 {
     if (!pInfo || !source || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    struct writer writer = {
-        .info = *pInfo, .allocator = slc_allocator(pInfo->pAllocator), .source = source};
-    SluiceResult result = prepare(&writer);
+    struct writer writer = {.allocator = slc_allocator(pInfo->pAllocator), .source = source};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceExrWriteInfo), &writer.info, pInfo, &pInfo->log);
+    if (result == SLUICE_SUCCESS)
+        result = prepare(&writer);
     if (result != SLUICE_SUCCESS)
         return result;
     pthread_mutex_init(&writer.mutex, NULL);

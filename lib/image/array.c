@@ -34,14 +34,17 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface array_interface = {
-    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
+static const SluiceImageSourceInterface array_interface = {.structSize = sizeof array_interface,
+                                                           .pfnGetInfo = get_info,
+                                                           .pfnDestroy = destroy,
+                                                           .pfnReadRegionLocated = read_region};
 
 static SluiceResult check_layers(SluiceImageSource *const *layers, uint32_t count,
                                  SluiceImageInfo *info)
 {
+    info->structSize = sizeof *info;
     for (uint32_t i = 0; i < count; i++) {
-        SluiceImageInfo other;
+        SluiceImageInfo other = {.structSize = sizeof other};
         SluiceResult result = sluiceGetImageInfo(layers[i], i ? &other : info);
         if (result != SLUICE_SUCCESS)
             return result;
@@ -65,7 +68,7 @@ SluiceResult sluiceCreateArrayImageSource(SluiceImageSource *const *ppLayers, ui
 {
     if (!ppLayers || !pSource || !slc_allocator_is_valid(pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     if (layerCount == 0 || layerCount > SLC_MAX_IMAGE_LAYERS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceResult result = check_layers(ppLayers, layerCount, &info);

@@ -10,7 +10,7 @@
 
 uint32_t slc_format_channel_count(SluiceFormat format)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     bool known = sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS;
     return known && !slc_format_is_compressed(&info) ? info.channelCount : 0;
 }

@@ -1,13 +1,16 @@
 #include "image/format.h"
+#include "base/struct_size.h"
 
 struct format {
     const char *name;
     SluiceFormatInfo info;
 };
 
-#define TEXELS(name, size, channels) [SLUICE_FORMAT_##name] = {#name, {size, 1, 1, channels}}
+#define TEXELS(name, size, channels)                                                               \
+    [SLUICE_FORMAT_##name] = {#name, {sizeof(SluiceFormatInfo), size, 1, 1, channels}}
 #define BLOCKS(name, size, channels)                                                               \
-    [SLUICE_FORMAT_##name##_BLOCK] = {#name "_BLOCK", {size, 4, 4, channels}}
+    [SLUICE_FORMAT_##name##                                                                        \
+        _BLOCK] = {#name "_BLOCK", {sizeof(SluiceFormatInfo), size, 4, 4, channels}}
 
 static const struct format formats[SLUICE_FORMAT_COUNT] = {
     [SLUICE_FORMAT_UNDEFINED] = {"UNDEFINED", {0}},
@@ -54,8 +57,10 @@ SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo)
         return SLUICE_ERROR_NULL_POINTER;
     if (find(format)->info.blockSize == 0)
         return SLUICE_ERROR_UNSUPPORTED;
-    *pInfo = find(format)->info;
-    return SLUICE_SUCCESS;
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceFormatInfo), pInfo, NULL);
+    if (result == SLUICE_SUCCESS)
+        slc_struct_write(SLC_STRUCT(SluiceFormatInfo), pInfo, &find(format)->info);
+    return result;
 }
 
 uint32_t sluiceFormatTexelSize(SluiceFormat format)

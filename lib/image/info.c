@@ -10,7 +10,7 @@
 SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const SluiceImageInfo *given,
                                  SluiceImageInfo *info)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     if (given->width == 0 || given->height == 0 ||
         sluiceGetFormatInfo(given->format, &format) != SLUICE_SUCCESS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -30,7 +30,7 @@ SluiceResult slc_image_info_init(const SluiceAllocationCallbacks *cb, const Slui
 
 const char *slc_image_info_trouble(const SluiceImageInfo *info, enum slc_image_levels levels)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     if (info->width == 0 || info->height == 0 || info->width > SLC_MAX_IMAGE_EXTENT ||
         info->height > SLC_MAX_IMAGE_EXTENT)
         return "width or height is 0 or beyond 2^20";

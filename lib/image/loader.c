@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/struct_size.h"
 
 /* Of reads, and of sources that are remembered. */
 #define MAX_COUNT (1u << 29)
@@ -63,14 +64,19 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 {
     if (!pCreateInfo || !pLoader || !slc_allocator_is_valid(pCreateInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    if (pCreateInfo->requestCapacity > MAX_COUNT || pCreateInfo->maxSourceCount > MAX_COUNT)
+    SluiceTileLoaderCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceTileLoaderCreateInfo), &info, pCreateInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (info.requestCapacity > MAX_COUNT || info.maxSourceCount > MAX_COUNT)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_read_pool *pool;
     SluiceTileLoader *loader;
-    SluiceResult result = slc_read_pool_create(pCreateInfo, &pool);
+    result = slc_read_pool_create(&info, &pool);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_create_pool_loader(pool, pCreateInfo, &loader);
+    result = slc_create_pool_loader(pool, &info, &loader);
     if (result != SLUICE_SUCCESS) {
         slc_read_pool_destroy(pool);
         return result;
@@ -206,9 +212,15 @@ SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
 {
     if (!loader || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result =
+        slc_struct_check(SLC_STRUCT(SluiceTileLoaderStatistics), pStatistics, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceTileLoaderStatistics statistics = {.structSize = sizeof statistics};
     pthread_mutex_lock(&loader->pool->mutex);
-    slc_read_queue_write_statistics(&loader->queue, source, pStatistics);
+    slc_read_queue_write_statistics(&loader->queue, source, &statistics);
     pthread_mutex_unlock(&loader->pool->mutex);
+    slc_struct_write(SLC_STRUCT(SluiceTileLoaderStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }
 

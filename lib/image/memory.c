@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/struct_size.h"
 #include "image/info.h"
 #include "image/mip.h"
 
@@ -34,7 +35,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface memory_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface memory_interface = {sizeof memory_interface, get_info,
+                                                            read_region, destroy};
 
 static SluiceResult fill(struct memory_source *source, const void *texels,
                          const SluiceImageInfo *info)
@@ -57,13 +59,17 @@ SluiceResult sluiceCreateMemoryImageSource(const void *pTexels, const SluiceImag
 {
     if (!pTexels || !pInfo || !pSource || !slc_allocator_is_valid(pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceImageInfo), &info, pInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     struct memory_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &memory_interface;
     source->allocator = cb;
-    SluiceResult result = fill(source, pTexels, pInfo);
+    result = fill(source, pTexels, &info);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;

@@ -1,3 +1,4 @@
+#include "base/struct_size.h"
 #include "image/info.h"
 
 #include "base/alloc.h"
@@ -49,7 +50,8 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface procedural_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface procedural_interface = {sizeof procedural_interface,
+                                                                get_info, read_region, destroy};
 
 SluiceResult sluiceCreateProceduralImageSource(const SluiceProceduralImage *pImage,
                                                const SluiceImageInfo *pInfo,
@@ -58,11 +60,15 @@ SluiceResult sluiceCreateProceduralImageSource(const SluiceProceduralImage *pIma
 {
     if (!pImage || !pInfo || !pSource || !pImage->pfnTexel || !slc_allocator_is_valid(pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceImageInfo), &info, pInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
     SluiceAllocationCallbacks cb = slc_allocator(pAllocator);
     struct procedural_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = slc_image_info_init(&cb, pInfo, &source->info);
+    result = slc_image_info_init(&cb, &info, &source->info);
     if (result != SLUICE_SUCCESS) {
         slc_free(&cb, source, 1, sizeof *source);
         return result;

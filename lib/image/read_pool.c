@@ -32,9 +32,10 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
                                  SluiceImageFault *fault)
 {
     SluiceImageSource *source = read->source->source;
+    info->structSize = sizeof *info;
     SluiceResult result = sluiceGetImageInfo(source, info);
     if (result != SLUICE_SUCCESS) {
-        *info = (SluiceImageInfo){0};
+        *info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo)};
         return result;
     }
     for (; read->done_count < read->region_count; read->done_count++) {
@@ -72,6 +73,7 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
     if (!is_failure || !loader->failure.pfnFailed)
         return;
     SluiceTileReadFailure failure = {
+        .structSize = sizeof failure,
         .source = read->source->source,
         .pName = attempt->fault.pName,
         .region = read->regions[read->done_count],

@@ -311,7 +311,7 @@ void slc_read_queue_write_statistics(const struct slc_read_queue *queue,
 {
     const struct slc_read_source *known =
         source ? slc_read_sources_find(&queue->sources, source) : NULL;
-    *statistics = (SluiceTileLoaderStatistics){0};
+    *statistics = (SluiceTileLoaderStatistics){.structSize = sizeof(SluiceTileLoaderStatistics)};
     if (!source || known)
         slc_read_statistics_write(known ? &known->statistics : &queue->statistics, statistics);
 }

@@ -1,12 +1,22 @@
 #include <sluice/image.h>
 
+#include "base/struct_size.h"
 #include "image/format.h"
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {
     if (!source || !pInfo || !source->pInterface || !source->pInterface->pfnGetInfo)
         return SLUICE_ERROR_NULL_POINTER;
-    return source->pInterface->pfnGetInfo(source, pInfo);
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_check(SLC_STRUCT(SluiceImageSourceInterface), source->pInterface, NULL);
+    if (result == SLUICE_SUCCESS)
+        result = slc_struct_check(SLC_STRUCT(SluiceImageInfo), pInfo, NULL);
+    if (result == SLUICE_SUCCESS)
+        result = source->pInterface->pfnGetInfo(source, &info);
+    if (result == SLUICE_SUCCESS)
+        slc_struct_write(SLC_STRUCT(SluiceImageInfo), pInfo, &info);
+    return result;
 }
 
 /* Whole blocks; only the right and lower edge of a level may cut one. */
@@ -46,12 +56,12 @@ SluiceResult sluiceReadImageRegionLocated(SluiceImageSource *source,
     if (!source || !pRegion || !pTexels || !pFault)
         return SLUICE_ERROR_NULL_POINTER;
     *pFault = (SluiceImageFault){"", SLUICE_UNKNOWN_OFFSET};
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceGetImageInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;
     pFault->pName = info.pName ? info.pName : "";
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     if (sluiceGetFormatInfo(info.format, &format) != SLUICE_SUCCESS ||
         !region_is_inside(pRegion, &info) || !region_is_aligned(pRegion, &info, &format) ||
         rowPitch < slc_format_row_size(&format, pRegion->width))

@@ -188,13 +188,14 @@ SluiceResult sluiceComputeFlip(const SluicePicturePair *pPair, float pixelsPerDe
         pixelsPerDegree == 0 ? 3840 * acos(-1) / 180 : (double)pixelsPerDegree;
     if (!pMean)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_picture_pair_init(flip.pictures, pPair, pMap, pAllocator);
+    SluicePicturePair pair = {.structSize = sizeof pair};
+    SluiceResult result = slc_picture_pair_init(flip.pictures, pPair, &pair, pMap, pAllocator);
     if (result)
         return result;
     if (!(pixels_per_degree >= 1 && pixels_per_degree <= 4096))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks allocator = slc_allocator(pAllocator);
-    result = init(&flip, pPair, &allocator, pixels_per_degree);
+    result = init(&flip, &pair, &allocator, pixels_per_degree);
     if (result)
         return result;
     *pMean = compare(&flip, pMap);

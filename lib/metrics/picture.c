@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/struct_size.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,13 +47,16 @@ static void init_picture(struct slc_picture *picture, const SluicePicturePair *p
     }
 }
 
-SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *pair,
-                                   const SluiceMetricMap *map,
+SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *given,
+                                   SluicePicturePair *pair, const SluiceMetricMap *map,
                                    const SluiceAllocationCallbacks *allocator)
 {
-    if (!pair || !pair->pA || !pair->pB || (map && !map->pValues) ||
+    if (!given || !given->pA || !given->pB || (map && !map->pValues) ||
         !slc_allocator_is_valid(allocator))
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluicePicturePair), pair, given, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
     size_t size = pixel_size(pair->format), row_size, pitch_a, pitch_b;
     if (pair->width == 0 || pair->height == 0 || size == 0)
         return SLUICE_ERROR_INVALID_ARGUMENT;

@@ -14,9 +14,12 @@ struct slc_picture {
     double linear[256]; ///< light of each encoded value
 };
 
-/** Looks at all that a caller says; `map` and `allocator` may be NULL. Fills both pictures. */
-SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *pair,
-                                   const SluiceMetricMap *map,
+/**
+ * Checks all that a caller gives. `map` and `allocator` may be NULL. Fills both pictures, and
+ * `pair` with `given` in this version's size.
+ */
+SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *given,
+                                   SluicePicturePair *pair, const SluiceMetricMap *map,
                                    const SluiceAllocationCallbacks *allocator);
 
 /** Encoded luma of RGBA8, else linear luma over the peak. */

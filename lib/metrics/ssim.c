@@ -143,11 +143,12 @@ SluiceResult sluiceComputeSsim(const SluicePicturePair *pPair, const SluiceMetri
     struct ssim ssim;
     if (!pMean)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_picture_pair_init(ssim.pictures, pPair, pMap, pAllocator);
+    SluicePicturePair pair = {.structSize = sizeof pair};
+    SluiceResult result = slc_picture_pair_init(ssim.pictures, pPair, &pair, pMap, pAllocator);
     if (result)
         return result;
     SluiceAllocationCallbacks allocator = slc_allocator(pAllocator);
-    result = init(&ssim, pPair, &allocator);
+    result = init(&ssim, &pair, &allocator);
     if (result)
         return result;
     *pMean = compare(&ssim, pMap);

@@ -24,7 +24,8 @@ static SluiceResult start(struct slc_replay *replay, const uint32_t words[SLC_TR
     slc_dump_line(&player->dump, "demand classes=%" PRIu32 "%s%s", info.class_count,
                   info.no_eviction ? " no-eviction" : "", info.no_lod_bias ? " no-lod-bias" : "");
     if (replay->info->pRecordPath) {
-        const SluiceFileRecordingInfo recording = {.pPath = replay->info->pRecordPath,
+        const SluiceFileRecordingInfo recording = {.structSize = sizeof recording,
+                                                   .pPath = replay->info->pRecordPath,
                                                    .pAllocator = replay->info->pAllocator,
                                                    .log = replay->info->log};
         result = slc_begin_demand_file_recording(player->residency, &recording, &replay->recorder);

@@ -11,7 +11,7 @@
 static const char *check_texture(const struct slc_trace_texture *texture, uint32_t mip_count,
                                  uint32_t packed_mips, uint32_t tile_bytes, uint32_t regular_tiles)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (sluiceGetStreamedTextureLayout(&texture->desc, &layout) != SLUICE_SUCCESS)
         return "a texture's sizes and level counts do not fit together";
     if (layout.desc.feedbackRegionWidth != texture->desc.feedbackRegionWidth ||

@@ -72,6 +72,7 @@ static SluiceResult start(struct frame_loop *loop)
 {
     const SluiceReplayInfo *info = loop->replay->info;
     SluiceStreamedTextureManagerCreateInfo create = {
+        .structSize = sizeof create,
         .heapTileCapacity = info->heapTileCapacity ? info->heapTileCapacity : DEFAULT_HEAP_TILES,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
         .alwaysMapPackedTiles = true,
@@ -79,7 +80,8 @@ static SluiceResult start(struct frame_loop *loop)
     SluiceResult result = slc_replay_start(loop->replay, &create, false);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = info->standbyTileCount,
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = info->standbyTileCount,
                                                  .maxHeapCount = info->maxHeapCount};
     struct slc_call call = {.kind = SLC_CALL_SET_CONFIG, .config = &config};
     result = make_call(loop, &call);
@@ -101,8 +103,10 @@ static SluiceResult give_feedback(struct frame_loop *loop)
     slc_get_run_pairs(&runs, map, size);
     if (runs.why)
         return slc_replay_check(loop->replay, &runs);
-    SluiceFeedbackDesc feedback = {
-        .pMinMip = map, .width = texture->feedback_width, .height = texture->feedback_height};
+    SluiceFeedbackDesc feedback = {.structSize = sizeof feedback,
+                                   .pMinMip = map,
+                                   .width = texture->feedback_width,
+                                   .height = texture->feedback_height};
     struct slc_call call = {.kind = SLC_CALL_UPDATE_FEEDBACK,
                             .texture_id = loop->ids[index],
                             .time_stamp = loop->time,

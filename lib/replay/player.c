@@ -102,7 +102,7 @@ static uint64_t most_prefetched(const struct slc_player *player,
 /* How many entries a list can have at most: more is not allocated, whatever room there was. */
 static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind kind)
 {
-    SluiceStreamedTextureStatistics s;
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
     if (sluiceGetStatistics(player->manager, &s) != SLUICE_SUCCESS)
         return 0;
     switch (kind) {

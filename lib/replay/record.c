@@ -227,6 +227,7 @@ static void get_config(struct slc_cursor *in, struct slc_record *record)
         slc_cursor_fail(in, start, "a configuration's mark of presence is above 5");
     if (in->why || mark == SLC_INPUT_NULL)
         return;
+    record->config.structSize = sizeof record->config;
     record->config.numExtraStandbyTiles = slc_get_varint32(in);
     record->config.maxHeapCount = slc_get_varint32(in);
     record->config.maxLoadAttempts = slc_get_varint32(in);
@@ -267,6 +268,7 @@ static void get_feedback(struct slc_cursor *in, struct slc_record *record)
     if (get_input(in) == SLC_INPUT_NULL)
         return;
     SluiceFeedbackDesc *feedback = &record->feedback;
+    feedback->structSize = sizeof *feedback;
     feedback->width = slc_get_varint32(in);
     feedback->height = slc_get_varint32(in);
     feedback->mipBias = slc_get_signed32(in);

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
 
@@ -32,7 +33,7 @@ static void notify(void *user, const SluiceStreamedTextureManager *manager,
 static void write_configuration(SluiceRecorder *recorder,
                                 const SluiceStreamedTextureManager *manager)
 {
-    static const SluiceStreamedTextureManagerConfig none;
+    static const SluiceStreamedTextureManagerConfig none = {.structSize = sizeof none};
     const SluiceStreamedTextureManagerConfig *config = slc_manager_config(manager);
     if (config->numExtraStandbyTiles != none.numExtraStandbyTiles ||
         config->maxHeapCount != none.maxHeapCount ||
@@ -90,19 +91,24 @@ SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
         *pRecorder = NULL;
     if (!manager || !pInfo || !pInfo->pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
-    if (!slc_allocator_is_valid(pInfo->pAllocator))
+    SluiceFileRecordingInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceFileRecordingInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!slc_allocator_is_valid(info.pAllocator))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (slc_manager_is_used(manager)) {
-        slc_log(&pInfo->log, SLUICE_LOG_ERROR,
+        slc_log(&info.log, SLUICE_LOG_ERROR,
                 "%s: cannot record: the manager was used before or is being recorded already",
-                pInfo->pPath);
+                info.pPath);
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceRecorder *recorder = slc_recorder_create(&cb, manager, stop);
     if (!recorder)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    SluiceResult result = slc_recorder_open_file(recorder, pInfo);
+    result = slc_recorder_open_file(recorder, &info);
     return result == SLUICE_SUCCESS ? begin(recorder, manager, pRecorder) : result;
 }
 
@@ -110,7 +116,8 @@ SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager, c
                                         const SluiceAllocationCallbacks *pAllocator,
                                         SluiceRecorder **pRecorder)
 {
-    const SluiceFileRecordingInfo info = {.pPath = pPath, .pAllocator = pAllocator};
+    const SluiceFileRecordingInfo info = {
+        .structSize = sizeof info, .pPath = pPath, .pAllocator = pAllocator};
     return sluiceBeginFileRecording(manager, &info, pRecorder);
 }
 

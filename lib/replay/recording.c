@@ -13,7 +13,7 @@ static SluiceResult prepare_map(struct slc_replay *replay, struct slc_record *re
 {
     static const uint8_t never_read = SLUICE_MIP_UNTOUCHED;
     SluiceFeedbackDesc *feedback = &record->feedback;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (!record->call.feedback || record->contents == SLC_INPUT_NULL)
         return SLUICE_SUCCESS;
     feedback->pMinMip = &never_read;
@@ -40,7 +40,7 @@ static SluiceResult prepare_indices(struct slc_replay *replay, struct slc_record
         return SLUICE_SUCCESS;
     if (record->contents == SLC_INPUT_ABSENT) {
         /* Refused for its texture, so nobody reads the list; unless that texture lives by now. */
-        SluiceStreamedTextureLayout layout;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         if (sluiceGetTextureLayout(replay->player.manager, call->texture_id, &layout) ==
             SLUICE_SUCCESS)
             call->count = slc_min_u32(call->count, 1);
@@ -119,7 +119,8 @@ SluiceResult slc_play_recording(struct slc_replay *replay)
     replay->out->kind = SLUICE_TRACE_KIND_RECORDING;
     if (words[2] > SLC_TRACE_FLAG_PACKED || words[3] != 0)
         return slc_replay_corrupt(replay, 24, "unknown flags");
-    const SluiceStreamedTextureManagerCreateInfo info = {.heapTileCapacity = words[0],
+    const SluiceStreamedTextureManagerCreateInfo info = {.structSize = sizeof info,
+                                                         .heapTileCapacity = words[0],
                                                          .tileSize = words[1],
                                                          .alwaysMapPackedTiles =
                                                              words[2] & SLC_TRACE_FLAG_PACKED};

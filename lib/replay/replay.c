@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "replay/decisions.h"
 #include "replay/demand_record.h"
 #include "replay/record.h"
@@ -23,7 +24,8 @@ SluiceResult slc_replay_start(struct slc_replay *replay,
                   info->alwaysMapPackedTiles ? " always-map-packed" : "");
     if (!replay->info->pRecordPath)
         return SLUICE_SUCCESS;
-    const SluiceFileRecordingInfo recording = {.pPath = replay->info->pRecordPath,
+    const SluiceFileRecordingInfo recording = {.structSize = sizeof recording,
+                                               .pPath = replay->info->pRecordPath,
                                                .pAllocator = replay->info->pAllocator,
                                                .log = replay->info->log};
     return sluiceBeginFileRecording(replay->player.manager, &recording, &replay->recorder);
@@ -79,7 +81,8 @@ static SluiceResult finish(struct slc_replay *replay, SluiceResult result)
     SluiceResult recorded = sluiceEndRecording(replay->recorder);
     replay->out->decisionHash = player->hash;
     replay->out->eventCount = player->event_count;
-    sluiceGetStatistics(player->manager, &replay->out->statistics);
+    if (replay->info->pStatistics)
+        sluiceGetStatistics(player->manager, replay->info->pStatistics);
     if (result == SLUICE_SUCCESS)
         slc_dump_line(&player->dump, "hash %016" PRIx64 " events %" PRIu64, player->hash,
                       player->event_count);
@@ -91,14 +94,28 @@ SluiceResult sluiceReplay(const SluiceReplayInfo *pInfo, SluiceReplayResult *pRe
 {
     if (!pInfo || !pResult || !pInfo->pData)
         return SLUICE_ERROR_NULL_POINTER;
-    if (!slc_allocator_is_valid(pInfo->pAllocator))
+    SluiceReplayInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceReplayInfo), &info, pInfo, &pInfo->log);
+    if (result == SLUICE_SUCCESS)
+        result = slc_struct_check(SLC_STRUCT(SluiceReplayResult), pResult, &info.log);
+    if (result == SLUICE_SUCCESS && info.pStatistics)
+        result = slc_struct_check(SLC_STRUCT(SluiceStreamedTextureStatistics), info.pStatistics,
+                                  &info.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!slc_allocator_is_valid(info.pAllocator))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    *pResult = (SluiceReplayResult){.decisionHash = SLC_HASH_EMPTY};
+    const SluiceStreamedTextureStatistics none = {.structSize = sizeof none};
+    if (info.pStatistics)
+        slc_struct_write(SLC_STRUCT(SluiceStreamedTextureStatistics), info.pStatistics, &none);
+    SluiceReplayResult out = {.structSize = sizeof out, .decisionHash = SLC_HASH_EMPTY};
     struct slc_replay replay = {
-        .info = pInfo,
-        .out = pResult,
-        .cb = slc_allocator(pInfo->pAllocator),
-        .in = {pInfo->pData, 0, pInfo->size, NULL},
+        .info = &info,
+        .out = &out,
+        .cb = slc_allocator(info.pAllocator),
+        .in = {info.pData, 0, info.size, NULL},
     };
-    return finish(&replay, play(&replay));
+    result = finish(&replay, play(&replay));
+    slc_struct_write(SLC_STRUCT(SluiceReplayResult), pResult, &out);
+    return result;
 }

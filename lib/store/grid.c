@@ -85,6 +85,7 @@ SluiceResult slc_store_grid_init(struct slc_store_grid *grid, uint32_t width, ui
         return result;
     if (layer_count == 0 || layer_count > SLUICE_STORE_MAX_ARRAY_LAYERS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    grid->format.structSize = sizeof grid->format;
     result = sluiceGetFormatInfo(format, &grid->format);
     if (result != SLUICE_SUCCESS)
         return result;

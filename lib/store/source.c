@@ -1,5 +1,6 @@
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "base/struct_size.h"
 #include "image/format.h"
 #include "store/reader.h"
 
@@ -22,6 +23,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
     const struct slc_store_reader *reader = &((struct store_source *)base)->reader;
     const struct slc_store_grid *grid = &reader->header.grid;
     *info = (SluiceImageInfo){
+        .structSize = sizeof(SluiceImageInfo),
         .width = grid->layout.width,
         .height = grid->layout.height,
         .mipLevelCount = grid->layout.mipLevelCount,
@@ -142,20 +144,27 @@ static void destroy(SluiceImageSource *base)
     slc_free(&cb, source, 1, sizeof *source);
 }
 
-static const SluiceImageSourceInterface store_interface = {
-    .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
+static const SluiceImageSourceInterface store_interface = {.structSize = sizeof store_interface,
+                                                           .pfnGetInfo = get_info,
+                                                           .pfnDestroy = destroy,
+                                                           .pfnReadRegionLocated = read_region};
 
 SluiceResult sluiceCreateStoreImageSource(const SluiceStoreImageSourceCreateInfo *pInfo,
                                           SluiceImageSource **pSource)
 {
     if (!pInfo || !pSource || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceStoreImageSourceCreateInfo), &info, pInfo, &pInfo->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct store_source *source = slc_calloc(&cb, 1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     source->base.pInterface = &store_interface;
-    SluiceResult result = slc_store_reader_open(&source->reader, pInfo);
+    result = slc_store_reader_open(&source->reader, &info);
     if (result != SLUICE_SUCCESS) {
         destroy(&source->base);
         return result;
@@ -173,7 +182,11 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
     if (source->pInterface != &store_interface)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     const struct slc_store_header *header = &((struct store_source *)source)->reader.header;
-    *pInfo = (SluiceStoreInfo){
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStoreInfo), pInfo, NULL);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceStoreInfo info = {
+        .structSize = sizeof info,
         .versionMajor = header->major,
         .versionMinor = header->minor,
         .layout = header->grid.layout,
@@ -189,5 +202,6 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
         .compressionLevel = header->compression_level,
         .fileSize = header->file_size,
     };
+    slc_struct_write(SLC_STRUCT(SluiceStoreInfo), pInfo, &info);
     return SLUICE_SUCCESS;
 }

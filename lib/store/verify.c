@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/struct_size.h"
 #include "store/reader.h"
 
 struct verifier {
@@ -11,8 +12,13 @@ struct verifier {
 static void note_defect(struct verifier *verifier, const struct slc_store_find *find,
                         SluiceResult result)
 {
-    SluiceStoreDefect defect = {find->place.layer, find->place.level, find->place.x,
-                                find->place.y,     find->offset,      result};
+    SluiceStoreDefect defect = {.structSize = sizeof defect,
+                                .arrayLayer = find->place.layer,
+                                .mipLevel = find->place.level,
+                                .tileX = find->place.x,
+                                .tileY = find->place.y,
+                                .offset = find->offset,
+                                .result = result};
     verifier->report.defectCount++;
     if (verifier->result == SLUICE_SUCCESS)
         verifier->result = result;
@@ -63,11 +69,20 @@ SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreRe
 {
     if (!pInfo || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceStoreImageSourceCreateInfo open = {
-        .pPath = pInfo->pPath, .pAllocator = pInfo->pAllocator, .log = pInfo->log};
-    struct verifier verifier = {.info = pInfo};
+    SluiceStoreVerifyInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceStoreVerifyInfo), &info, pInfo, &pInfo->log);
+    if (result == SLUICE_SUCCESS && pReport)
+        result = slc_struct_check(SLC_STRUCT(SluiceStoreReport), pReport, &info.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceStoreImageSourceCreateInfo open = {.structSize = sizeof open,
+                                             .pPath = info.pPath,
+                                             .pAllocator = info.pAllocator,
+                                             .log = info.log};
+    struct verifier verifier = {.info = &info};
     struct slc_store_read_bench *bench = NULL;
-    SluiceResult result = slc_store_reader_open(&verifier.reader, &open);
+    result = slc_store_reader_open(&verifier.reader, &open);
     if (result == SLUICE_SUCCESS) {
         bench = slc_store_read_pool_take(verifier.reader.pool);
         result = bench ? verify_chunks(&verifier, bench) : SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -76,6 +91,6 @@ SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo, SluiceStoreRe
         slc_store_read_pool_give(verifier.reader.pool, bench);
     slc_store_reader_close(&verifier.reader);
     if (pReport)
-        *pReport = verifier.report;
+        slc_struct_write(SLC_STRUCT(SluiceStoreReport), pReport, &verifier.report);
     return result;
 }

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "store/resume.h"
 
 #include <string.h>
@@ -116,20 +117,25 @@ SluiceResult sluiceCreateStoreWriter(const SluiceStoreCreateInfo *pInfo,
 {
     if (!pInfo || !pWriter || !pInfo->pPath || !slc_allocator_is_valid(pInfo->pAllocator))
         return SLUICE_ERROR_NULL_POINTER;
-    struct slc_store_header header;
-    SluiceResult result = describe(pInfo, &header);
+    SluiceStoreCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceStoreCreateInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceAllocationCallbacks cb = slc_allocator(pInfo->pAllocator);
+    struct slc_store_header header;
+    result = describe(&info, &header);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceStoreWriter *writer = slc_calloc(&cb, 1, sizeof *writer);
     if (!writer)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     writer->allocator = cb;
     writer->header = header;
-    writer->may_resume = (pInfo->flags & SLUICE_STORE_WRITER_RESUME) != 0;
+    writer->may_resume = (info.flags & SLUICE_STORE_WRITER_RESUME) != 0;
     slc_store_header_write(&writer->header, writer->header_bytes);
     writer->header.name = NULL; /* the caller's, from here on only in the bytes */
-    result = begin(writer, pInfo);
+    result = begin(writer, &info);
     if (result != SLUICE_SUCCESS) {
         sluiceDestroyStoreWriter(writer);
         return result;

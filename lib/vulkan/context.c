@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "vulkan/create_checks.h"
 
 #include <assert.h>
@@ -53,17 +54,19 @@ SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCre
     *pContext = NULL;
     if (!pCreateInfo)
         return SLUICE_ERROR_NULL_POINTER;
-    if (pCreateInfo->structSize != sizeof *pCreateInfo)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceResult result = check_fields(pCreateInfo);
+    SluiceVulkanContextCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceVulkanContextCreateInfo), &info,
+                                          pCreateInfo, &pCreateInfo->log);
+    if (result == SLUICE_SUCCESS)
+        result = check_fields(&info);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceAllocationCallbacks cb = slc_allocator(pCreateInfo->pAllocator);
+    SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceVulkanContext *context = slc_calloc(&cb, 1, sizeof *context);
     if (!context)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     context->cb = cb;
-    result = init(context, pCreateInfo);
+    result = init(context, &info);
     if (result != SLUICE_SUCCESS) {
         slc_free(&cb, context, 1, sizeof *context);
         return result;

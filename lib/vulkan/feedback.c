@@ -10,7 +10,8 @@
 static SluiceResult give_map(SluiceVulkanStreamer *s, SluiceTextureId id, const uint8_t *map,
                              uint32_t width, uint32_t height, uint64_t time_stamp, uint64_t timeout)
 {
-    SluiceFeedbackDesc desc = {.pMinMip = map, .width = width, .height = height};
+    SluiceFeedbackDesc desc = {
+        .structSize = sizeof desc, .pMinMip = map, .width = width, .height = height};
     SluiceResult result =
         sluiceUpdateWithSamplerFeedback(s->manager, id, &desc, time_stamp, timeout);
     if (result == SLUICE_ERROR_STALE_TEXTURE || result == SLUICE_ERROR_UNKNOWN_TEXTURE)

@@ -43,7 +43,7 @@ void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc
 {
     *caps = (SluiceVulkanFormatCapabilities){0};
     VkFormat vk_format = slc_vk_format(format);
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     VkExtent3D granularity;
     if (vk_format == VK_FORMAT_UNDEFINED || sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS)
         return;

@@ -66,7 +66,7 @@ SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
     uint32_t count = s->deferred.count ? count_without_page(s) : 0;
     if (count == 0)
         return SLUICE_SUCCESS;
-    SluiceStreamedTextureStatistics stats;
+    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
     sluiceGetStatistics(s->manager, &stats);
     if (stats.standbyTileCount == 0)
         return SLUICE_SUCCESS;

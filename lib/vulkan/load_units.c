@@ -113,7 +113,8 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
                               count, s->info.minStagingSize);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceTileLoaderCreateInfo loader = {.threadCount = s->info.loaderThreadCount,
+    SluiceTileLoaderCreateInfo loader = {.structSize = sizeof loader,
+                                         .threadCount = s->info.loaderThreadCount,
                                          .requestCapacity = count,
                                          .pAllocator = &s->cb,
                                          .retry = s->info.readRetry,

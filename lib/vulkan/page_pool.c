@@ -95,7 +95,8 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
 static SluiceResult create_chunk(struct slc_page_pool *pool, struct slc_page_chunk *chunk,
                                  SluiceFormat format, uint32_t layer_count)
 {
-    SluiceImageInfo info = {.mipLevelCount = 1, .format = format, .pName = "pages"};
+    SluiceImageInfo info = {
+        .structSize = sizeof info, .mipLevelCount = 1, .format = format, .pName = "pages"};
     SluiceResult result = sluiceGetStandardTileShape(format, &info.width, &info.height);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -42,7 +42,8 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
     views->views = slc_calloc(cb, count, sizeof *views->views);
     if (!views->views)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    const SluiceImageInfo info = {.width = 1,
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 1,
                                   .height = 1,
                                   .mipLevelCount = 1,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,

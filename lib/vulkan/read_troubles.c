@@ -22,7 +22,8 @@ static double seconds(const SluiceVulkanStreamer *s, uint64_t time_stamps)
 static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *texture, uint32_t tile,
                        SluiceResult result)
 {
-    SluiceTileLoaderStatistics reads = {.lastFailureOffset = SLUICE_UNKNOWN_OFFSET};
+    SluiceTileLoaderStatistics reads = {.structSize = sizeof reads,
+                                        .lastFailureOffset = SLUICE_UNKNOWN_OFFSET};
     char place[48] = "";
     sluiceGetTileLoaderStatistics(s->loader, texture->source, &reads);
     if (reads.lastFailure == result && reads.lastFailureOffset != SLUICE_UNKNOWN_OFFSET)

@@ -167,7 +167,7 @@ static SluiceResult create_layer(struct paged_residency *p, uint32_t index, Slui
                                  const SluiceStreamedTextureDesc *desc, VkImage tail)
 {
     struct paged_image *image = &p->images[index];
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceGetFormatInfo(format, &info);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -91,7 +91,7 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
 static SluiceResult reserve_packed(struct sparse_residency *s, struct slc_sparse_image *image,
                                    const SluiceImageInfo *info)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     SluiceResult result = sluiceGetStreamedTextureLayout(&image->layout.desc, &layout);
     if (result == SLUICE_SUCCESS)
         result = slc_touched_tiles_init(&image->touched, s->cb, &s->touched, layout.tileCount,

@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "vulkan/format.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/memory.h"
@@ -213,11 +214,13 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     struct slc_caps caps;
     struct slc_sparse_image image;
     uint32_t memory_type;
-    SluiceImageInfo info = *pImage;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceImageInfo), &info, pImage, pLog);
+    if (result != SLUICE_SUCCESS)
+        return result;
     info.mipLevelCount = slc_mip_count(slc_max_u32(info.width, info.height));
     info.arrayLayerCount = 1;
-    SluiceResult result =
-        slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
+    result = slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, pLog);
     if (result == SLUICE_SUCCESS)
         result = slc_vk_init_device(&vk, device);
     if (result != SLUICE_SUCCESS)

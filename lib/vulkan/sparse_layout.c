@@ -73,7 +73,7 @@ SluiceResult slc_sparse_layout_init(struct slc_sparse_layout *layout, const Slui
                                     const VkSparseImageMemoryRequirements *metadata,
                                     uint64_t address_space_size)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     if (sluiceGetFormatInfo(info->format, &format) != SLUICE_SUCCESS)
         return SLUICE_ERROR_UNSUPPORTED;
     VkExtent3D tile = slc_sparse_tile_extent(&format, color->formatProperties.imageGranularity);

@@ -113,6 +113,7 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
 static SluiceResult create_manager(SluiceVulkanStreamer *s)
 {
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {s, allocate_heap, release_heap},
         .pAllocator = &s->cb,
         .heapTileCapacity = s->info.heapTileCapacity,
@@ -124,6 +125,7 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceStreamedTextureManagerConfig config = {
+        .structSize = sizeof config,
         .numExtraStandbyTiles = s->info.numExtraStandbyTiles,
         .maxHeapCount = s->info.maxHeapCount,
         .retryDelay = s->info.retryDelay,
@@ -444,6 +446,7 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     if (!streamer || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
     *pStatistics = streamer->counts;
+    pStatistics->manager.structSize = sizeof pStatistics->manager;
     sluiceGetStatistics(streamer->manager, &pStatistics->manager);
     const struct slc_residency_counters *counters = &streamer->residency->counters;
     pStatistics->bindCalls = counters->bind_calls;

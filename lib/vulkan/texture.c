@@ -30,7 +30,7 @@ static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (info->primaryId == SLUICE_NO_TEXTURE)
         return SLUICE_SUCCESS;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     return sluiceGetTextureLayout(s->manager, info->primaryId, &layout);
 }
 
@@ -73,7 +73,7 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
 {
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     texture->packed_first_unit = SLC_NONE;
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     SluiceResult result = sluiceGetFormatInfo(texture->info.format, &format);
     if (result == SLUICE_SUCCESS)
         result = slc_packed_units_init(&texture->packed, &s->cb, desc, &format, SLC_TILE_SIZE);
@@ -150,6 +150,7 @@ static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
     if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->layer_count > 1)
         result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D_ARRAY, texture->layer_count,
                              &texture->array_view);
+    texture->layout.structSize = sizeof texture->layout;
     if (result == SLUICE_SUCCESS)
         result = sluiceGetStreamedTextureLayout(&texture->image.desc, &texture->layout);
     if (result == SLUICE_SUCCESS)
@@ -253,7 +254,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     SluiceVulkanStreamer *s = streamer;
     if (!s || !pCreateInfo || !pLayers || !pCreateInfo->source)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceImageInfo image;
+    SluiceImageInfo image = {.structSize = sizeof image};
     SluiceResult result = check_create_info(s, pCreateInfo);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(pCreateInfo->source, &image);
@@ -327,7 +328,7 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     if (!s)
         return SLUICE_ERROR_NULL_POINTER;
     /* The manager knows which ids are good. */
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     SluiceResult result = sluiceGetTextureLayout(s->manager, textureId, &layout);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -418,7 +419,7 @@ static uint32_t page_table_offset(const SluiceVulkanStreamer *s, uint32_t index)
 static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_texture *texture = &s->textures[index];
-    SluiceFormatInfo format = {.channelCount = 4};
+    SluiceFormatInfo format = {.structSize = sizeof format, .channelCount = 4};
     (void)sluiceGetFormatInfo(texture->info.format, &format);
     const SluiceStreamedTextureDesc *desc = &texture->layout.desc;
     struct SluiceTextureEntry entry = {

@@ -99,7 +99,7 @@ static SluiceImageRegion whole_level(const SluiceImageInfo *info, uint32_t level
 static SluiceResult request_all(struct slow_source *source, const SluiceImageRegion *region,
                                 uint64_t now)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceGetImageInfo(source->inner, &info);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -158,8 +158,10 @@ static void destroy(SluiceImageSource *base)
 SluiceResult slow_source_create(struct slow_line *line, SluiceImageSource *inner,
                                 SluiceImageSource **out)
 {
-    static const SluiceImageSourceInterface interface = {
-        .pfnGetInfo = get_info, .pfnDestroy = destroy, .pfnReadRegionLocated = read_region};
+    static const SluiceImageSourceInterface interface = {.structSize = sizeof interface,
+                                                         .pfnGetInfo = get_info,
+                                                         .pfnDestroy = destroy,
+                                                         .pfnReadRegionLocated = read_region};
     struct slow_source *source = calloc(1, sizeof *source);
     if (!source)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;

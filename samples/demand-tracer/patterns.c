@@ -284,6 +284,6 @@ static void source_texel(void *user_data, uint32_t level, uint32_t x, uint32_t y
 SluiceResult pattern_open(const struct pattern *pattern, uint32_t size, SluiceImageSource **source)
 {
     SluiceProceduralImage image = {(void *)pattern, source_texel};
-    SluiceImageInfo info = {size, size, 0, SLUICE_FORMAT_R8G8B8A8_SRGB, "pattern"};
+    SluiceImageInfo info = {sizeof info, size, size, 0, SLUICE_FORMAT_R8G8B8A8_SRGB, "pattern"};
     return sluiceCreateProceduralImageSource(&image, &info, NULL, source);
 }

@@ -65,9 +65,11 @@ static void print_log(void *user_data, SluiceLogSeverity severity, const char *m
 
 static bool write_exr(const struct picture *picture, const char *path)
 {
-    SluiceImageInfo info = {picture->width, picture->height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
-                            "picture"};
-    SluiceExrWriteInfo write = {.pPath = path, .opaque = true, .log = {.pfnLog = print_log}};
+    SluiceImageInfo info = {
+        sizeof info, picture->width, picture->height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+        "picture"};
+    SluiceExrWriteInfo write = {
+        .structSize = sizeof write, .pPath = path, .opaque = true, .log = {.pfnLog = print_log}};
     SluiceImageSource *source = NULL;
     if (!output_spares_inputs(path))
         return false;
@@ -132,7 +134,8 @@ static bool compare_flip(const SluicePicturePair *pair, const struct picture_pla
 static bool compare(const uint8_t *rgba, const uint8_t *other, uint32_t width, uint32_t height,
                     const struct picture_place *place, struct picture_difference *d)
 {
-    const SluicePicturePair pair = {.pA = rgba,
+    const SluicePicturePair pair = {.structSize = sizeof pair,
+                                    .pA = rgba,
                                     .pB = other,
                                     .width = width,
                                     .height = height,

@@ -14,7 +14,7 @@ static SluiceResult open_file(const struct texture *texture, SluiceImageSource *
 {
     const char *path = texture->path;
     enum picture_kind kind;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     struct picture_opening opening = {.pixels = PIXEL_FORMAT_AUTO, .memory = texture->memory};
     SluiceResult result = picture_file_kind(path, &kind);
     if (result != SLUICE_SUCCESS)

@@ -74,7 +74,8 @@ SluiceResult create_source(uint32_t texture, SluiceImageSource **source)
 {
     static float colors[TEXTURES][3] = {{0.9f, 0.6f, 0.3f}, {0.4f, 0.8f, 0.5f}, {0.9f, 0.4f, 0.5f}};
     const SluiceProceduralImage image = {colors[texture], paint};
-    const SluiceImageInfo info = {.width = 4096u >> texture, /* a different size for each */
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 4096u >> texture, /* a different size for each */
                                   .height = 2048,
                                   .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
                                   .pName = "waves"};

@@ -55,7 +55,8 @@ static char *store_path(const char *picture, const char *cache)
 static SluiceResult choose_settings(const struct picture_path *picture, enum pixel_format pixels,
                                     SluiceBakeSettings *settings)
 {
-    *settings = (SluiceBakeSettings){.format = SLUICE_FORMAT_R16G16B16A16_SFLOAT,
+    *settings = (SluiceBakeSettings){.structSize = sizeof(SluiceBakeSettings),
+                                     .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT,
                                      .compressionLevel = COMPRESSION_LEVEL};
     if (picture->kind == PICTURE_EXR_LEVEL_ZERO)
         return picture_file_exr_format(picture->path, pixels, &settings->format);

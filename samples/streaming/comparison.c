@@ -174,7 +174,8 @@ static bool find_metrics(const struct pass *pass, uint32_t frame, const uint8_t 
 {
     const struct settings *settings = &pass->comparison->gallery->settings;
     struct frame_record *record = &pass->comparison->measure->frames[frame];
-    SluicePicturePair pair = {.pA = pixels,
+    SluicePicturePair pair = {.structSize = sizeof pair,
+                              .pA = pixels,
                               .pB = truth,
                               .width = settings->size[0],
                               .height = settings->size[1],

@@ -48,7 +48,7 @@ SluiceResult pattern_create_source(const struct pattern_image *image, SluiceForm
                                    SluiceImageSource **source)
 {
     SluiceProceduralImage procedural = {(void *)image, pattern_texel};
-    SluiceImageInfo info = {image->width, image->height, 0, format, image->name};
+    SluiceImageInfo info = {sizeof info, image->width, image->height, 0, format, image->name};
     return sluiceCreateProceduralImageSource(&procedural, &info, NULL, source);
 }
 
@@ -97,7 +97,8 @@ static bool write_picture(const struct pattern_image *image, const char *path,
 {
     SluiceImageSource *source = NULL;
     SluiceResult result = pattern_create_source(image, SLUICE_FORMAT_R16G16B16A16_SFLOAT, &source);
-    SluiceExrWriteInfo info = {.pPath = path,
+    SluiceExrWriteInfo info = {.structSize = sizeof info,
+                               .pPath = path,
                                .tileWidth = 128, /* the GPU's tile: each is read once */
                                .tileHeight = 64,
                                .threadCount = thread_count,

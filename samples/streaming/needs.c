@@ -8,6 +8,7 @@ static bool add_texture(struct needs *needs, const SluiceStreamedTextureManager 
 {
     struct needs_texture *texture = &needs->textures[needs->texture_count];
     *texture = (struct needs_texture){.id = *id, .first_region = needs->region_count};
+    texture->layout.structSize = sizeof texture->layout;
     if (sluiceGetTextureLayout(manager, id->id, &texture->layout) != SLUICE_SUCCESS)
         return false;
     texture->tile_frames = calloc(texture->layout.tileCount, sizeof *texture->tile_frames);

@@ -77,10 +77,12 @@ static SluiceFormat narrowed(SluiceFormat format)
 SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
                                      SluiceFormat *format)
 {
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .log = to_stderr, .maxMemorySize = UINT64_MAX}; /* no texel is read */
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = path,
+                                             .log = to_stderr,
+                                             .maxMemorySize = UINT64_MAX}; /* no texel is read */
     SluiceImageSource *source = NULL;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     *format = pixels == PIXEL_FORMAT_RGBA8 ? SLUICE_FORMAT_R8G8B8A8_SRGB
                                            : SLUICE_FORMAT_R16G16B16A16_SFLOAT;
     if (pixels != PIXEL_FORMAT_AUTO)
@@ -97,8 +99,10 @@ SluiceResult picture_file_exr_format(const char *path, enum pixel_format pixels,
 static SluiceResult open_exr(const char *path, const struct picture_opening *opening,
                              SluiceImageSource **source)
 {
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .log = to_stderr, .memoryBudget = opening->memory};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = path,
+                                             .log = to_stderr,
+                                             .memoryBudget = opening->memory};
     SluiceResult result = picture_file_exr_format(path, opening->pixels, &create.format);
     return result == SLUICE_SUCCESS ? sluiceCreateExrImageSource(&create, source) : result;
 }
@@ -113,7 +117,8 @@ static SluiceResult open_store(const char *path, SluiceStoreReadPool *pool,
                                SluiceImageSource **source)
 {
 #ifdef HAVE_STORE
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path, .log = to_stderr, .readPool = pool};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .log = to_stderr, .readPool = pool};
     return sluiceCreateStoreImageSource(&create, source);
 #else
     (void)pool, (void)source;
@@ -144,8 +149,9 @@ static SluiceFormat dds_color_format(const char *path, SluiceFormat format)
 
 static SluiceResult open_dds(const char *path, SluiceImageSource **source)
 {
-    SluiceDdsImageSourceCreateInfo create = {.pPath = path, .log = to_stderr};
-    SluiceImageInfo info;
+    SluiceDdsImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .log = to_stderr};
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceCreateDdsImageSource(&create, source);
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(*source, &info);
@@ -161,7 +167,8 @@ static SluiceResult open_dds(const char *path, SluiceImageSource **source)
 static SluiceResult open_container(const char *path, bool is_dds, SluiceImageSource **source)
 {
 #ifdef HAVE_CONTAINER
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .log = to_stderr};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {
+        .structSize = sizeof ktx2, .pPath = path, .log = to_stderr};
     return is_dds ? open_dds(path, source) : sluiceCreateKtx2ImageSource(&ktx2, source);
 #else
     (void)is_dds, (void)source;
@@ -175,6 +182,7 @@ SluiceResult picture_file_open(const char *path, enum picture_kind kind,
 {
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     *source = NULL;
+    info->structSize = sizeof *info;
     switch (kind) {
     case PICTURE_STORE: result = open_store(path, opening->pool, source); break;
     case PICTURE_EXR:

@@ -13,7 +13,7 @@
 
 static bool is_compressed(SluiceFormat format)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.blockWidth > 1;
 }
 
@@ -39,7 +39,7 @@ static bool fits(const char *path, const SluiceImageInfo *info, const struct pic
 
 static bool is_grey(SluiceFormat format)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.channelCount == 1;
 }
 

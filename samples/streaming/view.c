@@ -102,7 +102,7 @@ static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
         view->sources[view->texture_count++] = info.source;
         return result;
     }
-    SluiceImageInfo image = {.pName = "a texture"};
+    SluiceImageInfo image = {.structSize = sizeof image, .pName = "a texture"};
     (void)sluiceGetImageInfo(source, &image);
     text_say("%s: cannot be streamed: %s", image.pName, sluiceResultString(result));
     return result;
@@ -292,7 +292,8 @@ bool view_create(const struct view_request *request, const char *record_path, st
     *view = (struct view){.request = *request};
     bool created = create_context(view) && create_streamer(view);
     /* Before the first texture, so that the recording is complete. */
-    const SluiceFileRecordingInfo recording = {.pPath = record_path, .log = {.pfnLog = log_say}};
+    const SluiceFileRecordingInfo recording = {
+        .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};
     if (created && record_path)
         created = check(sluiceBeginFileRecording(sluiceGetVulkanStreamerManager(view->streamer),
                                                  &recording, &view->recorder),

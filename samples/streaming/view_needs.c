@@ -51,9 +51,9 @@ struct view_reads view_reads(const struct view *view)
     const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(view->streamer);
     struct view_reads all = {0, 0};
     for (uint32_t i = 0; i < view->texture_count; i++) {
-        SluiceStreamedTextureLayout layout;
-        SluiceImageInfo info;
-        SluiceTileLoaderStatistics reads;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+        SluiceImageInfo info = {.structSize = sizeof info};
+        SluiceTileLoaderStatistics reads = {.structSize = sizeof reads};
         if (sluiceGetTextureLayout(manager, view->texture_ids[i].id, &layout) != SLUICE_SUCCESS ||
             sluiceGetImageInfo(view->sources[i], &info) != SLUICE_SUCCESS ||
             sluiceGetVulkanReadStatistics(view->streamer, view->sources[i], &reads) !=

@@ -64,17 +64,22 @@ static void keep(SluiceImageSource *base)
 void plain_source_init(struct plain_source *source, SluiceFormat format, uint32_t width,
                        uint32_t height, const void *texels)
 {
-    static const SluiceImageSourceInterface interface = {get_info, read_region, keep};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                         keep};
     *source = (struct plain_source){.base.pInterface = &interface, .texels = texels};
-    source->info = (SluiceImageInfo){
-        .width = width, .height = height, .mipLevelCount = 1, .format = format, .pName = "plain"};
+    source->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                                     .width = width,
+                                     .height = height,
+                                     .mipLevelCount = 1,
+                                     .format = format,
+                                     .pName = "plain"};
 }
 
 void *read_bytes(const char *path, uint32_t level, size_t *size)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetImageInfo(source, &info));
     uint32_t width = slc_mip_size(info.width, level), height = slc_mip_size(info.height, level);
@@ -89,9 +94,9 @@ void *read_bytes(const char *path, uint32_t level, size_t *size)
 
 float *read_level(const char *path, uint32_t level, uint32_t *width, uint32_t *height)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetImageInfo(source, &info));
     sluiceDestroyImageSource(source);
@@ -126,7 +131,7 @@ void write_png(const char *path, const void *samples, uint32_t width, uint32_t h
 
 static void bake_with(const SluiceBakeInfo *info)
 {
-    SluiceBakerCreateInfo create = {.threadCount = 1};
+    SluiceBakerCreateInfo create = {.structSize = sizeof create, .threadCount = 1};
     SluiceBaker *baker;
     CHECK_OK(sluiceCreateBaker(&create, &baker));
     CHECK_OK(sluiceBakeFile(baker, info, NULL));
@@ -135,12 +140,14 @@ static void bake_with(const SluiceBakeInfo *info)
 
 void bake_source(SluiceImageSource *source, const char *path, const SluiceBakeSettings *settings)
 {
-    SluiceBakeInfo info = {.source = source, .pOutputPath = path, .settings = *settings};
+    SluiceBakeInfo info = {
+        .structSize = sizeof info, .source = source, .pOutputPath = path, .pSettings = settings};
     bake_with(&info);
 }
 
 void bake_picture_file(const char *input, const char *path, const SluiceBakeSettings *settings)
 {
-    SluiceBakeInfo info = {.pInputPath = input, .pOutputPath = path, .settings = *settings};
+    SluiceBakeInfo info = {
+        .structSize = sizeof info, .pInputPath = input, .pOutputPath = path, .pSettings = settings};
     bake_with(&info);
 }

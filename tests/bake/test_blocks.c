@@ -75,7 +75,7 @@ static void check(const struct kind *kind, uint32_t width, uint32_t height)
     uint8_t *rgba = make_picture(width, height, kind->number == 0);
     bool srgb = kind->format == SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK ||
                 kind->format == SLUICE_FORMAT_BC3_SRGB_BLOCK;
-    SluiceBakeSettings settings = {.format = kind->format};
+    SluiceBakeSettings settings = {.structSize = sizeof settings, .format = kind->format};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "blocks.store", path);
     plain_source_init(&source, srgb ? SLUICE_FORMAT_R8G8B8A8_SRGB : SLUICE_FORMAT_R8G8B8A8_UNORM,

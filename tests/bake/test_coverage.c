@@ -53,8 +53,10 @@ static void check_kept(uint32_t leaves, double radius, float cutout, SluiceForma
     char path[256];
     struct plain_source source;
     uint8_t *rgba = make_leaves(leaves, radius);
-    SluiceBakeSettings settings = {
-        .format = format, .alpha = SLUICE_BAKE_ALPHA_STRAIGHT, .cutout = cutout};
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .format = format,
+                                   .alpha = SLUICE_BAKE_ALPHA_STRAIGHT,
+                                   .cutout = cutout};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "leaves.store", path);
     plain_source_init(&source, SLUICE_FORMAT_R8G8B8A8_SRGB, SIZE, SIZE, rgba);
@@ -88,7 +90,8 @@ static void without_it_coverage_is_lost(void **state)
     char path[256];
     struct plain_source source;
     uint8_t *rgba = make_leaves(1500, 2);
-    SluiceBakeSettings settings = {.alpha = SLUICE_BAKE_ALPHA_STRAIGHT};
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .alpha = SLUICE_BAKE_ALPHA_STRAIGHT};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "leaves.store", path);
     plain_source_init(&source, SLUICE_FORMAT_R8G8B8A8_SRGB, SIZE, SIZE, rgba);

@@ -27,7 +27,8 @@ static uint8_t *random_bytes(size_t count, uint32_t random)
 static SluiceResult bake(uint32_t threads, uint64_t memory, const SluiceBakeInfo *info,
                          SluiceBakeReport *report)
 {
-    SluiceBakerCreateInfo create = {.threadCount = threads, .maxMemory = memory};
+    SluiceBakerCreateInfo create = {
+        .structSize = sizeof create, .threadCount = threads, .maxMemory = memory};
     SluiceBaker *baker;
     CHECK_OK(sluiceCreateBaker(&create, &baker));
     SluiceResult result = sluiceBakeFile(baker, info, report);
@@ -62,11 +63,15 @@ static void strips_and_threads_do_not_matter(void **state)
     write_png(picture, samples, 517, 701, 4, false);
     plain_source_init(&source, SLUICE_FORMAT_R8G8B8A8_SRGB, 517, 701, samples);
     for (int filter = 0; filter < 2; filter++) {
-        SluiceBakeSettings settings = {.filter = filter,
+        SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                       .filter = filter,
                                        .alpha = SLUICE_BAKE_ALPHA_STRAIGHT,
                                        .wrapX = SLUICE_BAKE_WRAP_MIRROR,
                                        .wrapY = SLUICE_BAKE_WRAP_REPEAT};
-        SluiceBakeInfo info = {.pInputPath = picture, .pOutputPath = first, .settings = settings};
+        SluiceBakeInfo info = {.structSize = sizeof info,
+                               .pInputPath = picture,
+                               .pOutputPath = first,
+                               .pSettings = &settings};
         CHECK_OK(bake(5, 0, &info, NULL));
         info.pInputPath = NULL;
         info.source = &source.base;
@@ -92,7 +97,7 @@ static void sources_that_fail_leave_nothing(void **state)
     fault_source_init(&faults, &plain.base);
     faults.fail_at = 3;
     faults.failure = SLUICE_ERROR_IO;
-    SluiceBakeInfo info = {.source = &faults.base, .pOutputPath = path};
+    SluiceBakeInfo info = {.structSize = sizeof info, .source = &faults.base, .pOutputPath = path};
     CHECK_RESULT(bake(2, 0, &info, NULL), SLUICE_ERROR_IO);
     assert_int_equal(access(path, F_OK), -1);
     fault_source_finish(&faults);
@@ -112,13 +117,16 @@ static void a_cancelled_bake_is_gone_on_with(void **state)
     struct bake_folder folder;
     char picture[256], path[256], whole[256];
     uint8_t *samples = random_bytes(512 * 1024 * 3, 3);
-    SluiceBakeReport report;
+    SluiceBakeReport report = {.structSize = sizeof report};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "picture.png", picture);
     bake_folder_file(&folder, "out.store", path);
     bake_folder_file(&folder, "whole.store", whole);
     write_png(picture, samples, 512, 1024, 3, false);
-    SluiceBakeInfo info = {.pInputPath = picture, .pOutputPath = path, .pfnProgress = stop_at_half};
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .pInputPath = picture,
+                           .pOutputPath = path,
+                           .pfnProgress = stop_at_half};
     CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_CANCELLED);
     assert_int_equal(access(path, F_OK), -1);
     info.pfnProgress = NULL;
@@ -138,17 +146,19 @@ static void what_is_up_to_date_is_skipped_until_something_changes(void **state)
     struct bake_folder folder;
     char picture[256], path[256];
     uint8_t *samples = random_bytes(64 * 64 * 3, 4);
-    SluiceBakeReport report;
+    SluiceBakeReport report = {.structSize = sizeof report};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "picture.png", picture);
     bake_folder_file(&folder, "out.store", path);
     write_png(picture, samples, 64, 64, 3, false);
-    SluiceBakeInfo info = {.pInputPath = picture, .pOutputPath = path};
+    SluiceBakeInfo info = {.structSize = sizeof info, .pInputPath = picture, .pOutputPath = path};
     CHECK_OK(bake(1, 0, &info, &report));
     assert_false(report.skipped);
     CHECK_OK(bake(1, 0, &info, &report));
     assert_true(report.skipped && report.width == 64 && report.outputSize > 0);
-    info.settings.filter = SLUICE_BAKE_FILTER_KAISER;
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .filter = SLUICE_BAKE_FILTER_KAISER};
+    info.pSettings = &settings;
     CHECK_OK(bake(1, 0, &info, &report));
     assert_false(report.skipped);
     const struct timespec times[2] = {{1000000, 5}, {1000000, 5}};
@@ -170,12 +180,12 @@ static void too_little_memory_is_refused_and_the_rest_is_kept_to(void **state)
     struct bake_folder folder;
     struct plain_source source;
     char path[256];
-    SluiceBakeReport report;
+    SluiceBakeReport report = {.structSize = sizeof report};
     uint8_t *samples = random_bytes(4000 * 16, 5);
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", path);
     plain_source_init(&source, SLUICE_FORMAT_R8_UNORM, 4000, 16, samples);
-    SluiceBakeInfo info = {.source = &source.base, .pOutputPath = path};
+    SluiceBakeInfo info = {.structSize = sizeof info, .source = &source.base, .pOutputPath = path};
     CHECK_RESULT(bake(1, 1 << 20, &info, &report), SLUICE_ERROR_LIMIT_EXCEEDED);
     assert_int_equal(access(path, F_OK), -1);
     CHECK_OK(bake(1, report.memorySize, &info, NULL));
@@ -190,7 +200,8 @@ static void run_out_of_memory(const SluiceBakeInfo *info)
     for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
         struct failing_allocator allocator;
         failing_allocator_init(&allocator, n);
-        SluiceBakerCreateInfo create = {.threadCount = 1, .pAllocator = &allocator.callbacks};
+        SluiceBakerCreateInfo create = {
+            .structSize = sizeof create, .threadCount = 1, .pAllocator = &allocator.callbacks};
         SluiceBaker *baker = NULL;
         result = sluiceCreateBaker(&create, &baker);
         if (result == SLUICE_SUCCESS)
@@ -214,9 +225,13 @@ static void no_memory_is_an_ordinary_result(void **state)
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", path);
     plain_source_init(&source, SLUICE_FORMAT_R8G8B8A8_SRGB, 300, 200, samples);
-    SluiceBakeInfo info = {.source = &source.base,
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .source = &source.base,
                            .pOutputPath = path,
-                           .settings = {.alpha = SLUICE_BAKE_ALPHA_STRAIGHT, .cutout = 0.5f}};
+                           .pSettings =
+                               &(SluiceBakeSettings){.structSize = sizeof(SluiceBakeSettings),
+                                                     .alpha = SLUICE_BAKE_ALPHA_STRAIGHT,
+                                                     .cutout = 0.5f}};
     run_out_of_memory(&info);
     free(samples);
     bake_folder_finish(&folder);
@@ -236,10 +251,13 @@ static void blocks_are_copied_as_they_are(void **state)
     bake_folder_file(&folder, "first.store", first);
     bake_folder_file(&folder, "second.store", second);
     plain_source_init(&plain, SLUICE_FORMAT_R8G8B8A8_SRGB, 1100, 700, samples);
-    SluiceBakeInfo info = {.source = &plain.base,
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .source = &plain.base,
                            .pOutputPath = first,
-                           .settings = {.format = SLUICE_FORMAT_BC4_UNORM_BLOCK,
-                                        .transfer = SLUICE_BAKE_TRANSFER_LINEAR}};
+                           .pSettings =
+                               &(SluiceBakeSettings){.structSize = sizeof(SluiceBakeSettings),
+                                                     .format = SLUICE_FORMAT_BC4_UNORM_BLOCK,
+                                                     .transfer = SLUICE_BAKE_TRANSFER_LINEAR}};
     SluiceResult result = bake(2, 0, &info, NULL);
     if (result == SLUICE_ERROR_UNSUPPORTED) {
         free(samples);
@@ -247,9 +265,10 @@ static void blocks_are_copied_as_they_are(void **state)
         SKIP_TEST("this build makes no blocks");
     }
     CHECK_OK(result);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = first};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = first};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &blocks));
-    info = (SluiceBakeInfo){.source = blocks, .pOutputPath = second};
+    info = (SluiceBakeInfo){
+        .structSize = sizeof(SluiceBakeInfo), .source = blocks, .pOutputPath = second};
     CHECK_OK(bake(5, 0, &info, NULL));
     check_same(first, second, 11);
     unlink(second);
@@ -262,27 +281,32 @@ static void blocks_are_copied_as_they_are(void **state)
 static void wrong_settings_are_refused(void **state)
 {
     (void)state;
-    const SluiceBakeSettings wrong[] = {{.format = SLUICE_FORMAT_COUNT},
-                                        {.transfer = 3},
-                                        {.alpha = 3},
-                                        {.filter = 2},
-                                        {.wrapX = 3},
-                                        {.wrapY = 3},
-                                        {.cutout = 1.5f},
-                                        {.cutout = -0.5f},
-                                        {.compressionLevel = 23},
-                                        {.normalMap = true, .transfer = SLUICE_BAKE_TRANSFER_SRGB}};
+    const SluiceBakeSettings wrong[] = {
+        {.structSize = sizeof(SluiceBakeSettings), .format = SLUICE_FORMAT_COUNT},
+        {.structSize = sizeof(SluiceBakeSettings), .transfer = 3},
+        {.structSize = sizeof(SluiceBakeSettings), .alpha = 3},
+        {.structSize = sizeof(SluiceBakeSettings), .filter = 2},
+        {.structSize = sizeof(SluiceBakeSettings), .wrapX = 3},
+        {.structSize = sizeof(SluiceBakeSettings), .wrapY = 3},
+        {.structSize = sizeof(SluiceBakeSettings), .cutout = 1.5f},
+        {.structSize = sizeof(SluiceBakeSettings), .cutout = -0.5f},
+        {.structSize = sizeof(SluiceBakeSettings), .compressionLevel = 23},
+        {.structSize = sizeof(SluiceBakeSettings),
+         .normalMap = true,
+         .transfer = SLUICE_BAKE_TRANSFER_SRGB}};
     uint8_t texel = 0;
     struct plain_source source;
     plain_source_init(&source, SLUICE_FORMAT_R8_UNORM, 1, 1, &texel);
-    SluiceBakeInfo info = {.source = &source.base, .pOutputPath = "/nowhere/at/all.store"};
+    SluiceBakeInfo info = {
+        .structSize = sizeof info, .source = &source.base, .pOutputPath = "/nowhere/at/all.store"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        info.settings = wrong[i];
+        info.pSettings = &wrong[i];
         CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_INVALID_ARGUMENT);
     }
-    info.settings = (SluiceBakeSettings){.format = SLUICE_FORMAT_BC7_UNORM_BLOCK};
+    info.pSettings = &(SluiceBakeSettings){.structSize = sizeof(SluiceBakeSettings),
+                                           .format = SLUICE_FORMAT_BC7_UNORM_BLOCK};
     CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_UNSUPPORTED);
-    info.settings = (SluiceBakeSettings){0};
+    info.pSettings = NULL;
     CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_FILE_NOT_FOUND);
     info.pOutputPath = NULL;
     CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_NULL_POINTER);

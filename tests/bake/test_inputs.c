@@ -26,11 +26,12 @@ static void check_exr(const char *path)
     struct bake_folder folder;
     char store[256];
     size_t size;
-    SluiceExrImageSourceCreateInfo create = {.pPath = path,
-                                             .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
     SluiceImageSource *source;
-    SluiceImageInfo info;
-    SluiceBakeSettings settings = {.format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", store);
     bake_picture_file(path, store, &settings);
@@ -69,13 +70,16 @@ static void tiled_files_are_read_in_strips(void **state)
     struct bake_folder folder;
     char path[256];
     SluiceProceduralImage image = {NULL, colour};
-    SluiceImageInfo info = {
-        .width = 300, .height = 517, .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = 300,
+                            .height = 517,
+                            .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT};
     SluiceImageSource *source;
     bake_folder_init(&folder);
     bake_folder_file(&folder, "in.exr", path);
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
-    SluiceExrWriteInfo write = {.pPath = path, .tileWidth = 100, .tileHeight = 70};
+    SluiceExrWriteInfo write = {
+        .structSize = sizeof write, .pPath = path, .tileWidth = 100, .tileHeight = 70};
     CHECK_OK(sluiceWriteExrFile(&write, source));
     sluiceDestroyImageSource(source);
     check_exr(path);
@@ -99,9 +103,9 @@ static void files_from_elsewhere_are_read_in_strips(void **state)
 
 static SluiceStoreColorSpace color_space_of(const char *path)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetStoreInfo(source, &info));
     sluiceDestroyImageSource(source);
@@ -118,9 +122,13 @@ static void colors_of_other_primaries_are_stored_as_those_of_rec709(void **state
         bool keeps;
         SluiceStoreColorSpace space;
     } cases[] = {
-        {{0}, false, SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB},
-        {{.keepPrimaries = true}, true, SLUICE_STORE_COLOR_SPACE_UNDEFINED},
-        {{.normalMap = true}, true, SLUICE_STORE_COLOR_SPACE_UNDEFINED},
+        {{.structSize = sizeof(SluiceBakeSettings)}, false, SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB},
+        {{.structSize = sizeof(SluiceBakeSettings), .keepPrimaries = true},
+         true,
+         SLUICE_STORE_COLOR_SPACE_UNDEFINED},
+        {{.structSize = sizeof(SluiceBakeSettings), .normalMap = true},
+         true,
+         SLUICE_STORE_COLOR_SPACE_UNDEFINED},
     };
     char path[1024], store[256];
     own_file("mip_aces.exr", path);
@@ -132,7 +140,8 @@ static void colors_of_other_primaries_are_stored_as_those_of_rec709(void **state
         bake_folder_file(&folder, "out.store", store);
         bake_picture_file(path, store, &cases[i].settings);
         assert_int_equal(color_space_of(store), cases[i].space);
-        SluiceExrImageSourceCreateInfo create = {.pPath = path,
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = path,
                                                  .format = SLUICE_FORMAT_R32G32B32A32_SFLOAT,
                                                  .keepPrimaries = cases[i].keeps};
         SluiceImageSource *source;
@@ -156,9 +165,9 @@ static void colors_of_other_primaries_are_stored_as_those_of_rec709(void **state
 #ifdef HAVE_CONTAINER
 static SluiceFormat format_of(const char *path)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetImageInfo(source, &info));
     sluiceDestroyImageSource(source);
@@ -174,7 +183,7 @@ static void block_compressed_levels_are_kept(void **state)
 #else
     struct bake_folder folder;
     char in[512], out[256];
-    SluiceBakeSettings settings = {0};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
     snprintf(in, sizeof in, "%s/tests/container/data/nvtt_bc1.dds", getenv("SLUICE_SOURCE_ROOT"));
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", out);
@@ -221,26 +230,33 @@ static SluiceResult read_nothing(SluiceImageSource *source, const SluiceImageReg
 static void sources_whose_info_no_image_has_are_refused(void **state)
 {
     (void)state;
-    static const SluiceImageSourceInterface interface = {lie, read_nothing, NULL, NULL};
+    static const SluiceImageSourceInterface interface = {sizeof interface, lie, read_nothing, NULL,
+                                                         NULL};
     static const SluiceImageInfo infos[] = {
-        {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
-        {16, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
-        {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
-        {16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
-        {16, 16, 0, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "no levels of blocks"},
-        {16, 16, 1, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "level 0 of blocks alone"},
-        {16, 16, 5, (SluiceFormat)99, "unknown format"},
-        {16, 16, 5, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "layers", UINT32_MAX},
+        {sizeof(SluiceImageInfo), 0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
+        {sizeof(SluiceImageInfo), 16, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
+        {sizeof(SluiceImageInfo), 16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
+        {sizeof(SluiceImageInfo), 16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
+        {sizeof(SluiceImageInfo), 16, 16, 0, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
+         "no levels of blocks"},
+        {sizeof(SluiceImageInfo), 16, 16, 1, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
+         "level 0 of blocks alone"},
+        {sizeof(SluiceImageInfo), 16, 16, 5, (SluiceFormat)99, "unknown format"},
+        {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, "layers",
+         UINT32_MAX},
     };
     struct bake_folder folder;
     char store[256];
     SluiceBaker *baker;
     bake_folder_init(&folder);
     bake_folder_file(&folder, "out.store", store);
-    CHECK_OK(sluiceCreateBaker(&(SluiceBakerCreateInfo){.threadCount = 1}, &baker));
+    CHECK_OK(sluiceCreateBaker(
+        &(SluiceBakerCreateInfo){.structSize = sizeof(SluiceBakerCreateInfo), .threadCount = 1},
+        &baker));
     for (size_t i = 0; i < sizeof infos / sizeof infos[0]; i++) {
         struct liar liar = {{&interface}, infos[i]};
-        SluiceBakeInfo bake = {.source = &liar.base, .pOutputPath = store};
+        SluiceBakeInfo bake = {
+            .structSize = sizeof bake, .source = &liar.base, .pOutputPath = store};
         CHECK_RESULT(sluiceBakeFile(baker, &bake, NULL), SLUICE_ERROR_INVALID_ARGUMENT);
     }
     sluiceDestroyBaker(baker);

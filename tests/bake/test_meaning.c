@@ -46,9 +46,9 @@ static void fixture_init(struct fixture *fixture)
 
 static SluiceStoreInfo store_info(const char *path)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetStoreInfo(source, &info));
     info.pSourceName = NULL; /* goes with the source */
@@ -89,7 +89,7 @@ static void colours_are_averaged_as_light(void **state)
     struct fixture f;
     fixture_init(&f);
     uint8_t *samples = random_bytes(200 * 140 * 3, 1);
-    SluiceBakeSettings settings = {0};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
     write_png(f.in, samples, 200, 140, 3, false);
     bake_picture_file(f.in, f.out, &settings);
     assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R8G8B8A8_SRGB);
@@ -105,7 +105,8 @@ static void data_are_averaged_as_they_are(void **state)
     struct fixture f;
     fixture_init(&f);
     uint8_t *samples = random_bytes(200 * 140 * 3, 2);
-    SluiceBakeSettings settings = {.transfer = SLUICE_BAKE_TRANSFER_LINEAR};
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .transfer = SLUICE_BAKE_TRANSFER_LINEAR};
     write_png(f.in, samples, 200, 140, 3, false);
     bake_picture_file(f.in, f.out, &settings);
     assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R8G8B8A8_UNORM);
@@ -126,7 +127,7 @@ static void bytes_of_the_picture_are_kept(void **state)
     struct fixture f;
     fixture_init(&f);
     uint8_t *samples = random_bytes(301 * 203 * 4, 3);
-    SluiceBakeSettings settings = {0};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
     size_t size;
     write_png(f.in, samples, 301, 203, 4, false);
     bake_picture_file(f.in, f.out, &settings);
@@ -147,7 +148,7 @@ static void words_of_the_picture_are_kept_as_far_as_floats_hold_them(void **stat
     fixture_init(&f);
     for (size_t i = 0; i < 64 * 48; i++)
         samples[i] = (uint16_t)next_random(&random);
-    SluiceBakeSettings settings = {0};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
     write_png(f.in, samples, 64, 48, 1, true);
     bake_picture_file(f.in, f.out, &settings);
     assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R32_SFLOAT);
@@ -211,7 +212,8 @@ static void colours_count_as_much_as_they_cover(void **state)
     for (uint32_t i = 0; i < 60 * 80; i++) /* quads without alpha, and texels, among them */
         texels[4 * i + 3] = i / 8 % 3 == 0 || i % 5 == 0 ? 0.0f : texels[4 * i + 3];
     struct plain_source source;
-    SluiceBakeSettings settings = {.alpha = SLUICE_BAKE_ALPHA_STRAIGHT};
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .alpha = SLUICE_BAKE_ALPHA_STRAIGHT};
     plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, 80, 60, texels);
     bake_source(&source.base, f.out, &settings);
     assert_int_equal(store_info(f.out).meaning, SLUICE_STORE_MEANING_COLOR_ALPHA);
@@ -230,7 +232,7 @@ static void premultiplied_colours_are_averaged_as_they_are(void **state)
     fixture_init(&f);
     float *texels = random_floats(4 * 32 * 32, 6);
     struct plain_source source;
-    SluiceBakeSettings settings = {0};
+    SluiceBakeSettings settings = {.structSize = sizeof settings};
     plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, 32, 32, texels);
     bake_source(&source.base, f.out, &settings);
     assert_int_equal(store_info(f.out).meaning, SLUICE_STORE_MEANING_COLOR_PREMULTIPLIED);
@@ -261,7 +263,7 @@ static void normals_keep_their_length(void **state)
         samples[3 * i + 1] = (uint8_t)lrint(127.5 * (r * sin(angle) + 1));
         samples[3 * i + 2] = (uint8_t)lrint(127.5 * (z + 1));
     }
-    SluiceBakeSettings settings = {.normalMap = true};
+    SluiceBakeSettings settings = {.structSize = sizeof settings, .normalMap = true};
     write_png(f.in, samples, 130, 97, 3, false);
     bake_picture_file(f.in, f.out, &settings);
     assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R8G8B8A8_UNORM);
@@ -288,7 +290,7 @@ static void normals_that_cancel_point_up(void **state)
     uint32_t width, height;
     const float texels[2][4] = {{1, 0, 0, 1}, {-1, 0, 0, 1}};
     struct plain_source source;
-    SluiceBakeSettings settings = {.normalMap = true};
+    SluiceBakeSettings settings = {.structSize = sizeof settings, .normalMap = true};
     fixture_init(&f);
     plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, 2, 1, texels);
     bake_source(&source.base, f.out, &settings);
@@ -312,14 +314,16 @@ static void numbers_that_are_none_become_some(void **state)
         struct plain_source source;
         uint32_t width, height;
         float limit = f ? 0x1p120f : 65504.0f, far = f ? 1e30f : 65504.0f;
-        SluiceBakeSettings settings = {.format = formats[f]};
-        SluiceBakerCreateInfo create = {.threadCount = 1};
+        SluiceBakeSettings settings = {.structSize = sizeof settings, .format = formats[f]};
+        SluiceBakerCreateInfo create = {.structSize = sizeof create, .threadCount = 1};
         SluiceBaker *baker;
-        SluiceBakeReport report;
+        SluiceBakeReport report = {.structSize = sizeof report};
         fixture_init(&fixture);
         plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, 8, 1, texels);
-        SluiceBakeInfo info = {
-            .source = &source.base, .pOutputPath = fixture.out, .settings = settings};
+        SluiceBakeInfo info = {.structSize = sizeof info,
+                               .source = &source.base,
+                               .pOutputPath = fixture.out,
+                               .pSettings = &settings};
         CHECK_OK(sluiceCreateBaker(&create, &baker));
         CHECK_OK(sluiceBakeFile(baker, &info, &report));
         sluiceDestroyBaker(baker);
@@ -415,7 +419,8 @@ static void finite_floats_are_kept_and_averaged_over_their_whole_range(void **st
         float *texels = malloc((size_t)width * height * 16);
         for (uint32_t i = 0; i < 4 * width * height; i++)
             texels[i] = extreme_number(&random);
-        SluiceBakeSettings settings = {.filter = s % 2 ? SLUICE_BAKE_FILTER_KAISER
+        SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                       .filter = s % 2 ? SLUICE_BAKE_FILTER_KAISER
                                                        : SLUICE_BAKE_FILTER_BOX};
         fixture_init(&fixture);
         plain_source_init(&source, SLUICE_FORMAT_R32G32B32A32_SFLOAT, width, height, texels);

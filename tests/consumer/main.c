@@ -29,22 +29,26 @@ int main(void)
     if (sluiceFormatTexelSize(SLUICE_FORMAT_R8G8B8A8_SRGB) != 4)
         return 2;
 #ifdef WITH_EXR
-    SluiceExrImageSourceCreateInfo info = {.pPath = "there is no such file"};
+    SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
+                                           .pPath = "there is no such file"};
     SluiceImageSource *source = NULL;
     if (sluiceCreateExrImageSource(&info, &source) != SLUICE_ERROR_FILE_NOT_FOUND)
         return 3;
 #endif
 #ifdef WITH_STORE
-    SluiceStoreImageSourceCreateInfo store = {.pPath = "there is no such file"};
+    SluiceStoreImageSourceCreateInfo store = {.structSize = sizeof store,
+                                              .pPath = "there is no such file"};
     SluiceImageSource *tiles = NULL;
     if (sluiceCreateStoreImageSource(&store, &tiles) != SLUICE_ERROR_FILE_NOT_FOUND)
         return 6;
 #endif
 #ifdef WITH_CONTAINER
-    SluiceDdsImageSourceCreateInfo dds = {.pPath = "there is no such file"};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = "there is no such file"};
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds,
+                                          .pPath = "there is no such file"};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
+                                            .pPath = "there is no such file"};
     SluiceImageSource *files[2] = {NULL, NULL};
-    SluiceImageInfo image;
+    SluiceImageInfo image = {.structSize = sizeof image};
     if (sluiceCreateDdsImageSource(&dds, &files[0]) != SLUICE_SUCCESS ||
         sluiceCreateKtx2ImageSource(&ktx2, &files[1]) != SLUICE_SUCCESS)
         return 4;
@@ -55,8 +59,9 @@ int main(void)
     }
 #endif
 #ifdef WITH_BAKE
-    SluiceBakeSettings settings = {.cutout = 0.5f};
-    if (sluiceHashBakeSettings(&settings) == 0)
+    SluiceBakeSettings settings = {.structSize = sizeof settings, .cutout = 0.5f};
+    uint64_t hash = 0;
+    if (sluiceHashBakeSettings(&settings, &hash) != SLUICE_SUCCESS || hash == 0)
         return 7;
 #endif
 #ifdef WITH_VULKAN

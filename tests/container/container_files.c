@@ -304,7 +304,7 @@ static void check_level(SluiceImageSource *source, const struct picture *p, uint
 
 void check_picture(SluiceImageSource *source, const struct picture *p)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     assert_int_equal(info.width, p->width);
     assert_int_equal(info.height, p->height);
@@ -318,7 +318,7 @@ void check_picture(SluiceImageSource *source, const struct picture *p)
 
 SluiceResult read_everything(SluiceImageSource *source)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceGetImageInfo(source, &info);
     if (result != SLUICE_SUCCESS)
         return result;

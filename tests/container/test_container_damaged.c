@@ -72,9 +72,12 @@ static SluiceResult create(const char *path, bool is_ktx2,
     *tally = (struct log_tally){.path = path};
     *source = NULL;
     SluiceDdsImageSourceCreateInfo dds = {
-        .pPath = path, .pAllocator = allocator, .log = log_to(tally)};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {
-        .pPath = path, .pAllocator = allocator, .log = log_to(tally), .maxCacheSize = 1 << 20};
+        .structSize = sizeof dds, .pPath = path, .pAllocator = allocator, .log = log_to(tally)};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2,
+                                            .pPath = path,
+                                            .pAllocator = allocator,
+                                            .log = log_to(tally),
+                                            .maxCacheSize = 1 << 20};
     return is_ktx2 ? sluiceCreateKtx2ImageSource(&ktx2, source)
                    : sluiceCreateDdsImageSource(&dds, source);
 }
@@ -264,7 +267,7 @@ static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
             continue;
         struct log_tally tally;
         SluiceImageSource *source;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         CHECK_OK(create(s.scratch.path, kind >= KTX2, NULL, &tally, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
         assert_int_equal(ftruncate(s.scratch.descriptor, (off_t)s.file.size - 1), 0);
@@ -354,7 +357,8 @@ static void files_beyond_the_limit_of_descriptors_are_read_later(void **state)
     struct few_descriptors few;
     SluiceImageSource *sources[COUNT];
     SluiceTileLoader *loader;
-    const SluiceTileLoaderCreateInfo info = {.threadCount = 2, .retry = {2, 1, 1}};
+    const SluiceTileLoaderCreateInfo info = {
+        .structSize = sizeof info, .threadCount = 2, .retry = {2, 1, 1}};
     assert_true(sample_init(&s, DX10));
     for (uint32_t i = 0; i < COUNT; i++)
         CHECK_OK(create(s.scratch.path, false, NULL, &tallies[i], &sources[i]));

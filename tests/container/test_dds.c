@@ -5,7 +5,8 @@
 
 static SluiceImageSource *open_dds(const char *path, SluiceFormat format, struct log_tally *tally)
 {
-    SluiceDdsImageSourceCreateInfo info = {.pPath = path, .format = format};
+    SluiceDdsImageSourceCreateInfo info = {
+        .structSize = sizeof info, .pPath = path, .format = format};
     if (tally) {
         *tally = (struct log_tally){.path = path};
         info.log = log_to(tally);
@@ -161,12 +162,12 @@ static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
     SluiceImageSource *source = NULL;
-    SluiceDdsImageSourceCreateInfo info = {.pPath = "x"};
+    SluiceDdsImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = "x"};
     CHECK_RESULT(sluiceCreateDdsImageSource(NULL, &source), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateDdsImageSource(&info, NULL), SLUICE_ERROR_NULL_POINTER);
     info.format = SLUICE_FORMAT_COUNT;
     CHECK_RESULT(sluiceCreateDdsImageSource(&info, &source), SLUICE_ERROR_INVALID_ARGUMENT);
-    info = (SluiceDdsImageSourceCreateInfo){0};
+    info = (SluiceDdsImageSourceCreateInfo){.structSize = sizeof(SluiceDdsImageSourceCreateInfo)};
     CHECK_RESULT(sluiceCreateDdsImageSource(&info, &source), SLUICE_ERROR_NULL_POINTER);
     assert_null(source);
 }

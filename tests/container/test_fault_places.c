@@ -22,8 +22,8 @@ static struct picture rgba(void)
 
 static SluiceImageSource *open_file(const char *path, bool is_ktx2)
 {
-    SluiceDdsImageSourceCreateInfo dds = {.pPath = path};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path};
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pPath = path};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {.structSize = sizeof ktx2, .pPath = path};
     SluiceImageSource *source = NULL;
     CHECK_OK(is_ktx2 ? sluiceCreateKtx2ImageSource(&ktx2, &source)
                      : sluiceCreateDdsImageSource(&dds, &source));
@@ -39,7 +39,7 @@ static void a_file_that_was_cut_ends_in_the_row_that_is_told(void **state)
     struct scratch scratch;
     scratch_init(&scratch, &file);
     SluiceImageSource *source = open_file(scratch.path, false);
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     SluiceImageRegion region = {.x = 3, .y = 10, .width = 8, .height = 2};
     uint64_t second_row = file.header_size + 11 * 160 + 3 * 4;

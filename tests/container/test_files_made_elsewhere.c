@@ -17,8 +17,10 @@ static SluiceImageSource *open_file(const char *name, struct log_tally *tally, c
     const char *root = getenv("SLUICE_SOURCE_ROOT");
     snprintf(path, 1024, "%s/tests/container/data/%s", root ? root : ".", name);
     *tally = (struct log_tally){.path = path};
-    SluiceDdsImageSourceCreateInfo dds = {.pPath = path, .log = log_to(tally)};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .log = log_to(tally)};
+    SluiceDdsImageSourceCreateInfo dds = {
+        .structSize = sizeof dds, .pPath = path, .log = log_to(tally)};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {
+        .structSize = sizeof ktx2, .pPath = path, .log = log_to(tally)};
     SluiceImageSource *source = NULL;
     CHECK_OK(strstr(name, ".dds") ? sluiceCreateDdsImageSource(&dds, &source)
                                   : sluiceCreateKtx2ImageSource(&ktx2, &source));
@@ -131,7 +133,7 @@ static void files_of_other_programs_show_their_picture(void **state)
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         char path[1024];
         struct log_tally tally;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         SluiceImageSource *source = open_file(files[i].name, &tally, path);
         CHECK_OK(sluiceGetImageInfo(source, &info));
         assert_string_equal(info.pName, path);
@@ -150,7 +152,7 @@ static void a_file_without_its_levels_is_refused(void **state)
     (void)state;
     char path[1024];
     struct log_tally tally;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageSource *source = open_file("magick_one_level.dds", &tally, path);
     CHECK_RESULT(sluiceGetImageInfo(source, &info), SLUICE_ERROR_UNSUPPORTED);
     assert_non_null(strstr(tally.last, "has 1 of 6 levels; write it again"));
@@ -163,7 +165,7 @@ static void basis_universal_is_refused_with_a_way_out(void **state)
     (void)state;
     char path[1024];
     struct log_tally tally;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageSource *source = open_file("basisu_etc1s.ktx2", &tally, path);
     CHECK_RESULT(sluiceGetImageInfo(source, &info), SLUICE_ERROR_UNSUPPORTED);
     assert_non_null(strstr(tally.last, "Basis Universal"));

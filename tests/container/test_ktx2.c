@@ -17,7 +17,7 @@ static const uint32_t schemes[2] = {0, 2};
 static SluiceImageSource *open_ktx2(const char *path, SluiceFormat format, struct log_tally *tally)
 {
     SluiceKtx2ImageSourceCreateInfo info = {
-        .pPath = path, .format = format, .maxCacheSize = 1 << 23};
+        .structSize = sizeof info, .pPath = path, .format = format, .maxCacheSize = 1 << 23};
     if (tally) {
         *tally = (struct log_tally){.path = path};
         info.log = log_to(tally);
@@ -180,8 +180,10 @@ static void decompressed_levels_stay_within_their_bound(void **state)
     SluiceAllocationCallbacks callbacks = {&meter, meter_allocate, meter_free};
     struct scratch scratch;
     scratch_init(&scratch, &file);
-    SluiceKtx2ImageSourceCreateInfo info = {
-        .pPath = scratch.path, .pAllocator = &callbacks, .maxCacheSize = BOUND};
+    SluiceKtx2ImageSourceCreateInfo info = {.structSize = sizeof info,
+                                            .pPath = scratch.path,
+                                            .pAllocator = &callbacks,
+                                            .maxCacheSize = BOUND};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateKtx2ImageSource(&info, &source));
     check_on_threads(source, &picture, THREADS);
@@ -214,12 +216,12 @@ static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
     SluiceImageSource *source = NULL;
-    SluiceKtx2ImageSourceCreateInfo info = {.pPath = "x"};
+    SluiceKtx2ImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = "x"};
     CHECK_RESULT(sluiceCreateKtx2ImageSource(NULL, &source), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateKtx2ImageSource(&info, NULL), SLUICE_ERROR_NULL_POINTER);
     info.format = SLUICE_FORMAT_COUNT;
     CHECK_RESULT(sluiceCreateKtx2ImageSource(&info, &source), SLUICE_ERROR_INVALID_ARGUMENT);
-    info = (SluiceKtx2ImageSourceCreateInfo){0};
+    info = (SluiceKtx2ImageSourceCreateInfo){.structSize = sizeof(SluiceKtx2ImageSourceCreateInfo)};
     CHECK_RESULT(sluiceCreateKtx2ImageSource(&info, &source), SLUICE_ERROR_NULL_POINTER);
     assert_null(source);
 }

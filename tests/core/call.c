@@ -93,7 +93,8 @@ static SluiceResult make_feedback(SluiceStreamedTextureManager *m, const struct 
 {
     uint64_t size = (uint64_t)c->map_width * c->map_height;
     uint8_t *copy = exact_copy(c->map, size < CALL_MAX_MAP ? (size_t)size : CALL_MAX_MAP);
-    SluiceFeedbackDesc desc = {.pMinMip = c->null_map ? NULL : copy,
+    SluiceFeedbackDesc desc = {.structSize = sizeof desc,
+                               .pMinMip = c->null_map ? NULL : copy,
                                .width = c->map_width,
                                .height = c->map_height,
                                .mipBias = c->bias,
@@ -111,11 +112,20 @@ static SluiceResult make_add(SluiceStreamedTextureManager *m, const struct call 
                                     c->null == NULL_SECOND ? NULL : &out->texture);
 }
 
+static SluiceResult make_config(SluiceStreamedTextureManager *m, const struct call *c)
+{
+    SluiceStreamedTextureManagerConfig config = c->config;
+    config.structSize = sizeof config;
+    return sluiceSetConfig(m, c->null == NULL_FIRST ? NULL : &config);
+}
+
 static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c, struct outcome *out)
 {
+    out->layout.structSize = sizeof out->layout;
+    out->statistics.structSize = sizeof out->statistics;
     const bool first = c->null == NULL_FIRST, second = c->null == NULL_SECOND;
     switch (c->kind) {
-    case CALL_SET_CONFIG: return sluiceSetConfig(m, first ? NULL : &c->config);
+    case CALL_SET_CONFIG: return make_config(m, c);
     case CALL_ADD_TEXTURE: return make_add(m, c, out);
     case CALL_REMOVE_TEXTURE: return sluiceRemoveStreamedTexture(m, c->texture, c->retire);
     case CALL_FEEDBACK: return make_feedback(m, c);

@@ -73,7 +73,7 @@ void call_sequence_desc(struct call_sequence *s, SluiceStreamedTextureDesc *desc
     const uint32_t most = choice_once_in(&s->choice, 12) ? 400 : s->max_tiles;
     const uint32_t least = choice_once_in(&s->choice, 3) ? 1 : most / 4;
     for (int i = 0; i < 16; i++) {
-        SluiceStreamedTextureLayout l;
+        SluiceStreamedTextureLayout l = {.structSize = sizeof l};
         *desc = random_desc(&s->choice);
         if (naive_layout(desc, &l) == SLUICE_SUCCESS && l.tileCount >= least &&
             l.tileCount <= most && l.feedbackWidth * l.feedbackHeight <= (most < 400 ? 400 : 1000))

@@ -243,7 +243,7 @@ static void make_config(struct call_sequence *s, struct call *call)
 static void make_add(struct call_sequence *s, const struct naive_manager *n, struct call *call)
 {
     uint32_t tiles;
-    SluiceStreamedTextureLayout l;
+    SluiceStreamedTextureLayout l = {.structSize = sizeof l};
     if (mistake(s))
         call_sequence_bad_desc(s, &call->desc);
     else

@@ -277,7 +277,7 @@ static void compare_minmip(struct differential *d, const struct naive_texture *t
 
 static void compare_states(struct differential *d)
 {
-    SluiceStreamedTextureStatistics a, b;
+    SluiceStreamedTextureStatistics a = {.structSize = sizeof a}, b = {.structSize = sizeof b};
     for (uint32_t i = 0; i < d->naive.texture_room && !d->failed; i++) {
         const struct naive_texture *t = d->naive.textures[i];
         if (!t)
@@ -431,6 +431,7 @@ static void start(struct differential *d, struct choice choice)
     d->call_number = 0;
     d->failed = false;
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {d, allocate_heap, release_heap},
         .pAllocator = &d->allocator.callbacks,
         .heapTileCapacity = d->sequence.capacity,

@@ -47,6 +47,7 @@ void fixture_open(struct fixture *f, uint32_t heap_capacity, bool always_map_pac
     f->heaps.limit = FIXTURE_HEAPS;
     failing_allocator_init(&f->memory, UINT64_MAX);
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {&f->heaps, allocate_heap, release_heap},
         .pAllocator = &f->memory.callbacks,
         .heapTileCapacity = heap_capacity,
@@ -107,7 +108,8 @@ SluiceTextureId fixture_add_small(struct fixture *f)
 void fixture_configure(struct fixture *f, uint32_t standby, uint32_t max_heaps, uint32_t attempts,
                        uint64_t retry_delay)
 {
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = standby,
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = standby,
                                                  .maxHeapCount = max_heaps,
                                                  .maxLoadAttempts = attempts,
                                                  .retryDelay = retry_delay,
@@ -119,7 +121,8 @@ void fixture_feed_map(struct fixture *f, SluiceTextureId id, const uint8_t *map,
                       uint64_t timeout)
 {
     SluiceStreamedTextureLayout layout = fixture_layout(f, id);
-    SluiceFeedbackDesc feedback = {map, layout.feedbackWidth, layout.feedbackHeight, 0, 0};
+    SluiceFeedbackDesc feedback = {sizeof feedback,       map, layout.feedbackWidth,
+                                   layout.feedbackHeight, 0,   0};
     CHECK_OK(sluiceUpdateWithSamplerFeedback(f->manager, id, &feedback, time, timeout));
 }
 
@@ -218,14 +221,14 @@ SluiceTile fixture_tile(const struct fixture *f, SluiceTextureId id, uint32_t ti
 
 SluiceStreamedTextureStatistics fixture_statistics(const struct fixture *f)
 {
-    SluiceStreamedTextureStatistics statistics;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     CHECK_OK(sluiceGetStatistics(f->manager, &statistics));
     return statistics;
 }
 
 SluiceStreamedTextureLayout fixture_layout(const struct fixture *f, SluiceTextureId id)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(f->manager, id, &layout));
     return layout;
 }

@@ -112,7 +112,7 @@ uint64_t naive_count_holding(const struct naive_manager *n)
 
 void naive_look_at_bias(struct naive_manager *n)
 {
-    SluiceStreamedTextureStatistics s;
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
     struct naive_bias *b = &n->bias;
     if (n->config.noMipBias) {
         if (b->value > 0) {

@@ -34,7 +34,8 @@ SluiceResult naive_layout(const SluiceStreamedTextureDesc *desc, SluiceStreamedT
     SluiceResult result = check_desc(desc);
     if (result != SLUICE_SUCCESS)
         return result;
-    SluiceStreamedTextureLayout l = {.desc = *desc, .minMipWidth = 1, .minMipHeight = 1};
+    SluiceStreamedTextureLayout l = {
+        .structSize = sizeof l, .desc = *desc, .minMipWidth = 1, .minMipHeight = 1};
     if (!l.desc.feedbackRegionWidth)
         l.desc.feedbackRegionWidth = desc->tileWidth;
     if (!l.desc.feedbackRegionHeight)

@@ -185,7 +185,7 @@ static struct naive_texture *make_texture(struct naive_manager *n,
 SluiceResult naive_add_texture(struct naive_manager *n, const struct call *call,
                                const struct outcome *seen, struct outcome *out)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (call->null != NULL_NONE)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceResult result = naive_layout(&call->desc, &layout);

@@ -16,6 +16,7 @@ static void open_scene(struct scene *s, uint32_t heap_capacity, uint32_t heap_co
 {
     memset(s, 0, sizeof *s);
     fixture_open(&s->f, heap_capacity, packed);
+    s->config.structSize = sizeof s->config;
     s->config.maxHeapCount = heap_count;
     scene_configure(s);
     s->maps_per_frame = 8;

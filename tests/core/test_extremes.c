@@ -80,8 +80,10 @@ static void every_shape_streams(void **state)
             continue; /* the same as smaller ones, but slow */
         struct fixture f;
         fixture_open(&f, 8, i % 2);
-        SluiceStreamedTextureManagerConfig config = {
-            .numExtraStandbyTiles = i % 5, .maxHeapCount = 1 + i % 3, .prefetchLevels = i % 7};
+        SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                     .numExtraStandbyTiles = i % 5,
+                                                     .maxHeapCount = 1 + i % 3,
+                                                     .prefetchLevels = i % 7};
         CHECK_OK(sluiceSetConfig(f.manager, &config));
         SluiceStreamedTextureDesc d = shape(size[0], size[1], levels[i / 240 % 4], tile, region);
         SluiceStreamedTextureDesc other = shape(65, 31, 3, 4, 3);

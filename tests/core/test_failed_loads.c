@@ -355,8 +355,10 @@ static void the_longest_delays_do_not_overflow(void **state)
 /* The configuration with which the facts about given-up tiles are shown: one attempt, 1000 rest. */
 static void rest_for_1000(struct fixture *f)
 {
-    const SluiceStreamedTextureManagerConfig config = {
-        .maxLoadAttempts = 1, .retryDelay = 10, .givenUpRetryDelay = 1000};
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                       .maxLoadAttempts = 1,
+                                                       .retryDelay = 10,
+                                                       .givenUpRetryDelay = 1000};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
 }
 
@@ -525,7 +527,10 @@ static void without_a_delay_given_up_tiles_wait_for_a_call(void **state)
 {
     (void)state;
     static const SluiceStreamedTextureManagerConfig configs[] = {
-        {.maxLoadAttempts = 1}, {.maxLoadAttempts = 1, .givenUpRetryDelay = UINT64_MAX}};
+        {.structSize = sizeof(SluiceStreamedTextureManagerConfig), .maxLoadAttempts = 1},
+        {.structSize = sizeof(SluiceStreamedTextureManagerConfig),
+         .maxLoadAttempts = 1,
+         .givenUpRetryDelay = UINT64_MAX}};
     for (int i = 0; i < 2; i++) {
         struct fixture f;
         fixture_open(&f, 64, false);

@@ -11,7 +11,8 @@
 /* 60 Hz, a second, 1000 textures, 10 a frame: 6 turns in a timeout. */
 static SluiceFeedbackRate usual(SluiceFeedbackSelection selection, uint32_t side, bool in_turns)
 {
-    return (SluiceFeedbackRate){.selection = selection,
+    return (SluiceFeedbackRate){.structSize = sizeof(SluiceFeedbackRate),
+                                .selection = selection,
                                 .regionWidth = side,
                                 .regionHeight = side,
                                 .textureCount = 1000,
@@ -49,7 +50,8 @@ static uint32_t draw_count(double greatest)
 static SluiceFeedbackRate draw_rate(long double *draws)
 {
     uint32_t turn = draw_count(300), turns = draw_count(1e4), per_frame = draw_count(50);
-    SluiceFeedbackRate rate = {.selection = draw() < 0.5 ? SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS
+    SluiceFeedbackRate rate = {.structSize = sizeof rate,
+                               .selection = draw() < 0.5 ? SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS
                                                          : SLUICE_FEEDBACK_SELECTION_RANDOM_QUADS,
                                .regionWidth = draw_count(31622),
                                .regionHeight = draw_count(31622),
@@ -164,7 +166,7 @@ static void ends_of_the_probability_are_never_and_always(void **state)
     (void)state;
     for (int selection = 0; selection < 3; selection++) {
         SluiceFeedbackRate rate = usual((SluiceFeedbackSelection)selection, 4000000000u, false);
-        SluiceFeedbackDelay delay;
+        SluiceFeedbackDelay delay = {.structSize = sizeof delay};
         assert_true(miss_of(&rate, 0) == 1);
         assert_true(miss_of(&rate, 1) == 0);
         assert_true(miss_of(&rate, 1e-9) == 0);
@@ -200,7 +202,7 @@ static void corners_in_turns_need_an_odd_number_of_frames_between(void **state)
 {
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, 1, true);
-    SluiceFeedbackDelay delay;
+    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
     assert_true(miss_of(&rate, 1) == 1);
     CHECK_OK(sluicePredictFeedbackDelay(&rate, 1, &delay));
     assert_true(isinf(delay.median));
@@ -212,7 +214,7 @@ static void lattice_meets_eight_by_eight_pixels_in_every_frame(void **state)
 {
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_LATTICE, 8, true);
-    SluiceFeedbackDelay delay;
+    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
     rate.timeout = 0;
     assert_true(miss_of(&rate, 0) == 0);
     CHECK_OK(sluicePredictFeedbackDelay(&rate, 0, &delay));
@@ -224,7 +226,7 @@ static void lattice_meets_one_pixel_in_sixty_four_frames(void **state)
 {
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_LATTICE, 1, false);
-    SluiceFeedbackDelay delay;
+    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
     rate.textureCount = 1;
     rate.frameRate = 1;
     for (uint32_t n = 1; n <= 64; n++) {
@@ -240,7 +242,7 @@ static void lattice_in_turns_may_never_come_to_a_pixel(void **state)
 {
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_LATTICE, 1, true);
-    SluiceFeedbackDelay delay;
+    SluiceFeedbackDelay delay = {.structSize = sizeof delay};
     float p = -1;
     rate.timeout = INFINITY;
     assert_true(miss_of(&rate, 0) == 0.75);
@@ -254,7 +256,7 @@ static void lattice_in_turns_may_never_come_to_a_pixel(void **state)
 static void expect_refused(SluiceFeedbackRate rate, double probability)
 {
     double miss = -1;
-    SluiceFeedbackDelay delay = {-1, -1};
+    SluiceFeedbackDelay delay = {sizeof delay, -1, -1};
     CHECK_RESULT(sluicePredictFeedbackMiss(&rate, probability, &miss),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_RESULT(sluicePredictFeedbackDelay(&rate, probability, &delay),

@@ -61,7 +61,8 @@ static void every_value_bias_and_limit_is_clamped_to_the_chain(void **state)
             for (uint32_t l = 0; l < sizeof limits / sizeof *limits; l++) {
                 for (uint32_t value = 0; value < 255; value++) {
                     const uint8_t map[2] = {(uint8_t)value, (uint8_t)value};
-                    SluiceFeedbackDesc feedback = {map, 2, 1, biases[b], limits[l]};
+                    SluiceFeedbackDesc feedback = {sizeof feedback, map,      2, 1,
+                                                   biases[b],       limits[l]};
                     CHECK_OK(sluiceUpdateWithSamplerFeedback(f.manager, id, &feedback, 0, 0));
                     check_only_from(&f, id,
                                     wanted_level(&desc, (uint8_t)value, biases[b], limits[l]));
@@ -83,7 +84,7 @@ static void untouched_asks_for_nothing_whatever_the_bias(void **state)
     for (uint32_t b = 0; b < 5; b++) {
         for (uint32_t limit = 0; limit < 4; limit++) {
             fixture_feed(&f, id, 0, 0, 0);
-            SluiceFeedbackDesc feedback = {map, 2, 2, biases[b], limit};
+            SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, biases[b], limit};
             CHECK_OK(sluiceUpdateWithSamplerFeedback(f.manager, id, &feedback, 0, 0));
             check_only_from(&f, id, 99);
         }
@@ -102,7 +103,7 @@ static void maps_of_another_size_are_refused(void **state)
     static const uint32_t sizes[][2] = {{2, 3}, {3, 1}, {3, 3}, {2, 2},
                                         {4, 2}, {0, 0}, {6, 1}, {UINT32_MAX, 2}};
     for (uint32_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        SluiceFeedbackDesc feedback = {map, sizes[i][0], sizes[i][1], 0, 0};
+        SluiceFeedbackDesc feedback = {sizeof feedback, map, sizes[i][0], sizes[i][1], 0, 0};
         CHECK_RESULT(sluiceUpdateWithSamplerFeedback(f.manager, id, &feedback, 9, 0),
                      SLUICE_ERROR_SIZE_MISMATCH);
         check_only_from(&f, id, 99);

@@ -71,7 +71,10 @@ static void feed_random(struct fixture *f, struct texture *t, uint64_t time, uin
         map[i] =
             next_random(random) % rare ? SLUICE_MIP_UNTOUCHED : (uint8_t)(next_random(random) % 10);
     SluiceStreamedTextureLayout layout = fixture_layout(f, t->id);
-    SluiceFeedbackDesc feedback = {map, layout.feedbackWidth, layout.feedbackHeight,
+    SluiceFeedbackDesc feedback = {sizeof feedback,
+                                   map,
+                                   layout.feedbackWidth,
+                                   layout.feedbackHeight,
                                    (int32_t)random_in(random, 0, 4) - 2,
                                    next_random(random) % 3 ? 0 : random_in(random, 1, 4)};
     SOUND(f, sluiceUpdateWithSamplerFeedback(f->manager, t->id, &feedback, time, timeout));

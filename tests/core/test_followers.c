@@ -79,11 +79,12 @@ static void bias_and_limit_of_the_primary_go_over(void **state)
     SluiceTextureId primary = add(&f, 512, 512, 64, 64), a = add(&f, 512, 512, 16, 16),
                     b = add(&f, 512, 512, 16, 16);
     uint8_t map[64] = {0};
-    SluiceFeedbackDesc feedback = {map, 8, 8, 2, 0};
+    SluiceFeedbackDesc feedback = {sizeof feedback, map, 8, 8, 2, 0};
     CHECK_OK(sluiceUpdateWithSamplerFeedback(f.manager, primary, &feedback, 0, 0));
     CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, a, 0, 0));
     assert_int_equal(finest_requested(&f, a), 2);
-    feedback = (SluiceFeedbackDesc){map, 8, 8, 0, 1}; /* only the coarsest of 4 regular ones */
+    feedback = (SluiceFeedbackDesc){
+        sizeof(SluiceFeedbackDesc), map, 8, 8, 0, 1}; /* only the coarsest of 4 regular ones */
     CHECK_OK(sluiceUpdateWithSamplerFeedback(f.manager, primary, &feedback, 1, 0));
     CHECK_OK(sluiceMatchPrimaryTexture(f.manager, primary, b, 1, 0));
     assert_int_equal(finest_requested(&f, b), 3);

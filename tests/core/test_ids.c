@@ -85,10 +85,10 @@ static void check_id_refused(struct fixture *f, SluiceTextureId good, SluiceText
                              SluiceResult expected)
 {
     SluiceStreamedTextureManager *m = f->manager;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     const uint8_t map[4] = {0};
     uint8_t out[4];
-    SluiceFeedbackDesc feedback = {map, 2, 2, 0, 0};
+    SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, 0, 0};
     SluiceTile tiles[4];
     SluiceMinMipRect rect = {bad, 0, 0, 1, 1};
     uint32_t count = 4, tile = 0;
@@ -167,7 +167,10 @@ static void create_infos_are_validated(void **state)
 {
     (void)state;
     const SluiceStreamedTextureManagerCreateInfo good = {
-        .heapAllocator = {NULL, no_heap, no_release}, .heapTileCapacity = 1u << 20, .tileSize = 1};
+        .structSize = sizeof good,
+        .heapAllocator = {NULL, no_heap, no_release},
+        .heapTileCapacity = 1u << 20,
+        .tileSize = 1};
     SluiceStreamedTextureManager *manager = NULL;
     CHECK_OK(sluiceCreateStreamedTextureManager(&good, &manager));
     sluiceDestroyStreamedTextureManager(manager);
@@ -205,11 +208,11 @@ static void null_managers_are_refused(void **state)
 {
     (void)state;
     const SluiceStreamedTextureDesc desc = small_texture();
-    const SluiceStreamedTextureManagerConfig config = {0};
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config};
     const uint8_t map[4] = {0};
-    const SluiceFeedbackDesc feedback = {map, 2, 2, 0, 0};
-    SluiceStreamedTextureLayout layout;
-    SluiceStreamedTextureStatistics statistics;
+    const SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, 0, 0};
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     SluiceTextureId id = 1;
     SluiceTile tile;
     SluiceTileMove move;
@@ -255,7 +258,7 @@ static void null_arguments_are_refused_and_change_nothing(void **state)
     SluiceTextureId id = fixture_add_small(&f), other;
     SluiceStreamedTextureManager *m = f.manager;
     const SluiceStreamedTextureDesc desc = small_texture();
-    const SluiceFeedbackDesc no_map = {NULL, 2, 2, 0, 0};
+    const SluiceFeedbackDesc no_map = {sizeof no_map, NULL, 2, 2, 0, 0};
     const SluiceMinMipRect rect = {id, 0, 0, 1, 1};
     SluiceTile tile;
     SluiceTileMove move;
@@ -308,7 +311,8 @@ static void errors_are_named_in_the_documented_order(void **state)
     CHECK_OK(fixture_to_map(&f, id));
     CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &(uint32_t){0}, 50));
     const uint8_t map[4] = {0};
-    const SluiceFeedbackDesc none = {NULL, 7, 7, 0, 0}, wrong = {map, 2, 1, 0, 0};
+    const SluiceFeedbackDesc none = {sizeof none, NULL, 7, 7, 0, 0},
+                             wrong = {sizeof wrong, map, 2, 1, 0, 0};
     const uint32_t beyond[] = {1, 6}, twice[] = {1, 1};
     SluiceStreamedTextureManager *m = f.manager;
     CHECK_RESULT(sluiceUpdateWithSamplerFeedback(m, stale, &none, 1, 1), SLUICE_ERROR_NULL_POINTER);

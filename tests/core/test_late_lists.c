@@ -47,7 +47,7 @@ static void nothing_is_lost_however_late_the_lists_are_read(void **state)
     for (size_t i = 0; i < sizeof late / sizeof *late; i++) {
         uint64_t mapped = 0, unmapped = 0, cancelled = 0, failed = 0;
         for (uint64_t seed = 1; seed <= 4; seed++) {
-            SluiceStreamedTextureStatistics last;
+            SluiceStreamedTextureStatistics last = {.structSize = sizeof last};
             run(&late[i], seed, 300, &last);
             mapped += last.mappedTotal;
             unmapped += last.unmappedTotal;
@@ -71,7 +71,7 @@ static void nothing_is_lost_if_a_list_is_never_read(void **state)
     };
     for (size_t i = 0; i < sizeof never / sizeof *never; i++) {
         for (uint64_t seed = 1; seed <= 4; seed++) {
-            SluiceStreamedTextureStatistics last;
+            SluiceStreamedTextureStatistics last = {.structSize = sizeof last};
             run(&never[i], seed, 200, &last);
             assert_int_equal(last.unmappedTotal > 0, i == 0);
             assert_int_equal(last.mappedTotal > 0, i < 3);

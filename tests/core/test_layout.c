@@ -4,7 +4,8 @@
 
 static void check_refused(SluiceStreamedTextureDesc desc, SluiceResult expected)
 {
-    SluiceStreamedTextureLayout layout, before;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout},
+                                before = {.structSize = sizeof before};
     memset(&layout, 0x5A, sizeof layout);
     memcpy(&before, &layout, sizeof layout);
     CHECK_RESULT(sluiceGetStreamedTextureLayout(&desc, &layout), expected);
@@ -82,7 +83,7 @@ static void more_tiles_or_regions_than_an_index_counts_are_refused(void **state)
                                       .regularMipCount = 1,
                                       .tileWidth = 32,
                                       .tileHeight = 32}; /* exactly 2^30 tiles */
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetStreamedTextureLayout(&desc, &layout));
     assert_int_equal(layout.tileCount, 1u << 30);
     SluiceStreamedTextureDesc more = desc;
@@ -113,7 +114,7 @@ static uint32_t count_steps(uint32_t size, uint32_t step)
 
 static void check_layout(SluiceStreamedTextureDesc desc)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetStreamedTextureLayout(&desc, &layout));
     uint32_t width = desc.width, height = desc.height, first = 0;
     for (uint32_t l = 0; l < desc.regularMipCount; l++) {
@@ -165,7 +166,7 @@ static void two_to_the_twenty_squared_has_its_exact_tiles(void **state)
     (void)state;
     SluiceStreamedTextureDesc desc = full_chain(1u << 20, 1u << 20, 256, 256);
     check_layout(desc);
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetStreamedTextureLayout(&desc, &layout));
     /* 4096^2 + 2048^2 + ... + 1 = (4^13 - 1) / 3, and the packed tile */
     assert_int_equal(layout.regularTileCount, ((1u << 26) - 1) / 3);
@@ -209,7 +210,8 @@ static void a_texture_has_the_layout_of_its_description(void **state)
     fixture_open(&f, 16, false);
     SluiceStreamedTextureDesc desc = full_chain(1025, 2052, 128, 64);
     SluiceTextureId id = fixture_add(&f, &desc);
-    SluiceStreamedTextureLayout expected, layout = fixture_layout(&f, id);
+    SluiceStreamedTextureLayout expected = {.structSize = sizeof expected},
+                                layout = fixture_layout(&f, id);
     CHECK_OK(sluiceGetStreamedTextureLayout(&desc, &expected));
     assert_int_equal(layout.tileCount, expected.tileCount);
     assert_int_equal(layout.feedbackWidth, expected.feedbackWidth);

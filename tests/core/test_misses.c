@@ -7,7 +7,8 @@ enum { TIMEOUT = 100 };
 static SluiceTextureId open_with(struct fixture *f, uint32_t misses)
 {
     fixture_open(f, 64, false);
-    SluiceStreamedTextureManagerConfig config = {.missesToForget = misses};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .missesToForget = misses};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
     SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
     return fixture_add(f, &desc);

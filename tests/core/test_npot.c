@@ -66,8 +66,8 @@ static void subject_close(struct subject *s)
 /* Feeds the map, which replaces the last one, and compares every tile with the count by texels. */
 static void check_map(struct subject *s, int32_t bias, uint32_t limit)
 {
-    SluiceFeedbackDesc feedback = {s->map, s->layout.feedbackWidth, s->layout.feedbackHeight, bias,
-                                   limit};
+    SluiceFeedbackDesc feedback = {sizeof feedback,          s->map, s->layout.feedbackWidth,
+                                   s->layout.feedbackHeight, bias,   limit};
     SOUND(&s->f, sluiceUpdateWithSamplerFeedback(s->f.manager, s->id, &feedback, 0, 0));
     asked_levels(&s->layout.desc, &feedback, s->asked);
     wanted_tiles(&s->layout.desc, s->asked, s->wanted);
@@ -216,7 +216,8 @@ static void a_map_of_another_size_changes_nothing_of_a_busy_manager(void **state
     uint32_t w = layout.feedbackWidth, h = layout.feedbackHeight;
     const uint32_t sizes[][2] = {{w - 1, h}, {w, h - 1}, {w + 1, h}, {h, w}, {w * h, 1}, {0, 0}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        SluiceFeedbackDesc feedback = {map, sizes[i][0], sizes[i][1], INT32_MIN, 0};
+        SluiceFeedbackDesc feedback = {sizeof feedback, map,       sizes[i][0],
+                                       sizes[i][1],     INT32_MIN, 0};
         /* Late enough for failed loads to be due and for all wants to lapse. */
         REFUSED(&f, 2, ids, sluiceUpdateWithSamplerFeedback(f.manager, ids[0], &feedback, 1000, 0),
                 SLUICE_ERROR_SIZE_MISMATCH);

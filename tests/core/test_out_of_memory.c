@@ -46,11 +46,12 @@ static uint64_t mix_tiles(uint64_t h, uint32_t count, const SluiceTile *tiles)
 
 static SluiceResult feed(struct fixture *f, const struct op *op)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     SluiceResult result = sluiceGetTextureLayout(f->manager, op->a, &layout);
     if (result)
         return result;
-    SluiceFeedbackDesc feedback = {op->map, layout.feedbackWidth, layout.feedbackHeight, 0, 0};
+    SluiceFeedbackDesc feedback = {sizeof feedback,       op->map, layout.feedbackWidth,
+                                   layout.feedbackHeight, 0,       0};
     assert_true(feedback.width * feedback.height <= sizeof op->map);
     return sluiceUpdateWithSamplerFeedback(f->manager, op->a, &feedback, op->time, 6);
 }
@@ -92,8 +93,8 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
 {
     SluiceStreamedTextureManager *m = f->manager;
     SluiceStreamedTextureDesc desc = op_desc(op->number);
-    SluiceStreamedTextureManagerConfig config = {op->number % 9, 0, 2, 3, op->number % 2,
-                                                 op->number % 5};
+    SluiceStreamedTextureManagerConfig config = {sizeof config,  op->number % 9, 0, 2, 3,
+                                                 op->number % 2, op->number % 5};
     SluiceTextureId id = 0;
     SluiceResult result;
     switch (op->kind) {
@@ -259,6 +260,7 @@ static void creating_a_locked_manager_without_memory_leaks_nothing(void **state)
     const bool locked = true;
     struct failing_allocator memory;
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {NULL, take_heap, give_heap},
         .pAllocator = &memory.callbacks,
         .heapTileCapacity = 256,
@@ -277,6 +279,7 @@ static void creation_survives_every_refused_allocation(void **state)
     (void)state;
     struct failing_allocator memory;
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {NULL, take_heap, give_heap},
         .pAllocator = &memory.callbacks,
         .heapTileCapacity = 256,

@@ -146,7 +146,7 @@ static void check_id_is_stale(struct bench *b, SluiceTextureId id, uint32_t coun
     SluiceStreamedTextureManager *m = b->f.manager;
     const SluiceResult stale = SLUICE_ERROR_STALE_TEXTURE;
     const uint8_t map[4] = {0};
-    const SluiceFeedbackDesc feedback = {map, 2, 2, 0, 0};
+    const SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, 0, 0};
     const uint64_t late = b->time + 1000;
     uint32_t room = 8;
     SluiceTile tiles[8];

@@ -49,7 +49,8 @@ static void open_twins(struct twins *t, uint64_t seed)
     t->calm = seed % 4 < 2;
     struct fixture *both[2] = {&t->set, &t->lone};
     uint32_t limit = seed % 3 ? 2 + below(t, 12) : FIXTURE_HEAPS;
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = below(t, 200),
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                       .numExtraStandbyTiles = below(t, 200),
                                                        .maxLoadAttempts = 2,
                                                        .missesToForget = below(t, 3),
                                                        .prefetchLevels = below(t, 2)};
@@ -117,7 +118,11 @@ static void feed_set(struct twins *t)
     static const uint64_t timeouts[] = {0, 3, 10, 40, 1000};
     uint8_t map[REGIONS];
     make_map(t, map);
-    SluiceFeedbackDesc feedback = {map, TILES, TILES, below(t, 8) ? 0 : (int32_t)below(t, 3) - 1,
+    SluiceFeedbackDesc feedback = {sizeof feedback,
+                                   map,
+                                   TILES,
+                                   TILES,
+                                   below(t, 8) ? 0 : (int32_t)below(t, 3) - 1,
                                    below(t, 8) ? 0 : 1 + below(t, 4)};
     uint64_t timeout = timeouts[below(t, 5)];
     if (below(t, 4) == 0)

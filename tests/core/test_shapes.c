@@ -14,7 +14,8 @@ static SluiceStreamedTextureDesc desc_of(uint32_t number)
 static void check_layout(const struct fixture *f, SluiceTextureId id, uint32_t number)
 {
     SluiceStreamedTextureDesc desc = desc_of(number);
-    SluiceStreamedTextureLayout expected, layout = fixture_layout(f, id);
+    SluiceStreamedTextureLayout expected = {.structSize = sizeof expected},
+                                layout = fixture_layout(f, id);
     CHECK_OK(sluiceGetStreamedTextureLayout(&desc, &expected));
     assert_memory_equal(&layout.desc, &expected.desc, sizeof layout.desc);
     assert_int_equal(layout.tileCount, expected.tileCount);

@@ -12,7 +12,8 @@ static void feed_all(struct fixture *f, uint32_t count, const SluiceTextureId *i
 
 static void set_config(struct fixture *f, uint32_t prefetch_levels)
 {
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 100,
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                       .numExtraStandbyTiles = 100,
                                                        .maxHeapCount = 1,
                                                        .missesToForget = 1,
                                                        .prefetchLevels = prefetch_levels};

@@ -63,7 +63,10 @@ static void heaps_fall_to_the_target_and_the_coarse_levels_stay(void **state)
     SluiceTextureId id = open_with_everything_mapped();
     uint32_t before = f.heaps.living_count;
     assert_true(before >= 22);
-    configure(&(SluiceStreamedTextureManagerConfig){.targetHeapCount = 4, .noMipBias = true});
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .targetHeapCount = 4,
+                                                    .noMipBias = true});
     for (uint32_t i = 0; i < FRAMES; i++)
         frame(id, 8);
     assert_int_equal(f.heaps.living_count, 4);
@@ -73,7 +76,10 @@ static void heaps_fall_to_the_target_and_the_coarse_levels_stay(void **state)
     for (uint32_t i = 0; i < 20; i++)
         assert_int_equal(frame(id, 8), 0); /* and rests */
 
-    configure(&(SluiceStreamedTextureManagerConfig){.targetHeapCount = 0, .noMipBias = true});
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .targetHeapCount = 0,
+                                                    .noMipBias = true});
     for (uint32_t i = 0; i < 20; i++)
         frame(id, 0);
     assert_int_equal(count_mapped(id, 0, TILES), TILES);
@@ -86,7 +92,8 @@ static void standby_tiles_go_first(void **state)
     SluiceTextureId id = open_with_everything_mapped();
     SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
     SluiceTextureId other = fixture_add(&f, &desc);
-    configure(&(SluiceStreamedTextureManagerConfig){.numExtraStandbyTiles = 1000});
+    configure(&(SluiceStreamedTextureManagerConfig){
+        .structSize = sizeof(SluiceStreamedTextureManagerConfig), .numExtraStandbyTiles = 1000});
     fixture_feed(&f, other, 0, now, 0);
     fixture_load(&f);
     fixture_feed(&f, other, SLUICE_MIP_UNTOUCHED, ++now, 0);
@@ -94,7 +101,9 @@ static void standby_tiles_go_first(void **state)
     assert_int_equal(standby, 85);
     uint32_t heaps = f.heaps.living_count;
     /* four heaps less: two of them are empty */
-    configure(&(SluiceStreamedTextureManagerConfig){.numExtraStandbyTiles = 1000,
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .numExtraStandbyTiles = 1000,
                                                     .targetHeapCount = heaps - 4});
     for (uint32_t i = 0; i < 10; i++)
         frame(id, 0);
@@ -136,7 +145,8 @@ static void evacuation_survives_a_refused_allocation(void **state)
 {
     (void)state;
     SluiceTextureId id = open_with_everything_mapped();
-    configure(&(SluiceStreamedTextureManagerConfig){.targetHeapCount = 20});
+    configure(&(SluiceStreamedTextureManagerConfig){
+        .structSize = sizeof(SluiceStreamedTextureManagerConfig), .targetHeapCount = 20});
     uint64_t digest = fixture_digest(&f, 1, &id);
     f.memory.refuse_from = f.memory.calls;
     CHECK_RESULT(sluiceEvacuateHeaps(f.manager, 8), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
@@ -167,14 +177,18 @@ static void without_eviction_requests_wait(void **state)
     SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
     SluiceTextureId other = fixture_add(&f, &desc);
     uint32_t heaps = f.heaps.living_count;
-    configure(&(SluiceStreamedTextureManagerConfig){.maxHeapCount = heaps, .noEviction = true});
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .maxHeapCount = heaps,
+                                                    .noEviction = true});
     for (uint32_t i = 0; i < 20; i++) {
         fixture_feed(&f, other, 0, now, 1000000);
         assert_int_equal(frame(id, 0), 0);
     }
     assert_int_equal(count_mapped(id, 0, TILES), TILES);
     assert_true(fixture_statistics(&f).requestedTileCount > 0);
-    configure(&(SluiceStreamedTextureManagerConfig){.maxHeapCount = heaps});
+    configure(&(SluiceStreamedTextureManagerConfig){
+        .structSize = sizeof(SluiceStreamedTextureManagerConfig), .maxHeapCount = heaps});
     uint32_t unmapped = 0;
     for (uint32_t i = 0; i < 20; i++) {
         fixture_feed(&f, other, 0, now, 1000000);
@@ -188,12 +202,18 @@ static void without_mip_bias_it_is_0_at_once(void **state)
 {
     (void)state;
     SluiceTextureId id = open_with_everything_mapped();
-    configure(&(SluiceStreamedTextureManagerConfig){.maxHeapCount = 2, .targetHeapCount = 2});
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .maxHeapCount = 2,
+                                                    .targetHeapCount = 2});
     for (uint32_t i = 0; i < 10; i++)
         frame(id, 8);
     assert_true(fixture_statistics(&f).globalMipBias > 0);
-    configure(&(SluiceStreamedTextureManagerConfig){
-        .maxHeapCount = 2, .targetHeapCount = 2, .noMipBias = true});
+    configure(&(SluiceStreamedTextureManagerConfig){.structSize =
+                                                        sizeof(SluiceStreamedTextureManagerConfig),
+                                                    .maxHeapCount = 2,
+                                                    .targetHeapCount = 2,
+                                                    .noMipBias = true});
     frame(id, 8);
     assert_int_equal(fixture_statistics(&f).globalMipBias, 0);
     for (uint32_t i = 0; i < 10; i++)

@@ -69,7 +69,8 @@ static void set_budget(uint32_t capacity, uint64_t *seed)
 {
     uint64_t tiles = fixture_statistics(&s.f).tileCount;
     uint32_t slots = (uint32_t)(tiles * 2 / 7 * range(seed, 10, 110) / 100);
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles =
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles =
                                                      range(seed, 0, 1) ? range(seed, 0, 100) : 0,
                                                  .maxHeapCount = slots / capacity + 1,
                                                  .missesToForget = range(seed, 0, 1)};

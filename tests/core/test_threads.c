@@ -24,8 +24,8 @@ struct reader {
 static void read_once(struct reader *r, SluiceTextureId id)
 {
     const SluiceStreamedTextureManager *m = r->manager;
-    SluiceStreamedTextureLayout layout = {{0}};
-    SluiceStreamedTextureStatistics statistics = {0};
+    SluiceStreamedTextureLayout layout = {sizeof layout, {0}};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     uint32_t heap_count = 64, heaps[64] = {0};
     uint8_t map[256] = {0};
     r->errors += sluiceGetTextureLayout(m, id, &layout) != SLUICE_SUCCESS;

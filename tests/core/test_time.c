@@ -11,7 +11,7 @@ static void pass(struct fixture *f, SluiceTextureId id, uint64_t time, uint64_t 
 static SluiceResult feed_result(struct fixture *f, SluiceTextureId id, uint64_t time)
 {
     const uint8_t map[4] = {0};
-    SluiceFeedbackDesc feedback = {map, 2, 2, 0, 0};
+    SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, 0, 0};
     return sluiceUpdateWithSamplerFeedback(f->manager, id, &feedback, time, 10);
 }
 
@@ -187,7 +187,8 @@ static void several_levels_may_lapse_in_one_call(void **state)
     for (uint8_t last = 0; last < 4; last++) { /* what the map that lets them lapse asks for */
         struct fixture f;
         fixture_open(&f, 16, false);
-        const SluiceStreamedTextureManagerConfig config = {.missesToForget = 1};
+        const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                           .missesToForget = 1};
         CHECK_OK(sluiceSetConfig(f.manager, &config));
         SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128); /* 16, 4, 1 and packed */
         SluiceTextureId id = fixture_add(&f, &desc);

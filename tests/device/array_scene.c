@@ -45,7 +45,7 @@ bool array_scene_add(struct scene *scene, SluiceImageSource *source, uint32_t la
 {
     struct harness *h = scene->h;
     SluiceVulkanTextureCreateInfo create = {.source = source};
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     bool sparse = sluiceGetVulkanResidencyMode(scene->streamer) == SLUICE_RESIDENCY_MODE_SPARSE;
     bool shared = sparse && layers_share_tail(h, &info, layer_count);
@@ -79,6 +79,7 @@ bool array_scene_init(struct array_scene *a, struct harness *h, SluiceVulkanStre
         assert_true(textures[i].arrayView != VK_NULL_HANDLE);
         *t = (struct scene_texture){
             .used = true, .source = a->layers[i], .texture = textures[i], .anisotropy = 1};
+        t->info.structSize = sizeof t->info;
         CHECK_OK(sluiceGetImageInfo(a->layers[i], &t->info));
         t->probe = prober_texture(&a->scene.prober, &t->texture, t->u, t->v, 1);
     }

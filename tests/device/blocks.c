@@ -202,7 +202,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
                                 void *texels, size_t row_pitch)
 {
     SluiceFormat format = ((struct block_source *)base)->info.format;
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetFormatInfo(format, &info));
     for (uint32_t y = 0; y < region->height; y += 4)
         for (uint32_t x = 0; x < region->width; x += 4) {
@@ -221,11 +221,13 @@ static void destroy(SluiceImageSource *base)
 
 SluiceImageSource *block_source(uint32_t width, uint32_t height, SluiceFormat format)
 {
-    static const SluiceImageSourceInterface interface = {get_info, read_region, destroy};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                         destroy};
     struct block_source *source = malloc(sizeof *source);
     uint32_t levels = 1;
     while ((width > height ? width : height) >> levels)
         levels++;
-    *source = (struct block_source){{&interface}, {width, height, levels, format, "blocks"}};
+    *source = (struct block_source){
+        {&interface}, {sizeof(SluiceImageInfo), width, height, levels, format, "blocks"}};
     return &source->base;
 }

@@ -345,8 +345,12 @@ static void close_image(void *user, SluiceImageSource *source)
 void runner_image_init(struct runner_image *image, SluiceFormat format, uint32_t width,
                        uint32_t height, uint32_t seed)
 {
-    runner_image_init_as(
-        image, &(SluiceImageInfo){.width = width, .height = height, .format = format}, seed);
+    runner_image_init_as(image,
+                         &(SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                                            .width = width,
+                                            .height = height,
+                                            .format = format},
+                         seed);
 }
 
 void runner_image_init_as(struct runner_image *image, const SluiceImageInfo *info, uint32_t seed)
@@ -358,6 +362,7 @@ void runner_image_init_as(struct runner_image *image, const SluiceImageInfo *inf
     named.pName = image->name;
     CHECK_OK(sluiceCreateProceduralImageSource(&procedural, &named, NULL, &image->inner));
     fault_source_init(&image->source, image->inner);
+    image->info.structSize = sizeof image->info;
     CHECK_OK(sluiceGetImageInfo(image->inner, &image->info));
 }
 

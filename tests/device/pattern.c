@@ -52,7 +52,11 @@ struct SluiceImageSource *pattern_source(enum pattern_kind kind, uint32_t width,
                                          SluiceFormat format)
 {
     SluiceProceduralImage image = {&kinds[kind], texel};
-    SluiceImageInfo info = {.width = width, .height = height, .format = format, .pName = "pattern"};
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = width,
+                            .height = height,
+                            .format = format,
+                            .pName = "pattern"};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;

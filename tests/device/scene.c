@@ -42,6 +42,7 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
         sluiceDestroyImageSource(texture->source);
     *texture = (struct scene_texture){
         .used = true, .source = source, .owns = true, .u = u, .v = v, .anisotropy = anisotropy};
+    texture->info.structSize = sizeof texture->info;
     CHECK_OK(sluiceGetImageInfo(source, &texture->info));
     SluiceVulkanTextureCreateInfo info = {
         .source = source, .primaryId = primary, .addressModeU = u, .addressModeV = v};

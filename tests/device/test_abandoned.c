@@ -31,7 +31,7 @@ static uint32_t count_mapped(const struct scene *scene, uint32_t i)
 {
     const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(scene->streamer);
     SluiceTextureId id = scene->textures[i].texture.textureId;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     uint32_t count = 0;
     CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
     for (uint32_t tile = 0; tile < layout.tileCount; tile++) {

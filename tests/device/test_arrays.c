@@ -72,7 +72,7 @@ static uint32_t count_mapped(struct array_scene *a, uint32_t layer)
 {
     SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(a->scene.streamer);
     SluiceTextureId id = a->scene.textures[layer].texture.textureId;
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
     uint32_t count = 0;
     for (uint32_t tile = 0; tile < layout.regularTileCount; tile++) {

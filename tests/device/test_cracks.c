@@ -50,7 +50,7 @@ static SluiceResult get_info(SluiceImageSource *base, SluiceImageInfo *info)
 /* One in eight tiles; levels that may be packed are whole. */
 static bool is_hole(const struct holed_source *source, const SluiceImageRegion *region)
 {
-    SluiceImageInfo info; /* in the loader's threads: no checks */
+    SluiceImageInfo info = {.structSize = sizeof info}; /* in the loader's threads: no checks */
     sluiceGetImageInfo(source->inner, &info);
     if (info.width >> region->mipLevel <= 128 && info.height >> region->mipLevel <= 128)
         return false;
@@ -74,7 +74,8 @@ static void destroy(SluiceImageSource *base)
     (void)base; /* one of the array */
 }
 
-static const SluiceImageSourceInterface holed_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface holed_interface = {sizeof holed_interface, get_info,
+                                                           read_region, destroy};
 
 static double draw(void)
 {
@@ -203,7 +204,7 @@ static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyM
 static void find_regular_levels(const struct scene *scene)
 {
     for (uint32_t t = 0; t < TEXTURES; t++) {
-        SluiceStreamedTextureLayout layout;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(scene->streamer),
                                         scene->textures[t].texture.textureId, &layout));
         regular_levels[t] = layout.desc.regularMipCount;

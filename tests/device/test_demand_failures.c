@@ -123,17 +123,21 @@ static void destroy_nothing(SluiceImageSource *source)
 static void images_that_no_shader_could_sample_are_refused(void **state)
 {
     (void)state;
-    static const SluiceImageSourceInterface interface = {lie, read_zeros, destroy_nothing};
+    static const SluiceImageSourceInterface interface = {sizeof interface, lie, read_zeros,
+                                                         destroy_nothing};
     struct liar liars[] = {
-        {.info = {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"}},
-        {.info = {(1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM, "too wide"}},
-        {.info = {16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"}},
-        {.info = {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"}},
-        {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, "more layers than any array", UINT32_MAX}},
-        {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, "layers", 2}},
-        {.info = {16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"}},
-        {.info = {16, 16, 5, (SluiceFormat)99, "unknown format"}},
-        {.info = {1u << 20, 1u << 20, 21, SLUICE_FORMAT_R8_UNORM, "more tiles than pages"}},
+        {.info = {sizeof(SluiceImageInfo), 0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"}},
+        {.info = {sizeof(SluiceImageInfo), (1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM,
+                  "too wide"}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM,
+                  "more layers than any array", UINT32_MAX}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM, "layers", 2}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"}},
+        {.info = {sizeof(SluiceImageInfo), 16, 16, 5, (SluiceFormat)99, "unknown format"}},
+        {.info = {sizeof(SluiceImageInfo), 1u << 20, 1u << 20, 21, SLUICE_FORMAT_R8_UNORM,
+                  "more tiles than pages"}},
     };
     enum { COUNT = sizeof liars / sizeof liars[0] };
     struct runner r;

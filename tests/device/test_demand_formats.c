@@ -49,7 +49,8 @@ static SluiceImageSource *create_source(SluiceFormat format)
     if (sluiceFormatTexelSize(format) == 0)
         return block_source(WIDTH, HEIGHT, format);
     const SluiceProceduralImage image = {NULL, texel};
-    const SluiceImageInfo info = {WIDTH, HEIGHT, 0, format, sluiceFormatString(format)};
+    const SluiceImageInfo info = {sizeof info, WIDTH,  HEIGHT,
+                                  0,           format, sluiceFormatString(format)};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
 }
@@ -151,7 +152,7 @@ static SluiceResult read_block(SluiceImageSource *source, const SluiceImageRegio
                                void *texels, size_t row_pitch)
 {
     const struct random_block *random = (const struct random_block *)source;
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     (void)region, (void)row_pitch;
     CHECK_OK(sluiceGetFormatInfo(random->info.format, &format));
     memcpy(texels, random->block, format.blockSize);
@@ -178,7 +179,8 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
 {
     (void)state;
     enum { COUNT = 256, FIRST = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK };
-    static const SluiceImageSourceInterface interface = {get_block_info, read_block, destroy_block};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_block_info,
+                                                         read_block, destroy_block};
     static struct random_block blocks[COUNT];
     uint32_t seed = 1;
     for (uint32_t f = FIRST; f <= SLUICE_FORMAT_BC7_SRGB_BLOCK; f++) {
@@ -188,7 +190,8 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
         runner_init(&r, &h, NULL);
         for (uint32_t i = 0; i < COUNT; i++) {
             SluiceDemandTextureId id;
-            blocks[i] = (struct random_block){{&interface}, {2, 2, 2, (SluiceFormat)f, "random"}};
+            blocks[i] = (struct random_block){
+                {&interface}, {sizeof(SluiceImageInfo), 2, 2, 2, (SluiceFormat)f, "random"}};
             for (uint32_t b = 0; b < 16; b++)
                 blocks[i].block[b] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
             if (f >= SLUICE_FORMAT_BC7_UNORM_BLOCK) /* all modes */

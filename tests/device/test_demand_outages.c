@@ -47,7 +47,8 @@ static void destroy(SluiceImageSource *base)
     (void)base;
 }
 
-static const SluiceImageSourceInterface outage_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface outage_interface = {sizeof outage_interface, get_info,
+                                                            read_region, destroy};
 
 struct scene {
     struct runner r;

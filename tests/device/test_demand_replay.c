@@ -54,9 +54,9 @@ static void a_recorded_run_replays_to_the_same_decisions(void **state)
     struct runner r;
     struct runner_image images[IMAGES];
     SluiceRecorder *recorder;
-    SluiceReplayResult replayed;
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     const SluiceDemandLoaderCreateInfo small = {.memoryBudget = 4 << 20};
-    const SluiceFileRecordingInfo recording = {.pPath = path};
+    const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
     h.abandon_one_in = 5;
     runner_init(&r, &h, &small);
     CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
@@ -68,7 +68,7 @@ static void a_recorded_run_replays_to_the_same_decisions(void **state)
     for (uint32_t i = 0; i < IMAGES; i++)
         runner_image_finish(&images[i]);
 
-    SluiceReplayInfo info = {.size = 0};
+    SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
     void *data = read_file(&info.size);
     info.pData = data;
     CHECK_OK(sluiceReplay(&info, &replayed));
@@ -88,7 +88,7 @@ static void a_loader_that_was_used_is_not_recorded(void **state)
     (void)state;
     struct runner r;
     SluiceRecorder *recorder, *second;
-    const SluiceFileRecordingInfo recording = {.pPath = path};
+    const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
     runner_init(&r, &h, NULL);
     CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
     CHECK_RESULT(sluiceBeginDemandRecording(r.loader, &recording, &second),
@@ -112,8 +112,8 @@ static void a_recording_survives_every_refused_allocation(void **state)
         struct failing_allocator allocator;
         SluiceRecorder *recorder;
         failing_allocator_init(&allocator, n);
-        const SluiceFileRecordingInfo recording = {.pPath = path,
-                                                   .pAllocator = &allocator.callbacks};
+        const SluiceFileRecordingInfo recording = {
+            .structSize = sizeof recording, .pPath = path, .pAllocator = &allocator.callbacks};
         result = sluiceBeginDemandRecording(r.loader, &recording, &recorder);
         if (result == SLUICE_SUCCESS)
             result = sluiceEndRecording(recorder);

@@ -175,7 +175,7 @@ static void levels_of_a_tail_fit_side_by_side(void **state)
     (void)state;
     static uint8_t taken[512][512];
     for (uint32_t format = 1; format < SLUICE_FORMAT_COUNT; format++) {
-        SluiceFormatInfo info;
+        SluiceFormatInfo info = {.structSize = sizeof info};
         uint32_t width, height;
         CHECK_OK(sluiceGetFormatInfo((SluiceFormat)format, &info));
         CHECK_OK(sluiceGetStandardTileShape((SluiceFormat)format, &width, &height));

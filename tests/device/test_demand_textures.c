@@ -176,7 +176,8 @@ static void address_modes_are_those_of_the_image_unless_they_are_explicit(void *
     struct runner r;
     struct runner_image clamped, plain;
     SluiceDemandTextureId ids[3];
-    const SluiceImageInfo info = {.width = 512,
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 512,
                                   .height = 512,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                   .addressModeU = SLUICE_IMAGE_ADDRESS_MODE_CLAMP_TO_EDGE,

@@ -284,6 +284,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
                                                .anisotropy = 1,
                                                .probe = prober_texture(&prober, &texture, 0, 0, 1)};
     scene.prober = prober; /* with the samplers */
+    scene.textures[0].info.structSize = sizeof scene.textures[0].info;
     CHECK_OK(sluiceGetImageInfo(source, &scene.textures[0].info));
     scene_aim(&scene, 0, 200, &fine);
     for (uint64_t n = 0; n < 30; n++) {

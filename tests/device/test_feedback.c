@@ -25,7 +25,7 @@ static const float extremes[] = {0.0f,    -0.0f,    1e-45f,    1e-38f, 1e-20f,  
 static struct SluiceTextureEntry entry_of(struct scene *scene, uint32_t index)
 {
     const struct scene_texture *texture = &scene->textures[index];
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(scene->streamer),
                                     texture->texture.textureId, &layout));
     struct SluiceTextureEntry e = {.width = texture->info.width,

@@ -91,7 +91,7 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
             assert_int_equal(picture[i].missingLevels, 0);
     }
     assert_int_equal(scene_non_resident(&s.scene), 0);
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(s.scene.streamer),
                                     s.scene.textures[s.texture].texture.textureId, &layout));
     out->packed_level = layout.desc.regularMipCount;

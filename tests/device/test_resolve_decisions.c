@@ -71,7 +71,7 @@ static void read_maps(struct scene *scene, struct run *run)
     for (uint32_t i = 0; i < TEXTURES; i++) {
         SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(scene->streamer);
         SluiceTextureId id = scene->textures[i].texture.textureId;
-        SluiceStreamedTextureLayout layout;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
         assert_true(layout.minMipWidth * layout.minMipHeight <= MAPS);
         CHECK_OK(sluiceWriteMinMipData(manager, id, layout.minMipWidth, MAPS, run->min_mip[i]));
@@ -102,8 +102,9 @@ static void play(struct harness *h, struct run *run, SluiceVulkanStreamerCreateI
     read_maps(&scene, run);
     sluiceGetVulkanStreamerStatistics(scene.streamer, &run->stats);
     CHECK_OK(sluiceEndRecording(recorder));
-    SluiceReplayInfo replay = {.pData = run->recording.data, .size = run->recording.size};
-    SluiceReplayResult result;
+    SluiceReplayInfo replay = {
+        .structSize = sizeof replay, .pData = run->recording.data, .size = run->recording.size};
+    SluiceReplayResult result = {.structSize = sizeof result};
     CHECK_OK(sluiceReplay(&replay, &result));
     assert_true(result.decisionHash == result.recordedHash);
     run->decision_hash = result.decisionHash;

@@ -26,7 +26,8 @@ static void layouts_agree_with_formats(void **state)
                                                    (SluiceFormat)f, &format));
         sparse_count += format.sparse;
         for (uint32_t s = 0; s < 4 && format.sparse; s++) {
-            SluiceImageInfo info = {sizes[s][0], sizes[s][1], 0, (SluiceFormat)f, "probe"};
+            SluiceImageInfo info = {sizeof info, sizes[s][0],     sizes[s][1],
+                                    0,           (SluiceFormat)f, "probe"};
             SluiceVulkanSparseImageLayout layout;
             CHECK_OK(sluiceGetVulkanSparseImageLayout(h->instance, h->physical_device, h->device,
                                                       h->get, NULL, &info, &layout));

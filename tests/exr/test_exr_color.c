@@ -112,8 +112,10 @@ static SluiceImageSource *open_file(const char *name, SluiceFormat format, bool 
 {
     char path[1024];
     SluiceImageSource *source;
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = own_file(name, path), .format = format, .keepPrimaries = keep};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = own_file(name, path),
+                                             .format = format,
+                                             .keepPrimaries = keep};
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
     return source;
 }
@@ -239,7 +241,7 @@ static void other_files_keep_their_bits(void **state)
                  {"mip_aces.exr", true, false}};
     for (size_t f = 0; f < sizeof cases / sizeof cases[0]; f++) {
         static float texels[WIDTH * HEIGHT][4];
-        SluiceExrInfo info;
+        SluiceExrInfo info = {.structSize = sizeof info};
         SluiceImageSource *source =
             open_file(cases[f].name, SLUICE_FORMAT_R32G32B32A32_SFLOAT, cases[f].keep);
         CHECK_OK(sluiceGetExrInfo(source, &info));
@@ -299,7 +301,8 @@ static void what_is_not_applied_is_said_once(void **state)
         char path[1024];
         struct messages messages = {0};
         SluiceImageSource *source;
-        SluiceExrImageSourceCreateInfo create = {.pPath = own_file(cases[f].name, path),
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = own_file(cases[f].name, path),
                                                  .log = {&messages, keep_message}};
         CHECK_OK(sluiceCreateExrImageSource(&create, &source));
         assert_int_equal(messages.warnings, cases[f].warnings);

@@ -81,10 +81,12 @@ static void count_errors(void *user, SluiceLogSeverity severity, const char *tex
 static SluiceResult read_all(const char *path, SluiceFormat format)
 {
     struct tally tally = {0};
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .format = format, .log = {&tally, count_errors}};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = path,
+                                             .format = format,
+                                             .log = {&tally, count_errors}};
     SluiceImageSource *source = NULL;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceCreateExrImageSource(&create, &source);
     if (result == SLUICE_SUCCESS) {
         CHECK_OK(sluiceGetImageInfo(source, &info));
@@ -204,10 +206,11 @@ static void a_file_that_shrinks_while_it_is_open_is_an_error(void **state)
         struct scratch scratch;
         SluiceImageSource *source;
         scratch_init(&scratch, names[i]);
-        SluiceExrImageSourceCreateInfo create = {.pPath = scratch.path};
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = scratch.path};
         CHECK_OK(sluiceCreateExrImageSource(&create, &source));
         assert_int_equal(ftruncate(scratch.descriptor, (off_t)scratch.size / 2), 0);
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         CHECK_OK(sluiceGetImageInfo(source, &info));
         SluiceResult result = SLUICE_SUCCESS;
         for (uint32_t level = 0; level < info.mipLevelCount && result == SLUICE_SUCCESS; level++)
@@ -224,7 +227,8 @@ static void an_error_of_the_system_is_told_from_damage(void **state)
     (void)state;
     if (access("/proc/self/mem", R_OK) != 0)
         SKIP_TEST("there is no /proc/self/mem to make reading fail");
-    SluiceExrImageSourceCreateInfo create = {.pPath = "/proc/self/mem"};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = "/proc/self/mem"};
     SluiceImageSource *source;
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_IO);
 }
@@ -237,9 +241,9 @@ static void a_file_that_is_mended_is_decoded_again(void **state)
     scratch_init(&scratch, "scan_zip.exr");
     size_t half = scratch.size / 2;
     char *zeros = calloc(1, half);
-    SluiceExrImageSourceCreateInfo create = {.pPath = scratch.path};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = scratch.path};
     SluiceImageSource *source;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
     CHECK_OK(sluiceGetImageInfo(source, &info));
     assert_int_equal(pwrite(scratch.descriptor, zeros, half, (off_t)half), half);
@@ -274,7 +278,8 @@ static void absurd_sizes_are_refused_before_anything_is_allocated(void **state)
     };
     for (size_t i = 0; i < sizeof windows / sizeof windows[0]; i++) {
         assert_int_equal(pwrite(scratch.descriptor, windows[i], 16, (off_t)at), 16);
-        SluiceExrImageSourceCreateInfo create = {.pPath = scratch.path};
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = scratch.path};
         SluiceImageSource *source;
         SluiceResult result = sluiceCreateExrImageSource(&create, &source);
         if (i < 4) {

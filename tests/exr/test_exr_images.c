@@ -56,9 +56,11 @@ static SluiceImageSource *open_image(const char *name, SluiceFormat format, Slui
     char path[1024];
     if (!find_image(name, path))
         SKIP_TEST("%s is not there; SLUICE_TEST_DATA says where the data folder is", path);
-    SluiceExrImageSourceCreateInfo create = {.pPath = path, .format = format};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .format = format};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
+    info->structSize = sizeof *info;
     CHECK_OK(sluiceGetImageInfo(source, info));
     return source;
 }
@@ -134,7 +136,7 @@ static void every_image_opens_and_has_the_texels_a_plain_reader_finds(void **sta
     (void)state;
     uint32_t random = 5;
     for (int i = 0; i < IMAGE_COUNT; i++) {
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         SluiceImageSource *source = open_image(images[i].name, SLUICE_FORMAT_UNDEFINED, &info);
         assert_int_equal(info.width, images[i].width);
         assert_int_equal(info.height, images[i].height);
@@ -332,7 +334,7 @@ static void levels_that_are_built_are_means_of_the_level_above(void **state)
 {
     (void)state;
     for (int i = 0; i < IMAGE_COUNT; i++) {
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         if (images[i].has_levels)
             continue;
         SluiceImageSource *source = open_image(images[i].name, SLUICE_FORMAT_UNDEFINED, &info);
@@ -345,7 +347,7 @@ static void all_levels_of_all_images_are_right_as_bytes(void **state)
 {
     (void)state;
     for (int i = 0; i < IMAGE_COUNT; i++) {
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         char path[1024];
         SluiceImageSource *source = open_image(images[i].name, SLUICE_FORMAT_R8G8B8A8_SRGB, &info);
         find_image(images[i].name, path);
@@ -367,7 +369,7 @@ static void all_levels_of_all_images_are_right_as_bytes(void **state)
 static void all_half_values_keep_their_bits(void **state)
 {
     (void)state;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageSource *source =
         open_image("TestImages/AllHalfValues.exr", SLUICE_FORMAT_UNDEFINED, &info);
     SluiceImageRegion region = whole_level(&info, 0);
@@ -384,7 +386,9 @@ static void all_half_values_keep_their_bits(void **state)
 static void all_half_values_convert_as_documented(void **state)
 {
     (void)state;
-    SluiceImageInfo half_info, float_info, byte_info;
+    SluiceImageInfo half_info = {.structSize = sizeof half_info},
+                    float_info = {.structSize = sizeof float_info},
+                    byte_info = {.structSize = sizeof byte_info};
     const char *name = "TestImages/AllHalfValues.exr";
     SluiceImageSource *halves = open_image(name, RGBA16, &half_info);
     SluiceImageSource *floats = open_image(name, SLUICE_FORMAT_R32G32B32A32_SFLOAT, &float_info);
@@ -414,7 +418,7 @@ static void all_half_values_convert_as_documented(void **state)
 static void nan_and_infinities_stay_in_level_0_and_nowhere_else(void **state)
 {
     (void)state;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageSource *source =
         open_image("TestImages/BrightRingsNanInf.exr", SLUICE_FORMAT_UNDEFINED, &info);
     for (uint32_t level = 0; level < info.mipLevelCount; level++) {
@@ -435,7 +439,8 @@ static void nan_and_infinities_stay_in_level_0_and_nowhere_else(void **state)
 static void a_wide_float_range_saturates_as_half(void **state)
 {
     (void)state;
-    SluiceImageInfo float_info, half_info;
+    SluiceImageInfo float_info = {.structSize = sizeof float_info},
+                    half_info = {.structSize = sizeof half_info};
     const char *name = "TestImages/WideFloatRange.exr";
     SluiceImageSource *floats = open_image(name, SLUICE_FORMAT_R32_SFLOAT, &float_info);
     SluiceImageSource *halves = open_image(name, SLUICE_FORMAT_R16_SFLOAT, &half_info);

@@ -72,7 +72,8 @@ static SluiceResult open_kind(const struct kind *kind, SluiceFormat format,
 {
     char name[64], path[1024];
     snprintf(name, sizeof name, "%s.exr", kind->name);
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file(name, path), .format = format};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = own_file(name, path), .format = format};
     return sluiceCreateExrImageSource(&create, source);
 }
 
@@ -157,7 +158,7 @@ static void every_kind_opens_or_is_refused_as_documented(void **state)
     (void)state;
     for (int i = 0; i < KIND_COUNT; i++) {
         SluiceImageSource *source = NULL;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         SluiceResult result = open_kind(&kinds[i], SLUICE_FORMAT_UNDEFINED, &source);
         if (result != kinds[i].result)
             fail_msg("%s: %s", kinds[i].name, sluiceResultString(result));
@@ -187,7 +188,7 @@ static void every_texel_of_every_level_is_what_was_written(void **state)
             if (kinds[i].result != SLUICE_SUCCESS || kinds[i].is_lossy)
                 continue;
             SluiceImageSource *source;
-            SluiceImageInfo info;
+            SluiceImageInfo info = {.structSize = sizeof info};
             CHECK_OK(open_kind(&kinds[i], formats[f], &source));
             CHECK_OK(sluiceGetImageInfo(source, &info));
             uint32_t count = kinds[i].layout == BUILT ? 1 : info.mipLevelCount;
@@ -205,7 +206,7 @@ static void lossy_files_come_near_what_was_written(void **state)
         if (!kinds[i].is_lossy)
             continue;
         SluiceImageSource *source;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         CHECK_OK(open_kind(&kinds[i], SLUICE_FORMAT_R32G32B32A32_SFLOAT, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
         uint32_t count = kinds[i].layout == BUILT ? 1 : info.mipLevelCount;
@@ -234,7 +235,7 @@ static void built_levels_are_those_of_the_same_texels_in_memory(void **state)
         if (kinds[i].result != SLUICE_SUCCESS || kinds[i].layout != BUILT)
             continue;
         SluiceImageSource *source, *memory;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         SluiceImageRegion region;
         CHECK_OK(open_kind(&kinds[i], SLUICE_FORMAT_R8G8B8A8_SRGB, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
@@ -288,7 +289,7 @@ static void random_rectangles_are_cut_from_the_whole_level(void **state)
         if (kinds[i].result != SLUICE_SUCCESS)
             continue;
         SluiceImageSource *source;
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         CHECK_OK(open_kind(&kinds[i], SLUICE_FORMAT_UNDEFINED, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
         for (uint32_t level = 0; level < info.mipLevelCount; level++) {
@@ -329,7 +330,8 @@ static void refusals_name_the_file_the_reason_and_a_way_out(void **state)
         char path[1024];
         struct message message = {0};
         SluiceImageSource *source;
-        SluiceExrImageSourceCreateInfo create = {.pPath = own_file(expected[i][0], path),
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = own_file(expected[i][0], path),
                                                  .log = {&message, keep_error}};
         CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_UNSUPPORTED);
         assert_int_equal(message.errors, 1);
@@ -352,7 +354,8 @@ static void channels_that_are_passed_over_are_named(void **state)
     char path[1024];
     struct message message = {0};
     SluiceImageSource *source;
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file("mip_beside.exr", path),
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = own_file("mip_beside.exr", path),
                                              .log = {&message, keep_news}};
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
     assert_int_equal(message.errors, 0);
@@ -365,7 +368,8 @@ static void images_beyond_the_size_limit_are_refused(void **state)
     (void)state;
     char path[1024];
     SluiceImageSource *source;
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file("scan_zip.exr", path),
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = own_file("scan_zip.exr", path),
                                              .maxImageSize = 37 * 21 * 8 - 1};
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_UNSUPPORTED);
     create.maxImageSize++;
@@ -377,7 +381,8 @@ static void what_is_no_file_gets_its_own_result(void **state)
 {
     (void)state;
     SluiceImageSource *source = NULL;
-    SluiceExrImageSourceCreateInfo create = {.pPath = "/no such folder/no such file.exr"};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = "/no such folder/no such file.exr"};
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_FILE_NOT_FOUND);
     create.pPath = "";
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_FILE_NOT_FOUND);
@@ -388,7 +393,9 @@ static void what_is_no_file_gets_its_own_result(void **state)
     create.pPath = NULL;
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateExrImageSource(NULL, &source), SLUICE_ERROR_NULL_POINTER);
-    create = (SluiceExrImageSourceCreateInfo){.pPath = "x", .format = (SluiceFormat)77};
+    create = (SluiceExrImageSourceCreateInfo){.structSize = sizeof(SluiceExrImageSourceCreateInfo),
+                                              .pPath = "x",
+                                              .format = (SluiceFormat)77};
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_INVALID_ARGUMENT);
     assert_null(source);
 }

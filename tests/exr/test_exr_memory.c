@@ -83,10 +83,11 @@ static void large_files_without_levels_are_refused_with_a_way_out(void **state)
     struct bomb bomb;
     struct message message = {0};
     SluiceImageSource *source = NULL;
-    SluiceExrInfo info;
+    SluiceExrInfo info = {.structSize = sizeof info};
     bomb_init(&bomb, "scan_zip.exr");
     bomb_resize(&bomb, 16384);
-    SluiceExrImageSourceCreateInfo create = {.pPath = bomb.path, .log = {&message, keep_error}};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = bomb.path, .log = {&message, keep_error}};
     CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_LIMIT_EXCEEDED);
     assert_null(source);
     const char *words[] = {
@@ -120,8 +121,10 @@ static void large_tiles_are_refused_with_a_way_out(void **state)
         bomb_init(&bomb, names[i]);
         bomb_resize(&bomb, 8192);
         bomb_set(&bomb, "tiles\0tiledesc", 15, tile, sizeof tile);
-        SluiceExrImageSourceCreateInfo create = {
-            .pPath = bomb.path, .log = {&message, keep_error}, .levelZeroAlone = i == 0};
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = bomb.path,
+                                                 .log = {&message, keep_error},
+                                                 .levelZeroAlone = i == 0};
         CHECK_RESULT(sluiceCreateExrImageSource(&create, &source), SLUICE_ERROR_LIMIT_EXCEEDED);
         const char *words[] = {"8192 x 8192", "1536 MiB", "512 MiB", "smaller tiles", NULL};
         check_words(&message, words);
@@ -135,9 +138,10 @@ static void a_file_that_needs_no_more_than_the_limit_is_read(void **state)
     char path[1024], texels[37 * 21 * 8];
     struct failing_allocator allocator;
     SluiceImageSource *source;
-    SluiceExrInfo info;
+    SluiceExrInfo info = {.structSize = sizeof info};
     failing_allocator_init(&allocator, UINT64_MAX);
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file("scan_zip.exr", path),
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = own_file("scan_zip.exr", path),
                                              .pAllocator = &allocator.callbacks};
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
     CHECK_OK(sluiceGetExrInfo(source, &info));
@@ -165,8 +169,9 @@ static void sources_share_a_budget_until_they_are_destroyed(void **state)
     struct message message = {0};
     SluiceImageSource *first, *second, *tiled;
     SluiceExrMemoryBudget *budget;
-    SluiceExrInfo info;
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file("scan_zip.exr", path),
+    SluiceExrInfo info = {.structSize = sizeof info};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = own_file("scan_zip.exr", path),
                                              .log = {&message, keep_error}};
     CHECK_OK(sluiceCreateExrImageSource(&create, &first));
     CHECK_OK(sluiceGetExrInfo(first, &info));
@@ -212,10 +217,11 @@ static void what_is_in_a_file_is_told_without_reading_it(void **state)
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         char path[1024];
         SluiceImageSource *source;
-        SluiceExrInfo info;
+        SluiceExrInfo info = {.structSize = sizeof info};
         struct failing_allocator memory;
         failing_allocator_init(&memory, UINT64_MAX);
-        SluiceExrImageSourceCreateInfo create = {.pPath = own_file(files[i].name, path),
+        SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                 .pPath = own_file(files[i].name, path),
                                                  .pAllocator = &memory.callbacks};
         CHECK_OK(sluiceCreateExrImageSource(&create, &source));
         memory.refuse_from = 0;
@@ -236,9 +242,9 @@ static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
     SluiceExrMemoryBudget *budget;
-    SluiceExrInfo info;
+    SluiceExrInfo info = {.structSize = sizeof info};
     const uint8_t texel = 0;
-    SluiceImageInfo image = {1, 1, 1, SLUICE_FORMAT_R8_UNORM, "no file", 0};
+    SluiceImageInfo image = {sizeof image, 1, 1, 1, SLUICE_FORMAT_R8_UNORM, "no file", 0};
     SluiceImageSource *source;
     struct failing_allocator allocator;
     failing_allocator_init(&allocator, 0);

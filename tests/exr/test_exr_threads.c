@@ -24,8 +24,8 @@ static SluiceImageSource *open_own(const char *name, const SluiceAllocationCallb
 {
     char path[1024];
     SluiceImageSource *source = NULL;
-    SluiceExrImageSourceCreateInfo create = {.pPath = own_file(name, path),
-                                             .pAllocator = allocator};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = own_file(name, path), .pAllocator = allocator};
     CHECK_OK(sluiceCreateExrImageSource(&create, &source));
     return source;
 }
@@ -88,7 +88,7 @@ static void threads_that_read_at_once_get_what_one_thread_gets(void **state)
     static const char *const names[] = {"scan_piz.exr", "one_level.exr", "mip_zip.exr",
                                         "mip_none.exr", "rip_up.exr"};
     for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
-        SluiceImageInfo info;
+        SluiceImageInfo info = {.structSize = sizeof info};
         SluiceImageSource *alone = open_own(names[n], NULL), *shared = open_own(names[n], NULL);
         CHECK_OK(sluiceGetImageInfo(alone, &info));
         char **levels = read_levels(alone, &info);
@@ -119,7 +119,7 @@ static void a_chain_is_built_once_however_many_wait_for_it(void **state)
         struct failing_allocator allocator;
         failing_allocator_init(&allocator, UINT64_MAX);
         SluiceImageSource *source = open_own("scan_zip.exr", &allocator.callbacks);
-        SluiceTileLoaderCreateInfo create = {round ? 4 : 1, 0, NULL};
+        SluiceTileLoaderCreateInfo create = {sizeof create, round ? 4 : 1, 0, NULL};
         SluiceTileLoader *loader;
         CHECK_OK(sluiceCreateTileLoader(&create, &loader));
         uint16_t texels[16][4];
@@ -142,7 +142,8 @@ static void a_chain_is_built_once_however_many_wait_for_it(void **state)
 static SluiceResult open_and_read(const char *path, const SluiceAllocationCallbacks *allocator)
 {
     SluiceImageSource *source = NULL;
-    SluiceExrImageSourceCreateInfo create = {.pPath = path, .pAllocator = allocator};
+    SluiceExrImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .pAllocator = allocator};
     SluiceResult result = sluiceCreateExrImageSource(&create, &source);
     uint16_t texel[4];
     for (uint32_t level = 0; level < 6 && result == SLUICE_SUCCESS; level++) {

@@ -75,7 +75,7 @@ static SluiceImageSource *create_source(uint32_t width, uint32_t height, SluiceF
                                         bool is_wild)
 {
     SluiceProceduralImage image = {NULL, is_wild ? wild_colour : colour};
-    SluiceImageInfo info = {width, height, 0, format, "writer test"};
+    SluiceImageInfo info = {sizeof info, width, height, 0, format, "writer test"};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
@@ -100,7 +100,7 @@ static void expected_row(SluiceImageSource *source, const SluiceImageInfo *info,
 
 static void check_file(const char *path, SluiceImageSource *source, const char *names)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     for (uint32_t level = 0; level < info.mipLevelCount; level++) {
         struct plain_level plain;
@@ -152,7 +152,8 @@ static void files_hold_every_level_of_the_source(void **state)
         folder_init(&folder);
         SluiceImageSource *source =
             create_source(cases[i].width, cases[i].height, cases[i].format, false);
-        SluiceExrWriteInfo info = {.pPath = folder.file,
+        SluiceExrWriteInfo info = {.structSize = sizeof info,
+                                   .pPath = folder.file,
                                    .tileWidth = cases[i].tile_width,
                                    .tileHeight = cases[i].tile_height,
                                    .threadCount = cases[i].threads,
@@ -173,9 +174,10 @@ static void our_own_reader_gives_back_the_same_texels(void **state)
     folder_init(&folder);
     SluiceImageSource *source = create_source(211, 99, SLUICE_FORMAT_R16G16B16A16_SFLOAT, false),
                       *read;
-    SluiceExrWriteInfo info = {.pPath = folder.file, .tileWidth = 32, .tileHeight = 64};
+    SluiceExrWriteInfo info = {
+        .structSize = sizeof info, .pPath = folder.file, .tileWidth = 32, .tileHeight = 64};
     CHECK_OK(sluiceWriteExrFile(&info, source));
-    SluiceExrImageSourceCreateInfo create = {.pPath = folder.file};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = folder.file};
     CHECK_OK(sluiceCreateExrImageSource(&create, &read));
     for (uint32_t level = 0; level < 8; level++) {
         SluiceImageRegion region = {level, 0, 0, slc_mip_size(211, level), slc_mip_size(99, level)};
@@ -195,7 +197,7 @@ static void wide_values_saturate_and_nan_becomes_zero(void **state)
     struct folder folder;
     folder_init(&folder);
     SluiceImageSource *source = create_source(40, 24, SLUICE_FORMAT_R32G32B32A32_SFLOAT, true);
-    SluiceExrWriteInfo info = {.pPath = folder.file};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = folder.file};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     check_file(folder.file, source, "RGBA"); /* expects slc_half_from_float of each */
     sluiceDestroyImageSource(source);
@@ -210,10 +212,10 @@ static void half_sources_keep_their_bits(void **state)
     folder_init(&folder);
     for (uint32_t i = 0; i < 65536; i++)
         halves[i] = (uint16_t)i;
-    SluiceImageInfo image = {256, 256, 0, SLUICE_FORMAT_R16_SFLOAT, "all halves"};
+    SluiceImageInfo image = {sizeof image, 256, 256, 0, SLUICE_FORMAT_R16_SFLOAT, "all halves"};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateMemoryImageSource(halves, &image, NULL, &source));
-    SluiceExrWriteInfo info = {.pPath = folder.file, .threadCount = 2};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = folder.file, .threadCount = 2};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     struct plain_level plain;
     assert_true(plain_exr_read(folder.file, 0, &plain));
@@ -245,7 +247,8 @@ static void progress_rises_to_the_total(void **state)
     struct progress progress = {0};
     folder_init(&folder);
     SluiceImageSource *source = create_source(100, 100, SLUICE_FORMAT_R8_UNORM, false);
-    SluiceExrWriteInfo info = {.pPath = folder.file,
+    SluiceExrWriteInfo info = {.structSize = sizeof info,
+                               .pPath = folder.file,
                                .tileWidth = 16,
                                .tileHeight = 16,
                                .threadCount = 3,
@@ -269,7 +272,8 @@ static void stopping_leaves_what_was_there_before(void **state)
     SluiceImageSource *source = create_source(300, 300, SLUICE_FORMAT_R8_UNORM, false);
     for (uint32_t threads = 1; threads <= 3; threads += 2) {
         struct progress progress = {.stop_at = 50000};
-        SluiceExrWriteInfo info = {.pPath = folder.file,
+        SluiceExrWriteInfo info = {.structSize = sizeof info,
+                                   .pPath = folder.file,
                                    .threadCount = threads,
                                    .pUserData = &progress,
                                    .pfnProgress = on_progress};
@@ -281,7 +285,7 @@ static void stopping_leaves_what_was_there_before(void **state)
     assert_non_null(fgets(text, sizeof text, file));
     fclose(file);
     assert_string_equal(text, "older");
-    SluiceExrWriteInfo info = {.pPath = folder.file};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = folder.file};
     CHECK_OK(sluiceWriteExrFile(&info, source));
     check_file(folder.file, source, "Y");
     sluiceDestroyImageSource(source);
@@ -303,7 +307,7 @@ static void killed_writers_leave_one_part_file_that_the_next_takes_over(void **s
     struct folder folder;
     folder_init(&folder);
     SluiceImageSource *source = create_source(300, 300, SLUICE_FORMAT_R8_UNORM, false);
-    SluiceExrWriteInfo info = {.pPath = folder.file};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = folder.file};
     for (int i = 0; i < 3; i++) {
         int status;
         pid_t child = fork();
@@ -336,7 +340,8 @@ static void failures_of_the_source_are_passed_on_and_leave_no_file(void **state)
             source.fail_at = n;
             source.failure = n == 2 ? SLUICE_NOT_READY : SLUICE_ERROR_DEVICE_LOST;
             source.is_short = true;
-            SluiceExrWriteInfo info = {.pPath = folder.file, .threadCount = threads};
+            SluiceExrWriteInfo info = {
+                .structSize = sizeof info, .pPath = folder.file, .threadCount = threads};
             SluiceResult expected = n > 11 ? SLUICE_SUCCESS : source.failure;
             CHECK_RESULT(sluiceWriteExrFile(&info, &source.base), expected);
             assert_int_equal(count_files(&folder), n > 11);
@@ -358,7 +363,10 @@ static void a_full_disk_is_an_io_error_and_leaves_no_file(void **state)
     signal(SIGXFSZ, SIG_IGN);
     static const rlim_t limits[] = {0, 100, 400, 5000, 150000, 300000};
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
-        SluiceExrWriteInfo info = {.pPath = folder.file, .uncompressed = true, .threadCount = 2};
+        SluiceExrWriteInfo info = {.structSize = sizeof info,
+                                   .pPath = folder.file,
+                                   .uncompressed = true,
+                                   .threadCount = 2};
         low = old;
         low.rlim_cur = limits[i];
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
@@ -383,7 +391,8 @@ static void every_refused_allocation_is_a_result_and_leaves_nothing(void **state
         struct failing_allocator allocator;
         assert_true(n < 100);
         failing_allocator_init(&allocator, n);
-        SluiceExrWriteInfo info = {.pPath = folder.file, .pAllocator = &allocator.callbacks};
+        SluiceExrWriteInfo info = {
+            .structSize = sizeof info, .pPath = folder.file, .pAllocator = &allocator.callbacks};
         result = sluiceWriteExrFile(&info, source);
         if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
@@ -401,9 +410,10 @@ struct wrong_source {
 
 static SluiceResult get_wrong_info(SluiceImageSource *source, SluiceImageInfo *info)
 {
-    static const SluiceImageInfo wrong[] = {{0, 4, 3, SLUICE_FORMAT_R8_UNORM, "empty"},
-                                            {4, 4, 1, SLUICE_FORMAT_R8_UNORM, "few levels"},
-                                            {4, 4, 3, SLUICE_FORMAT_UNDEFINED, "no format"}};
+    static const SluiceImageInfo wrong[] = {
+        {sizeof(SluiceImageInfo), 0, 4, 3, SLUICE_FORMAT_R8_UNORM, "empty"},
+        {sizeof(SluiceImageInfo), 4, 4, 1, SLUICE_FORMAT_R8_UNORM, "few levels"},
+        {sizeof(SluiceImageInfo), 4, 4, 3, SLUICE_FORMAT_UNDEFINED, "no format"}};
     *info = wrong[((struct wrong_source *)source)->number];
     return SLUICE_SUCCESS;
 }
@@ -411,9 +421,10 @@ static SluiceResult get_wrong_info(SluiceImageSource *source, SluiceImageInfo *i
 static void sources_without_a_full_chain_are_refused(void **state)
 {
     (void)state;
-    static const SluiceImageSourceInterface interface = {get_wrong_info, NULL, NULL};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_wrong_info, NULL,
+                                                         NULL};
     struct wrong_source source = {{&interface}, 0};
-    SluiceExrWriteInfo info = {.pPath = "/no such folder/x.exr"};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = "/no such folder/x.exr"};
     for (; source.number < 3; source.number++)
         CHECK_RESULT(sluiceWriteExrFile(&info, &source.base), SLUICE_ERROR_INVALID_ARGUMENT);
 }
@@ -422,7 +433,7 @@ static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
     SluiceImageSource *source = create_source(5, 5, SLUICE_FORMAT_R8_UNORM, false);
-    SluiceExrWriteInfo info = {.pPath = "/no such folder/x.exr"};
+    SluiceExrWriteInfo info = {.structSize = sizeof info, .pPath = "/no such folder/x.exr"};
     CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_IO);
     CHECK_RESULT(sluiceWriteExrFile(NULL, source), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceWriteExrFile(&info, NULL), SLUICE_ERROR_NULL_POINTER);
@@ -431,7 +442,10 @@ static void wrong_arguments_are_refused(void **state)
     info.pPath = NULL;
     CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_NULL_POINTER);
     sluiceDestroyImageSource(source);
-    info = (SluiceExrWriteInfo){.pPath = "/no such folder/x.exr", .tileWidth = 1, .tileHeight = 1};
+    info = (SluiceExrWriteInfo){.structSize = sizeof(SluiceExrWriteInfo),
+                                .pPath = "/no such folder/x.exr",
+                                .tileWidth = 1,
+                                .tileHeight = 1};
     source = create_source(1 << 20, 1 << 13, SLUICE_FORMAT_R8_UNORM, false);
     CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_LIMIT_EXCEEDED);
     sluiceDestroyImageSource(source);

@@ -8,7 +8,8 @@
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 {
     (void)source;
-    *info = (SluiceImageInfo){512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "night", 1};
+    *info = (SluiceImageInfo){sizeof(SluiceImageInfo),      512,     512, 10,
+                              SLUICE_FORMAT_R8G8B8A8_UNORM, "night", 1};
     return SLUICE_SUCCESS;
 }
 
@@ -26,7 +27,8 @@ static void destroy(SluiceImageSource *source)
     (void)source;
 }
 
-static const SluiceImageSourceInterface night = {get_info, read_region, destroy, NULL};
+static const SluiceImageSourceInterface night = {sizeof night, get_info, read_region, destroy,
+                                                 NULL};
 
 static uint8_t want(void *user, uint32_t region)
 {

@@ -40,7 +40,8 @@ static void limit_files(rlim_t size)
 static SluiceResult bake_with(const SluiceBakeInfo *info, const SluiceAllocationCallbacks *memory,
                               struct told *told, SluiceBakeReport *report)
 {
-    SluiceBakerCreateInfo create = {.threadCount = 1, .pAllocator = memory, .log = {told, keep}};
+    SluiceBakerCreateInfo create = {
+        .structSize = sizeof create, .threadCount = 1, .pAllocator = memory, .log = {told, keep}};
     SluiceBaker *baker = NULL;
     SluiceResult result = sluiceCreateBaker(&create, &baker);
     if (result == SLUICE_SUCCESS)
@@ -61,7 +62,8 @@ struct scene {
 static void scene_init(struct scene *s)
 {
     uint32_t random = 9;
-    *s = (struct scene){.samples = malloc(WIDTH * HEIGHT * 3)};
+    *s = (struct scene){.samples = malloc(WIDTH * HEIGHT * 3),
+                        .report = {.structSize = sizeof(SluiceBakeReport)}};
     assert_non_null(s->samples);
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 3; i++)
         s->samples[i] = (uint8_t)((random = random * 1664525u + 1013904223u) >> 24);
@@ -70,7 +72,8 @@ static void scene_init(struct scene *s)
     bake_folder_file(&s->folder, "out.store", s->path);
     bake_folder_file(&s->folder, "whole.store", s->whole);
     write_png(s->picture, s->samples, WIDTH, HEIGHT, 3, false);
-    s->info = (SluiceBakeInfo){.pInputPath = s->picture, .pOutputPath = s->whole};
+    s->info = (SluiceBakeInfo){
+        .structSize = sizeof(SluiceBakeInfo), .pInputPath = s->picture, .pOutputPath = s->whole};
     struct told told = {{0}};
     CHECK_OK(bake_with(&s->info, NULL, &told, &s->report));
     s->info.pOutputPath = s->path;
@@ -130,7 +133,9 @@ static void a_bake_onto_a_full_disk_leaves_what_was_there(void **state)
     struct scene s;
     scene_init(&s);
     CHECK_OK(bake_with(&s.info, NULL, &(struct told){{0}}, NULL));
-    s.info.settings.filter = SLUICE_BAKE_FILTER_KAISER;
+    SluiceBakeSettings settings = {.structSize = sizeof settings,
+                                   .filter = SLUICE_BAKE_FILTER_KAISER};
+    s.info.pSettings = &settings;
     for (uint32_t i = 0; i < 12; i++) {
         struct told told = {{0}};
         limit_files(s.report.outputSize * i / 12);
@@ -199,6 +204,7 @@ static void release_no_heap(void *user, uint32_t id)
 static SluiceResult record(const char *path, const SluiceAllocationCallbacks *memory)
 {
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {NULL, no_heap, release_no_heap},
         .heapTileCapacity = 8,
         .tileSize = 65536};
@@ -212,7 +218,7 @@ static SluiceResult record(const char *path, const SluiceAllocationCallbacks *me
             SluiceTextureId id;
             CHECK_OK(sluiceAddStreamedTexture(manager, &desc, &id));
             const uint8_t map[4] = {0};
-            const SluiceFeedbackDesc feedback = {map, 2, 2, 0, 0};
+            const SluiceFeedbackDesc feedback = {sizeof feedback, map, 2, 2, 0, 0};
             CHECK_OK(sluiceUpdateWithSamplerFeedback(manager, id, &feedback, i, 10));
         }
         result = sluiceEndRecording(recorder);

@@ -52,7 +52,7 @@ static double check_chain(uint32_t width, uint32_t height)
     assert_non_null(texels);
     for (size_t i = 0; i < count; i++)
         texels[i] = (float)((uint32_t)(i * 2654435761u) >> 20) / 4096;
-    SluiceImageInfo info = {width, height, 0, SLUICE_FORMAT_R32_SFLOAT, "long", 1};
+    SluiceImageInfo info = {sizeof info, width, height, 0, SLUICE_FORMAT_R32_SFLOAT, "long", 1};
     SluiceImageSource *source;
     double worst = 0;
     CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &source));
@@ -111,8 +111,13 @@ static void the_largest_image_has_the_right_texel_in_every_corner(void **state)
     SluiceProceduralImage image = {NULL, place};
     uint32_t cases = 0, wrong = 0;
     for (uint32_t i = 0; i < 3; i++) {
-        SluiceImageInfo info = {
-            large[i][0], large[i][1], 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT, "large", 1};
+        SluiceImageInfo info = {sizeof info,
+                                large[i][0],
+                                large[i][1],
+                                0,
+                                SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                                "large",
+                                1};
         SluiceImageSource *source;
         CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
         CHECK_OK(sluiceGetImageInfo(source, &info));
@@ -146,7 +151,8 @@ static void stores_of_any_size_give_back_what_was_written(void **state)
             struct scratch scratch;
             struct messages messages = {0};
             scratch_init(&scratch);
-            SluiceStoreCreateInfo info = {.pPath = scratch.path,
+            SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                          .pPath = scratch.path,
                                           .width = sizes[i][0],
                                           .height = sizes[i][1],
                                           .format = formats[f],

@@ -15,8 +15,8 @@ static void questions_about_a_manager_take_no_memory(void **state)
     fixture_feed(&f, id, 0, 1, 10);
     fixture_load(&f);
     f.memory.refuse_from = f.memory.calls;
-    SluiceStreamedTextureLayout layout;
-    SluiceStreamedTextureStatistics statistics;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     SluiceTileState tile_state;
     SluiceTile tile;
     SluiceMinMipRect rect = {id, 0, 0, 1, 1};
@@ -49,7 +49,7 @@ static void reads_of_what_is_in_memory_take_none(void **state)
     (void)state;
     struct failing_allocator memory;
     float texels[64 * 64] = {0};
-    SluiceImageInfo info = {64, 64, 0, SLUICE_FORMAT_R32_SFLOAT, "small", 1};
+    SluiceImageInfo info = {sizeof info, 64, 64, 0, SLUICE_FORMAT_R32_SFLOAT, "small", 1};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageSource *sources[3];
     failing_allocator_init(&memory, UINT64_MAX);
@@ -75,13 +75,15 @@ static void a_loader_takes_no_memory_once_it_is_there(void **state)
 {
     (void)state;
     struct failing_allocator memory;
-    SluiceImageInfo info = {64, 64, 0, SLUICE_FORMAT_R32_SFLOAT, "small", 1};
+    SluiceImageInfo info = {sizeof info, 64, 64, 0, SLUICE_FORMAT_R32_SFLOAT, "small", 1};
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageSource *source;
     SluiceTileLoader *loader;
     failing_allocator_init(&memory, UINT64_MAX);
-    SluiceTileLoaderCreateInfo create = {
-        .threadCount = 1, .requestCapacity = 8, .pAllocator = &memory.callbacks};
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
+                                         .threadCount = 1,
+                                         .requestCapacity = 8,
+                                         .pAllocator = &memory.callbacks};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     CHECK_OK(sluiceCreateTileLoader(&create, &loader));
     memory.refuse_from = memory.calls;
@@ -92,7 +94,7 @@ static void a_loader_takes_no_memory_once_it_is_there(void **state)
         SluiceTileRead reads[3];
         uint64_t tickets[3];
         SluiceTileReadResult results[8];
-        SluiceTileLoaderStatistics statistics;
+        SluiceTileLoaderStatistics statistics = {.structSize = sizeof statistics};
         uint32_t count = 8;
         for (uint32_t r = 0; r < 3; r++)
             reads[r] = (SluiceTileRead){source, 1, &region, &where[r], r, r};

@@ -14,7 +14,8 @@ enum { SIZE = 16, PIXELS = SIZE * SIZE };
 
 static SluicePicturePair pair_of(const float *a, const float *b, float peak)
 {
-    return (SluicePicturePair){.pA = a,
+    return (SluicePicturePair){.structSize = sizeof(SluicePicturePair),
+                               .pA = a,
                                .pB = b,
                                .width = SIZE,
                                .height = SIZE,
@@ -155,7 +156,8 @@ static void predicted_misses_are_those_of_long_double(void **state)
         .name = "c.predict_feedback_miss.value", .unit = "of the stated error", .bound = 1};
     uint64_t count = extremes_count(100000, 5000000);
     for (uint64_t i = 0; i < count; i++) {
-        SluiceFeedbackRate rate = {.selection = SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS,
+        SluiceFeedbackRate rate = {.structSize = sizeof rate,
+                                   .selection = SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS,
                                    .regionWidth = 1 + extremes_random(i) % (1u << i % 13),
                                    .regionHeight = 1 + extremes_random(i + 1) % (1u << i % 11),
                                    .textureCount = 1,

@@ -163,7 +163,8 @@ static void open_soak(struct soak *s)
     *s = (struct soak){.random = 2024};
     fixture_open(&s->f, 64, false);
     s->f.heaps.limit = 12; /* too few for the nearest views */
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 64,
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                       .numExtraStandbyTiles = 64,
                                                        .retryDelay = 3 * frame_time,
                                                        .maxLoadAttempts = 3,
                                                        .prefetchLevels = 1};

@@ -7,7 +7,8 @@
 static SluiceStoreCreateInfo describe(const struct scratch *scratch,
                                       struct failing_allocator *memory)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = 300,
                                    .height = 140,
                                    .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -23,7 +24,7 @@ static void questions_about_a_store_take_no_memory(void **state)
     SluiceStoreWriter *writer;
     SluiceStoreLayout layout;
     SluiceImageSource *source;
-    SluiceStoreInfo said;
+    SluiceStoreInfo said = {.structSize = sizeof said};
     uint64_t written, total;
     bool is_written = false;
     scratch_init(&scratch);
@@ -40,8 +41,8 @@ static void questions_about_a_store_take_no_memory(void **state)
     memory.refuse_from = UINT64_MAX;
     CHECK_OK(write_tiles(writer, &info, PICTURE_MIXED, UINT64_MAX));
     sluiceDestroyStoreWriter(writer);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path,
-                                               .pAllocator = &memory.callbacks};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = scratch.path, .pAllocator = &memory.callbacks};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     memory.refuse_from = memory.calls;
     CHECK_OK(sluiceGetStoreInfo(source, &said));
@@ -59,8 +60,10 @@ static SluiceResult read_through_pool(const char *path, struct failing_allocator
     SluiceStoreReadPool *pool = NULL;
     SluiceImageSource *sources[2] = {NULL, NULL};
     SluiceResult result = sluiceCreateStoreReadPool(&memory->callbacks, &pool);
-    SluiceStoreImageSourceCreateInfo create = {
-        .pPath = path, .pAllocator = &memory->callbacks, .readPool = pool};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = path,
+                                               .pAllocator = &memory->callbacks,
+                                               .readPool = pool};
     for (uint32_t i = 0; i < 2 && result == SLUICE_SUCCESS; i++)
         result = sluiceCreateStoreImageSource(&create, &sources[i]);
     for (uint32_t i = 0; i < 2 && result == SLUICE_SUCCESS; i++)

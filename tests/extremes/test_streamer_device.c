@@ -165,7 +165,7 @@ static void shut_down(void)
 {
     if (!g.streamer)
         return;
-    SluiceTileLoaderStatistics reads;
+    SluiceTileLoaderStatistics reads = {.structSize = sizeof reads};
     CHECK_OK(sluiceGetVulkanReadStatistics(g.streamer, NULL, &reads));
     (void)gallery_statistics(&g);
     for (uint32_t i = 0; i < 2; i++) {

@@ -166,7 +166,7 @@ static void questions_take_no_memory(void **state)
         SluiceVulkanBuffers buffers;
         SluiceVulkanPages pages;
         VkDescriptorSetLayout layout;
-        SluiceTileLoaderStatistics reads;
+        SluiceTileLoaderStatistics reads = {.structSize = sizeof reads};
         sluiceGetVulkanBuffers(g.streamer, &buffers);
         sluiceGetVulkanPages(g.streamer, &pages);
         CHECK_OK(sluiceGetVulkanDescriptorSetLayout(g.streamer, &layout));

@@ -51,8 +51,9 @@ static const char *row_name(const char *stage, enum form form)
 static SluiceImageSource *open_form(enum form form)
 {
     SluiceImageSource *source;
-    SluiceExrImageSourceCreateInfo exr = {.pPath = fixture.exr};
-    SluiceStoreImageSourceCreateInfo store = {.pPath = fixture.stores[form]};
+    SluiceExrImageSourceCreateInfo exr = {.structSize = sizeof exr, .pPath = fixture.exr};
+    SluiceStoreImageSourceCreateInfo store = {.structSize = sizeof store,
+                                              .pPath = fixture.stores[form]};
     if (form == FORM_FILE)
         CHECK_OK(sluiceCreateExrImageSource(&exr, &source));
     else
@@ -64,7 +65,7 @@ static SluiceImageSource *open_form(enum form form)
 static float *read_form(enum form form)
 {
     SluiceImageSource *source = open_form(form);
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageRegion region = {0, 0, 0, VALUES_WIDTH, VALUES_HEIGHT, 0};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     size_t pitch = VALUES_WIDTH * sluiceFormatTexelSize(info.format);
@@ -79,11 +80,13 @@ static float *read_form(enum form form)
 
 static uint64_t bake(enum form form, SluiceFormat format)
 {
-    SluiceBakerCreateInfo create = {.threadCount = 1};
-    SluiceBakeInfo info = {.pInputPath = fixture.exr, .pOutputPath = fixture.stores[form]};
-    SluiceBakeReport report;
+    SluiceBakerCreateInfo create = {.structSize = sizeof create, .threadCount = 1};
+    SluiceBakeInfo info = {
+        .structSize = sizeof info, .pInputPath = fixture.exr, .pOutputPath = fixture.stores[form]};
+    SluiceBakeReport report = {.structSize = sizeof report};
     SluiceBaker *baker;
-    info.settings.format = format;
+    SluiceBakeSettings settings = {.structSize = sizeof settings, .format = format};
+    info.pSettings = &settings;
     CHECK_OK(sluiceCreateBaker(&create, &baker));
     CHECK_OK(sluiceBakeFile(baker, &info, &report));
     sluiceDestroyBaker(baker);
@@ -93,7 +96,8 @@ static uint64_t bake(enum form form, SluiceFormat format)
 static void write_pictures(void)
 {
     SluiceImageSource source;
-    SluiceExrWriteInfo info = {.pPath = fixture.exr, .tileWidth = 64, .tileHeight = 64};
+    SluiceExrWriteInfo info = {
+        .structSize = sizeof info, .pPath = fixture.exr, .tileWidth = 64, .tileHeight = 64};
     bake_folder_init(&fixture.folder);
     bake_folder_file(&fixture.folder, "values.exr", fixture.exr);
     values_source_init(&source);
@@ -247,7 +251,8 @@ static void check_filtered(struct scene *scene, enum form form, uint32_t texture
 /* A NaN counts as 0 and an infinity as the largest there is, so file and store look alike. */
 static void check_alike(const float *a, const float *b, float peak, double tolerance)
 {
-    SluicePicturePair pair = {.pA = a,
+    SluicePicturePair pair = {.structSize = sizeof pair,
+                              .pA = a,
                               .pB = b,
                               .width = VALUES_WIDTH,
                               .height = VALUES_HEIGHT,

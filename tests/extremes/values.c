@@ -40,7 +40,8 @@ uint32_t value_at(uint32_t level, uint32_t x, uint32_t y)
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 {
     (void)source;
-    *info = (SluiceImageInfo){.width = VALUES_WIDTH,
+    *info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                              .width = VALUES_WIDTH,
                               .height = VALUES_HEIGHT,
                               .mipLevelCount = VALUES_LEVELS,
                               .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT,
@@ -68,6 +69,7 @@ static void destroy(SluiceImageSource *source)
 
 void values_source_init(SluiceImageSource *source)
 {
-    static const SluiceImageSourceInterface interface = {get_info, read_region, destroy};
+    static const SluiceImageSourceInterface interface = {sizeof interface, get_info, read_region,
+                                                         destroy};
     *source = (SluiceImageSource){&interface};
 }

@@ -45,7 +45,7 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
 
 static void read_source(SluiceImageSource *source)
 {
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     if (sluiceGetImageInfo(source, &info) == SLUICE_SUCCESS)
         for (uint32_t layer = 0; layer < info.arrayLayerCount && layer < 16; layer++)
             for (uint32_t level = 0; level < info.mipLevelCount; level++)
@@ -55,8 +55,9 @@ static void read_source(SluiceImageSource *source)
 
 static void read_file(const char *path)
 {
-    SluiceDdsImageSourceCreateInfo dds = {.pPath = path};
-    SluiceKtx2ImageSourceCreateInfo ktx2 = {.pPath = path, .maxCacheSize = MAX_LEVEL_SIZE};
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pPath = path};
+    SluiceKtx2ImageSourceCreateInfo ktx2 = {
+        .structSize = sizeof ktx2, .pPath = path, .maxCacheSize = MAX_LEVEL_SIZE};
     SluiceImageSource *source;
     if (sluiceCreateDdsImageSource(&dds, &source) == SLUICE_SUCCESS)
         read_source(source);

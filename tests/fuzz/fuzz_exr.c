@@ -30,11 +30,14 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
 
 static void read_file(const char *path, SluiceFormat format)
 {
-    SluiceExrImageSourceCreateInfo create = {
-        .pPath = path, .format = format, .maxImageSize = 1 << 26, .maxMemorySize = 1 << 28};
+    SluiceExrImageSourceCreateInfo create = {.structSize = sizeof create,
+                                             .pPath = path,
+                                             .format = format,
+                                             .maxImageSize = 1 << 26,
+                                             .maxMemorySize = 1 << 28};
     SluiceImageSource *source;
-    SluiceImageInfo info;
-    SluiceExrInfo exr;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceExrInfo exr = {.structSize = sizeof exr};
     if (sluiceCreateExrImageSource(&create, &source) != SLUICE_SUCCESS)
         return;
     if (sluiceGetImageInfo(source, &info) != SLUICE_SUCCESS ||

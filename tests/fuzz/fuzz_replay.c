@@ -26,7 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(copy, data + 1, size - 1);
     if (data[0] & 1)
         reseal_trace(copy, size - 1);
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     SluiceResult status = play_damaged(copy, size - 1, &result);
     if (status == SLUICE_ERROR_CORRUPT_DATA && result.errorOffset > size - 1)
         abort();

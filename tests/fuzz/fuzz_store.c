@@ -69,6 +69,7 @@ static void read_tiles(SluiceImageSource *source, const SluiceStoreInfo *info)
 static void resume(const char *path, const SluiceStoreInfo *info, bool finishes)
 {
     SluiceStoreCreateInfo create = {
+        .structSize = sizeof create,
         .pPath = path,
         .width = info->layout.width,
         .height = info->layout.height,
@@ -98,14 +99,14 @@ static void resume(const char *path, const SluiceStoreInfo *info, bool finishes)
 
 static void read_file(const char *path, const char *part_path, bool finishes)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     if (sluiceCreateStoreImageSource(&create, &source) != SLUICE_SUCCESS)
         return;
     if (sluiceGetStoreInfo(source, &info) != SLUICE_SUCCESS)
         abort();
-    SluiceStoreVerifyInfo verify = {.pPath = path};
+    SluiceStoreVerifyInfo verify = {.structSize = sizeof verify, .pPath = path};
     sluiceVerifyStore(&verify, NULL);
     read_tiles(source, &info);
     if (rename(path, part_path) == 0)

@@ -28,7 +28,8 @@ static void on_failure(void *user, const SluiceTileReadFailure *failure)
 void fixture_init(struct loader_fixture *f, SluiceTileLoaderCreateInfo create)
 {
     SluiceProceduralImage image = {NULL, mark};
-    SluiceImageInfo info = {FIXTURE_SIZE, FIXTURE_SIZE, 0, SLUICE_FORMAT_R32_SFLOAT, "fault test"};
+    SluiceImageInfo info = {sizeof info, FIXTURE_SIZE, FIXTURE_SIZE, 0, SLUICE_FORMAT_R32_SFLOAT,
+                            "fault test"};
     *f = (struct loader_fixture){0};
     pthread_mutex_init(&f->mutex, NULL);
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &f->inner));
@@ -83,7 +84,7 @@ SluiceTileReadResult fixture_collect(struct loader_fixture *f)
 SluiceTileLoaderStatistics fixture_statistics(struct loader_fixture *f,
                                               const struct fault_source *source)
 {
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     CHECK_OK(sluiceGetTileLoaderStatistics(f->loader, source ? &source->base : NULL, &s));
     return s;
 }

@@ -66,7 +66,7 @@ static void formats_are_described_as_vulkan_does(void **state)
     for (size_t i = 0; i < COUNT; i++) {
         const struct expected *e = &all[i];
         bool compressed = strstr(e->name, "_BLOCK") != NULL;
-        SluiceFormatInfo info;
+        SluiceFormatInfo info = {.structSize = sizeof info};
         CHECK_OK(sluiceGetFormatInfo(e->format, &info));
         assert_string_equal(sluiceFormatString(e->format), e->name);
         assert_int_equal(info.blockWidth, compressed ? 4 : 1);
@@ -112,7 +112,7 @@ static void unknown_formats_are_refused(void **state)
     const SluiceFormat unknown[] = {SLUICE_FORMAT_UNDEFINED, (SluiceFormat)SLUICE_FORMAT_COUNT,
                                     (SluiceFormat)99, (SluiceFormat)-1};
     for (size_t i = 0; i < sizeof unknown / sizeof unknown[0]; i++) {
-        SluiceFormatInfo info;
+        SluiceFormatInfo info = {.structSize = sizeof info};
         uint32_t width, height;
         CHECK_RESULT(sluiceGetFormatInfo(unknown[i], &info), SLUICE_ERROR_UNSUPPORTED);
         CHECK_RESULT(sluiceGetStandardTileShape(unknown[i], &width, &height),

@@ -30,8 +30,9 @@ struct fixture {
 static void setup(struct fixture *f, uint32_t threads, uint32_t capacity)
 {
     SluiceProceduralImage image = {NULL, mark};
-    SluiceImageInfo info = {SIZE, SIZE, 0, SLUICE_FORMAT_R32_SFLOAT, "loader test"};
-    SluiceTileLoaderCreateInfo create = {threads, capacity, NULL, .retry.maxAttempts = 1};
+    SluiceImageInfo info = {sizeof info, SIZE, SIZE, 0, SLUICE_FORMAT_R32_SFLOAT, "loader test"};
+    SluiceTileLoaderCreateInfo create = {sizeof create, threads, capacity, NULL,
+                                         .retry.maxAttempts = 1};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &f->inner));
     fault_source_init(&f->source, f->inner);
     CHECK_OK(sluiceCreateTileLoader(&create, &f->loader));
@@ -188,7 +189,8 @@ static void every_end_of_a_read_is_told_once_with_its_result(void **state)
     setup(&f, 1, 0);
     sluiceDestroyTileLoader(f.loader);
     struct ends ends = {0};
-    SluiceTileLoaderCreateInfo create = {1, 0, NULL, .retry = {2, 1, 1}, .end = {&ends, note_end}};
+    SluiceTileLoaderCreateInfo create = {sizeof create,           1, 0, NULL, .retry = {2, 1, 1},
+                                         .end = {&ends, note_end}};
     CHECK_OK(sluiceCreateTileLoader(&create, &f.loader));
     f.source.fail_at = 2; /* after which the same read is tried again */
     f.source.failure = SLUICE_ERROR_IO;
@@ -295,7 +297,7 @@ static void reads_are_submitted_together_or_not_at_all(void **state)
         assert_int_equal(result.ticket, tickets[i]);
         assert_true(texels[i] == i);
     }
-    SluiceTileLoaderStatistics statistics;
+    SluiceTileLoaderStatistics statistics = {.structSize = sizeof statistics};
     CHECK_OK(sluiceGetTileLoaderStatistics(f.loader, NULL, &statistics));
     assert_int_equal(statistics.readCount, COUNT);
     teardown(&f);
@@ -420,7 +422,7 @@ static void wrong_arguments_are_refused(void **state)
     struct fixture f;
     setup(&f, 1, 4);
     SluiceTileLoader *loader = NULL;
-    SluiceTileLoaderCreateInfo create = {0};
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create};
     CHECK_RESULT(sluiceCreateTileLoader(NULL, &loader), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateTileLoader(&create, NULL), SLUICE_ERROR_NULL_POINTER);
     SluiceImageRegion region = {0, 0, 0, 1, 1};
@@ -453,7 +455,7 @@ static void creation_survives_every_refused_allocation(void **state)
         SluiceTileLoader *loader = NULL;
         assert_true(n < 100);
         failing_allocator_init(&a, n);
-        SluiceTileLoaderCreateInfo create = {2, 8, &a.callbacks};
+        SluiceTileLoaderCreateInfo create = {sizeof create, 2, 8, &a.callbacks};
         result = sluiceCreateTileLoader(&create, &loader);
         if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);

@@ -20,7 +20,8 @@ static void check_story(const struct story *story)
     struct loader_fixture f;
     float texel = -1;
     uint32_t length = 0;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     while (length < 6 && story->script[length] != SLUICE_SUCCESS)
         length++;
     f.source.script = story->script;
@@ -86,7 +87,8 @@ static void failures_are_reported_with_source_region_and_what_follows(void **sta
     (void)state;
     struct loader_fixture f;
     float texel;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){.retry = {3, 5, 8}});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .retry = {3, 5, 8}});
     f.source.fail_at = 1;
     f.source.fails_on = true;
     f.source.failure = SLUICE_ERROR_IO;
@@ -117,7 +119,8 @@ static void a_source_that_cannot_be_opened_at_first_is_tried_again(void **state)
     (void)state;
     struct loader_fixture f;
     float texel = -1;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     f.source.unopened = 2;
     f.source.failure = SLUICE_ERROR_IO;
     fixture_submit(&f, &f.source, 3, &texel, 0);
@@ -140,7 +143,8 @@ static void another_attempt_goes_on_with_the_region_that_failed(void **state)
     SluiceImageRegion regions[3] = {{0, 0, 0, 4, 4}, {1, 4, 4, 4, 4}, {2, 8, 8, 4, 4}};
     void *const places[3] = {texels[0], texels[1], texels[2]};
     uint64_t ticket;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     f.source.script = script;
     f.source.script_length = 4;
     f.source.is_short = true;
@@ -168,8 +172,10 @@ static void many_reads_of_failing_sources_all_end_and_are_counted(void **state)
     static float texels[SOURCES][PER_SOURCE];
     struct loader_fixture f;
     struct fault_source sources[SOURCES];
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){
-                         .threadCount = 4, .requestCapacity = 64, .retry = {.maxAttempts = 50}});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 4,
+                                                  .requestCapacity = 64,
+                                                  .retry = {.maxAttempts = 50}});
     for (uint32_t i = 0; i < 4 * PER_SOURCE; i++)
         script[i] = i % 5 == 4 ? SLUICE_ERROR_IO : SLUICE_SUCCESS;
     for (uint32_t s = 0; s < SOURCES; s++) {
@@ -215,7 +221,8 @@ static void a_source_with_reads_is_not_forgotten(void **state)
     (void)state;
     struct loader_fixture f;
     float texel;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     fixture_submit(&f, &f.source, 0, &texel, 0);
     sluiceWaitTileLoaderIdle(f.loader);
     CHECK_RESULT(sluiceForgetTileLoaderSource(f.loader, &f.source.base), SLUICE_NOT_READY);
@@ -236,8 +243,9 @@ static void reads_need_no_memory(void **state)
     struct fault_source sources[COUNT];
     float texel;
     failing_allocator_init(&a, UINT64_MAX);
-    fixture_init(&f,
-                 (SluiceTileLoaderCreateInfo){.requestCapacity = 4, .pAllocator = &a.callbacks});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .requestCapacity = 4,
+                                                  .pAllocator = &a.callbacks});
     a.refuse_from = a.calls;
     for (uint32_t i = 0; i < COUNT; i++) {
         fault_source_init(&sources[i], f.inner);
@@ -256,13 +264,16 @@ static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
     struct loader_fixture f;
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     SluiceTileLoader *loader = NULL;
-    SluiceTileLoaderCreateInfo many_reads = {.requestCapacity = (1u << 29) + 1};
-    SluiceTileLoaderCreateInfo many_sources = {.maxSourceCount = UINT32_MAX};
+    SluiceTileLoaderCreateInfo many_reads = {.structSize = sizeof many_reads,
+                                             .requestCapacity = (1u << 29) + 1};
+    SluiceTileLoaderCreateInfo many_sources = {.structSize = sizeof many_sources,
+                                               .maxSourceCount = UINT32_MAX};
     CHECK_RESULT(sluiceCreateTileLoader(&many_reads, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_RESULT(sluiceCreateTileLoader(&many_sources, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     CHECK_RESULT(sluiceGetTileLoaderStatistics(NULL, NULL, &s), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceGetTileLoaderStatistics(f.loader, NULL, NULL), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceForgetTileLoaderSource(NULL, &f.source.base), SLUICE_ERROR_NULL_POINTER);

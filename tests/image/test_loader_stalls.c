@@ -17,7 +17,8 @@ static void a_stalled_source_keeps_only_its_share_of_the_threads(void **state)
     struct loader_fixture f;
     struct fault_source other;
     float stalled[COUNT], texels[COUNT];
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){.threadCount = 3}); /* two for a source */
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 3}); /* two for a source */
     fault_source_init(&other, f.inner);
     f.source.holds = true;
     for (uint32_t i = 0; i < COUNT; i++)
@@ -47,9 +48,10 @@ static void a_stalled_source_does_not_stop_a_loader_with_default_threads(void **
     (void)state;
     struct loader_fixture f;
     struct fault_source other;
-    SluiceTileLoaderCreateInfo create = {0};
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create};
     float texels[2] = {-1, -1};
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     fault_source_init(&other, f.inner);
     fixture_replace_loader(&f, &create);
     f.source.holds = true;
@@ -70,7 +72,8 @@ static void bytes_in_flight_are_bounded(void **state)
     enum { COUNT = 300, ROW = 8 };
     static float texels[COUNT][ROW];
     struct loader_fixture f;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){.threadCount = 4,
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 4,
                                                   .maxReadsPerSource = 4,
                                                   .maxBytesInFlight = 2 * ROW * 4 + 1});
     for (uint32_t i = 0; i < COUNT; i++) {
@@ -95,8 +98,10 @@ static void a_read_beyond_the_bound_is_made_alone(void **state)
     enum { COUNT = 50 };
     static float texels[COUNT][FIXTURE_SIZE];
     struct loader_fixture f;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){
-                         .threadCount = 3, .maxReadsPerSource = 3, .maxBytesInFlight = 1});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 3,
+                                                  .maxReadsPerSource = 3,
+                                                  .maxBytesInFlight = 1});
     for (uint32_t i = 0; i < COUNT; i++) {
         SluiceImageRegion region = {0, 0, i, FIXTURE_SIZE, 1};
         void *place = texels[i];
@@ -123,7 +128,8 @@ static void a_read_that_waits_for_another_attempt_can_be_cancelled(void **state)
     struct loader_fixture f;
     float texels[2] = {-1, -1};
     uint64_t never = (uint64_t)1 << NEVER_NS_SHIFT;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){.retry = {4, never, never}});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .retry = {4, never, never}});
     f.source.fail_at = 1;
     f.source.failure = SLUICE_ERROR_IO;
     uint64_t ticket = fixture_submit(&f, &f.source, 1, &texels[0], 0);
@@ -147,7 +153,8 @@ static void a_read_that_is_cancelled_while_it_fails_is_not_tried_again(void **st
     (void)state;
     struct loader_fixture f;
     float texel;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     f.source.fail_at = 1;
     f.source.fails_on = true;
     f.source.failure = SLUICE_ERROR_IO;
@@ -171,7 +178,9 @@ static void destroying_does_not_wait_for_other_attempts(void **state)
     struct loader_fixture f;
     float texels[COUNT];
     uint64_t never = (uint64_t)1 << NEVER_NS_SHIFT;
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){.threadCount = 2, .retry = {4, never, never}});
+    fixture_init(&f, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 2,
+                                                  .retry = {4, never, never}});
     f.source.fail_at = 1;
     f.source.fails_on = true;
     f.source.failure = SLUICE_ERROR_IO;
@@ -190,7 +199,7 @@ static void hold_until_dropped(void *user, const SluiceTileReadFailure *failure)
     pthread_mutex_lock(&f->mutex);
     SluiceTileLoader *loader = f->loader;
     pthread_mutex_unlock(&f->mutex);
-    SluiceTileLoaderStatistics s = {0};
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     assert_true(failure->willRetry);
     while (s.cancelledCount != failure->userValue) {
         CHECK_OK(sluiceGetTileLoaderStatistics(loader, NULL, &s));
@@ -204,9 +213,12 @@ static void destroying_drops_all_but_what_is_under_way(void **state)
     enum { OTHERS = 30 };
     struct loader_fixture f;
     float texels[OTHERS + 1];
-    fixture_init(&f, (SluiceTileLoaderCreateInfo){0});
-    SluiceTileLoaderCreateInfo create = {
-        .threadCount = 1, .retry = {4, 1, 1}, .failure = {&f, hold_until_dropped}};
+    fixture_init(&f,
+                 (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
+                                         .threadCount = 1,
+                                         .retry = {4, 1, 1},
+                                         .failure = {&f, hold_until_dropped}};
     fixture_replace_loader(&f, &create);
     f.source.fail_at = 1;
     f.source.fails_on = true;

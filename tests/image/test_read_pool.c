@@ -24,8 +24,10 @@ struct rig {
 
 static SluiceImageSource *create_image(void)
 {
-    const SluiceImageInfo info = {
-        .width = SIZE, .height = SIZE, .format = SLUICE_FORMAT_R32_SFLOAT};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = SIZE,
+                                  .height = SIZE,
+                                  .format = SLUICE_FORMAT_R32_SFLOAT};
     const SluiceProceduralImage procedural = {.pfnTexel = texel};
     SluiceImageSource *image;
     CHECK_OK(sluiceCreateProceduralImageSource(&procedural, &info, NULL, &image));
@@ -82,7 +84,8 @@ static void a_read_comes_back_to_the_loader_that_submitted_it(void **state)
     (void)state;
     struct rig r;
     SluiceTileReadResult results[MOST];
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 2});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 2});
     for (uint32_t i = 0; i < LOADERS; i++)
         for (uint32_t x = 0; x < 10 + i; x++)
             submit(&r, i, x % 2 ? &r.source : &r.other, x, 0);
@@ -108,7 +111,8 @@ static void loaders_take_turns(void **state)
     enum { MANY = 40, FEW = 5 };
     struct rig r;
     SluiceTileReadResult results[MOST];
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 1});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 1});
     r.source.holds = true;
     r.other.holds = true;
     submit(&r, 0, &r.source, 0, 9);
@@ -132,7 +136,9 @@ static void a_source_has_one_limit_for_all_loaders(void **state)
 {
     (void)state;
     struct rig r;
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 4, .maxReadsPerSource = 2});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 4,
+                                          .maxReadsPerSource = 2});
     r.source.holds = true;
     for (uint32_t i = 0; i < LOADERS; i++)
         for (uint32_t x = 0; x < 8; x++)
@@ -155,7 +161,9 @@ static void loaders_share_the_bytes_in_flight(void **state)
 {
     (void)state;
     struct rig r;
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 4, .maxBytesInFlight = 4});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 4,
+                                          .maxBytesInFlight = 4});
     r.source.delay_us = 200;
     for (uint32_t i = 0; i < LOADERS; i++)
         for (uint32_t x = 0; x < 8; x++)
@@ -172,7 +180,9 @@ static void a_loader_is_destroyed_while_others_read(void **state)
     (void)state;
     struct rig r;
     SluiceTileReadResult results[MOST];
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 2, .maxReadsPerSource = 1});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 2,
+                                          .maxReadsPerSource = 1});
     r.source.holds = true;
     submit(&r, 1, &r.source, 0, 0);
     fault_source_await(&r.source, 1);
@@ -195,8 +205,9 @@ static void statistics_are_of_one_loader(void **state)
 {
     (void)state;
     struct rig r;
-    SluiceTileLoaderStatistics stats;
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 2});
+    SluiceTileLoaderStatistics stats = {.structSize = sizeof stats};
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 2});
     for (uint32_t x = 0; x < 7; x++)
         submit(&r, 0, &r.source, x, 0);
     for (uint32_t x = 0; x < 3; x++)
@@ -218,7 +229,9 @@ static void a_source_is_forgotten_by_one_loader_alone(void **state)
     (void)state;
     struct rig r;
     SluiceTileReadResult results[MOST];
-    init(&r, (SluiceTileLoaderCreateInfo){.threadCount = 2, .maxReadsPerSource = 1});
+    init(&r, (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                          .threadCount = 2,
+                                          .maxReadsPerSource = 1});
     submit(&r, 0, &r.source, 0, 0);
     sluiceWaitTileLoaderIdle(r.loaders[0]);
     assert_int_equal(collect(&r, 0, results), 1);

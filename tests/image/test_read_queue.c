@@ -161,7 +161,7 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     assert_int_equal(slc_read_queue_next_due(&queue), 150);
     assert_null(slc_read_queue_start(&queue, 149));
     assert_false(slc_read_queue_is_idle(&queue));
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     slc_read_queue_write_statistics(&queue, &sources[0], &s);
     assert_true(s.delayedCount == 1 && s.retriedCount == 1 && s.failedCount == 1);
     assert_true(s.lastFailure == SLUICE_ERROR_IO && s.lastFailureOffset == 4096);
@@ -184,7 +184,7 @@ static void a_source_is_forgotten_when_nothing_of_it_is_left(void **state)
     SluiceAllocationCallbacks cb = slc_allocator(NULL);
     static SluiceImageSource many[COUNT];
     struct slc_read_queue queue;
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     SluiceTileReadResult result;
     queue_init(&queue, &cb, COUNT);
     for (uint32_t i = 0; i < COUNT; i++) {
@@ -235,7 +235,7 @@ static void sources_without_reads_give_way_to_new_ones(void **state)
         void *texels = &region;
         uint64_t ticket;
         SluiceTileReadResult result;
-        SluiceTileLoaderStatistics s;
+        SluiceTileLoaderStatistics s = {.structSize = sizeof s};
         SluiceTileRead read = {&many[order[i]], 1, &region, &texels, 0, 0};
         assert_true(slc_read_queue_submit(&queue, &read, &ticket));
         slc_read_queue_end(&queue, slc_read_queue_start(&queue, 0), SLUICE_SUCCESS);

@@ -33,7 +33,7 @@ static void percentiles_are_at_most_twice_too_large(void **state)
             slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, 0, latencies[i]);
         }
         qsort(sorted, count, sizeof *sorted, compare);
-        SluiceTileLoaderStatistics s;
+        SluiceTileLoaderStatistics s = {.structSize = sizeof s};
         slc_read_statistics_write(&statistics, &s);
         uint64_t median = exact_percentile(sorted, count, 50);
         uint64_t high = exact_percentile(sorted, count, 99);
@@ -50,7 +50,7 @@ static void equal_latencies_are_told_exactly(void **state)
     static const uint64_t latencies[] = {0, 1, 2, 3, 1000, 1 << 20, (uint64_t)1 << 60, UINT64_MAX};
     for (size_t i = 0; i < sizeof latencies / sizeof latencies[0]; i++) {
         struct slc_read_statistics statistics = {0};
-        SluiceTileLoaderStatistics s;
+        SluiceTileLoaderStatistics s = {.structSize = sizeof s};
         slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, 0, latencies[i]);
         slc_read_statistics_write(&statistics, &s);
         assert_true(s.medianLatency == latencies[i] && s.latency99 == latencies[i]);
@@ -72,7 +72,7 @@ static void attempts_and_ends_are_counted_by_their_results(void **state)
     slc_read_statistics_add_end(&statistics, SLUICE_ERROR_IO, 0);
     slc_read_statistics_add_end(&statistics, SLUICE_NOT_READY, 0);
     slc_read_statistics_add_end(&statistics, SLUICE_ERROR_CANCELLED, 0);
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     slc_read_statistics_write(&statistics, &s);
     assert_int_equal(s.attemptCount, 7);
     assert_int_equal(s.notReadyCount, 2);
@@ -89,7 +89,7 @@ static void nothing_is_all_zeros(void **state)
 {
     (void)state;
     struct slc_read_statistics statistics = {0};
-    SluiceTileLoaderStatistics s;
+    SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     slc_read_statistics_write(&statistics, &s);
     assert_true(s.meanLatency == 0 && s.medianLatency == 0 && s.latency99 == 0 && s.readCount == 0);
     assert_true(s.lastFailure == SLUICE_SUCCESS && s.lastFailureOffset == 0);

@@ -21,7 +21,8 @@ static void mark(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t wi
 static SluiceImageSource *create_marked(uint32_t width, uint32_t height)
 {
     SluiceProceduralImage image = {NULL, mark};
-    SluiceImageInfo info = {width, height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT, "marked"};
+    SluiceImageInfo info = {sizeof info, width, height, 0, SLUICE_FORMAT_R32G32B32A32_SFLOAT,
+                            "marked"};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
@@ -31,7 +32,7 @@ static void procedural_regions_hold_the_texels_they_name(void **state)
 {
     (void)state;
     SluiceImageSource *source = create_marked(301, 77);
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     assert_int_equal(info.mipLevelCount, 9);
     assert_string_equal(info.pName, "marked");
@@ -105,10 +106,11 @@ static SluiceResult block_read(SluiceImageSource *base, const SluiceImageRegion 
 static void regions_of_compressed_formats_are_whole_blocks(void **state)
 {
     (void)state;
-    const SluiceImageSourceInterface interface = {block_info, block_read, NULL};
-    struct block_source source = {
-        .base = {&interface},
-        .info = {30, 10, 5, SLUICE_FORMAT_BC7_UNORM_BLOCK, "blocks"}}; /* levels 30x10, 15x5, 7x2 */
+    const SluiceImageSourceInterface interface = {sizeof interface, block_info, block_read, NULL};
+    struct block_source source = {.base = {&interface},
+                                  .info = {sizeof(SluiceImageInfo), 30, 10, 5,
+                                           SLUICE_FORMAT_BC7_UNORM_BLOCK,
+                                           "blocks"}}; /* levels 30x10, 15x5, 7x2 */
     static const SluiceImageRegion good[] = {{0, 0, 0, 4, 4},  {0, 8, 4, 20, 4}, {0, 0, 0, 30, 10},
                                              {0, 28, 8, 2, 2}, {1, 12, 4, 3, 1}, {2, 0, 0, 7, 2},
                                              {2, 4, 0, 3, 2},  {4, 0, 0, 1, 1}};
@@ -134,7 +136,7 @@ static void sources_that_compute_texels_cannot_compress(void **state)
     SluiceProceduralImage image = {NULL, mark};
     SluiceImageSource *source = NULL;
     for (int f = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK; f <= SLUICE_FORMAT_BC7_SRGB_BLOCK; f++) {
-        SluiceImageInfo info = {8, 8, 0, (SluiceFormat)f, "blocks"};
+        SluiceImageInfo info = {sizeof info, 8, 8, 0, (SluiceFormat)f, "blocks"};
         CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, &source),
                      SLUICE_ERROR_UNSUPPORTED);
         CHECK_RESULT(sluiceCreateMemoryImageSource("", &info, NULL, &source),
@@ -147,10 +149,12 @@ static void wrong_descriptions_are_refused(void **state)
 {
     (void)state;
     SluiceProceduralImage image = {NULL, mark};
-    const SluiceImageInfo bad[] = {
-        {0, 1, 0, SLUICE_FORMAT_R8_UNORM, "a"},  {1, 0, 0, SLUICE_FORMAT_R8_UNORM, "a"},
-        {4, 4, 2, SLUICE_FORMAT_R8_UNORM, "a"},  {4, 4, 4, SLUICE_FORMAT_R8_UNORM, "a"},
-        {4, 4, 0, SLUICE_FORMAT_UNDEFINED, "a"}, {4, 4, 0, (SluiceFormat)99, "a"}};
+    const SluiceImageInfo bad[] = {{sizeof(SluiceImageInfo), 0, 1, 0, SLUICE_FORMAT_R8_UNORM, "a"},
+                                   {sizeof(SluiceImageInfo), 1, 0, 0, SLUICE_FORMAT_R8_UNORM, "a"},
+                                   {sizeof(SluiceImageInfo), 4, 4, 2, SLUICE_FORMAT_R8_UNORM, "a"},
+                                   {sizeof(SluiceImageInfo), 4, 4, 4, SLUICE_FORMAT_R8_UNORM, "a"},
+                                   {sizeof(SluiceImageInfo), 4, 4, 0, SLUICE_FORMAT_UNDEFINED, "a"},
+                                   {sizeof(SluiceImageInfo), 4, 4, 0, (SluiceFormat)99, "a"}};
     SluiceImageSource *source = NULL;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &bad[i], NULL, &source),
@@ -166,7 +170,7 @@ static void memory_levels_are_what_was_given_and_its_means(void **state)
     (void)state;
     const uint8_t texels[4][4] = {
         {0, 4, 8, 12}, {4, 8, 12, 16}, {100, 0, 0, 100}, {0, 100, 100, 0}};
-    SluiceImageInfo info = {4, 4, 3, SLUICE_FORMAT_R8_UNORM, NULL};
+    SluiceImageInfo info = {sizeof info, 4, 4, 3, SLUICE_FORMAT_R8_UNORM, NULL};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &source));
     uint8_t read[16];
@@ -182,7 +186,7 @@ static void memory_levels_are_what_was_given_and_its_means(void **state)
 static void array_layers_are_the_sources_given(void **state)
 {
     (void)state;
-    SluiceImageInfo info = {2, 2, 0, SLUICE_FORMAT_R8_UNORM, "layer"};
+    SluiceImageInfo info = {sizeof info, 2, 2, 0, SLUICE_FORMAT_R8_UNORM, "layer"};
     SluiceImageSource *layers[3], *array = NULL;
     for (int i = 0; i < 3; i++) {
         const uint8_t texels[4] = {(uint8_t)i, (uint8_t)(10 + i), 20, 30};
@@ -214,22 +218,23 @@ static void array_layers_are_the_sources_given(void **state)
 static void array_layers_must_say_what_an_image_can_be(void **state)
 {
     (void)state;
-    const SluiceImageSourceInterface interface = {block_info, block_read, NULL};
+    const SluiceImageSourceInterface interface = {sizeof interface, block_info, block_read, NULL};
     const SluiceImageInfo bad[] = {
-        {0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
-        {16, 0, 5, SLUICE_FORMAT_R8_UNORM, "no height"},
-        {(1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM, "too wide"},
-        {1, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
-        {16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
-        {16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"},
-        {16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
-        {16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"},
-        {16, 16, 5, (SluiceFormat)SLUICE_FORMAT_COUNT, "unknown format"},
-        {16, 16, 5, (SluiceFormat)-1, "negative format"},
+        {sizeof(SluiceImageInfo), 0, 16, 5, SLUICE_FORMAT_R8_UNORM, "no width"},
+        {sizeof(SluiceImageInfo), 16, 0, 5, SLUICE_FORMAT_R8_UNORM, "no height"},
+        {sizeof(SluiceImageInfo), (1u << 20) + 1, 1, 21, SLUICE_FORMAT_R8_UNORM, "too wide"},
+        {sizeof(SluiceImageInfo), 1, (1u << 20) + 1, 21, SLUICE_FORMAT_R8_UNORM, "too high"},
+        {sizeof(SluiceImageInfo), 16, 16, 0, SLUICE_FORMAT_R8_UNORM, "no levels"},
+        {sizeof(SluiceImageInfo), 16, 16, 4, SLUICE_FORMAT_R8_UNORM, "too few levels"},
+        {sizeof(SluiceImageInfo), 16, 16, 6, SLUICE_FORMAT_R8_UNORM, "too many levels"},
+        {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_UNDEFINED, "no format"},
+        {sizeof(SluiceImageInfo), 16, 16, 5, (SluiceFormat)SLUICE_FORMAT_COUNT, "unknown format"},
+        {sizeof(SluiceImageInfo), 16, 16, 5, (SluiceFormat)-1, "negative format"},
     };
-    const SluiceImageInfo good[] = {{16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL, 0},
-                                    {1u << 20, 1, 21, SLUICE_FORMAT_R8_UNORM, NULL, 1},
-                                    {16, 16, 1, SLUICE_FORMAT_R8_UNORM, "level 0 alone", 1}};
+    const SluiceImageInfo good[] = {
+        {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL, 0},
+        {sizeof(SluiceImageInfo), 1u << 20, 1, 21, SLUICE_FORMAT_R8_UNORM, NULL, 1},
+        {sizeof(SluiceImageInfo), 16, 16, 1, SLUICE_FORMAT_R8_UNORM, "level 0 alone", 1}};
     struct block_source source = {.base = {&interface}};
     SluiceImageSource *layers[] = {&source.base}, *array = NULL;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -248,10 +253,11 @@ static void array_layers_must_say_what_an_image_can_be(void **state)
 static void sources_without_an_interface_are_refused(void **state)
 {
     (void)state;
-    const SluiceImageSourceInterface nothing = {0};
-    const SluiceImageSourceInterface unreadable = {block_info, NULL, NULL};
-    struct block_source source = {.info = {16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL}};
-    SluiceImageInfo info;
+    const SluiceImageSourceInterface nothing = {.structSize = sizeof nothing};
+    const SluiceImageSourceInterface unreadable = {sizeof unreadable, block_info, NULL, NULL};
+    struct block_source source = {
+        .info = {sizeof(SluiceImageInfo), 16, 16, 5, SLUICE_FORMAT_R8_UNORM, NULL}};
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageRegion region = {0, 0, 0, 1, 1};
     char texel;
     for (int i = 0; i < 2; i++) {
@@ -290,7 +296,7 @@ static void array_layers_must_be_alike(void **state)
         assert_int_equal(a.live_bytes, 0);
     }
     SluiceProceduralImage image = {NULL, mark};
-    SluiceImageInfo info = {8, 8, 0, SLUICE_FORMAT_R8_UNORM, "array", 2};
+    SluiceImageInfo info = {sizeof info, 8, 8, 0, SLUICE_FORMAT_R8_UNORM, "array", 2};
     CHECK_RESULT(sluiceCreateProceduralImageSource(&image, &info, NULL, &array),
                  SLUICE_ERROR_UNSUPPORTED);
     sluiceDestroyImageSource(marked);
@@ -301,7 +307,7 @@ static void creation_survives_every_refused_allocation(void **state)
 {
     (void)state;
     SluiceProceduralImage image = {NULL, mark};
-    SluiceImageInfo info = {3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
+    SluiceImageInfo info = {sizeof info, 3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
     for (int kind = 0; kind < 2; kind++) {
         SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
@@ -326,7 +332,7 @@ static void null_pointers_are_refused(void **state)
 {
     (void)state;
     SluiceProceduralImage image = {NULL, mark}, empty = {NULL, NULL};
-    SluiceImageInfo info = {3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
+    SluiceImageInfo info = {sizeof info, 3, 5, 0, SLUICE_FORMAT_R8_UNORM, "name"};
     SluiceImageSource *source = NULL;
     SluiceAllocationCallbacks half = {0};
     const SluiceResult expected = SLUICE_ERROR_NULL_POINTER;

@@ -43,5 +43,9 @@ double light_of(double encoded)
 
 SluicePicturePair rgba8_pair(const void *a, const void *b, uint32_t width, uint32_t height)
 {
-    return (SluicePicturePair){.pA = a, .pB = b, .width = width, .height = height};
+    return (SluicePicturePair){.structSize = sizeof(SluicePicturePair),
+                               .pA = a,
+                               .pB = b,
+                               .width = width,
+                               .height = height};
 }

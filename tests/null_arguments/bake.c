@@ -9,7 +9,7 @@
 sluiceCreateBaker(&f->create, &f->out.baker) => sluiceDestroyBaker(f->out.baker)
 !sluiceDestroyBaker(f->baker)
 sluiceBakeFile(f->baker, &f->bake, ?&f->out.report)
-sluiceHashBakeSettings(&f->bake.settings)
+sluiceHashBakeSettings(&f->settings, &f->out.hash)
 */
 /* clang-format on */
 
@@ -17,10 +17,12 @@ struct fixture {
     struct files files;
     SluiceBakerCreateInfo create;
     SluiceBaker *baker;
+    SluiceBakeSettings settings;
     SluiceBakeInfo bake;
     struct {
         SluiceBaker *baker;
         SluiceBakeReport report;
+        uint64_t hash;
     } out;
 };
 
@@ -30,9 +32,13 @@ static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
     files_init(&f->files);
-    f->create.threadCount = 1;
+    f->create =
+        (SluiceBakerCreateInfo){.structSize = sizeof(SluiceBakerCreateInfo), .threadCount = 1};
+    f->settings.structSize = sizeof f->settings;
     CHECK_OK(sluiceCreateBaker(&f->create, &f->baker));
-    f->bake = (SluiceBakeInfo){.source = f->files.source, .pOutputPath = f->files.output};
+    f->bake = (SluiceBakeInfo){.structSize = sizeof(SluiceBakeInfo),
+                               .source = f->files.source,
+                               .pOutputPath = f->files.output};
 }
 
 static void fixture_finish(struct fixture *f)

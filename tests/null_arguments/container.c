@@ -24,6 +24,8 @@ CALLS_FUNCTIONS
 static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
+    f->dds.structSize = sizeof f->dds;
+    f->ktx2.structSize = sizeof f->ktx2;
     f->dds.pPath = f->ktx2.pPath = "a file that is opened when it is read";
 }
 

@@ -177,6 +177,7 @@ static SluiceResult write_nothing(void *user, const void *data, size_t size)
 static void init_manager(struct fixture *f)
 {
     f->manager_info = (SluiceStreamedTextureManagerCreateInfo){
+        .structSize = sizeof(SluiceStreamedTextureManagerCreateInfo),
         .heapAllocator = {NULL, allocate_heap, release_heap},
         .heapTileCapacity = 16,
         .tileSize = 65536,
@@ -192,28 +193,45 @@ static void init_manager(struct fixture *f)
                                           .tileHeight = 128};
     CHECK_OK(sluiceAddStreamedTexture(f->manager, &f->desc, &f->id));
     CHECK_OK(sluiceAddStreamedTexture(f->manager, &f->desc, &f->follower));
-    f->feedback = (SluiceFeedbackDesc){.pMinMip = f->map, .width = 2, .height = 2};
+    f->feedback = (SluiceFeedbackDesc){
+        .structSize = sizeof(SluiceFeedbackDesc), .pMinMip = f->map, .width = 2, .height = 2};
     f->rect = (SluiceMinMipRect){.textureId = f->id, .width = 2, .height = 2};
 }
 
 static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
-    f->rate = (SluiceFeedbackRate){
-        .regionWidth = 4, .regionHeight = 4, .textureCount = 10, .frameRate = 60, .timeout = 1};
+    f->rate = (SluiceFeedbackRate){.structSize = sizeof(SluiceFeedbackRate),
+                                   .regionWidth = 4,
+                                   .regionHeight = 4,
+                                   .textureCount = 10,
+                                   .frameRate = 60,
+                                   .timeout = 1};
     f->image = (SluiceProceduralImage){NULL, texel};
-    f->info = (SluiceImageInfo){
-        .width = 256, .height = 256, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    f->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                                .width = 256,
+                                .height = 256,
+                                .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&f->image, &f->info, NULL, &f->source));
     f->region = (SluiceImageRegion){.width = 4, .height = 4};
-    f->loader_info = (SluiceTileLoaderCreateInfo){.threadCount = 1};
+    f->loader_info = (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),
+                                                  .threadCount = 1};
     CHECK_OK(sluiceCreateTileLoader(&f->loader_info, &f->loader));
     f->read_texels = f->read_room;
     f->read = (SluiceTileRead){
         .source = f->source, .regionCount = 1, .pRegions = &f->region, .ppTexels = &f->read_texels};
-    f->pair = (SluicePicturePair){.pA = f->texels, .pB = f->texels, .width = 16, .height = 16};
+    f->pair = (SluicePicturePair){.structSize = sizeof(SluicePicturePair),
+                                  .pA = f->texels,
+                                  .pB = f->texels,
+                                  .width = 16,
+                                  .height = 16};
     f->writer = (SluiceRecordWriter){NULL, write_nothing};
-    f->recording.pPath = f->path;
+    f->config.structSize = sizeof f->config;
+    f->recording =
+        (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo), .pPath = f->path};
+    f->replay =
+        (SluiceReplayInfo){.structSize = sizeof(SluiceReplayInfo), .pData = f->texels, .size = 16};
     snprintf(f->path, sizeof f->path, "/tmp/sluice-null-%ld.rec", (long)getpid());
     init_manager(f);
 }

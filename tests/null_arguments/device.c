@@ -150,7 +150,8 @@ static void init_loader(struct fixture *f)
                                                     .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
-    f->recording = (SluiceFileRecordingInfo){.pPath = "null_arguments_demand.trace"};
+    f->recording = (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo),
+                                             .pPath = "null_arguments_demand.trace"};
     f->demand_info.image.source = f->source;
     CHECK_OK(sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->id));
     f->resource_info = (SluiceDemandResourceCreateInfo){.pageCount = 4, .pfnFill = fill};
@@ -164,8 +165,11 @@ static void fixture_init(struct fixture *f, void **state)
     h.quiet = true;
     f->h = &h;
     f->commands = h.commands[0];
-    f->info = (SluiceImageInfo){
-        .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    f->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
+                                .width = 64,
+                                .height = 64,
+                                .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                .pName = "grey"};
     const SluiceProceduralImage image = {NULL, texel};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &f->info, NULL, &f->source));
     f->context_info = harness_context_info(&h);

@@ -32,10 +32,12 @@ static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
     files_init(&f->files);
-    f->write.pPath = f->files.input;
+    f->write =
+        (SluiceExrWriteInfo){.structSize = sizeof(SluiceExrWriteInfo), .pPath = f->files.input};
     CHECK_OK(sluiceWriteExrFile(&f->write, f->files.source));
     f->write.pPath = f->files.output;
-    f->create.pPath = f->files.input;
+    f->create = (SluiceExrImageSourceCreateInfo){
+        .structSize = sizeof(SluiceExrImageSourceCreateInfo), .pPath = f->files.input};
     CHECK_OK(sluiceCreateExrImageSource(&f->create, &f->exr));
 }
 

@@ -25,8 +25,11 @@ static inline void files_texel(void *user, uint32_t level, uint32_t x, uint32_t 
 static inline void files_init(struct files *files)
 {
     const SluiceProceduralImage image = {NULL, files_texel};
-    const SluiceImageInfo info = {
-        .width = 16, .height = 16, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    const SluiceImageInfo info = {.structSize = sizeof info,
+                                  .width = 16,
+                                  .height = 16,
+                                  .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                                  .pName = "grey"};
     snprintf(files->folder, sizeof files->folder, "/tmp/sluice-null-XXXXXX");
     assert_non_null(mkdtemp(files->folder));
     snprintf(files->input, sizeof files->input, "%s/in", files->folder);

@@ -12,6 +12,9 @@ NULL and 0 it does nothing and succeeds.
 The statement runs after each call. OUTPUT, one per CALLS and in their order, gets a test per
 function: each argument in turn is NULL or 0, then all of them, then each info that is read is all
 zeros. Fails if a function has no line, a line no function, or the number of arguments is wrong.
+
+Functions that take a struct with structSize get a second test (struct sized in calls.h). In both
+tests outputs of the form &f->out.NAME have their structSize.
 """
 import os
 import re
@@ -43,21 +46,25 @@ def parse_parameter(text):
 
 
 def read_headers(folder):
-    """Functions by name as (result, [(type, name)]), and the structs that are defined."""
-    functions, structs = {}, set()
+    """Functions by name as (result, [(type, name)]), the structs, and those with structSize."""
+    functions, structs, growing = {}, set(), set()
     for name in sorted(os.listdir(folder)):
         if not name.endswith(".h"):
             continue
         with open(os.path.join(folder, name), encoding="utf-8") as file:
             text = strip_comments(file.read())
         structs |= set(re.findall(r"\btypedef struct (\w+) \{", text))
+        growing |= set(re.findall(r"\btypedef struct (\w+) \{\s*uint32_t structSize;", text))
+        if text.count("uint32_t structSize;") != len(
+                re.findall(r"\btypedef struct \w+ \{\s*uint32_t structSize;", text)):
+            sys.exit(f"{name}: structSize is not the first field")
         declarations = re.findall(r"\bSLUICE_API\s+([^;{}]*?)\b(sluice\w+)\s*\(([^;]*)\)\s*;", text)
         if len(declarations) != len(re.findall(r"^(?!#).*\bSLUICE_API\b", text, flags=re.M)):
             sys.exit(f"{name}: a declaration is not understood")
         for result, function, parameters in declarations:
             functions[function] = (" ".join(result.split()),
                                    [parse_parameter(p) for p in split_commas(parameters)])
-    return functions, structs
+    return functions, structs, growing
 
 
 def read_calls(path):
@@ -80,9 +87,15 @@ def is_pointer(kind):
     return kind.endswith("*") or kind.startswith(("Vk", "PFN_"))
 
 
+def begin_call(out, arguments, parameters, growing):
+    out.append("    calls_begin(f);")
+    for argument, (kind, _) in zip(arguments, parameters):
+        if argument.startswith("&f->out.") and kind.rstrip(" *") in growing:
+            out.append(f"    {argument[1:]}.structSize = sizeof {argument[1:]};")
+
+
 def write_call(out, function, result, arguments, after, what, expected):
     call = f"{function}({', '.join(arguments)})"
-    out.append("    calls_begin(f);")
     if result == "SluiceResult":
         out.append(f'    {expected}("{what}", {call});')
     else:
@@ -91,7 +104,7 @@ def write_call(out, function, result, arguments, after, what, expected):
         out.append(f"    {after};")
 
 
-def write_function(out, name, function, call, structs):
+def write_function(out, name, function, call, structs, growing):
     result, parameters = function
     arguments, after, mark = call
     optional = [a.startswith("?") for a in arguments]
@@ -107,25 +120,66 @@ def write_function(out, name, function, call, structs):
         given = arguments[:i] + [zeros[i]] + arguments[i + 1:]
         null = is_pointer(kind) and not optional[i]
         required |= null
+        begin_call(out, given, parameters, growing)
         write_call(out, name, result, given, after, f"{name}, {parameter} 0",
                    "check_null" if null else "check_any")
     if len(parameters) > 1:
+        begin_call(out, zeros, parameters, growing)
         write_call(out, name, result, zeros, after, f"{name}, all 0",
                    "check_error" if required and mark != "~" else "check_any")
     for i, (kind, parameter) in enumerate(parameters):
         pointed = re.fullmatch(r"const (\w+) \*", kind)
         if pointed and pointed[1] in structs:
             given = arguments[:i] + [f"&({pointed[1]}){{0}}"] + arguments[i + 1:]
+            begin_call(out, given, parameters, growing)
             write_call(out, name, result, given, after, f"{name}, *{parameter} 0", "check_any")
     if mark != "!":
+        begin_call(out, arguments, parameters, growing)
         write_call(out, name, result, arguments, after, f"{name}, valid", "check_good")
     out += ["    calls_finish(f);", "}", ""]
+
+
+def write_other_sizes(out, name, function, call, growing):
+    """The test of the structs with structSize that a function takes. Returns whether there are."""
+    _, parameters = function
+    arguments, after, mark = call
+    arguments = [a.lstrip("?") for a in arguments]
+    told = [(i, re.fullmatch(r"(const )?(\w+) \*", kind)) for i, (kind, _) in enumerate(parameters)]
+    told = [(i, m[2], bool(m[1])) for i, m in told
+            if m and m[2] in growing and arguments[i] != "NULL"]
+    if not told:
+        return False
+    out.append(f"static void {name}_takes_other_sizes(void **state)")
+    out.append("{")
+    out.append("    struct fixture *f = calls_setup(state);")
+    for i, kind, read in told:
+        given = arguments[:i] + [f"({kind} *)sized.bytes"] + arguments[i + 1:]
+        for case in ("PRESENT", "LEAST", "LARGER", "NEWER", "SMALLER", "EMPTY"):
+            refused = case in ("SMALLER", "EMPTY") or case == "NEWER" and read
+            if case == "NEWER" and not read or mark == "!" and not refused:
+                continue
+            begin_call(out, arguments, parameters, growing)
+            out.append("    {")
+            out.append(f"        struct sized sized = sized_make({arguments[i]}, sizeof({kind}),")
+            out.append(f"            SLC_FIRST_{kind}, SIZED_{case}, {str(read).lower()});")
+            if refused:
+                out.append("        static unsigned char before[sizeof f->out];")
+                out.append("        memcpy(before, &f->out, sizeof before);")
+            out.append(f'        sized_check("{name}, {parameters[i][1]}", &sized,')
+            out.append(f"                    {name}({', '.join(given)}));")
+            if refused:
+                out.append("        assert_memory_equal(before, &f->out, sizeof before);")
+            out.append("    }")
+            if after:
+                out.append(f"    {after};")
+    out += ["    calls_finish(f);", "}", ""]
+    return True
 
 
 def main():
     folder, rest = sys.argv[1], sys.argv[2:]
     sources, outputs = rest[:len(rest) // 2], rest[len(rest) // 2:]
-    functions, structs = read_headers(folder)
+    functions, structs, growing = read_headers(folder)
     missing = set(functions)
     for source, output in zip(sources, outputs):
         calls = read_calls(source)
@@ -133,11 +187,16 @@ def main():
         if unknown:
             sys.exit(f"{source}: no such function, or listed twice: {', '.join(sorted(unknown))}")
         missing -= set(calls)
-        out = [f"/* Made by generate.py from the headers and {os.path.basename(source)}. */"]
+        out = [f"/* Made by generate.py from the headers and {os.path.basename(source)}. */",
+               '#include "base/first_release.h"']
+        sized = []
         for name, call in calls.items():
-            write_function(out, name, functions[name], call, structs)
+            write_function(out, name, functions[name], call, structs, growing)
+            if write_other_sizes(out, name, functions[name], call, growing):
+                sized.append(name)
         out.append("#define CALLS_TESTS \\")
         out += [f"    cmocka_unit_test({name}_stands_null_and_zero), \\" for name in calls]
+        out += [f"    cmocka_unit_test({name}_takes_other_sizes), \\" for name in sized]
         with open(output, "w", encoding="utf-8") as file:
             file.write("\n".join(out) + "\n\n")
     if missing:

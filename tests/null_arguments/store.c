@@ -76,7 +76,8 @@ static void fixture_init(struct fixture *f, void **state)
 {
     (void)state;
     files_init(&f->files);
-    f->create = (SluiceStoreCreateInfo){.pPath = f->files.output,
+    f->create = (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                        .pPath = f->files.output,
                                         .width = 256,
                                         .height = 256,
                                         .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
@@ -89,7 +90,10 @@ static void fixture_init(struct fixture *f, void **state)
     write_all(f, begin(f, f->files.input));
     snprintf(f->writing, sizeof f->writing, "%s2", f->files.output);
     f->writer = begin(f, f->writing);
-    f->open.pPath = f->verify.pPath = f->files.input;
+    f->open = (SluiceStoreImageSourceCreateInfo){
+        .structSize = sizeof(SluiceStoreImageSourceCreateInfo), .pPath = f->files.input};
+    f->verify = (SluiceStoreVerifyInfo){.structSize = sizeof(SluiceStoreVerifyInfo),
+                                        .pPath = f->files.input};
     CHECK_OK(sluiceCreateStoreImageSource(&f->open, &f->store));
 }
 

@@ -77,7 +77,7 @@ static void add_frame(struct trace_file *file, const struct naive_trace *t, uint
         count += t->has_map[frame][i];
     trace_file_add_frame(file, frame * 10000u, count);
     for (uint32_t i = 0; i < t->texture_count; i++) {
-        SluiceStreamedTextureLayout layout;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         CHECK_OK(sluiceGetStreamedTextureLayout(&t->textures[i], &layout));
         if (t->has_map[frame][i])
             trace_file_add_map(file, i, t->maps[frame][i],

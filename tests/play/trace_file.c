@@ -33,7 +33,7 @@ void trace_file_begin(struct trace_file *f, uint32_t textures, uint32_t frames)
 void trace_file_add_texture(struct trace_file *f, const SluiceStreamedTextureDesc *desc,
                             uint32_t primary)
 {
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetStreamedTextureLayout(desc, &layout));
     put(f, desc->width, 4);
     put(f, desc->height, 4);

@@ -76,7 +76,8 @@ SluiceResult play_damaged(const void *data, size_t size, SluiceReplayResult *res
     struct limited_memory memory;
     size_t total = 0;
     limited_memory_init(&memory, UINT64_C(4) << 20);
-    const SluiceReplayInfo info = {.pData = data,
+    const SluiceReplayInfo info = {.structSize = sizeof info,
+                                   .pData = data,
                                    .size = size,
                                    .pAllocator = &memory.callbacks,
                                    .pUserData = &total,

@@ -228,7 +228,7 @@ static void record(const char *folder, const char *name, void (*play)(struct sce
     const struct slc_page_residency_create_info info = {.class_count = 2,
                                                         .no_lod_bias = no_lod_bias};
     snprintf(path, sizeof path, "%s/demand_%s.trace", folder, name);
-    const SluiceFileRecordingInfo file = {.pPath = path};
+    const SluiceFileRecordingInfo file = {.structSize = sizeof file, .pPath = path};
     fake_memory_init(&scene.memory, 64, 4);
     CHECK_OK(slc_residency_create(&info, &scene.residency));
     limit_tiles(&scene, 64);
@@ -244,7 +244,7 @@ static void record_random(const char *folder)
     struct demand_app app;
     SluiceRecorder *recorder;
     snprintf(path, sizeof path, "%s/demand_random.trace", folder);
-    const SluiceFileRecordingInfo file = {.pPath = path};
+    const SluiceFileRecordingInfo file = {.structSize = sizeof file, .pPath = path};
     demand_app_init(&app, 2024, true);
     CHECK_OK(slc_begin_demand_file_recording(app.residency, &file, &recorder));
     demand_app_run(&app, 300);

@@ -55,6 +55,7 @@ void random_app_init(struct random_app *app, uint64_t seed, bool starved)
     *app = (struct random_app){.seed = seed, .starved = starved};
     failing_allocator_init(&app->memory, UINT64_MAX);
     const SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {app, allocate_heap, release_heap},
         .pAllocator = &app->memory.callbacks,
         .heapTileCapacity = 5 + random_app_below(app, 40),
@@ -147,8 +148,9 @@ static SluiceResult give_feedback(struct random_app *app)
 {
     uint8_t map[MAP_ROOM];
     SluiceTextureId id = some_id(app);
-    SluiceStreamedTextureLayout layout;
-    SluiceFeedbackDesc feedback = {.pMinMip = map, .width = 1, .height = 1};
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    SluiceFeedbackDesc feedback = {
+        .structSize = sizeof feedback, .pMinMip = map, .width = 1, .height = 1};
     if (sluiceGetTextureLayout(app->manager, id, &layout) == SLUICE_SUCCESS) {
         feedback.width = layout.feedbackWidth;
         feedback.height = layout.feedbackHeight;
@@ -261,6 +263,7 @@ static SluiceResult get_other_list(struct random_app *app, enum slc_call_kind ki
 static SluiceResult set_config(struct random_app *app)
 {
     const SluiceStreamedTextureManagerConfig config = {
+        .structSize = sizeof config,
         .numExtraStandbyTiles = random_app_below(app, 30),
         .maxHeapCount = random_app_below(app, RANDOM_APP_HEAPS),
         .maxLoadAttempts = random_app_below(app, 3),
@@ -351,7 +354,7 @@ void random_app_run(struct random_app *app, uint32_t steps)
 void check_same_statistics(const SluiceStreamedTextureManager *manager,
                            const SluiceStreamedTextureStatistics *b)
 {
-    SluiceStreamedTextureStatistics a;
+    SluiceStreamedTextureStatistics a = {.structSize = sizeof a};
     CHECK_OK(sluiceGetStatistics(manager, &a));
     assert_int_equal(a.textureCount, b->textureCount);
     assert_int_equal(a.tileCount, b->tileCount);

@@ -20,7 +20,7 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
         uint8_t *copy = malloc(cut + 1); /* so that reading beyond it is seen */
         assert_non_null(copy);
         memcpy(copy, trace.data, cut);
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         CHECK_RESULT(play_damaged(copy, cut, &result), SLUICE_ERROR_CORRUPT_DATA);
         assert_true(result.errorOffset <= cut);
         free(copy);
@@ -38,7 +38,7 @@ static void every_changed_byte_is_found_in_its_block(void **state)
         const uint8_t was = trace.data[at];
         const uint8_t values[] = {was ^ 1, was ^ 0x80, (uint8_t)(was + 1)};
         for (size_t i = 0; i < sizeof values; i++) {
-            SluiceReplayResult result;
+            SluiceReplayResult result = {.structSize = sizeof result};
             if (values[i] == was)
                 continue;
             trace.data[at] = values[i];
@@ -48,7 +48,7 @@ static void every_changed_byte_is_found_in_its_block(void **state)
         }
         trace.data[at] = was;
     }
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     CHECK_OK(play_damaged(trace.data, trace.size, &result));
     trace_buffer_free(&trace);
 }
@@ -66,7 +66,7 @@ static void changed_bytes_under_right_checksums_do_no_harm(void **state)
         const uint8_t was = trace.data[at];
         const uint8_t values[] = {was ^ 1, was ^ 0x80, (uint8_t)(was - 1), 0xFF};
         for (size_t i = 0; i < sizeof values; i++) {
-            SluiceReplayResult result;
+            SluiceReplayResult result = {.structSize = sizeof result};
             memcpy(copy, trace.data, trace.size);
             copy[at] = values[i];
             reseal_trace(copy, trace.size);
@@ -88,7 +88,7 @@ static void newer_version_is_unsupported(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     record_random_run(&trace, 24, 5, false);
     trace.data[8] = 2;
     reseal_trace(trace.data, trace.size);
@@ -100,7 +100,7 @@ static void bytes_behind_the_end_mark_are_found(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     record_random_run(&trace, 25, 20, false);
     size_t size = trace.size;
     trace.data = realloc(trace.data, size + 1);
@@ -131,11 +131,13 @@ static void message_names_the_byte(void **state)
     (void)state;
     struct trace_buffer trace;
     struct message message = {.count = 0};
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     char offset[32];
     record_random_run(&trace, 26, 20, false);
-    const SluiceReplayInfo info = {
-        .pData = trace.data, .size = trace.size - 1, .log = {&message, keep_message}};
+    const SluiceReplayInfo info = {.structSize = sizeof info,
+                                   .pData = trace.data,
+                                   .size = trace.size - 1,
+                                   .log = {&message, keep_message}};
     CHECK_RESULT(sluiceReplay(&info, &result), SLUICE_ERROR_CORRUPT_DATA);
     snprintf(offset, sizeof offset, "byte %llu:", (unsigned long long)result.errorOffset);
     assert_int_equal(message.count, 1);
@@ -150,7 +152,7 @@ static void first_divergence_is_named(void **state)
     struct random_app app;
     struct trace_buffer trace;
     SluiceRecorder *recorder;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     const SluiceRecordWriter writer = trace_buffer_writer(&trace);
     random_app_init(&app, 27, false);
     CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));

@@ -86,7 +86,8 @@ static void play_scene(struct oracle *o, SluiceStreamedTextureManager *manager)
     add_call(o, 2, sluiceAddStreamedTexture(manager, &desc, &id));
     add(o, id, 8);
     uint8_t map[12] = {0, 1, 2, 255, 255, 9, 9, 9, 255, 255, 0, 0};
-    SluiceFeedbackDesc feedback = {.pMinMip = map, .width = 4, .height = 3};
+    SluiceFeedbackDesc feedback = {
+        .structSize = sizeof feedback, .pMinMip = map, .width = 4, .height = 3};
     add_call(o, 4, sluiceUpdateWithSamplerFeedback(manager, id, &feedback, 5, 1));
     feedback.width = 5;
     add_call(o, 4, sluiceUpdateWithSamplerFeedback(manager, id, &feedback, 5, 1));
@@ -123,6 +124,7 @@ static void hash_is_the_one_that_the_documentation_defines(void **state)
     (void)state;
     struct oracle oracle = {.hash = UINT64_C(14695981039346656037)};
     const SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {&oracle, allocate_heap, release_heap},
         .heapTileCapacity = 64,
         .tileSize = 65536,
@@ -137,8 +139,9 @@ static void hash_is_the_one_that_the_documentation_defines(void **state)
     CHECK_OK(sluiceEndRecording(recorder));
     sluiceDestroyStreamedTextureManager(manager);
 
-    const SluiceReplayInfo replay = {.pData = trace.data, .size = trace.size};
-    SluiceReplayResult result;
+    const SluiceReplayInfo replay = {
+        .structSize = sizeof replay, .pData = trace.data, .size = trace.size};
+    SluiceReplayResult result = {.structSize = sizeof result};
     CHECK_OK(sluiceReplay(&replay, &result));
     assert_true(result.recordedHash == oracle.hash);
     assert_true(result.decisionHash == oracle.hash);

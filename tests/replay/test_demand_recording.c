@@ -12,7 +12,8 @@
 
 static SluiceReplayInfo replay_info(const struct trace_buffer *trace)
 {
-    return (SluiceReplayInfo){.pData = trace->data, .size = trace->size};
+    return (SluiceReplayInfo){
+        .structSize = sizeof(SluiceReplayInfo), .pData = trace->data, .size = trace->size};
 }
 
 static void random_run_replays_to_the_same_decisions(void **state)
@@ -25,7 +26,7 @@ static void random_run_replays_to_the_same_decisions(void **state)
         struct trace_buffer trace;
         struct slc_residency_counts counts;
         SluiceRecorder *recorder;
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         const SluiceRecordWriter writer = trace_buffer_writer(&trace);
         demand_app_init(&app, seed, true);
         CHECK_OK(slc_begin_demand_recording(app.residency, &writer, NULL, &recorder));
@@ -79,7 +80,7 @@ static void replay_recorded_again_is_the_same_trace(void **state)
     for (uint64_t seed = 100; seed < 104; seed++) {
         struct trace_buffer trace, again;
         struct lines lines = {0};
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         record_demand_run(&trace, seed, 400, seed % 2);
         SluiceReplayInfo info = replay_info(&trace);
         info.pRecordPath = path;
@@ -168,7 +169,7 @@ static void decision_hash_is_as_documented(void **state)
     struct slc_page_change changes[4];
     SluiceRecorder *recorder;
     SluiceResult result;
-    SluiceReplayResult replayed;
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     fake_memory_init(&memory, 3, 3);
     memory.taken[0] = memory.taken[1] = true;
     memory.kinds[0] = 7;
@@ -249,7 +250,7 @@ static void replay_without_memory_says_so_and_leaks_nothing(void **state)
     struct trace_buffer trace;
     record_demand_run(&trace, 11, 80, false);
     SluiceReplayInfo info = replay_info(&trace);
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     SluiceResult status = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint64_t n = 0; status != SLUICE_SUCCESS; n++) {
         struct failing_allocator a;
@@ -275,7 +276,7 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
         uint8_t *copy = malloc(cut + 1); /* so that reading beyond it is seen */
         assert_non_null(copy);
         memcpy(copy, trace.data, cut);
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         CHECK_RESULT(play_damaged(copy, cut, &result), SLUICE_ERROR_CORRUPT_DATA);
         assert_true(result.errorOffset <= cut);
         free(copy);
@@ -297,7 +298,7 @@ static void changed_bytes_under_right_checksums_do_no_harm(void **state)
             const uint8_t was = trace.data[at];
             const uint8_t values[] = {was ^ 1, was ^ 2, was ^ 0x80, (uint8_t)(was - 1), 0xFF};
             for (size_t i = 0; i < sizeof values; i++) {
-                SluiceReplayResult result;
+                SluiceReplayResult result = {.structSize = sizeof result};
                 memcpy(copy, trace.data, trace.size);
                 copy[at] = values[i];
                 reseal_trace(copy, trace.size);
@@ -323,7 +324,7 @@ static void first_divergence_is_named(void **state)
     struct slc_demand_residency *residency;
     struct trace_buffer trace;
     SluiceRecorder *recorder;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     const SluiceRecordWriter writer = trace_buffer_writer(&trace);
     const struct slc_page_residency_create_info info = {.class_count = 1};
     CHECK_OK(slc_residency_create(&info, &residency));
@@ -348,7 +349,7 @@ static void newer_version_is_unsupported(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     record_demand_run(&trace, 24, 5, false);
     trace.data[8] = 2;
     reseal_trace(trace.data, trace.size);

@@ -110,7 +110,7 @@ static bool same_lists(const struct outcome *a, const struct outcome *b)
 static const char *difference(void)
 {
     const struct outcome *a = &twins.refused.outcome, *b = &twins.spared.outcome;
-    SluiceStreamedTextureStatistics statistics;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
     if (a->result != b->result)
         return "another result than that of the twin that never failed";
     if (a->answer_count != b->answer_count)
@@ -173,6 +173,7 @@ static void open_twin(struct twin *t, SluiceHeapAllocator heaps)
 {
     failing_allocator_init(&t->memory, UINT64_MAX);
     const SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = heaps,
         .pAllocator = &t->memory.callbacks,
         .heapTileCapacity = twins.sequence.capacity,
@@ -184,8 +185,9 @@ static void open_twin(struct twin *t, SluiceHeapAllocator heaps)
 
 static void check_playback(const struct trace_buffer *trace, uint64_t seed)
 {
-    const SluiceReplayInfo info = {.pData = trace->data, .size = trace->size};
-    SluiceReplayResult played;
+    const SluiceReplayInfo info = {
+        .structSize = sizeof info, .pData = trace->data, .size = trace->size};
+    SluiceReplayResult played = {.structSize = sizeof played};
     CHECK_OK(sluiceReplay(&info, &played));
     if (played.divergedEvent || played.decisionHash != played.recordedHash)
         fail_msg("seed %llu: the recording plays back otherwise from event %llu on",

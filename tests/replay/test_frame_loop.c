@@ -14,7 +14,8 @@
 
 static SluiceReplayInfo replay_info(const struct trace_buffer *trace)
 {
-    return (SluiceReplayInfo){.pData = trace->data,
+    return (SluiceReplayInfo){.structSize = sizeof(SluiceReplayInfo),
+                              .pData = trace->data,
                               .size = trace->size,
                               .latency = 2,
                               .timeoutMicros = 300000,
@@ -25,11 +26,13 @@ static void feedback_that_stands_still_ends_with_what_it_wants(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     make_feedback_scene(&trace);
-    const SluiceReplayInfo info = replay_info(&trace);
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    SluiceReplayInfo info = replay_info(&trace);
+    info.pStatistics = &statistics;
     CHECK_OK(sluiceReplay(&info, &result));
-    const SluiceStreamedTextureStatistics *s = &result.statistics;
+    const SluiceStreamedTextureStatistics *s = &statistics;
     assert_int_equal(s->textureCount, 3);
     assert_int_equal(s->tileCount, 16 + 4 + 1 + 1 + 64 + 16 + 4 + 1 + 1 + 4 + 1 + 1);
     assert_int_equal(s->requestedTileCount + s->allocatedTileCount + s->cancelledTileCount, 0);
@@ -46,7 +49,8 @@ static void cap_and_latency_change_the_decisions(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult plain, capped, late, again;
+    SluiceReplayResult plain = {.structSize = sizeof plain}, capped = {.structSize = sizeof capped},
+                       late = {.structSize = sizeof late}, again = {.structSize = sizeof again};
     make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     CHECK_OK(sluiceReplay(&info, &plain));
@@ -56,12 +60,14 @@ static void cap_and_latency_change_the_decisions(void **state)
     info = replay_info(&trace);
     info.heapTileCapacity = 4;
     info.maxHeapCount = 2;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    info.pStatistics = &statistics;
     CHECK_OK(sluiceReplay(&info, &capped));
     assert_true(plain.decisionHash == again.decisionHash);
     assert_true(plain.decisionHash != late.decisionHash);
     assert_true(plain.decisionHash != capped.decisionHash);
-    assert_int_equal(capped.statistics.heapCount, 2);
-    assert_true(capped.statistics.mappedTileCount <= 8);
+    assert_int_equal(statistics.heapCount, 2);
+    assert_true(statistics.mappedTileCount <= 8);
     trace_buffer_free(&trace);
 }
 
@@ -83,7 +89,7 @@ static void recorded_run_has_the_same_decisions(void **state)
     const char *path = "test_frame_loop.trace";
     struct trace_buffer trace, recorded;
     struct lines first = {0}, second = {0};
-    SluiceReplayResult a, b;
+    SluiceReplayResult a = {.structSize = sizeof a}, b = {.structSize = sizeof b};
     make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     info.pRecordPath = path;
@@ -91,8 +97,11 @@ static void recorded_run_has_the_same_decisions(void **state)
     info.pfnLine = lines_take;
     CHECK_OK(sluiceReplay(&info, &a));
     read_file(path, &recorded);
-    const SluiceReplayInfo other = {
-        .pData = recorded.data, .size = recorded.size, .pUserData = &second, .pfnLine = lines_take};
+    const SluiceReplayInfo other = {.structSize = sizeof other,
+                                    .pData = recorded.data,
+                                    .size = recorded.size,
+                                    .pUserData = &second,
+                                    .pfnLine = lines_take};
     CHECK_OK(sluiceReplay(&other, &b));
     assert_true(a.decisionHash == b.decisionHash && a.decisionHash == b.recordedHash);
     assert_string_equal(first.text, second.text);
@@ -112,7 +121,7 @@ static void every_truncation_is_found_at_or_before_the_cut(void **state)
         uint8_t *copy = malloc(cut + 1);
         assert_non_null(copy);
         memcpy(copy, trace.data, cut);
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         CHECK_RESULT(play_damaged(copy, cut, &result), SLUICE_ERROR_CORRUPT_DATA);
         assert_true(result.errorOffset <= cut);
         free(copy);
@@ -129,7 +138,7 @@ static void changed_bytes_are_found_or_played(void **state)
     for (size_t at = 0; at < trace.size; at++) {
         const uint8_t was = trace.data[at];
         for (uint32_t value = 0; value < 256; value += at % 3 + 24) {
-            SluiceReplayResult result;
+            SluiceReplayResult result = {.structSize = sizeof result};
             trace.data[at] = (uint8_t)value;
             SluiceResult status = play_damaged(trace.data, trace.size, &result);
             corrupt += status == SLUICE_ERROR_CORRUPT_DATA;
@@ -167,7 +176,7 @@ static void contradictions_are_named_at_their_record(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct trace_buffer trace;
-        SluiceReplayResult result;
+        SluiceReplayResult result = {.structSize = sizeof result};
         make_feedback_scene(&trace);
         trace.data[cases[i].offset] = cases[i].value;
         CHECK_RESULT(play_damaged(trace.data, trace.size, &result), SLUICE_ERROR_CORRUPT_DATA);
@@ -180,7 +189,7 @@ static void replay_without_memory_says_so_and_leaks_nothing(void **state)
 {
     (void)state;
     struct trace_buffer trace;
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     make_feedback_scene(&trace);
     SluiceReplayInfo info = replay_info(&trace);
     SluiceResult status = SLUICE_ERROR_OUT_OF_HOST_MEMORY;

@@ -42,7 +42,7 @@ static void full_writer_ends_the_recording_and_the_manager_goes_on(void **state)
 
         random_app_init(&alone, 5, false);
         random_app_run(&alone, 400);
-        SluiceStreamedTextureStatistics undisturbed;
+        SluiceStreamedTextureStatistics undisturbed = {.structSize = sizeof undisturbed};
         CHECK_OK(sluiceGetStatistics(alone.manager, &undisturbed));
         check_same_statistics(app.manager, &undisturbed);
         random_app_finish(&alone);
@@ -80,8 +80,8 @@ static void recorder_without_memory_says_so_and_leaks_nothing(void **state)
 static void recording_begins_with_what_was_configured_before(void **state)
 {
     (void)state;
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3,
-                                                       .maxHeapCount = 2};
+    const SluiceStreamedTextureManagerConfig config = {
+        .structSize = sizeof config, .numExtraStandbyTiles = 3, .maxHeapCount = 2};
     struct random_app app;
     struct trace_buffer buffer;
     SluiceRecorder *recorder;
@@ -92,12 +92,16 @@ static void recording_begins_with_what_was_configured_before(void **state)
     random_app_run(&app, 400);
     CHECK_OK(sluiceEndRecording(recorder));
 
-    const SluiceReplayInfo info = {.pData = buffer.data, .size = buffer.size};
-    SluiceReplayResult replayed;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    const SluiceReplayInfo info = {.structSize = sizeof info,
+                                   .pData = buffer.data,
+                                   .size = buffer.size,
+                                   .pStatistics = &statistics};
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     CHECK_OK(sluiceReplay(&info, &replayed));
     assert_int_equal(replayed.divergedEvent, 0);
     assert_true(replayed.decisionHash == replayed.recordedHash);
-    check_same_statistics(app.manager, &replayed.statistics);
+    check_same_statistics(app.manager, &statistics);
     random_app_finish(&app);
     trace_buffer_free(&buffer);
 }
@@ -112,7 +116,8 @@ static void what_changes_while_running_is_replayed(void **state)
     random_app_init(&app, 8, false);
     CHECK_OK(sluiceBeginRecording(app.manager, &writer, NULL, &recorder));
     for (uint32_t i = 0; i < 60; i++) {
-        SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = i % 20,
+        SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                     .numExtraStandbyTiles = i % 20,
                                                      .targetHeapCount = i % 4,
                                                      .noEviction = i % 3 == 0,
                                                      .noMipBias = i % 5 == 0};
@@ -122,12 +127,16 @@ static void what_changes_while_running_is_replayed(void **state)
     }
     CHECK_OK(sluiceEndRecording(recorder));
 
-    const SluiceReplayInfo info = {.pData = buffer.data, .size = buffer.size};
-    SluiceReplayResult replayed;
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    const SluiceReplayInfo info = {.structSize = sizeof info,
+                                   .pData = buffer.data,
+                                   .size = buffer.size,
+                                   .pStatistics = &statistics};
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     CHECK_OK(sluiceReplay(&info, &replayed));
     assert_int_equal(replayed.divergedEvent, 0);
     assert_true(replayed.decisionHash == replayed.recordedHash);
-    check_same_statistics(app.manager, &replayed.statistics);
+    check_same_statistics(app.manager, &statistics);
     random_app_finish(&app);
     trace_buffer_free(&buffer);
 }
@@ -212,9 +221,10 @@ static void check_plays(const char *path)
     static char data[1 << 20];
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
-    const SluiceReplayInfo info = {.pData = data, .size = fread(data, 1, sizeof data, file)};
+    const SluiceReplayInfo info = {
+        .structSize = sizeof info, .pData = data, .size = fread(data, 1, sizeof data, file)};
     fclose(file);
-    SluiceReplayResult replayed;
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
     CHECK_OK(sluiceReplay(&info, &replayed));
     assert_int_equal(replayed.divergedEvent, 0);
 }
@@ -224,7 +234,8 @@ static void two_recordings_to_one_path_are_one_whole_file_and_a_refusal(void **s
     (void)state;
     const char *path = "test_recorder_busy.trace";
     char told[256] = "";
-    const SluiceFileRecordingInfo info = {.pPath = path, .log = {told, take_message}};
+    const SluiceFileRecordingInfo info = {
+        .structSize = sizeof info, .pPath = path, .log = {told, take_message}};
     struct random_app app, other;
     SluiceRecorder *first, *second;
     remove(path);
@@ -253,7 +264,8 @@ static void link_planted_at_the_part_file_is_not_written_through(void **state)
                *part = "test_recorder_planted.trace.sluice-part";
     const char *victim = "test_recorder_planted.victim";
     char told[256] = "", text[8] = {0};
-    const SluiceFileRecordingInfo info = {.pPath = path, .log = {told, take_message}};
+    const SluiceFileRecordingInfo info = {
+        .structSize = sizeof info, .pPath = path, .log = {told, take_message}};
     struct random_app app;
     SluiceRecorder *recorder;
     remove(part);
@@ -279,7 +291,8 @@ static void failed_recording_names_its_file_and_the_reason(void **state)
 {
     (void)state;
     char told[256] = "";
-    SluiceFileRecordingInfo info = {.pPath = "no/such/folder/x.trace", .log = {told, take_message}};
+    SluiceFileRecordingInfo info = {
+        .structSize = sizeof info, .pPath = "no/such/folder/x.trace", .log = {told, take_message}};
     struct random_app app;
     SluiceRecorder *recorder;
     random_app_init(&app, 1, false);
@@ -314,7 +327,8 @@ static void failed_allocation_loses_the_recording_and_says_which(void **state)
         struct failing_allocator memory;
         SluiceRecorder *recorder;
         failing_allocator_init(&memory, n);
-        const SluiceFileRecordingInfo info = {path, &memory.callbacks, {told, take_message}};
+        const SluiceFileRecordingInfo info = {
+            sizeof info, path, &memory.callbacks, {told, take_message}};
         random_app_init(&app, 9, false);
         result = sluiceBeginFileRecording(app.manager, &info, &recorder);
         random_app_run(&app, 100);

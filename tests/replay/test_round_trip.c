@@ -14,7 +14,8 @@
 
 static SluiceReplayInfo replay_info(const struct trace_buffer *trace)
 {
-    return (SluiceReplayInfo){.pData = trace->data, .size = trace->size};
+    return (SluiceReplayInfo){
+        .structSize = sizeof(SluiceReplayInfo), .pData = trace->data, .size = trace->size};
 }
 
 static void random_run_replays_to_the_same_decisions(void **state)
@@ -32,13 +33,15 @@ static void random_run_replays_to_the_same_decisions(void **state)
         random_app_run(&app, STEPS);
         CHECK_OK(sluiceEndRecording(recorder));
 
-        SluiceReplayResult result;
-        const SluiceReplayInfo info = replay_info(&trace);
+        SluiceReplayResult result = {.structSize = sizeof result};
+        SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+        SluiceReplayInfo info = replay_info(&trace);
+        info.pStatistics = &statistics;
         CHECK_OK(sluiceReplay(&info, &result));
         assert_int_equal(result.divergedEvent, 0);
         assert_true(result.decisionHash == result.recordedHash);
         assert_true(result.eventCount >= STEPS);
-        check_same_statistics(app.manager, &result.statistics);
+        check_same_statistics(app.manager, &statistics);
 
         kinds_made |= app.kinds_made;
         kinds_good |= app.kinds_good;
@@ -73,7 +76,8 @@ static void replay_recorded_again_is_the_same_trace_with_the_same_dump(void **st
     for (uint64_t seed = 100; seed < 110; seed++) {
         struct trace_buffer trace, again;
         struct lines first = {0}, second = {0};
-        SluiceReplayResult result, result_again;
+        SluiceReplayResult result = {.structSize = sizeof result},
+                           result_again = {.structSize = sizeof result_again};
         record_random_run(&trace, seed, STEPS, false);
         SluiceReplayInfo info = replay_info(&trace);
         info.pUserData = &first;
@@ -104,7 +108,7 @@ static void dump_does_not_change_the_hash(void **state)
     (void)state;
     struct trace_buffer trace;
     struct lines lines = {0};
-    SluiceReplayResult with, without;
+    SluiceReplayResult with = {.structSize = sizeof with}, without = {.structSize = sizeof without};
     record_random_run(&trace, 7, STEPS, true);
     SluiceReplayInfo info = replay_info(&trace);
     CHECK_OK(sluiceReplay(&info, &without));
@@ -123,7 +127,7 @@ static void replay_without_memory_says_so_and_leaks_nothing(void **state)
     struct trace_buffer trace;
     record_random_run(&trace, 11, 150, false);
     SluiceReplayInfo info = replay_info(&trace);
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     SluiceResult status = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint64_t n = 0; status != SLUICE_SUCCESS; n++) {
         struct failing_allocator a;
@@ -142,8 +146,8 @@ static void replay_without_memory_says_so_and_leaks_nothing(void **state)
 static void null_pointers_are_refused(void **state)
 {
     (void)state;
-    SluiceReplayInfo info = {.size = 0};
-    SluiceReplayResult result;
+    SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
+    SluiceReplayResult result = {.structSize = sizeof result};
     CHECK_RESULT(sluiceReplay(NULL, &result), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceReplay(&info, &result), SLUICE_ERROR_NULL_POINTER);
     info.pData = "";
@@ -172,6 +176,7 @@ static void more_moves_than_tiles_replay(void **state)
     (void)state;
     uint32_t heap_count = 0;
     const SluiceStreamedTextureManagerCreateInfo create = {
+        .structSize = sizeof create,
         .heapAllocator = {&heap_count, next_heap, ignore_heap},
         .heapTileCapacity = THIN_HEAPS_CAPACITY,
         .tileSize = 1,
@@ -190,11 +195,13 @@ static void more_moves_than_tiles_replay(void **state)
     CHECK_OK(sluiceEndRecording(recorder));
     sluiceDestroyStreamedTextureManager(manager);
 
-    SluiceReplayResult result;
-    const SluiceReplayInfo info = replay_info(&trace);
+    SluiceReplayResult result = {.structSize = sizeof result};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    SluiceReplayInfo info = replay_info(&trace);
+    info.pStatistics = &statistics;
     CHECK_OK(sluiceReplay(&info, &result));
     assert_int_equal(result.divergedEvent, 0);
-    assert_true(result.statistics.movedTotal == THIN_HEAPS_MOVES);
+    assert_true(statistics.movedTotal == THIN_HEAPS_MOVES);
     trace_buffer_free(&trace);
 }
 

@@ -55,11 +55,13 @@ static SluiceTextureId add_texture(struct scene *scene, uint32_t width, uint32_t
 static void give_feedback(struct scene *scene, SluiceTextureId id, uint8_t level, uint64_t time)
 {
     uint8_t map[256];
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(scene->manager, id, &layout));
     memset(map, level, sizeof map);
-    const SluiceFeedbackDesc feedback = {
-        .pMinMip = map, .width = layout.feedbackWidth, .height = layout.feedbackHeight};
+    const SluiceFeedbackDesc feedback = {.structSize = sizeof feedback,
+                                         .pMinMip = map,
+                                         .width = layout.feedbackWidth,
+                                         .height = layout.feedbackHeight};
     assert_true(layout.feedbackWidth * layout.feedbackHeight <= sizeof map);
     CHECK_OK(sluiceUpdateWithSamplerFeedback(scene->manager, id, &feedback, time, 10));
 }
@@ -131,7 +133,8 @@ static void play_cancel(struct scene *scene)
 /* Loads that fail, wait, fail again and are given up. */
 static void play_failures(struct scene *scene)
 {
-    const SluiceStreamedTextureManagerConfig config = {.maxLoadAttempts = 2, .retryDelay = 10};
+    const SluiceStreamedTextureManagerConfig config = {
+        .structSize = sizeof config, .maxLoadAttempts = 2, .retryDelay = 10};
     CHECK_OK(sluiceSetConfig(scene->manager, &config));
     SluiceTextureId id = add_texture(scene, 64, 64);
     for (uint64_t time = 1; time < 40; time += 6) {
@@ -153,7 +156,8 @@ static void play_failures(struct scene *scene)
 static void play_budget(struct scene *scene)
 {
     scene->heap_limit = 2;
-    const SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 100};
+    const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                       .numExtraStandbyTiles = 100};
     CHECK_OK(sluiceSetConfig(scene->manager, &config));
     SluiceTextureId first = add_texture(scene, 128, 128), second = add_texture(scene, 128, 192);
     give_feedback(scene, first, 0, 1);
@@ -220,6 +224,7 @@ static void record(const char *folder, const char *name, void (*play)(struct sce
     struct scene scene = {.heap_limit = 8};
     SluiceRecorder *recorder;
     const SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {&scene, allocate_heap, release_heap},
         .heapTileCapacity = capacity,
         .tileSize = 65536,

@@ -22,10 +22,11 @@ SluiceStreamedTextureManager *needs_rig_manager(struct needs_rig *rig, SluiceTex
 {
     SluiceStreamedTextureManager *manager;
     SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {&rig->heap_count, allocate_heap, release_heap},
         .heapTileCapacity = 256,
         .tileSize = 65536};
-    SluiceStreamedTextureManagerConfig config = {.missesToForget = 1};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config, .missesToForget = 1};
     CHECK_OK(sluiceCreateStreamedTextureManager(&info, &manager));
     CHECK_OK(sluiceSetConfig(manager, &config));
     for (uint32_t i = 0; i < rig->count; i++)
@@ -42,7 +43,7 @@ void needs_rig_open(struct needs_rig *rig, const SluiceStreamedTextureDesc *desc
     rig->manager = needs_rig_manager(rig, rig->ids);
     uint32_t words = 5;
     for (uint32_t i = count; i-- > 0;) {
-        SluiceStreamedTextureLayout layout;
+        SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         CHECK_OK(sluiceGetTextureLayout(rig->manager, rig->ids[i], &layout));
         rig->needs_ids[i] = (struct needs_id){rig->ids[i], count - 1 - i};
         struct SluiceTextureEntry *entry = &rig->table[count - 1 - i];

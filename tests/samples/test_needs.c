@@ -48,8 +48,10 @@ static void feed(struct needs_rig *rig, SluiceStreamedTextureManager *manager,
         assert_non_null(map);
         for (uint32_t r = 0; r < count; r++)
             map[r] = (uint8_t)needs_rig_feedback(rig, i)[r];
-        SluiceFeedbackDesc feedback = {
-            .pMinMip = map, .width = layout->feedbackWidth, .height = layout->feedbackHeight};
+        SluiceFeedbackDesc feedback = {.structSize = sizeof feedback,
+                                       .pMinMip = map,
+                                       .width = layout->feedbackWidth,
+                                       .height = layout->feedbackHeight};
         CHECK_OK(sluiceUpdateWithSamplerFeedback(manager, ids[i], &feedback, time, timeout));
         free(map);
     }

@@ -33,7 +33,7 @@ static void set_up(struct rig *rig, double latency, double bandwidth)
         texels[i] = texel_at(i % SIZE, i / SIZE);
     *rig = (struct rig){.now = 5000};
     struct slow_line_info line = {latency, bandwidth, clock_of_rig, &rig->now};
-    SluiceImageInfo info = {SIZE, SIZE, 0, SLUICE_FORMAT_R8_UNORM, "bytes"};
+    SluiceImageInfo info = {sizeof info, SIZE, SIZE, 0, SLUICE_FORMAT_R8_UNORM, "bytes"};
     CHECK_OK(sluiceCreateMemoryImageSource(texels, &info, NULL, &rig->memory));
     fault_source_init(&rig->inner, rig->memory);
     assert_true(slow_line_init(&rig->line, &line));
@@ -182,7 +182,7 @@ static void errors_of_the_source_come_through(void **state)
 {
     (void)state;
     struct rig rig;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     set_up(&rig, 300, 0);
     rig.inner.fail_at = 1;
     rig.inner.failure = SLUICE_ERROR_CORRUPT_DATA;

@@ -75,7 +75,7 @@ typedef bool row_function(unsigned char *row, const unsigned char *painted, size
 static bool for_rows(enum picture picture, SluiceFormat format, const SluiceImageRegion *region,
                      unsigned char *texels, size_t pitch, row_function *function)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetFormatInfo(format, &info));
     uint32_t columns = slc_div_up_u32(region->width, info.blockWidth);
     uint32_t rows = slc_div_up_u32(region->height, info.blockHeight);
@@ -204,10 +204,11 @@ static SluiceResult read_level(SluiceImageSource *source, const SluiceImageInfo 
 SluiceResult read_store(const char *path, enum picture picture, struct messages *messages)
 {
     struct messages own;
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path,
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = path,
                                                .log = messages_log(messages ? messages : &own)};
     SluiceImageSource *source = NULL;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     SluiceResult result = sluiceCreateStoreImageSource(&create, &source);
     if (result != SLUICE_SUCCESS)
         return result;

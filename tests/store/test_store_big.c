@@ -57,7 +57,8 @@ static void seal_by_hand(const struct scratch *scratch)
 static SluiceStoreCreateInfo describe(const struct scratch *scratch,
                                       const SluiceAllocationCallbacks *allocator)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = SIZE,
                                    .height = SIZE,
                                    .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -118,8 +119,10 @@ static void a_large_file_is_opened_by_one_small_read_and_little_is_kept(void **s
     failing_allocator_init(&allocator, UINT64_MAX);
     SluiceStoreReadPool *pool; /* counts for itself */
     CHECK_OK(sluiceCreateStoreReadPool(NULL, &pool));
-    SluiceStoreImageSourceCreateInfo create = {
-        .pPath = scratch.path, .pAllocator = &allocator.callbacks, .readPool = pool};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = scratch.path,
+                                               .pAllocator = &allocator.callbacks,
+                                               .readPool = pool};
     SluiceImageSource *source;
     fault_io = (struct fault_io){0};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
@@ -162,7 +165,7 @@ static void what_was_checked_is_forgotten_with_its_part_of_the_index(void **stat
     CHECK_OK(write_one(writer, &layout, PICTURE_MIXED, 0, 0, 64 * 204 % 512, 64 * 204 / 512));
     sluiceDestroyStoreWriter(writer);
     seal_by_hand(&scratch);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = scratch.path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     int file = open(scratch.path, O_RDWR);

@@ -11,7 +11,7 @@
 
 static SluiceImageSource *open_store(const char *path)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     return source;
@@ -143,8 +143,10 @@ static struct told load(SluiceImageSource *source, uint32_t layer)
     static unsigned char texels[65536];
     struct told told = {0};
     SluiceTileLoader *loader;
-    SluiceTileLoaderCreateInfo create = {
-        .threadCount = 1, .retry = {.maxAttempts = 1}, .failure = {&told, on_failure}};
+    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
+                                         .threadCount = 1,
+                                         .retry = {.maxAttempts = 1},
+                                         .failure = {&told, on_failure}};
     CHECK_OK(sluiceCreateTileLoader(&create, &loader));
     SluiceImageRegion region = {.width = 128, .height = 128, .arrayLayer = layer};
     void *place = texels;
@@ -152,6 +154,7 @@ static struct told load(SluiceImageSource *source, uint32_t layer)
     SluiceTileRead read = {source, 1, &region, &place, 0, 0};
     CHECK_OK(sluiceSubmitTileRead(loader, &read, &ticket));
     sluiceWaitTileLoaderIdle(loader);
+    told.statistics.structSize = sizeof told.statistics;
     CHECK_OK(sluiceGetTileLoaderStatistics(loader, source, &told.statistics));
     sluiceDestroyTileLoader(loader);
     return told;

@@ -13,7 +13,8 @@
 
 static SluiceStoreCreateInfo describe(const struct scratch *scratch, uint32_t compression)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = 300,
                                    .height = 260,
                                    .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -85,7 +86,7 @@ static void a_source_reads_on_after_an_error(void **state)
     scratch_init(&scratch);
     SluiceStoreCreateInfo info = describe(&scratch, 3);
     CHECK_OK(write_store(&info, PICTURE_MIXED));
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = scratch.path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     unsigned char *texels = malloc(65536);

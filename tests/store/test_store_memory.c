@@ -8,7 +8,8 @@
 static SluiceStoreCreateInfo describe(const struct scratch *scratch,
                                       const SluiceAllocationCallbacks *allocator)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = 300,
                                    .height = 140,
                                    .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -110,7 +111,8 @@ static SluiceResult open_and_read(const char *path, struct failing_allocator *al
     static unsigned char texels[65536];
     static const SluiceImageRegion regions[] = {
         {0, 0, 0, 128, 128, 0}, {0, 5, 6, 7, 8, 0}, {4, 0, 0, 3, 2, 0}};
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path, .pAllocator = &allocator->callbacks};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = path, .pAllocator = &allocator->callbacks};
     SluiceImageSource *source;
     SluiceResult result = sluiceCreateStoreImageSource(&create, &source);
     if (result != SLUICE_SUCCESS)
@@ -127,7 +129,8 @@ static SluiceResult open_and_read(const char *path, struct failing_allocator *al
 
 static SluiceResult verify(const char *path, struct failing_allocator *allocator)
 {
-    SluiceStoreVerifyInfo info = {.pPath = path, .pAllocator = &allocator->callbacks};
+    SluiceStoreVerifyInfo info = {
+        .structSize = sizeof info, .pPath = path, .pAllocator = &allocator->callbacks};
     return sluiceVerifyStore(&info, NULL);
 }
 
@@ -165,10 +168,12 @@ static void an_allocator_of_one_function_is_refused(void **state)
     SluiceStoreCreateInfo info = describe(&scratch, &half);
     SluiceStoreWriter *writer;
     CHECK_RESULT(sluiceCreateStoreWriter(&info, &writer), SLUICE_ERROR_NULL_POINTER);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path, .pAllocator = &half};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = scratch.path, .pAllocator = &half};
     SluiceImageSource *source;
     CHECK_RESULT(sluiceCreateStoreImageSource(&create, &source), SLUICE_ERROR_NULL_POINTER);
-    SluiceStoreVerifyInfo verification = {.pPath = scratch.path, .pAllocator = &half};
+    SluiceStoreVerifyInfo verification = {
+        .structSize = sizeof verification, .pPath = scratch.path, .pAllocator = &half};
     CHECK_RESULT(sluiceVerifyStore(&verification, NULL), SLUICE_ERROR_NULL_POINTER);
     scratch_finish(&scratch);
 }

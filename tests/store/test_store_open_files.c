@@ -27,7 +27,8 @@ static void a_file_that_is_cut_while_it_is_open_gives_an_error(void **state)
         struct victim victim;
         victim_init(&victim, 3);
         struct messages messages;
-        SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
+        SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                   .pPath = victim.scratch.path,
                                                    .log = messages_log(&messages)};
         SluiceImageSource *source;
         CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
@@ -48,10 +49,12 @@ static void a_file_that_is_replaced_stays_what_it_was_for_who_has_it_open(void *
     (void)state;
     struct victim victim;
     victim_init(&victim, 3);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = victim.scratch.path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
-    SluiceStoreCreateInfo info = {.pPath = victim.scratch.path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = victim.scratch.path,
                                   .width = 500,
                                   .height = 500,
                                   .format = SLUICE_FORMAT_R8_UNORM};
@@ -68,7 +71,8 @@ static void a_file_that_is_written_over_while_it_is_open_gives_an_error(void **s
     struct victim victim, other;
     victim_init(&victim, 3);
     victim_init(&other, 0);
-    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                               .pPath = victim.scratch.path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     write_bytes(victim.scratch.path, other.bytes, other.size);
@@ -93,7 +97,8 @@ static void raw_tiles_are_checked_once_or_each_time(void **state)
     for (int always = 0; always < 2; always++) {
         struct victim victim;
         victim_init(&victim, 0);
-        SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
+        SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                   .pPath = victim.scratch.path,
                                                    .alwaysCheckRawTiles = always};
         SluiceImageSource *source;
         static unsigned char texels[65536];
@@ -135,8 +140,8 @@ static void a_store_that_found_no_descriptor_opens_later(void **state)
     struct victim victim;
     victim_init(&victim, 3);
     struct messages messages;
-    SluiceStoreImageSourceCreateInfo create = {.pPath = victim.scratch.path,
-                                               .log = messages_log(&messages)};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = victim.scratch.path, .log = messages_log(&messages)};
     SluiceImageSource *source = NULL;
     struct few_descriptors few;
     few_descriptors_begin(&few, 2); /* which are kept for outputs */
@@ -159,15 +164,16 @@ static void faults_of_a_file_are_logged_once_each_and_not_all_of_hundreds(void *
     struct scratch scratch;
     struct messages messages;
     scratch_init(&scratch);
-    SluiceStoreCreateInfo info = {.pPath = scratch.path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = scratch.path,
                                   .width = 2560,
                                   .height = 1280,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
     CHECK_OK(write_store(&info, PICTURE_NOISE)); /* 200 tiles of level 0 */
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path,
-                                               .log = messages_log(&messages)};
+    SluiceStoreImageSourceCreateInfo create = {
+        .structSize = sizeof create, .pPath = scratch.path, .log = messages_log(&messages)};
     SluiceImageSource *source;
-    SluiceStoreInfo store;
+    SluiceStoreInfo store = {.structSize = sizeof store};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetStoreInfo(source, &store));
     size_t size;

@@ -13,7 +13,7 @@ static SluiceImageSource *open_store(const struct scratch *scratch,
     SluiceStoreCreateInfo info = *given;
     info.pPath = scratch->path;
     CHECK_OK(write_store(&info, PICTURE_MIXED));
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch->path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = scratch->path};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     return source;
@@ -28,7 +28,7 @@ static uint32_t draw(uint32_t *random, uint32_t below)
 /* Whole blocks in compressed formats. */
 static SluiceImageRegion draw_region(const SluiceImageInfo *info, uint32_t *random)
 {
-    SluiceFormatInfo format;
+    SluiceFormatInfo format = {.structSize = sizeof format};
     CHECK_OK(sluiceGetFormatInfo(info->format, &format));
     uint32_t level = draw(random, info->mipLevelCount), extent = format.blockWidth;
     uint32_t width = slc_mip_size(info->width, level), height = slc_mip_size(info->height, level);
@@ -70,13 +70,14 @@ static void any_rectangle_is_what_was_written_there(void **state)
         for (uint32_t compression = 0; compression < 2; compression++) {
             struct scratch scratch;
             scratch_init(&scratch);
-            SluiceStoreCreateInfo create = {.width = 795,
+            SluiceStoreCreateInfo create = {.structSize = sizeof create,
+                                            .width = 795,
                                             .height = 411,
                                             .arrayLayerCount = 2,
                                             .format = formats[f],
                                             .compressionLevel = compression};
             SluiceImageSource *source = open_store(&scratch, &create);
-            SluiceImageInfo info;
+            SluiceImageInfo info = {.structSize = sizeof info};
             CHECK_OK(sluiceGetImageInfo(source, &info));
             for (int i = 0; i < 60; i++) {
                 SluiceImageRegion region = draw_region(&info, &random);
@@ -92,11 +93,14 @@ static void every_tile_and_every_level_is_read_by_its_own_region(void **state)
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    SluiceStoreCreateInfo create = {
-        .width = 795, .height = 411, .format = SLUICE_FORMAT_R8G8B8A8_SRGB, .compressionLevel = 1};
+    SluiceStoreCreateInfo create = {.structSize = sizeof create,
+                                    .width = 795,
+                                    .height = 411,
+                                    .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                    .compressionLevel = 1};
     SluiceImageSource *source = open_store(&scratch, &create);
-    SluiceImageInfo info;
-    SluiceStoreInfo store;
+    SluiceImageInfo info = {.structSize = sizeof info};
+    SluiceStoreInfo store = {.structSize = sizeof store};
     CHECK_OK(sluiceGetImageInfo(source, &info));
     CHECK_OK(sluiceGetStoreInfo(source, &store));
     for (uint32_t l = 0; l < info.mipLevelCount; l++)
@@ -116,12 +120,15 @@ static void a_store_of_one_layer_can_be_a_layer_of_an_array(void **state)
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    SluiceStoreCreateInfo create = {
-        .width = 300, .height = 200, .format = SLUICE_FORMAT_R8G8B8A8_SRGB, .compressionLevel = 1};
+    SluiceStoreCreateInfo create = {.structSize = sizeof create,
+                                    .width = 300,
+                                    .height = 200,
+                                    .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
+                                    .compressionLevel = 1};
     SluiceImageSource *source = open_store(&scratch, &create);
     SluiceImageSource *const layers[] = {source, source};
     SluiceImageSource *array;
-    SluiceImageInfo info;
+    SluiceImageInfo info = {.structSize = sizeof info};
     /* a source of one layer can be one of an array's */
     CHECK_OK(sluiceCreateArrayImageSource(layers, 2, NULL, &array));
     CHECK_OK(sluiceGetImageInfo(array, &info));
@@ -143,15 +150,17 @@ static void sources_share_a_pool(void **state)
     uint64_t after_first = 0;
     for (int i = 0; i < 2; i++) {
         scratch_init(&scratches[i]);
-        SluiceStoreCreateInfo info = {.pPath = scratches[i].path,
+        SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                      .pPath = scratches[i].path,
                                       .width = 300,
                                       .height = 200,
                                       .format = SLUICE_FORMAT_R8G8B8A8_SRGB,
                                       .compressionLevel = 1};
         CHECK_OK(write_store(&info, PICTURE_MIXED));
-        SluiceStoreImageSourceCreateInfo create = {.pPath = scratches[i].path, .readPool = pool};
+        SluiceStoreImageSourceCreateInfo create = {
+            .structSize = sizeof create, .pPath = scratches[i].path, .readPool = pool};
         CHECK_OK(sluiceCreateStoreImageSource(&create, &sources[i]));
-        SluiceImageInfo image;
+        SluiceImageInfo image = {.structSize = sizeof image};
         CHECK_OK(sluiceGetImageInfo(sources[i], &image));
         for (uint32_t l = 0; l < image.mipLevelCount; l++) {
             SluiceImageRegion level = {l, 0, 0, slc_mip_size(300, l), slc_mip_size(200, l), 0};
@@ -180,8 +189,11 @@ static void what_leaves_the_level_is_refused(void **state)
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    SluiceStoreCreateInfo create = {
-        .width = 300, .height = 200, .format = SLUICE_FORMAT_R8_UNORM, .arrayLayerCount = 2};
+    SluiceStoreCreateInfo create = {.structSize = sizeof create,
+                                    .width = 300,
+                                    .height = 200,
+                                    .format = SLUICE_FORMAT_R8_UNORM,
+                                    .arrayLayerCount = 2};
     SluiceImageSource *source = open_store(&scratch, &create);
     char texel[1];
     const SluiceImageRegion bad[] = {{0, 300, 0, 1, 1, 0}, {0, 0, 200, 1, 1, 0},
@@ -190,10 +202,11 @@ static void what_leaves_the_level_is_refused(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         CHECK_RESULT(sluiceReadImageRegion(source, &bad[i], texel, 1000),
                      SLUICE_ERROR_INVALID_ARGUMENT);
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     CHECK_RESULT(sluiceGetStoreInfo(NULL, &info), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceGetStoreInfo(source, NULL), SLUICE_ERROR_NULL_POINTER);
-    SluiceImageInfo image = {.width = 1, .height = 1, .format = SLUICE_FORMAT_R8_UNORM};
+    SluiceImageInfo image = {
+        .structSize = sizeof image, .width = 1, .height = 1, .format = SLUICE_FORMAT_R8_UNORM};
     SluiceImageSource *other;
     CHECK_OK(sluiceCreateMemoryImageSource("a", &image, NULL, &other));
     CHECK_RESULT(sluiceGetStoreInfo(other, &info), SLUICE_ERROR_INVALID_ARGUMENT);

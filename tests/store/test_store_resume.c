@@ -15,7 +15,8 @@ enum { TILES = 23 }; /* of the picture below: 12 + 6 + 2 + 1 + tail for R8G8B8A8
 
 static SluiceStoreCreateInfo describe(const struct scratch *scratch, uint32_t compression)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = 500,
                                    .height = 380,
                                    .format = SLUICE_FORMAT_R8G8B8A8_UNORM,

@@ -49,7 +49,8 @@ static void every_format_comes_back_as_it_was(void **state)
     static const enum picture pictures[] = {PICTURE_SMOOTH, PICTURE_NOISE, PICTURE_MIXED};
     for (int f = 1; f < SLUICE_FORMAT_COUNT; f++)
         for (uint32_t i = 0; i < 3; i++) {
-            SluiceStoreCreateInfo info = {.width = 517,
+            SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                          .width = 517,
                                           .height = 301,
                                           .format = (SluiceFormat)f,
                                           .compressionLevel = i == 2 ? 0 : 3};
@@ -69,7 +70,8 @@ static void every_size_comes_back_as_it_was(void **state)
     for (size_t n = 0; n < sizeof sizes / sizeof sizes[0]; n++)
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++)
             for (uint32_t level = 0; level <= 3; level += 3) {
-                SluiceStoreCreateInfo info = {.width = sizes[n][0],
+                SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                              .width = sizes[n][0],
                                               .height = sizes[n][1],
                                               .format = formats[f],
                                               .compressionLevel = level};
@@ -81,7 +83,8 @@ static void arrays_come_back_layer_by_layer(void **state)
 {
     (void)state;
     for (uint32_t level = 0; level <= 1; level++) {
-        SluiceStoreCreateInfo info = {.width = 300,
+        SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                      .width = 300,
                                       .height = 200,
                                       .arrayLayerCount = 7,
                                       .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -94,7 +97,8 @@ static void every_compression_level_comes_back_as_it_was(void **state)
 {
     (void)state;
     for (uint32_t level = 1; level <= SLUICE_STORE_MAX_COMPRESSION_LEVEL; level++) {
-        SluiceStoreCreateInfo info = {.width = 257,
+        SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                      .width = 257,
                                       .height = 130,
                                       .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                       .compressionLevel = level};
@@ -105,7 +109,8 @@ static void every_compression_level_comes_back_as_it_was(void **state)
 static void more_tiles_than_a_block_of_the_index_has_come_back(void **state)
 {
     (void)state;
-    SluiceStoreCreateInfo info = {.width = 2304,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .width = 2304,
                                   .height = 1024,
                                   .arrayLayerCount = 2,
                                   .format = SLUICE_FORMAT_R16G16B16A16_SFLOAT,
@@ -121,7 +126,8 @@ static void what_a_file_says_of_itself_comes_back(void **state)
     char name[SLUICE_STORE_MAX_SOURCE_NAME + 2];
     memset(name, 'n', sizeof name);
     name[SLUICE_STORE_MAX_SOURCE_NAME] = '\0';
-    SluiceStoreCreateInfo info = {.pPath = scratch.path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = scratch.path,
                                   .width = 300,
                                   .height = 130,
                                   .mipLevelCount = 9,
@@ -137,10 +143,10 @@ static void what_a_file_says_of_itself_comes_back(void **state)
                                   .settingsHash = UINT64_C(0x0123456789ABCDEF),
                                   .compressionLevel = 5};
     CHECK_OK(write_store(&info, PICTURE_SMOOTH));
-    SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = scratch.path};
     SluiceImageSource *source;
-    SluiceStoreInfo got;
-    SluiceImageInfo image;
+    SluiceStoreInfo got = {.structSize = sizeof got};
+    SluiceImageInfo image = {.structSize = sizeof image};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetStoreInfo(source, &got));
     CHECK_OK(sluiceGetImageInfo(source, &image));
@@ -188,7 +194,8 @@ static void tiles_that_do_not_shrink_are_stored_as_they_are(void **state)
     (void)state;
     struct scratch scratch;
     scratch_init(&scratch);
-    SluiceStoreCreateInfo info = {.pPath = scratch.path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = scratch.path,
                                   .width = 700,
                                   .height = 700,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -217,7 +224,8 @@ static void the_same_calls_give_the_same_bytes(void **state)
         for (int i = 0; i < 2; i++) {
             struct scratch scratch;
             scratch_init(&scratch);
-            SluiceStoreCreateInfo info = {.pPath = scratch.path,
+            SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                          .pPath = scratch.path,
                                           .width = 400,
                                           .height = 300,
                                           .format = SLUICE_FORMAT_R8G8B8A8_UNORM,

@@ -20,7 +20,8 @@ struct job {
 
 static SluiceStoreCreateInfo describe(const struct scratch *scratch, uint32_t compression)
 {
-    return (SluiceStoreCreateInfo){.pPath = scratch->path,
+    return (SluiceStoreCreateInfo){.structSize = sizeof(SluiceStoreCreateInfo),
+                                   .pPath = scratch->path,
                                    .width = 900,
                                    .height = 700,
                                    .arrayLayerCount = 3,
@@ -111,7 +112,7 @@ static void threads_that_write_at_once_make_a_whole_file(void **state)
         SluiceStoreCreateInfo info = describe(&scratch, compression);
         write_with_threads(&info);
         CHECK_OK(read_store(scratch.path, PICTURE_MIXED, NULL));
-        SluiceStoreVerifyInfo verify = {.pPath = scratch.path};
+        SluiceStoreVerifyInfo verify = {.structSize = sizeof verify, .pPath = scratch.path};
         CHECK_OK(sluiceVerifyStore(&verify, NULL));
         scratch_finish(&scratch);
     }
@@ -147,7 +148,8 @@ static void threads_that_read_at_once_get_what_was_written(void **state)
         CHECK_OK(write_store(&info, PICTURE_MIXED));
         struct job job = {.layer_count = info.arrayLayerCount};
         CHECK_OK(sluiceGetStoreLayout(info.width, info.height, info.format, &job.layout));
-        SluiceStoreImageSourceCreateInfo create = {.pPath = scratch.path};
+        SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create,
+                                                   .pPath = scratch.path};
         CHECK_OK(sluiceCreateStoreImageSource(&create, &job.source));
         run(&job, read_some);
         sluiceDestroyImageSource(job.source);

@@ -30,14 +30,18 @@ static bool note_progress(void *user, uint64_t done, uint64_t total)
 
 static SluiceResult verify(const char *path, struct found *found, SluiceStoreReport *report)
 {
-    SluiceStoreVerifyInfo info = {
-        .pPath = path, .pUserData = found, .pfnDefect = note_defect, .pfnProgress = note_progress};
+    SluiceStoreVerifyInfo info = {.structSize = sizeof info,
+                                  .pPath = path,
+                                  .pUserData = found,
+                                  .pfnDefect = note_defect,
+                                  .pfnProgress = note_progress};
     return sluiceVerifyStore(&info, report);
 }
 
 static void write_picture(const struct scratch *scratch, enum picture picture, uint32_t compression)
 {
-    SluiceStoreCreateInfo info = {.pPath = scratch->path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = scratch->path,
                                   .width = 1300,
                                   .height = 900,
                                   .arrayLayerCount = 2,
@@ -54,7 +58,7 @@ static void a_sound_file_has_no_defects_and_its_sizes_add_up(void **state)
         scratch_init(&scratch);
         write_picture(&scratch, PICTURE_MIXED, compression);
         struct found found = {0};
-        SluiceStoreReport report;
+        SluiceStoreReport report = {.structSize = sizeof report};
         CHECK_OK(verify(scratch.path, &found, &report));
         assert_int_equal(found.count, 0);
         assert_true(found.progress_calls > 1);
@@ -93,7 +97,7 @@ static void every_damaged_tile_is_named_with_its_place(void **state)
         store.bytes[naive_store_chunk(&store, bad[i]).offset + 5] ^= 0x10;
     write_bytes(scratch.path, store.bytes, store.size);
     struct found found = {0};
-    SluiceStoreReport report;
+    SluiceStoreReport report = {.structSize = sizeof report};
     CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CORRUPT_DATA);
     assert_int_equal(found.count, 4);
     assert_int_equal(report.defectCount, 4);
@@ -125,7 +129,7 @@ static void a_damaged_block_of_the_index_costs_its_tiles_and_no_others(void **st
     bytes[8192 + 7] ^= 1;
     write_bytes(scratch.path, bytes, size);
     struct found found = {0};
-    SluiceStoreReport report;
+    SluiceStoreReport report = {.structSize = sizeof report};
     CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CORRUPT_DATA);
     assert_int_equal(report.defectCount, report.tileCount - 204);
     for (uint32_t i = 0; i < found.count; i++)
@@ -141,7 +145,7 @@ static void verifying_stops_when_it_is_told_to(void **state)
     scratch_init(&scratch);
     write_picture(&scratch, PICTURE_SMOOTH, 3);
     struct found found = {.stop_at = 3};
-    SluiceStoreReport report;
+    SluiceStoreReport report = {.structSize = sizeof report};
     CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CANCELLED);
     assert_int_equal(report.tileCount, found.last_done);
     scratch_finish(&scratch);
@@ -153,7 +157,7 @@ static void what_cannot_be_opened_cannot_be_verified(void **state)
     struct scratch scratch;
     scratch_init(&scratch);
     struct found found = {0};
-    SluiceStoreReport report;
+    SluiceStoreReport report = {.structSize = sizeof report};
     CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_FILE_NOT_FOUND);
     assert_int_equal(report.tileCount, 0);
     write_bytes(scratch.path, "text", 4);

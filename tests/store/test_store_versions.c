@@ -15,7 +15,8 @@ struct change {
 static void write_changed(const struct scratch *scratch, const struct change *changes, int count,
                           bool reseals)
 {
-    SluiceStoreCreateInfo info = {.pPath = scratch->path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = scratch->path,
                                   .width = 200,
                                   .height = 140,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
@@ -47,9 +48,9 @@ static SluiceResult read_changed(size_t at, unsigned char value, bool reseals,
 
 static SluiceStoreInfo info_of(const char *path)
 {
-    SluiceStoreImageSourceCreateInfo create = {.pPath = path};
+    SluiceStoreImageSourceCreateInfo create = {.structSize = sizeof create, .pPath = path};
     SluiceImageSource *source;
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceCreateStoreImageSource(&create, &source));
     CHECK_OK(sluiceGetStoreInfo(source, &info));
     sluiceDestroyImageSource(source);

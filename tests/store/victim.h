@@ -16,7 +16,8 @@ struct victim {
 static inline void victim_init(struct victim *victim, uint32_t compression)
 {
     scratch_init(&victim->scratch);
-    SluiceStoreCreateInfo info = {.pPath = victim->scratch.path,
+    SluiceStoreCreateInfo info = {.structSize = sizeof info,
+                                  .pPath = victim->scratch.path,
                                   .width = 300,
                                   .height = 140,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,

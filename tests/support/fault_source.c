@@ -70,7 +70,8 @@ static void destroy(SluiceImageSource *base)
     (void)base; /* belongs to the test */
 }
 
-static const SluiceImageSourceInterface fault_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface fault_interface = {sizeof fault_interface, get_info,
+                                                           read_region, destroy};
 
 void fault_source_init(struct fault_source *source, SluiceImageSource *inner)
 {

@@ -18,7 +18,8 @@ static SluiceTextureId add_row(SluiceStreamedTextureManager *manager, uint32_t t
                                             .tileWidth = 128,
                                             .tileHeight = 128};
     uint8_t map[WAITING] = {0};
-    const SluiceFeedbackDesc feedback = {.pMinMip = map, .width = tile_count, .height = 1};
+    const SluiceFeedbackDesc feedback = {
+        .structSize = sizeof feedback, .pMinMip = map, .width = tile_count, .height = 1};
     SluiceTextureId id;
     CHECK_OK(sluiceAddStreamedTexture(manager, &desc, &id));
     CHECK_OK(sluiceUpdateWithSamplerFeedback(manager, id, &feedback, 0, 1));

@@ -63,7 +63,8 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct mode_case *c = &cases[i];
         SluiceProceduralImage image = {NULL, texel};
-        SluiceImageInfo grey = {.width = 64,
+        SluiceImageInfo grey = {.structSize = sizeof grey,
+                                .width = 64,
                                 .height = 64,
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                 .addressModeU = c->recorded[0],

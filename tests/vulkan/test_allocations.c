@@ -80,7 +80,8 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                        .allocations = {.callbacks = {&w->allocations, allocate, release}}};
     SluiceProceduralImage image = {NULL, texel};
     for (uint32_t i = 0; i < SHAPES; i++) {
-        SluiceImageInfo grey = {.width = sizes[i][0],
+        SluiceImageInfo grey = {.structSize = sizeof grey,
+                                .width = sizes[i][0],
                                 .height = sizes[i][1],
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                 .pName = "grey"};

@@ -55,8 +55,11 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {
-        .width = 64, .height = 64, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = 64,
+                            .height = 64,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     SluiceVulkanTextureCreateInfo create = {0};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
     SluiceVulkanTexture texture;
@@ -103,8 +106,11 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {
-        .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = 2048,
+                            .height = 2048,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     SluiceVulkanTextureCreateInfo create = {0};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
     SluiceVulkanTexture texture;
@@ -147,8 +153,11 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {
-        .width = 2048, .height = 2048, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = 2048,
+                            .height = 2048,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     SluiceImageSource *sources[2];
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < 2; i++) {
@@ -165,7 +174,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
         frame(&fake, streamer, time);
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
     assert_true(stats.pageChunkShortages > 0);
-    SluiceStreamedTextureLayout layout;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
     CHECK_OK(sluiceGetTextureLayout(manager, texture.textureId, &layout));
     for (uint32_t i = 0; i < layout.tileCount; i++) {

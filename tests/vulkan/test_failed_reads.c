@@ -47,7 +47,8 @@ static void destroy(SluiceImageSource *base)
     (void)base;
 }
 
-static const SluiceImageSourceInterface broken_interface = {get_info, read_region, destroy};
+static const SluiceImageSourceInterface broken_interface = {sizeof broken_interface, get_info,
+                                                            read_region, destroy};
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                   uint32_t height, float rgba[4])
@@ -88,7 +89,8 @@ static void on_log(void *user, SluiceLogSeverity severity, const char *message)
 static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_t rest)
 {
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo image_info = {.width = SIZE,
+    SluiceImageInfo image_info = {.structSize = sizeof image_info,
+                                  .width = SIZE,
                                   .height = SIZE,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                   .pName = "broken picture"};
@@ -176,7 +178,8 @@ static void check_given_up(struct fixture *f)
 static void check_counts(struct fixture *f)
 {
     SluiceVulkanStreamerStatistics stats;
-    SluiceTileLoaderStatistics reads, all;
+    SluiceTileLoaderStatistics reads = {.structSize = sizeof reads},
+                               all = {.structSize = sizeof all};
     sluiceGetVulkanStreamerStatistics(f->streamer, &stats);
     CHECK_OK(sluiceGetVulkanReadStatistics(f->streamer, &f->source.base, &reads));
     CHECK_OK(sluiceGetVulkanReadStatistics(f->streamer, NULL, &all));
@@ -354,7 +357,7 @@ static void statistics_of_a_removed_texture_are_forgotten(void **state)
 {
     (void)state;
     static struct fixture f; /* large */
-    SluiceTileLoaderStatistics reads;
+    SluiceTileLoaderStatistics reads = {.structSize = sizeof reads};
     setup(&f, SLUICE_RESIDENCY_MODE_SPARSE);
     SluiceVulkanTextureCreateInfo again = {.source = &f.source.base};
     SluiceVulkanTexture second;

@@ -130,7 +130,8 @@ static void expect_misses(const struct picture *p, uint32_t trials, bool exactly
 static struct picture picture_of(SluiceFeedbackSelection selection, struct rectangle pixels,
                                  uint32_t turn, bool in_turns)
 {
-    return (struct picture){.rate = {.selection = selection,
+    return (struct picture){.rate = {.structSize = sizeof(SluiceFeedbackRate),
+                                     .selection = selection,
                                      .regionWidth = pixels.width,
                                      .regionHeight = pixels.height,
                                      .textureCount = turn,
@@ -375,7 +376,7 @@ static void delays_are_exceeded_as_often_as_predicted(void **state)
         uint32_t side = sides[i % 3 + 1];
         struct rectangle pixels = {640, 358, side, side};
         struct picture p = picture_of((SluiceFeedbackSelection)(i / 3), pixels, 1, false);
-        SluiceFeedbackDelay delay;
+        SluiceFeedbackDelay delay = {.structSize = sizeof delay};
         p.probability = 0.01f;
         CHECK_OK(sluicePredictFeedbackDelay(&p.rate, 0.01f, &delay));
         check_quantile(&p, delay.median, 0.5);

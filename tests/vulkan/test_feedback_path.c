@@ -19,8 +19,11 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
 static SluiceImageSource *grey_source(void)
 {
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo info = {
-        .width = 512, .height = 512, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = 512,
+                            .height = 512,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;

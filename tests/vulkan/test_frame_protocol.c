@@ -76,13 +76,15 @@ static void model_add(struct model *m)
     m->added++;
     *t = (struct texture){.used = true};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo info = {.width = size[0],
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = size[0],
                             .height = size[1],
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
     SluiceVulkanTextureCreateInfo create = {.source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
+    t->layout.structSize = sizeof t->layout;
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
                                     t->texture.textureId, &t->layout));
     assert_true(t->layout.tileCount <= MAX_TILES);
@@ -515,7 +517,7 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     struct model window = {.window = 1};
     fake.user = &window;
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "grey"};
+    SluiceImageInfo grey = {sizeof grey, 300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "grey"};
     SluiceImageSource *layer, *array;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &layer));
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,

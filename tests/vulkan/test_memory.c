@@ -49,8 +49,11 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .layer_size = MIB, .want = want, .user = &s}};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {
-        .width = SIZE, .height = SIZE, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = SIZE,
+                            .height = SIZE,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = {
         .feedbackTimeout = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};

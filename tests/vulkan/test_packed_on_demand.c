@@ -44,8 +44,11 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
                        .seed = 1,
                        .regions = SIZE / FAKE_TILE * (SIZE / FAKE_TILE)};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {
-        .width = SIZE, .height = SIZE, .format = SLUICE_FORMAT_R8G8B8A8_UNORM, .pName = "grey"};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = SIZE,
+                            .height = SIZE,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     info.packedLevelsOnDemand = true;
     info.feedbackTimeout = 2;

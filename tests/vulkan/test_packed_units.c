@@ -10,12 +10,12 @@
 
 enum { SLOT = 65536 };
 
-static const SluiceFormatInfo texel = {4, 1, 1, 4};
+static const SluiceFormatInfo texel = {sizeof texel, 4, 1, 1, 4};
 
 /* Every texel of every packed level is in exactly one rectangle, and no two share slot bytes. */
 static void check(uint32_t width, uint32_t height, uint32_t regular, SluiceFormat format)
 {
-    SluiceFormatInfo info;
+    SluiceFormatInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetFormatInfo(format, &info));
     SluiceAllocationCallbacks cb = slc_allocator(NULL);
     SluiceStreamedTextureDesc desc = {.width = width,

@@ -100,11 +100,14 @@ static void model_add(struct model *m)
     *t = (struct texture){.number = ++m->next_number, .first_word = UINT32_MAX};
     m->numbers[t->number] = t->number;
     SluiceProceduralImage image = {&m->numbers[t->number], texel};
-    SluiceImageInfo info = {
-        .width = size[0], .height = size[1], .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .width = size[0],
+                            .height = size[1],
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
     SluiceVulkanTextureCreateInfo create = {.source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
+    t->layout.structSize = sizeof t->layout;
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
                                     t->texture.textureId, &t->layout));
 }

@@ -7,7 +7,11 @@
 
 static SluiceImageInfo image(uint32_t width, uint32_t height, SluiceFormat format)
 {
-    return (SluiceImageInfo){width, height, slc_mip_count(slc_max_u32(width, height)), format,
+    return (SluiceImageInfo){sizeof(SluiceImageInfo),
+                             width,
+                             height,
+                             slc_mip_count(slc_max_u32(width, height)),
+                             format,
                              "test"};
 }
 
@@ -58,7 +62,7 @@ static void many_page_tail_is_as_many_packed_tiles(void **state)
     assert_int_equal(layout.desc.packedTileCount, 44);
     SluiceTile tile = {.mipLevel = 1, .x = 43};
     assert_int_equal(slc_sparse_layout_place(&layout, &tile).x, 43);
-    SluiceStreamedTextureLayout streamed;
+    SluiceStreamedTextureLayout streamed = {.structSize = sizeof streamed};
     CHECK_OK(sluiceGetStreamedTextureLayout(&layout.desc, &streamed));
     assert_int_equal(streamed.tileCount, 128 + 44);
 }
@@ -72,7 +76,7 @@ static void image_that_is_all_tail_has_one_region(void **state)
     struct slc_sparse_layout layout;
     CHECK_OK(slc_sparse_layout_init(&layout, &info, &small, &c, NULL, SPACE));
     assert_int_equal(layout.desc.regularMipCount, 0);
-    SluiceStreamedTextureLayout streamed;
+    SluiceStreamedTextureLayout streamed = {.structSize = sizeof streamed};
     CHECK_OK(sluiceGetStreamedTextureLayout(&layout.desc, &streamed));
     assert_int_equal(streamed.feedbackWidth * streamed.feedbackHeight, 1);
     assert_int_equal(streamed.minMipWidth * streamed.minMipHeight, 1);

@@ -66,24 +66,39 @@ static void infos_that_no_image_has_are_refused_in_every_mode(void **state)
 {
     (void)state;
     static struct fake_vulkan fake; /* large */
-    static const SluiceImageSourceInterface interface = {lie, read_nothing, NULL, NULL};
+    static const SluiceImageSourceInterface interface = {sizeof interface, lie, read_nothing, NULL,
+                                                         NULL};
     static const struct {
         SluiceImageInfo info;
         uint32_t layers;
         const char *line;
     } cases[] = {
-        {{0, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "width"},
-        {{512, 0, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "height"},
-        {{(1u << 20) + 1, 4, 21, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "width"},
-        {{512, UINT32_MAX, 32, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "height"},
-        {{512, 512, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "mipLevelCount"},
-        {{512, 512, 1, SLUICE_FORMAT_R8G8B8A8_UNORM, "level 0 alone"}, 1, "mipLevelCount"},
-        {{512, 512, 11, SLUICE_FORMAT_R8G8B8A8_UNORM, NULL}, 1, "mipLevelCount"},
-        {{512, 512, UINT32_MAX, SLUICE_FORMAT_R8G8B8A8_UNORM, ""}, 1, "mipLevelCount"},
-        {{512, 512, 10, SLUICE_FORMAT_UNDEFINED, "a"}, 1, "format"},
-        {{512, 512, 10, (SluiceFormat)SLUICE_FORMAT_COUNT, "a"}, 1, "format"},
-        {{512, 512, 10, (SluiceFormat)-5, "a"}, 1, "format"},
-        {{512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a", UINT32_MAX},
+        {{sizeof(SluiceImageInfo), 0, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "width"},
+        {{sizeof(SluiceImageInfo), 512, 0, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}, 1, "height"},
+        {{sizeof(SluiceImageInfo), (1u << 20) + 1, 4, 21, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"},
+         1,
+         "width"},
+        {{sizeof(SluiceImageInfo), 512, UINT32_MAX, 32, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"},
+         1,
+         "height"},
+        {{sizeof(SluiceImageInfo), 512, 512, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"},
+         1,
+         "mipLevelCount"},
+        {{sizeof(SluiceImageInfo), 512, 512, 1, SLUICE_FORMAT_R8G8B8A8_UNORM, "level 0 alone"},
+         1,
+         "mipLevelCount"},
+        {{sizeof(SluiceImageInfo), 512, 512, 11, SLUICE_FORMAT_R8G8B8A8_UNORM, NULL},
+         1,
+         "mipLevelCount"},
+        {{sizeof(SluiceImageInfo), 512, 512, UINT32_MAX, SLUICE_FORMAT_R8G8B8A8_UNORM, ""},
+         1,
+         "mipLevelCount"},
+        {{sizeof(SluiceImageInfo), 512, 512, 10, SLUICE_FORMAT_UNDEFINED, "a"}, 1, "format"},
+        {{sizeof(SluiceImageInfo), 512, 512, 10, (SluiceFormat)SLUICE_FORMAT_COUNT, "a"},
+         1,
+         "format"},
+        {{sizeof(SluiceImageInfo), 512, 512, 10, (SluiceFormat)-5, "a"}, 1, "format"},
+        {{sizeof(SluiceImageInfo), 512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a", UINT32_MAX},
          UINT32_MAX,
          "arrayLayerCount"},
     };
@@ -299,8 +314,10 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
 {
     (void)state;
     static struct fake_vulkan fake; /* large */
-    static const SluiceImageSourceInterface interface = {lie, read_nothing, NULL, NULL};
-    struct liar source = {{&interface}, {512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}};
+    static const SluiceImageSourceInterface interface = {sizeof interface, lie, read_nothing, NULL,
+                                                         NULL};
+    struct liar source = {
+        {&interface}, {sizeof(SluiceImageInfo), 512, 512, 10, SLUICE_FORMAT_R8G8B8A8_UNORM, "a"}};
     struct lines lines = {0};
     SluiceVulkanStreamer *streamer;
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
@@ -311,7 +328,8 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     SluiceStreamedTextureDesc desc = {512, 512, 10, 2, 1, 128, 128};
     SluiceTextureId id;
     uint8_t map[16] = {0};
-    SluiceFeedbackDesc feedback = {.pMinMip = map, .width = 4, .height = 4};
+    SluiceFeedbackDesc feedback = {
+        .structSize = sizeof feedback, .pMinMip = map, .width = 4, .height = 4};
     SluiceTile tiles[4];
     SluiceTileMove moves[4];
     SluiceMinMipRect rects[4];
@@ -334,8 +352,9 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     CHECK_RESULT(sluiceGetMinMipUpdates(manager, &count, rects), refused);
     CHECK_RESULT(sluiceRemoveStreamedTexture(manager, id, 1), refused);
     sluiceDestroyStreamedTextureManager(manager);
-    SluiceStreamedTextureStatistics statistics;
-    SluiceStreamedTextureManagerConfig config = {.numExtraStandbyTiles = 3};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = 3};
     CHECK_OK(sluiceGetStatistics(manager, &statistics));
     assert_int_equal(statistics.textureCount, 1);
     CHECK_OK(sluiceSetConfig(manager, &config));

@@ -87,9 +87,12 @@ static bool on_progress(void *user, uint64_t done, uint64_t total)
 static void bake(struct run *run, struct bake_job *job)
 {
     struct task task = {run, job, 0};
-    SluiceBakeInfo info = {.pInputPath = job->input,
+    job->settings.structSize = sizeof job->settings;
+    job->report.structSize = sizeof job->report;
+    SluiceBakeInfo info = {.structSize = sizeof info,
+                           .pInputPath = job->input,
                            .pOutputPath = job->output,
-                           .settings = job->settings,
+                           .pSettings = &job->settings,
                            .force = job->force,
                            .pUserData = &task,
                            .pfnProgress = on_progress};
@@ -179,8 +182,10 @@ static bool start(struct run *run)
 bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_conditions *conditions)
 {
     struct run run = {.conditions = conditions, .jobs = jobs, .count = count};
-    SluiceBakerCreateInfo info = {
-        .threadCount = conditions->threads, .maxMemory = conditions->memory, .log = {&run, on_log}};
+    SluiceBakerCreateInfo info = {.structSize = sizeof info,
+                                  .threadCount = conditions->threads,
+                                  .maxMemory = conditions->memory,
+                                  .log = {&run, on_log}};
     SluiceResult result = sluiceCreateBaker(&info, &run.baker);
     if (result != SLUICE_SUCCESS) {
         text_say("%spictures cannot be baked: %s", conditions->speaker, sluiceResultString(result));

@@ -100,6 +100,7 @@ static void read_texture(struct feedback_trace *t, struct feedback_texture *text
     if (t->why)
         return;
     const char *why = "a texture's sizes and level counts do not fit together";
+    texture->layout.structSize = sizeof texture->layout;
     if (sluiceGetStreamedTextureLayout(&desc, &texture->layout) == SLUICE_SUCCESS)
         why = check_texture(&desc, &texture->layout, &stated);
     if (!why && texture->primary >= t->texture_count)

@@ -42,8 +42,8 @@ static void print_row(const char *path, SluiceResult result, const SluiceStoreRe
 
 static bool verify(const char *path, bool json)
 {
-    SluiceStoreReport report = {0};
-    SluiceStoreVerifyInfo info = {.pPath = path, .log = {NULL, on_log}};
+    SluiceStoreReport report = {.structSize = sizeof report};
+    SluiceStoreVerifyInfo info = {.structSize = sizeof info, .pPath = path, .log = {NULL, on_log}};
     SluiceResult result = sluiceVerifyStore(&info, &report);
     if (json)
         print_object(path, result, &report);

@@ -110,7 +110,7 @@ static void ask_format(const struct devices *d, VkDevice device, SluiceFormat fo
     if (sluiceGetVulkanFormatCapabilities(d->instance, physical, d->get, format,
                                           &f->capabilities) != SLUICE_SUCCESS)
         return;
-    SluiceImageInfo image = {report->width, report->height, 0, format, "probe"};
+    SluiceImageInfo image = {sizeof image, report->width, report->height, 0, format, "probe"};
     f->has_layout = device && f->capabilities.sparse &&
                     sluiceGetVulkanSparseImageLayout(d->instance, physical, device, d->get, NULL,
                                                      &image, &f->layout) == SLUICE_SUCCESS;

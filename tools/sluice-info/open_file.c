@@ -45,7 +45,7 @@ static bool read_start(const char *path, char bytes[12])
 static SluiceResult open_store(struct texture_file *file, const char *path, SluiceLogCallback log)
 {
 #ifdef HAVE_STORE
-    SluiceStoreImageSourceCreateInfo info = {.pPath = path, .log = log};
+    SluiceStoreImageSourceCreateInfo info = {.structSize = sizeof info, .pPath = path, .log = log};
     file->kind = "tile store";
     file->is_store = true;
     return sluiceCreateStoreImageSource(&info, &file->source);
@@ -59,7 +59,8 @@ static SluiceResult open_exr(struct texture_file *file, const char *path,
                              const struct texture_opening *opening, SluiceLogCallback log)
 {
 #ifdef HAVE_EXR
-    SluiceExrImageSourceCreateInfo info = {.pPath = path,
+    SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,
+                                           .pPath = path,
                                            .log = log,
                                            .maxImageSize = UINT64_MAX,
                                            .levelZeroAlone = opening->level_zero_alone,
@@ -79,9 +80,9 @@ static SluiceResult open_container(struct texture_file *file, const char *path, 
                                    const struct texture_opening *opening, SluiceLogCallback log)
 {
 #ifdef HAVE_CONTAINER
-    SluiceDdsImageSourceCreateInfo dds = {.pPath = path, .log = log};
+    SluiceDdsImageSourceCreateInfo dds = {.structSize = sizeof dds, .pPath = path, .log = log};
     SluiceKtx2ImageSourceCreateInfo ktx2 = {
-        .pPath = path, .log = log, .maxCacheSize = opening->memory};
+        .structSize = sizeof ktx2, .pPath = path, .log = log, .maxCacheSize = opening->memory};
     file->kind = is_dds ? "DDS" : "KTX2";
     return is_dds ? sluiceCreateDdsImageSource(&dds, &file->source)
                   : sluiceCreateKtx2ImageSource(&ktx2, &file->source);
@@ -113,6 +114,7 @@ bool open_texture_file(struct texture_file *file, const char *path,
                  path);
         return false;
     }
+    file->image.structSize = sizeof file->image;
     if (result == SLUICE_SUCCESS)
         result = sluiceGetImageInfo(file->source, &file->image);
     if (result == SLUICE_SUCCESS)

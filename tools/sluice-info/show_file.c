@@ -112,7 +112,7 @@ static void print_store_json(const SluiceStoreInfo *s)
 static void show_what_is_in_a_store(const struct texture_file *file, bool json)
 {
 #ifdef HAVE_STORE
-    SluiceStoreInfo info;
+    SluiceStoreInfo info = {.structSize = sizeof info};
     if (!file->is_store || sluiceGetStoreInfo(file->source, &info) != SLUICE_SUCCESS)
         return;
     if (json)
@@ -180,7 +180,7 @@ static void print_exr_json(const SluiceExrInfo *e)
 static void show_what_is_in_an_exr(const struct texture_file *file, bool json)
 {
 #ifdef HAVE_EXR
-    SluiceExrInfo info;
+    SluiceExrInfo info = {.structSize = sizeof info};
     if (sluiceGetExrInfo(file->source, &info) != SLUICE_SUCCESS)
         return;
     if (json)

@@ -62,13 +62,15 @@ static void log_message(void *user, SluiceLogSeverity severity, const char *mess
 }
 
 static SluiceResult replay(const struct options *o, const char *data, size_t size,
-                           struct output *output, SluiceReplayResult *result)
+                           struct output *output, SluiceReplayResult *result,
+                           SluiceStreamedTextureStatistics *statistics)
 {
     size_t expected = output->expectation ? output->expectation->size : 0;
     struct limited_memory memory = {o->memory - expected - size};
     const SluiceAllocationCallbacks callbacks = {&memory, allocate, release};
     /* The log's user pointer is not const; it is only printed. */
     const SluiceReplayInfo info = {
+        .structSize = sizeof info,
         .pData = data,
         .size = size,
         .pAllocator = &callbacks,
@@ -82,6 +84,7 @@ static SluiceResult replay(const struct options *o, const char *data, size_t siz
         .latency = o->latency,
         .timeoutMicros = (uint64_t)(o->timeout * 1e6 + 0.5),
         .pRecordPath = o->record,
+        .pStatistics = statistics,
     };
     return sluiceReplay(&info, result);
 }
@@ -95,8 +98,9 @@ static bool run(const struct options *o, struct expectation *expectation)
     if (!read_trace(o->trace, o->memory - expected, &data, &size))
         return false;
     struct output output = {o->dump, expectation};
-    SluiceReplayResult result = {0};
-    SluiceResult status = replay(o, data, size, &output, &result);
+    SluiceReplayResult result = {.structSize = sizeof result};
+    SluiceStreamedTextureStatistics statistics = {.structSize = sizeof statistics};
+    SluiceResult status = replay(o, data, size, &output, &result, &statistics);
     free(data);
     if (status != SLUICE_SUCCESS) {
         char where[32] = "";
@@ -109,9 +113,9 @@ static bool run(const struct options *o, struct expectation *expectation)
         return false;
     }
     if (o->json)
-        print_json(&result);
+        print_json(&result, &statistics);
     else if (!o->dump)
-        print_report(&result);
+        print_report(&result, &statistics);
     return result.divergedEvent == 0;
 }
 

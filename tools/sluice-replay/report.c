@@ -13,9 +13,9 @@ struct figure {
 
 #define FIGURES_MOST 20
 
-static size_t get_manager_figures(const SluiceReplayResult *result, struct figure *figures)
+static size_t get_manager_figures(const SluiceReplayResult *result,
+                                  const SluiceStreamedTextureStatistics *s, struct figure *figures)
 {
-    const SluiceStreamedTextureStatistics *s = &result->statistics;
     const struct figure all[] = {
         {"events", result->eventCount, "calls"},
         {"textures", s->textureCount, "textures"},
@@ -65,11 +65,13 @@ static size_t get_demand_figures(const SluiceReplayResult *result, struct figure
     return sizeof all / sizeof *all;
 }
 
-static size_t get_figures(const SluiceReplayResult *result, struct figure figures[FIGURES_MOST])
+static size_t get_figures(const SluiceReplayResult *result,
+                          const SluiceStreamedTextureStatistics *s,
+                          struct figure figures[FIGURES_MOST])
 {
     return result->kind == SLUICE_TRACE_KIND_DEMAND_RECORDING
                ? get_demand_figures(result, figures)
-               : get_manager_figures(result, figures);
+               : get_manager_figures(result, s, figures);
 }
 
 static bool has_host_memory(const SluiceReplayResult *result)
@@ -77,27 +79,27 @@ static bool has_host_memory(const SluiceReplayResult *result)
     return result->kind != SLUICE_TRACE_KIND_DEMAND_RECORDING;
 }
 
-void print_report(const SluiceReplayResult *result)
+void print_report(const SluiceReplayResult *result, const SluiceStreamedTextureStatistics *s)
 {
     struct figure figures[FIGURES_MOST];
-    size_t count = get_figures(result, figures);
+    size_t count = get_figures(result, s, figures);
     for (size_t i = 0; i < count; i++)
         printf("%-18s %12" PRIu64 " %s\n", figures[i].name, figures[i].value, figures[i].unit);
     if (has_host_memory(result))
-        printf("%-18s %12" PRIu64 " bytes\n", "host_memory", result->statistics.hostMemorySize);
+        printf("%-18s %12" PRIu64 " bytes\n", "host_memory", s->hostMemorySize);
     printf("hash %016" PRIx64 " events %" PRIu64 "\n", result->decisionHash, result->eventCount);
 }
 
-void print_json(const SluiceReplayResult *result)
+void print_json(const SluiceReplayResult *result, const SluiceStreamedTextureStatistics *s)
 {
     struct figure figures[FIGURES_MOST];
-    size_t count = get_figures(result, figures);
+    size_t count = get_figures(result, s, figures);
     for (size_t i = 0; i < count; i++)
         printf("{\"name\": \"%s\", \"value\": %" PRIu64 ", \"unit\": \"%s\"}\n", figures[i].name,
                figures[i].value, figures[i].unit);
     if (has_host_memory(result))
         printf("{\"name\": \"host_memory\", \"value\": %" PRIu64 ", \"unit\": \"bytes\"}\n",
-               result->statistics.hostMemorySize);
+               s->hostMemorySize);
     printf("{\"name\": \"hash\", \"value\": \"%016" PRIx64 "\", \"unit\": \"fnv1a64\"}\n",
            result->decisionHash);
 }

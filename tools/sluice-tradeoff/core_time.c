@@ -32,7 +32,7 @@ static void count_call(void *user, const char *line)
 
 static bool play(const SluiceReplayInfo *info, double *seconds)
 {
-    SluiceReplayResult result;
+    SluiceReplayResult result = {.structSize = sizeof result};
     double began = clock_seconds();
     if (sluiceReplay(info, &result) != SLUICE_SUCCESS || result.divergedEvent != 0)
         return false;
@@ -44,8 +44,11 @@ double core_time_count_frames(const char *data, size_t size)
 {
     struct calls calls = {0};
     double seconds = NAN;
-    const SluiceReplayInfo info = {
-        .pData = data, .size = size, .pUserData = &calls, .pfnLine = count_call};
+    const SluiceReplayInfo info = {.structSize = sizeof info,
+                                   .pData = data,
+                                   .size = size,
+                                   .pUserData = &calls,
+                                   .pfnLine = count_call};
     return play(&info, &seconds) ? fmax(calls.retire, calls.map) : 0.0;
 }
 
@@ -56,7 +59,7 @@ double core_time_per_frame(const char *trace_path)
     double start = clock_seconds(), best = NAN;
     if (!read_file(trace_path, &data, &size))
         return NAN;
-    const SluiceReplayInfo info = {.pData = data, .size = size};
+    const SluiceReplayInfo info = {.structSize = sizeof info, .pData = data, .size = size};
     double frame_count = core_time_count_frames(data, size);
     bool played = frame_count > 0.0;
     for (int i = 0; i < PLAYS && played && clock_seconds() - start < LONG_ENOUGH; i++)

@@ -107,6 +107,7 @@ double play_feedback_predict_miss(const struct play_feedback *f, double frame_ra
     if (f->count == 0 || f->map_count != (uint64_t)f->count * f->trace->frame_count)
         return NAN;
     const SluiceFeedbackRate rate = {
+        .structSize = sizeof rate,
         .selection = SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS,
         .regionWidth = o->probability < 1 ? o->writers : 1,
         .regionHeight = 1,

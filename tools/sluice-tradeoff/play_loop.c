@@ -56,12 +56,14 @@ static bool create_manager(struct play_loop *l)
 {
     const struct play_options *o = l->options;
     const SluiceStreamedTextureManagerCreateInfo info = {
+        .structSize = sizeof info,
         .heapAllocator = {l, allocate_heap, release_heap},
         .heapTileCapacity = o->heap_tiles,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
         .alwaysMapPackedTiles = true,
     };
     const SluiceStreamedTextureManagerConfig config = {
+        .structSize = sizeof config,
         .numExtraStandbyTiles = o->standby,
         .maxHeapCount = o->max_heaps,
         .missesToForget = o->misses_to_forget,
@@ -150,7 +152,7 @@ static bool give_feedback(struct play_loop *l)
 {
     const uint64_t timeout = (uint64_t)(l->options->timeout * 1e6 + 0.5);
     uint32_t index;
-    SluiceFeedbackDesc feedback = {.mipBias = l->options->mip_bias};
+    SluiceFeedbackDesc feedback = {.structSize = sizeof feedback, .mipBias = l->options->mip_bias};
     play_feedback_begin_reading(&l->feedback);
     while (play_feedback_next(&l->feedback, &index, &feedback.pMinMip)) {
         feedback.width = l->trace->textures[index].layout.feedbackWidth;
@@ -270,6 +272,7 @@ static bool publish(struct play_loop *l)
 static bool end_frame(struct play_loop *l, uint32_t frame)
 {
     SluiceStreamedTextureStatistics *s = &l->statistics;
+    s->structSize = sizeof *s;
     if (!check(sluiceGetStatistics(l->manager, s), "sluiceGetStatistics"))
         return false;
     l->now.requested_tiles = s->requestedTileCount;

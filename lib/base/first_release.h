@@ -1,0 +1,57 @@
+/**
+ * Size of each growing struct in the first release that has it, by its last field then. A field
+ * added later changes nothing here.
+ *
+ * The lines are macros: a layer uses those of its own structs. tests/struct_size stops the build if
+ * a struct with structSize has no line.
+ */
+#ifndef SLC_BASE_FIRST_RELEASE_H
+#define SLC_BASE_FIRST_RELEASE_H
+
+#include <stddef.h>
+
+#define SLC_UP_TO(type, last) (offsetof(type, last) + sizeof(((type *)0)->last))
+
+#define SLC_FIRST_SluiceFormatInfo SLC_UP_TO(SluiceFormatInfo, channelCount)
+#define SLC_FIRST_SluiceImageInfo SLC_UP_TO(SluiceImageInfo, addressModeV)
+#define SLC_FIRST_SluiceImageSourceInterface                                                       \
+    SLC_UP_TO(SluiceImageSourceInterface, pfnReadRegionLocated)
+#define SLC_FIRST_SluiceTileReadFailure SLC_UP_TO(SluiceTileReadFailure, offset)
+#define SLC_FIRST_SluiceTileLoaderCreateInfo SLC_UP_TO(SluiceTileLoaderCreateInfo, end)
+#define SLC_FIRST_SluiceTileLoaderStatistics                                                       \
+    SLC_UP_TO(SluiceTileLoaderStatistics, lastFailureOffset)
+#define SLC_FIRST_SluiceStreamedTextureManagerCreateInfo                                           \
+    SLC_UP_TO(SluiceStreamedTextureManagerCreateInfo, pLocked)
+#define SLC_FIRST_SluiceStreamedTextureManagerConfig                                               \
+    SLC_UP_TO(SluiceStreamedTextureManagerConfig, noMipBias)
+#define SLC_FIRST_SluiceStreamedTextureLayout SLC_UP_TO(SluiceStreamedTextureLayout, levelFirstTile)
+#define SLC_FIRST_SluiceFeedbackDesc SLC_UP_TO(SluiceFeedbackDesc, streamedMipLevels)
+#define SLC_FIRST_SluiceStreamedTextureStatistics                                                  \
+    SLC_UP_TO(SluiceStreamedTextureStatistics, givenUpRetriedTotal)
+#define SLC_FIRST_SluiceFileRecordingInfo SLC_UP_TO(SluiceFileRecordingInfo, log)
+#define SLC_FIRST_SluiceReplayInfo SLC_UP_TO(SluiceReplayInfo, pStatistics)
+#define SLC_FIRST_SluiceReplayResult SLC_UP_TO(SluiceReplayResult, demand)
+#define SLC_FIRST_SluiceFeedbackRate SLC_UP_TO(SluiceFeedbackRate, timeout)
+#define SLC_FIRST_SluiceFeedbackDelay SLC_UP_TO(SluiceFeedbackDelay, percentile99)
+#define SLC_FIRST_SluicePicturePair SLC_UP_TO(SluicePicturePair, peak)
+#define SLC_FIRST_SluiceExrImageSourceCreateInfo                                                   \
+    SLC_UP_TO(SluiceExrImageSourceCreateInfo, keepPrimaries)
+#define SLC_FIRST_SluiceExrInfo SLC_UP_TO(SluiceExrInfo, chromaticities)
+#define SLC_FIRST_SluiceExrWriteInfo SLC_UP_TO(SluiceExrWriteInfo, pfnProgress)
+#define SLC_FIRST_SluiceDdsImageSourceCreateInfo SLC_UP_TO(SluiceDdsImageSourceCreateInfo, log)
+#define SLC_FIRST_SluiceKtx2ImageSourceCreateInfo                                                  \
+    SLC_UP_TO(SluiceKtx2ImageSourceCreateInfo, maxCacheSize)
+#define SLC_FIRST_SluiceStoreCreateInfo SLC_UP_TO(SluiceStoreCreateInfo, log)
+#define SLC_FIRST_SluiceStoreImageSourceCreateInfo                                                 \
+    SLC_UP_TO(SluiceStoreImageSourceCreateInfo, alwaysCheckRawTiles)
+#define SLC_FIRST_SluiceStoreInfo SLC_UP_TO(SluiceStoreInfo, fileSize)
+#define SLC_FIRST_SluiceStoreDefect SLC_UP_TO(SluiceStoreDefect, result)
+#define SLC_FIRST_SluiceStoreVerifyInfo SLC_UP_TO(SluiceStoreVerifyInfo, pfnProgress)
+#define SLC_FIRST_SluiceStoreReport SLC_UP_TO(SluiceStoreReport, rawTileCount)
+#define SLC_FIRST_SluiceBakeSettings SLC_UP_TO(SluiceBakeSettings, keepPrimaries)
+#define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)
+#define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
+#define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
+#define SLC_FIRST_SluiceVulkanContextCreateInfo SLC_UP_TO(SluiceVulkanContextCreateInfo, log)
+
+#endif /* SLC_BASE_FIRST_RELEASE_H */
