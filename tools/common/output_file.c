@@ -80,16 +80,20 @@ static bool is_stream(const char *path)
     return stat(path, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode));
 }
 
+static bool refuse_name(const char *path)
+{
+    text_say("%s%s: two outputs of this run have this name; name another one", speaker, path);
+    return false;
+}
+
 /* Several outputs may go to one pipe or device. */
-static bool take_name(const char *path, enum output_name_use use)
+static bool take_name(const char *path, enum output_name_owner owner)
 {
     if (is_stream(path))
         return true;
-    switch (output_name_take(path, use)) {
+    switch (output_name_take(path, owner)) {
     case OUTPUT_NAME_FREE: return true;
-    case OUTPUT_NAME_TAKEN:
-        text_say("%s%s: two outputs of this run have this name; name another one", speaker, path);
-        return false;
+    case OUTPUT_NAME_TAKEN: return refuse_name(path);
     case OUTPUT_NAME_NO_MEMORY: break;
     }
     text_say("%s%s: out of memory", speaker, path);
@@ -98,7 +102,7 @@ static bool take_name(const char *path, enum output_name_use use)
 
 bool output_claim(const char *path)
 {
-    return output_spares_inputs(path) && take_name(path, OUTPUT_NAME_CLAIMED);
+    return output_spares_inputs(path) && take_name(path, OUTPUT_NAME_OF_LIBRARY);
 }
 
 static void on_log(void *user, SluiceLogSeverity severity, const char *message)
@@ -126,7 +130,7 @@ static struct output_file *begin(const char *path, uint32_t flags)
 {
     const SluiceAllocationCallbacks memory = slc_allocator(NULL);
     const SluiceLogCallback log = {.pfnLog = on_log};
-    if (!output_spares_inputs(path) || !take_name(path, OUTPUT_NAME_BEGUN))
+    if (!output_spares_inputs(path) || (output_name_is_of_library(path) && !refuse_name(path)))
         return NULL;
     struct output_file *file = calloc(1, sizeof *file);
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -141,7 +145,6 @@ static struct output_file *begin(const char *path, uint32_t flags)
     if (file)
         slc_part_file_finish(&file->part, false);
     free(file);
-    output_name_give_back(path);
     return NULL;
 }
 
@@ -162,14 +165,12 @@ bool output_can_write(const char *path)
     struct slc_part_file part;
     if (is_stream(path))
         return true;
-    if (!output_spares_inputs(path) || !take_name(path, OUTPUT_NAME_PROMISED))
+    if (!output_spares_inputs(path) || !take_name(path, OUTPUT_NAME_OF_PROGRAM))
         return false;
     SluiceResult result = slc_part_file_open(&part, path, 0, &memory, &log);
     if (result == SLUICE_ERROR_OUT_OF_HOST_MEMORY)
         text_say("%s%s: out of memory", speaker, path);
     slc_part_file_finish(&part, false);
-    if (result != SLUICE_SUCCESS)
-        output_name_give_back(path);
     return result == SLUICE_SUCCESS;
 }
 
@@ -196,8 +197,6 @@ bool output_file_end(struct output_file *file, bool keep)
         return false;
     keep = keep && flush(file);
     fclose(file->stream); /* the descriptor is synced by the part file, which has another one */
-    if (!keep)
-        output_name_give_back(file->part.target);
     keep = slc_part_file_finish(&file->part, keep) == SLUICE_SUCCESS && keep;
     free(file);
     return keep;

@@ -3,7 +3,7 @@
  * what was there stays. See docs/decisions/0034-one-way-to-write-a-file.md for what is refused.
  *
  * A program names its inputs once, with output_add_input. From then on no output replaces an input.
- * A run writes a name once: a second output of the same name is refused.
+ * A name that was asked for with output_can_write or output_claim belongs to one output of the run.
  */
 #ifndef TOOLS_COMMON_OUTPUT_FILE_H
 #define TOOLS_COMMON_OUTPUT_FILE_H
@@ -40,8 +40,8 @@ bool output_claim(const char *path);
 
 /**
  * Begins a file. `path` with ".sluice-part" added is written, or `path` itself if it is a pipe or a
- * character device. NULL if that fails or would replace an input or an output of this run; stderr
- * says why. Any thread.
+ * character device. NULL if that fails, would replace an input, or has a name that
+ * was claimed; stderr says why. Any thread.
  */
 struct output_file *output_file_begin(const char *path);
 /** Begins a file without waiting for the disk at its end, which takes tens of milliseconds: after a

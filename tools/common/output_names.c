@@ -14,7 +14,7 @@ struct name {
     ino_t folder;
     char *word; ///< last part of the path; owned
     uint64_t hash;
-    enum output_name_use use;
+    enum output_name_owner owner;
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -70,13 +70,8 @@ static bool grow(void)
 /* Takes over the word if the name is new. */
 static enum output_name_answer add(struct name *name)
 {
-    struct name *known = find(name);
-    if (known && (known->use != OUTPUT_NAME_PROMISED || name->use != OUTPUT_NAME_BEGUN))
+    if (find(name))
         return OUTPUT_NAME_TAKEN;
-    if (known) {
-        known->use = name->use;
-        return OUTPUT_NAME_FREE;
-    }
     if (name_count == name_capacity && !grow())
         return OUTPUT_NAME_NO_MEMORY;
     names[name_count++] = *name;
@@ -84,13 +79,13 @@ static enum output_name_answer add(struct name *name)
     return OUTPUT_NAME_FREE;
 }
 
-enum output_name_answer output_name_take(const char *path, enum output_name_use use)
+enum output_name_answer output_name_take(const char *path, enum output_name_owner owner)
 {
     struct name name;
     bool has_memory;
     if (!describe(path, &name, &has_memory))
         return has_memory ? OUTPUT_NAME_FREE : OUTPUT_NAME_NO_MEMORY;
-    name.use = use;
+    name.owner = owner;
     pthread_mutex_lock(&lock);
     enum output_name_answer answer = add(&name);
     pthread_mutex_unlock(&lock);
@@ -98,18 +93,16 @@ enum output_name_answer output_name_take(const char *path, enum output_name_use 
     return answer;
 }
 
-void output_name_give_back(const char *path)
+bool output_name_is_of_library(const char *path)
 {
     struct name name;
     bool has_memory;
     if (!describe(path, &name, &has_memory))
-        return;
+        return false;
     pthread_mutex_lock(&lock);
-    struct name *known = find(&name);
-    if (known) {
-        free(known->word);
-        *known = names[--name_count];
-    }
+    const struct name *known = find(&name);
+    bool is = known && known->owner == OUTPUT_NAME_OF_LIBRARY;
     pthread_mutex_unlock(&lock);
     free(name.word);
+    return is;
 }
