@@ -4,7 +4,7 @@
 
 #include <sluice/bake.h>
 
-#include "bake/jobs.h"
+#include "bake/work_pool.h"
 
 struct SluiceBaker {
     SluiceAllocationCallbacks allocator;

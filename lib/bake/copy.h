@@ -4,7 +4,7 @@
 
 #include <sluice/store.h>
 
-#include "bake/jobs.h"
+#include "bake/work_pool.h"
 
 struct slc_copy {
     SluiceAllocationCallbacks allocator;

@@ -7,7 +7,7 @@
 
 #include <sluice/store.h>
 
-#include "bake/jobs.h"
+#include "bake/work_pool.h"
 
 /** Bands of a level: one that is filled, one whose tiles are written, one that is filled last. */
 #define SLC_MAX_BANDS 3

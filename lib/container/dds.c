@@ -2,7 +2,7 @@
 
 #include "base/struct_size.h"
 #include "container/dds_format.h"
-#include "container/source.h"
+#include "container/container_source.h"
 
 #include <stdio.h>
 #include <string.h>

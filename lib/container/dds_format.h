@@ -2,7 +2,7 @@
 #ifndef SLC_CONTAINER_DDS_FORMAT_H
 #define SLC_CONTAINER_DDS_FORMAT_H
 
-#include "container/layout.h"
+#include "container/container_layout.h"
 
 /** DDS_PIXELFORMAT without its size. */
 struct slc_dds_pixel_format {

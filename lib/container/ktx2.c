@@ -1,7 +1,7 @@
 #include <sluice/ktx2.h>
 
 #include "base/struct_size.h"
-#include "container/source.h"
+#include "container/container_source.h"
 
 #include <string.h>
 

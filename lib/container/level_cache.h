@@ -5,7 +5,7 @@
 #ifndef SLC_CONTAINER_LEVEL_CACHE_H
 #define SLC_CONTAINER_LEVEL_CACHE_H
 
-#include "container/layout.h"
+#include "container/container_layout.h"
 
 #include <pthread.h>
 

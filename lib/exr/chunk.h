@@ -2,7 +2,7 @@
 #ifndef SLC_EXR_CHUNK_H
 #define SLC_EXR_CHUNK_H
 
-#include "exr/file.h"
+#include "exr/exr_file.h"
 
 /** A chunk, and the texels of its level that it holds. */
 struct slc_exr_chunk {

@@ -1,4 +1,4 @@
-#include "exr/file.h"
+#include "exr/exr_file.h"
 
 #include "base/checked.h"
 

@@ -4,7 +4,7 @@
 #include "base/checked.h"
 #include "metrics/flip_colour.h"
 #include "metrics/flip_kernels.h"
-#include "metrics/picture.h"
+#include "metrics/pixel_rows.h"
 #include "metrics/window.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@ enum { PLANE_COUNT = SLC_FLIP_FILTER_COUNT };
 enum { RED_GREEN = 1, NARROW, WIDE, EDGE_X, EDGE_Y, POINT_X, POINT_Y, RESULT_COUNT };
 
 struct flip {
-    struct slc_picture pictures[2];
+    struct slc_metric_picture pictures[2];
     struct slc_flip_kernels kernels;
     struct slc_window windows[2];
     double *rows; ///< [2][RESULT_COUNT][padded]; in add_row: colours, then opponents, padded

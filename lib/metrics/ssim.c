@@ -1,7 +1,7 @@
 #include <sluice/metrics.h>
 
 #include "base/alloc.h"
-#include "metrics/picture.h"
+#include "metrics/pixel_rows.h"
 #include "metrics/window.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ enum { RADIUS = 5, TAP_COUNT = 2 * RADIUS + 1 };
 enum { MEAN_A, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, MOMENT_COUNT };
 
 struct ssim {
-    struct slc_picture pictures[2];
+    struct slc_metric_picture pictures[2];
     double weights[TAP_COUNT];
     struct slc_window window;
     double *rows;    ///< [MOMENT_COUNT][padded], of one row before and after it is filtered along y

@@ -2,9 +2,9 @@
 #ifndef SLC_STORE_READER_H
 #define SLC_STORE_READER_H
 
-#include "store/file.h"
-#include "store/layout.h"
-#include "store/read_pool.h"
+#include "store/store_file.h"
+#include "store/store_layout.h"
+#include "store/store_read_pool.h"
 
 #include <pthread.h>
 

@@ -2,8 +2,8 @@
 #ifndef SLC_STORE_RESUME_H
 #define SLC_STORE_RESUME_H
 
-#include "store/file.h"
-#include "store/layout.h"
+#include "store/store_file.h"
+#include "store/store_layout.h"
 
 struct slc_store_resumed {
     uint64_t chunk_count;

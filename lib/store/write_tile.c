@@ -1,7 +1,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "image/format.h"
-#include "store/writer.h"
+#include "store/store_writer.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "store/read_pool.h"
+#include "store/store_read_pool.h"
 
 #include "base/alloc.h"
 

@@ -1,4 +1,4 @@
-#include "metrics/picture.h"
+#include "metrics/pixel_rows.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"
@@ -33,22 +33,23 @@ static bool map_is_valid(const SluiceMetricMap *map, uint32_t width, uint32_t he
             find_pitch(map->rowPitch, row_size, height, &pitch) && pitch % sizeof(float) == 0);
 }
 
-static void init_picture(struct slc_picture *picture, const SluicePicturePair *pair,
+static void init_picture(struct slc_metric_picture *picture, const SluicePicturePair *pair,
                          const void *pixels, size_t pitch)
 {
-    *picture = (struct slc_picture){.pixels = pixels,
-                                    .row_pitch = pitch,
-                                    .width = pair->width,
-                                    .format = pair->format,
-                                    .peak = (double)pair->peak};
+    *picture = (struct slc_metric_picture){.pixels = pixels,
+                                           .row_pitch = pitch,
+                                           .width = pair->width,
+                                           .format = pair->format,
+                                           .peak = (double)pair->peak};
     for (int i = 0; i < 256; i++) {
         double value = i / 255.0;
         picture->linear[i] = value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
     }
 }
 
-SluiceResult slc_picture_pair_init(struct slc_picture pictures[2], const SluicePicturePair *given,
-                                   SluicePicturePair *pair, const SluiceMetricMap *map,
+SluiceResult slc_picture_pair_init(struct slc_metric_picture pictures[2],
+                                   const SluicePicturePair *given, SluicePicturePair *pair,
+                                   const SluiceMetricMap *map,
                                    const SluiceAllocationCallbacks *allocator)
 {
     if (!given || !given->pA || !given->pB || (map && !map->pValues) ||
@@ -78,15 +79,15 @@ static double luma(double r, double g, double b)
 }
 
 /** The value over the peak, in [0, 1]; 0 for NaN. */
-static double bounded(const struct slc_picture *picture, float value)
+static double bounded(const struct slc_metric_picture *picture, float value)
 {
     if (!(value > 0))
         return 0;
     return (double)value >= picture->peak ? 1 : (double)value / picture->peak;
 }
 
-static void float_rgb(const struct slc_picture *picture, const unsigned char *row, uint32_t x,
-                      double rgb[3])
+static void float_rgb(const struct slc_metric_picture *picture, const unsigned char *row,
+                      uint32_t x, double rgb[3])
 {
     float values[3];
     if (picture->format == SLUICE_PIXEL_FORMAT_RGBA32_FLOAT) {
@@ -99,7 +100,7 @@ static void float_rgb(const struct slc_picture *picture, const unsigned char *ro
         rgb[i] = bounded(picture, values[i]);
 }
 
-void slc_picture_read_luma(const struct slc_picture *picture, uint32_t y, double *values)
+void slc_picture_read_luma(const struct slc_metric_picture *picture, uint32_t y, double *values)
 {
     const unsigned char *row = picture->pixels + y * picture->row_pitch;
     for (uint32_t x = 0; x < picture->width; x++) {
@@ -114,7 +115,7 @@ void slc_picture_read_luma(const struct slc_picture *picture, uint32_t y, double
     }
 }
 
-void slc_picture_read_rgb(const struct slc_picture *picture, uint32_t y, double *rgb)
+void slc_picture_read_rgb(const struct slc_metric_picture *picture, uint32_t y, double *rgb)
 {
     const unsigned char *row = picture->pixels + y * picture->row_pitch;
     for (uint32_t x = 0; x < picture->width; x++) {
@@ -126,7 +127,7 @@ void slc_picture_read_rgb(const struct slc_picture *picture, uint32_t y, double 
     }
 }
 
-bool slc_picture_row_is_equal(const struct slc_picture pictures[2], uint32_t y)
+bool slc_picture_row_is_equal(const struct slc_metric_picture pictures[2], uint32_t y)
 {
     return memcmp(pictures[0].pixels + y * pictures[0].row_pitch,
                   pictures[1].pixels + y * pictures[1].row_pitch,

@@ -1,7 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 
-#include "store/file.h"
+#include "store/store_file.h"
 
 #include "base/alloc.h"
 #include "base/log.h"

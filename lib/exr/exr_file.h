@@ -4,8 +4,8 @@
  *
  * Only the first part of a file is looked at.
  */
-#ifndef SLC_EXR_FILE_H
-#define SLC_EXR_FILE_H
+#ifndef SLC_EXR_EXR_FILE_H
+#define SLC_EXR_EXR_FILE_H
 
 #include <sluice/image.h>
 
@@ -91,4 +91,4 @@ SluiceResult slc_exr_read_primaries(struct slc_exr_file *file);
 SluiceResult slc_exr_level_size(const struct slc_exr_file *file, uint32_t level, uint32_t *width,
                                 uint32_t *height);
 
-#endif /* SLC_EXR_FILE_H */
+#endif /* SLC_EXR_EXR_FILE_H */

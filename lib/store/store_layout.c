@@ -1,4 +1,4 @@
-#include "store/layout.h"
+#include "store/store_layout.h"
 
 #include "store/little_endian.h"
 

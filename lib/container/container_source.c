@@ -1,6 +1,6 @@
 #define _POSIX_C_SOURCE 200809L
 
-#include "container/source.h"
+#include "container/container_source.h"
 
 #include "base/alloc.h"
 #include "container/level_cache.h"

@@ -1,6 +1,6 @@
 /** Header, index and checksums: the bytes of a file but for the texels. See docs/store.md. */
-#ifndef SLC_STORE_LAYOUT_H
-#define SLC_STORE_LAYOUT_H
+#ifndef SLC_STORE_STORE_LAYOUT_H
+#define SLC_STORE_STORE_LAYOUT_H
 
 #include "store/grid.h"
 
@@ -85,4 +85,4 @@ const char *slc_store_entry_defect(const struct slc_store_header *header, uint64
                                    const struct slc_store_place *place,
                                    const struct slc_store_entry *entry);
 
-#endif /* SLC_STORE_LAYOUT_H */
+#endif /* SLC_STORE_STORE_LAYOUT_H */

@@ -1,6 +1,6 @@
 /** Files by position: whole reads and writes, whatever the system does in between. */
-#ifndef SLC_STORE_FILE_H
-#define SLC_STORE_FILE_H
+#ifndef SLC_STORE_STORE_FILE_H
+#define SLC_STORE_STORE_FILE_H
 
 #include <sluice/base.h>
 
@@ -41,4 +41,4 @@ SluiceResult slc_store_fail_at(const struct slc_store_file *file, SluiceResult r
 /** The same for a call of the system that failed: IO, with what errno says. */
 SluiceResult slc_store_fail_system(const struct slc_store_file *file, const char *what);
 
-#endif /* SLC_STORE_FILE_H */
+#endif /* SLC_STORE_STORE_FILE_H */

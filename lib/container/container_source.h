@@ -1,10 +1,10 @@
 /**
  * An image source over a file whose header says where the images are. Opened at the first question.
  */
-#ifndef SLC_CONTAINER_SOURCE_H
-#define SLC_CONTAINER_SOURCE_H
+#ifndef SLC_CONTAINER_CONTAINER_SOURCE_H
+#define SLC_CONTAINER_CONTAINER_SOURCE_H
 
-#include "container/layout.h"
+#include "container/container_layout.h"
 
 struct slc_container_create_info {
     const char *path;
@@ -22,4 +22,4 @@ struct slc_container_create_info {
 SluiceResult slc_container_source_create(const struct slc_container_create_info *info,
                                          SluiceImageSource **source);
 
-#endif /* SLC_CONTAINER_SOURCE_H */
+#endif /* SLC_CONTAINER_CONTAINER_SOURCE_H */

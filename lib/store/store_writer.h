@@ -1,11 +1,11 @@
 /** A store that is being written: what creation, writing and finishing share. */
-#ifndef SLC_STORE_WRITER_H
-#define SLC_STORE_WRITER_H
+#ifndef SLC_STORE_STORE_WRITER_H
+#define SLC_STORE_STORE_WRITER_H
 
 #include "base/part_file.h"
 #include "store/codec.h"
-#include "store/file.h"
-#include "store/layout.h"
+#include "store/store_file.h"
+#include "store/store_layout.h"
 
 #include <pthread.h>
 
@@ -56,4 +56,4 @@ void slc_store_writer_free_benches(SluiceStoreWriter *writer);
 SluiceResult slc_store_writer_seal(const SluiceStoreWriter *writer, uint64_t block,
                                    uint64_t *missing);
 
-#endif /* SLC_STORE_WRITER_H */
+#endif /* SLC_STORE_STORE_WRITER_H */

@@ -1,4 +1,4 @@
-#include "store/writer.h"
+#include "store/store_writer.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"

@@ -1,4 +1,4 @@
-#include "bake/jobs.h"
+#include "bake/work_pool.h"
 
 #include "base/alloc.h"
 

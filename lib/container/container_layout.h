@@ -2,8 +2,8 @@
  * Where in a file the images of a texture lie: what headers of DDS and KTX2 come to, checked
  * against the file, so that nothing that is computed from it overflows or lies outside.
  */
-#ifndef SLC_CONTAINER_LAYOUT_H
-#define SLC_CONTAINER_LAYOUT_H
+#ifndef SLC_CONTAINER_CONTAINER_LAYOUT_H
+#define SLC_CONTAINER_CONTAINER_LAYOUT_H
 
 #include "image/input_file.h"
 #include "image/mip.h"
@@ -62,4 +62,4 @@ static inline uint64_t slc_u64_at(const uint8_t *bytes)
     return slc_u32_at(bytes) | (uint64_t)slc_u32_at(bytes + 4) << 32;
 }
 
-#endif /* SLC_CONTAINER_LAYOUT_H */
+#endif /* SLC_CONTAINER_CONTAINER_LAYOUT_H */

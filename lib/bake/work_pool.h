@@ -1,6 +1,6 @@
 /** A pool of threads and a queue of small pieces of work, which those who wait help with. */
-#ifndef SLC_BAKE_JOBS_H
-#define SLC_BAKE_JOBS_H
+#ifndef SLC_BAKE_WORK_POOL_H
+#define SLC_BAKE_WORK_POOL_H
 
 #include <sluice/base.h>
 
@@ -37,4 +37,4 @@ void slc_bake_jobs_unlock_and_wake(struct slc_bake_jobs *jobs);
 /** Returns when `is_done`, which is called under the mutex; runs jobs until then. */
 void slc_bake_jobs_help_until(struct slc_bake_jobs *jobs, bool (*is_done)(void *user), void *user);
 
-#endif /* SLC_BAKE_JOBS_H */
+#endif /* SLC_BAKE_WORK_POOL_H */

@@ -1,4 +1,4 @@
-#include "container/layout.h"
+#include "container/container_layout.h"
 
 #include "base/checked.h"
 

@@ -1,6 +1,6 @@
 /** What reads need for their time, kept between them: one bench per read that is under way. */
-#ifndef SLC_STORE_READ_POOL_H
-#define SLC_STORE_READ_POOL_H
+#ifndef SLC_STORE_STORE_READ_POOL_H
+#define SLC_STORE_STORE_READ_POOL_H
 
 #include "store/codec.h"
 #include "store/grid.h"
@@ -19,4 +19,4 @@ struct slc_store_decompressor *slc_store_read_decompressor(SluiceStoreReadPool *
                                                            struct slc_store_read_bench *bench);
 void slc_store_read_pool_give(SluiceStoreReadPool *pool, struct slc_store_read_bench *bench);
 
-#endif /* SLC_STORE_READ_POOL_H */
+#endif /* SLC_STORE_STORE_READ_POOL_H */
