@@ -22,7 +22,7 @@ static bool create_many(struct rig *rig, uint32_t count, double *seconds, uint32
     double start = clock_seconds();
     for (uint32_t i = 0; i < count; i++) {
         SluiceDemandTextureId id;
-        if (!check(sluiceCreateDemandTexture(rig->loader, &info, &id), "sluiceCreateDemandTexture"))
+        if (!check(sluiceAddDemandTexture(rig->loader, &info, &id), "sluiceAddDemandTexture"))
             return false;
     }
     if (!rig_launch(rig, DEMAND_BENCH_NOTHING, &outcome)) /* the table reaches the device */

@@ -50,7 +50,7 @@ static bool create_textures(struct rig *rig)
     uint32_t count = bench->columns * bench->columns;
     for (; rig->texture_count < count; rig->texture_count++) {
         SluiceDemandTextureId *id = &rig->ids[rig->texture_count];
-        if (!check(sluiceCreateDemandTexture(rig->loader, &info, id), "sluiceCreateDemandTexture"))
+        if (!check(sluiceAddDemandTexture(rig->loader, &info, id), "sluiceAddDemandTexture"))
             return false;
         rig->params.textures[rig->texture_count] = (uint32_t)*id;
     }
@@ -191,8 +191,8 @@ static bool record(struct rig *rig, struct rig_slot *slot)
     if (rig->timed)
         vkCmdResetQueryPool(slot->commands, rig->queries, first_query(rig, slot), QUERIES);
     stamp(rig, slot, 0);
-    if (!check(sluicePrepareDemandLaunch(rig->loader, slot->commands, &slot->launch),
-               "sluicePrepareDemandLaunch"))
+    if (!check(sluiceBeginDemandLaunch(rig->loader, slot->commands, &slot->launch),
+               "sluiceBeginDemandLaunch"))
         return false;
     stamp(rig, slot, 1);
     rig_write_pages(rig, slot);
@@ -258,7 +258,7 @@ bool rig_warm_up(struct rig *rig)
     struct DemandBenchParams params = rig->params;
     SluiceDemandTextureCreateInfo info = {.image.source = &rig->source.base};
     SluiceDemandTextureId id;
-    if (!check(sluiceCreateDemandTexture(rig->loader, &info, &id), "sluiceCreateDemandTexture"))
+    if (!check(sluiceAddDemandTexture(rig->loader, &info, &id), "sluiceAddDemandTexture"))
         return false;
     rig->params.edge = 8;
     rig->params.columns = 1;

@@ -12,7 +12,7 @@ enum { SIZE = 16384, TILE = 256, MAPS = 64, PLENTY = 1u << 16, ROOM = 8192 };
 static const SluiceStreamedTextureManagerConfig keep_everything = {
     .structSize = sizeof keep_everything,
     .numExtraStandbyTiles = PLENTY,
-    .missesToForget = 1, ///< maps that alternate would be learned and held
+    .missesToExpire = 1, ///< maps that alternate would be learned and held
 };
 
 static uint32_t next_random(uint32_t *state)

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const SluiceStreamedTextureManagerConfig plain = {.structSize = sizeof plain,
-                                                         .missesToForget = 1};
+                                                         .missesToExpire = 1};
 
 /** One packed tile. */
 static SluiceStreamedTextureDesc one_tile(void)
@@ -70,12 +70,12 @@ static double failures(uint32_t n)
 {
     struct rig rig;
     SluiceStreamedTextureManagerConfig config = plain;
-    config.retryDelay = 1000000;
+    config.retryDelayTicks = 1000000;
     rig_init(&rig, 256, &config, 8192);
     SluiceTextureId *ids = add_many(&rig, 2 * n);
     hand_out_all(&rig, 2 * n);
     fail_all(&rig, ids, n, 0);
-    config.retryDelay = 1000;
+    config.retryDelayTicks = 1000;
     must(sluiceSetConfig(rig.manager, &config), "config");
     uint64_t start = now_ns();
     fail_all(&rig, ids + n, n, 1);

@@ -79,7 +79,7 @@ static void fill(struct house *house, uint32_t count)
 static void house_init(struct house *house, uint32_t heap_count)
 {
     SluiceStreamedTextureManagerConfig config = {
-        .structSize = sizeof config, .maxHeapCount = heap_count, .missesToForget = 1};
+        .structSize = sizeof config, .maxHeapCount = heap_count, .missesToExpire = 1};
     rig_init(&house->rig, CAPACITY, &config, ROOM);
     house->map = must_allocate(FILLER_REGIONS);
     house->guest_desc = square_desc(2048, 256);

@@ -33,7 +33,7 @@ static struct rig_info fill_info(const struct bench *bench, uint32_t tiles_per_f
                                           .texturesPerFrame = count,
                                           .tilesPerFrame = tiles_per_frame,
                                           .minStagingSize = UINT64_MAX,
-                                          .feedbackTimeout = UINT64_MAX / 4},
+                                          .feedbackTimeoutTicks = UINT64_MAX / 4},
                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                              .texture_size = size,
                              .texture_count = count,

@@ -139,7 +139,7 @@ static bool walk_create(struct walk *walk, const struct bench *bench, uint32_t s
         .context = {.pfnGetInstanceProcAddr = driver_calls_get, .pAllocator = &walk->allocator},
         .streamer = {.maxTextureCount = count,
                      .texturesPerFrame = share,
-                     .feedbackTimeout = TIMEOUT},
+                     .feedbackTimeoutTicks = TIMEOUT},
         .format = SLUICE_FORMAT_BC7_UNORM_BLOCK,
         .texture_size = options.quick ? 1024 : 4096,
         .texture_count = count,

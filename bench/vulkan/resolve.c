@@ -78,7 +78,7 @@ bool measure_resolve(const struct bench *bench)
     struct rig_info info = {.bench = bench,
                             .streamer = {.maxTextureCount = count,
                                          .texturesPerFrame = count,
-                                         .feedbackTimeout = UINT64_MAX / 4},
+                                         .feedbackTimeoutTicks = UINT64_MAX / 4},
                             .format = SLUICE_FORMAT_BC7_UNORM_BLOCK,
                             .texture_size = size,
                             .texture_count = count,

@@ -45,7 +45,7 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
     create.framesInFlight = RIG_FRAMES;
     create.loaderThreadCount = rig->bench->threads;
     create.maxPageChunkCount = BENCH_PAGE_CHUNKS;
-    create.timeStampsPerSecond = 60; /* frames */
+    create.ticksPerSecond = 60; /* frames */
     create.noStandbyTiles = create.numExtraStandbyTiles == 0;
     return check(sluiceCreateVulkanStreamer(&create, &rig->streamer), "sluiceCreateVulkanStreamer");
 }

@@ -15,7 +15,7 @@ static struct rig_info rig_info(const struct bench *bench, float anisotropy)
                                           .texturesPerFrame = 1,
                                           .tilesPerFrame = 2048,
                                           .maxLoadsInFlight = 4096,
-                                          .feedbackTimeout = UINT64_MAX / 4},
+                                          .feedbackTimeoutTicks = UINT64_MAX / 4},
                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                              .texture_size = bench->texture_size,
                              .texture_count = 1,

@@ -14,7 +14,7 @@ static struct rig_info unseen_info(const struct bench *bench, uint32_t count, bo
     return (struct rig_info){.bench = bench,
                              .streamer = {.maxTextureCount = count,
                                           .maxRegionCount = 1u << 20,
-                                          .feedbackTimeout = UINT64_MAX / 4,
+                                          .feedbackTimeoutTicks = UINT64_MAX / 4,
                                           .packedLevelsOnDemand = on_demand},
                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                              .texture_size = 4096,

@@ -154,7 +154,7 @@ static void create_loader(struct app *app)
         .sampler = {.maxAnisotropy = 8},
         .failureColor = {1, 0, 1, 1}};
     for (uint32_t i = 0; i < TEXTURE_COUNT; i++)
-        SLUICE(sluiceCreateDemandTexture(app->loader, &texture, &app->textures[i]));
+        SLUICE(sluiceAddDemandTexture(app->loader, &texture, &app->textures[i]));
 }
 
 static uint32_t find_host_memory(const struct app *app, uint32_t type_bits)
@@ -275,7 +275,7 @@ static uint32_t trace(struct app *app, SluiceDemandRequests *requests)
     SluiceDemandTicket ticket;
     app->answer->missing = 0;
     VK(vkBeginCommandBuffer(app->commands, &begin));
-    SLUICE(sluicePrepareDemandLaunch(app->loader, app->commands, &launch));
+    SLUICE(sluiceBeginDemandLaunch(app->loader, app->commands, &launch));
 
     const VkDescriptorSet sets[] = {launch.descriptorSet, app->set};
     vkCmdBindPipeline(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline);

@@ -53,7 +53,7 @@ SluiceDemandTextureId page_create_texture(SluiceDemandLoader *loader, char *path
     SluiceDemandTextureCreateInfo texture = {.image = {.pUserData = path, .pfnOpen = open_texture},
                                              .sampler.maxAnisotropy = 16,
                                              .failureColor = {1, 0, 1, 1}};
-    sluiceCreateDemandTexture(loader, &texture, &id); /* shaders get (uint32_t)id */
+    sluiceAddDemandTexture(loader, &texture, &id); /* shaders get (uint32_t)id */
     return id;
 }
 
@@ -65,7 +65,7 @@ void page_launch_until_complete(SluiceDemandLoader *loader, VkCommandBuffer comm
     SluiceDemandTicket ticket;
     do {
         begin(commandBuffer);
-        sluicePrepareDemandLaunch(loader, commandBuffer, &launch);
+        sluiceBeginDemandLaunch(loader, commandBuffer, &launch);
         trace(commandBuffer);
         sluiceEndDemandLaunch(loader, commandBuffer);
         submit(commandBuffer, launch.semaphore, launch.signalValue);
@@ -82,7 +82,7 @@ void page_launch_interactively(SluiceDemandLoader *loader, VkCommandBuffer comma
     SluiceDemandLaunch oldest = {0}, launch;
     SluiceDemandRequests requests;
     while (running) {
-        if (sluicePrepareDemandLaunch(loader, commandBuffer, &launch) == SLUICE_NOT_READY) {
+        if (sluiceBeginDemandLaunch(loader, commandBuffer, &launch) == SLUICE_NOT_READY) {
             sluiceProcessDemandRequests(loader, &oldest, UINT64_MAX, &requests, NULL);
             continue;
         }

@@ -129,8 +129,8 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
     SLUICE(sluiceCreateVulkanContext(&context, &app->context));
     SluiceVulkanStreamerCreateInfo info = {.context = app->context,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
-                                           .timeStampsPerSecond = 60, /* frames: see draw_frame */
-                                           .feedbackTimeout = 20};
+                                           .ticksPerSecond = 60, /* frames: see draw_frame */
+                                           .feedbackTimeoutTicks = 20};
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
     SluiceVulkanTextureCreateInfo texture = {.source = source};
     SLUICE(sluiceAddVulkanTexture(app->streamer, &texture, &app->texture));

@@ -7,7 +7,7 @@
  * or record a request for it. A launch:
  *
  *     do {
- *         sluicePrepareDemandLaunch(loader, commandBuffer, &launch);
+ *         sluiceBeginDemandLaunch(loader, commandBuffer, &launch);
  *         ... trace rays, dispatch: samples say whether they are resident ...
  *         sluiceEndDemandLaunch(loader, commandBuffer);
  *         vkQueueSubmit: signal launch.semaphore with launch.signalValue
@@ -89,7 +89,7 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * tiles of a texture or pages of a resource; the others as soon as one of the four loads. They
      * are loaded when shaders next request them. Default: 30 s. UINT64_MAX: never.
      */
-    uint64_t failureRetryDelay;
+    uint64_t failureRetryDelayNs;
     /**
      * Bytes of staging memory made at creation and kept. At least 4 MiB, at most 64 KiB times
      * maxTilesInFlight. Reads that need more get it in blocks of 4 MiB, which are freed after 120
@@ -161,7 +161,8 @@ typedef struct SluiceDemandImage {
     /**
      * Opens the image. Called on a worker thread, never twice at the same time. Retried after
      * SLUICE_NOT_READY, SLUICE_ERROR_IO, SLUICE_ERROR_OUT_OF_HOST_MEMORY and, once,
-     * SLUICE_ERROR_CORRUPT_DATA (readRetry); after any failure, when failureRetryDelay has passed.
+     * SLUICE_ERROR_CORRUPT_DATA (readRetry); after any failure, when failureRetryDelayNs has
+     * passed.
      * `*pSource` must have one array layer. Ignored if `source` is set.
      */
     SluiceResult (*pfnOpen)(void *pUserData, SluiceImageSource **pSource);
@@ -198,21 +199,21 @@ typedef struct SluiceDemandTextureCreateInfo {
  *         anisotropy or LOD bias out of range; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
-SLUICE_API SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
-                                                  const SluiceDemandTextureCreateInfo *pCreateInfo,
-                                                  SluiceDemandTextureId *pTextureId);
+SLUICE_API SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
+                                               const SluiceDemandTextureCreateInfo *pCreateInfo,
+                                               SluiceDemandTextureId *pTextureId);
 
 /**
  * Creates a texture that shares image and tiles of `baseId` and has another sampler. Destroyed with
  * its base texture, or earlier.
  *
- * Errors: as sluiceCreateDemandTexture; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ * Errors: as sluiceAddDemandTexture; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT if `baseId` is a grid.
  */
-SLUICE_API SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
-                                                         SluiceDemandTextureId baseId,
-                                                         const SluiceDemandSampler *pSampler,
-                                                         SluiceDemandTextureId *pTextureId);
+SLUICE_API SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader,
+                                                      SluiceDemandTextureId baseId,
+                                                      const SluiceDemandSampler *pSampler,
+                                                      SluiceDemandTextureId *pTextureId);
 
 /**
  * Creates a grid of `columns` x `rows` textures that is sampled as one texture: column floor(u),
@@ -226,11 +227,11 @@ SLUICE_API SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loa
  *         SLUICE_ERROR_INVALID_ARGUMENT for an empty grid or grids within it;
  *         SLUICE_ERROR_LIMIT_EXCEEDED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
-SLUICE_API SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
-                                               const SluiceDemandTextureId *pTextureIds,
-                                               uint32_t columns, uint32_t rows,
-                                               const float missingColor[4],
-                                               SluiceDemandTextureId *pTextureId);
+SLUICE_API SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
+                                            const SluiceDemandTextureId *pTextureIds,
+                                            uint32_t columns, uint32_t rows,
+                                            const float missingColor[4],
+                                            SluiceDemandTextureId *pTextureId);
 
 /**
  * Destroys a texture and its variants.
@@ -240,8 +241,8 @@ SLUICE_API SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
  */
-SLUICE_API SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader,
-                                                   SluiceDemandTextureId textureId);
+SLUICE_API SluiceResult sluiceRemoveDemandTexture(SluiceDemandLoader *loader,
+                                                  SluiceDemandTextureId textureId);
 
 /**
  * Replaces the image of a texture from the next launch on.
@@ -307,7 +308,7 @@ typedef struct SluiceDemandResourceCreateInfo {
     /**
      * Computes the value that shaders get for a page, 0 to pageCount - 1. Called on worker threads,
      * several at the same time. SLUICE_NOT_READY: called again (readRetry), and later when a shader
-     * next misses the page. After other failures: called again when failureRetryDelay has passed.
+     * next misses the page. After other failures: called again when failureRetryDelayNs has passed.
      */
     SluiceResult (*pfnFill)(void *pUserData, uint32_t page, uint64_t *pValue);
     /**
@@ -324,9 +325,10 @@ typedef struct SluiceDemandResourceCreateInfo {
  *         above pageCapacity, or for more than 254 resources with maxResidentPageCount;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
-SLUICE_API SluiceResult sluiceCreateDemandResource(
-    SluiceDemandLoader *loader, const SluiceDemandResourceCreateInfo *pCreateInfo,
-    SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage);
+SLUICE_API SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
+                                                const SluiceDemandResourceCreateInfo *pCreateInfo,
+                                                SluiceDemandResourceId *pResourceId,
+                                                uint32_t *pFirstPage);
 /**
  * Destroys a resource. Waits for its fills in progress.
  *
@@ -336,13 +338,13 @@ SLUICE_API SluiceResult sluiceCreateDemandResource(
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
  *         an unknown or destroyed resource.
  */
-SLUICE_API SluiceResult sluiceDestroyDemandResource(SluiceDemandLoader *loader,
-                                                    SluiceDemandResourceId resourceId);
+SLUICE_API SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
+                                                   SluiceDemandResourceId resourceId);
 /**
  * Drops the values of `count` pages of a resource, from `firstPage` on. They are filled again when
  * next missed.
  *
- * Errors: as sluiceDestroyDemandResource; SLUICE_ERROR_INVALID_ARGUMENT beyond pageCount.
+ * Errors: as sluiceRemoveDemandResource; SLUICE_ERROR_INVALID_ARGUMENT beyond pageCount.
  */
 SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId,
@@ -369,7 +371,7 @@ SLUICE_API SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
 /**
  * Gets the array of combined image samplers whose layers are tiles, as sluiceGetVulkanPages does.
  *
- * After sluicePrepareDemandLaunch it holds everything that the launch samples. Other calls may add
+ * After sluiceBeginDemandLaunch it holds everything that the launch samples. Other calls may add
  * to it.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
@@ -421,9 +423,9 @@ typedef struct SluiceDemandLaunch {
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST;
  *         SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
  */
-SLUICE_API SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader,
-                                                  VkCommandBuffer commandBuffer,
-                                                  SluiceDemandLaunch *pLaunch);
+SLUICE_API SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader,
+                                                VkCommandBuffer commandBuffer,
+                                                SluiceDemandLaunch *pLaunch);
 
 /**
  * Ends a launch: records the scan of the requests. Binds a compute pipeline and its descriptor set
@@ -436,7 +438,7 @@ SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
 
 /**
  * Abandons a launch that will never be submitted, and all launches prepared after it. Allowed after
- * sluicePrepareDemandLaunch and after sluiceEndDemandLaunch.
+ * sluiceBeginDemandLaunch and after sluiceEndDemandLaunch.
  *
  * Do not submit the command buffers. Do not process the launches. Do not wait for their signalValue
  * before the next launch is submitted: the next launch reuses the launchIndex of the first
@@ -472,7 +474,7 @@ typedef struct SluiceDemandRequests {
  * first.
  *
  * Process each launch once, in order. Processing a launch also processes the launches before it.
- * Returns SLUICE_NOT_READY, with nothing changed, if the launch is not complete after `timeout` ns.
+ * Returns SLUICE_NOT_READY, with nothing changed, if the launch is not complete after `timeoutNs`.
  * `pTicket` may be NULL.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a launch that was not ended
@@ -481,7 +483,7 @@ typedef struct SluiceDemandRequests {
  */
 SLUICE_API SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
                                                     const SluiceDemandLaunch *pLaunch,
-                                                    uint64_t timeout,
+                                                    uint64_t timeoutNs,
                                                     SluiceDemandRequests *pRequests,
                                                     SluiceDemandTicket *pTicket);
 
@@ -503,13 +505,13 @@ SLUICE_API SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader,
  * Waits until all tasks of a ticket that have begun have ended, successfully or not. Except for
  * preloads these are all tasks. `pStatus` may be NULL.
  *
- * Returns SLUICE_NOT_READY after `timeout` ns.
+ * Returns SLUICE_NOT_READY after `timeoutNs`.
  *
  * Errors: as sluiceGetDemandTicketStatus; SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader,
-                                               SluiceDemandTicket ticket, uint64_t timeout,
+                                               SluiceDemandTicket ticket, uint64_t timeoutNs,
                                                SluiceDemandTicketStatus *pStatus);
 /**
  * Cancels the tasks of a ticket that have not begun. Shaders may request them again.

@@ -6,7 +6,7 @@
  *
  * The results are conservative. They hold wherever a region lies among the quads of the screen, in
  * whichever frame its texture has its turn, and for a manager that evicts by timeout alone
- * (missesToForget 1). A manager that learns how reliable maps are keeps regions longer.
+ * (missesToExpire 1). A manager that learns how reliable maps are keeps regions longer.
  *
  * Thread safety: any thread.
  */
@@ -52,9 +52,9 @@ typedef struct SluiceFeedbackRate {
     uint32_t regionWidth, regionHeight;
     uint32_t textureCount;     ///< Textures whose maps are read back in turn. At least 1.
     uint32_t texturesPerFrame; ///< Clamped to textureCount. Default: 10.
-    bool inTurns;     ///< feedbackInTurns: shaders mark only textures read back in that frame.
-    double frameRate; ///< Hz. Above 0 and finite.
-    double timeout;   ///< Seconds, 0 (only the newest map counts) to infinity.
+    bool inTurns;          ///< feedbackInTurns: shaders mark only textures read back in that frame.
+    double frameRate;      ///< Hz. Above 0 and finite.
+    double timeoutSeconds; ///< 0 (only the newest map counts) to infinity.
 } SluiceFeedbackRate;
 
 /**

@@ -24,9 +24,9 @@ typedef struct SluiceTileLoader SluiceTileLoader;
  * Never grows.
  */
 typedef struct SluiceTileRetryPolicy {
-    uint32_t maxAttempts; ///< Default: 4. 1: no retry.
-    uint64_t firstDelay;  ///< Ns from attempt 1 to 2; doubled each time. Default: 10^7.
-    uint64_t maxDelay;    ///< Largest delay, in ns. Default: 10^9.
+    uint32_t maxAttempts;  ///< Default: 4. 1: no retry.
+    uint64_t firstDelayNs; ///< Ns from attempt 1 to 2; doubled each time. Default: 10^7.
+    uint64_t maxDelayNs;   ///< Largest delay, in ns. Default: 10^9.
 } SluiceTileRetryPolicy;
 
 /** Failed attempt to read. Pointers are valid during the call. */
@@ -36,10 +36,10 @@ typedef struct SluiceTileReadFailure {
     const char *pName;        ///< Name of the source, or of the array's layer. "" if unknown.
     SluiceImageRegion region; ///< Region that failed.
     SluiceResult result;
-    uint32_t attempt;    ///< Counts from 1.
-    bool willRetry;      ///< False: the read ends with `result`.
-    uint64_t retryDelay; ///< Ns until the next attempt.
-    uint64_t userValue;  ///< SluiceTileRead.userValue.
+    uint32_t attempt;      ///< Counts from 1.
+    bool willRetry;        ///< False: the read ends with `result`.
+    uint64_t retryDelayNs; ///< Ns until the next attempt.
+    uint64_t userValue;    ///< SluiceTileRead.userValue.
     /** Byte offset in the file, or SLUICE_UNKNOWN_OFFSET. */
     uint64_t offset;
 } SluiceTileReadFailure;
@@ -200,7 +200,7 @@ typedef struct SluiceTileLoaderStatistics {
     uint64_t notReadyCount; ///< Attempts that returned SLUICE_NOT_READY.
     uint64_t retriedCount;  ///< Attempts that were followed by a retry.
     uint64_t delayedCount;  ///< Reads that wait for a retry now.
-    uint64_t meanLatency, medianLatency, latency99, maxLatency;
+    uint64_t meanLatencyNs, medianLatencyNs, latency99Ns, maxLatencyNs;
     /** Result and byte offset (or SLUICE_UNKNOWN_OFFSET) of the latest attempt in failedCount.
      *  SLUICE_SUCCESS and 0 while there is none. */
     SluiceResult lastFailure;
@@ -228,8 +228,8 @@ SLUICE_API SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
  * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
-SLUICE_API SluiceResult sluiceForgetTileLoaderSource(SluiceTileLoader *loader,
-                                                     const SluiceImageSource *source);
+SLUICE_API SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
+                                                       const SluiceImageSource *source);
 
 #ifdef __cplusplus
 } /* extern "C" */

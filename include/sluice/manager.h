@@ -99,7 +99,7 @@ typedef struct SluiceStreamedTextureManagerConfig {
     uint32_t numExtraStandbyTiles;
     uint32_t maxHeapCount;    ///< Most heaps. Default: as many as the allocator grants.
     uint32_t maxLoadAttempts; ///< Failed loads until a tile is GIVEN_UP. Default: 5.
-    uint64_t retryDelay;      ///< Time from the first failure to the next try; doubles. Default: 0.
+    uint64_t retryDelayTicks; ///< Time from the first failure to the next try; doubles. Default: 0.
     /**
      * Consecutive maps that must miss a region, in addition to the timeout, before the region is no
      * longer wanted. Each coarser level takes a quarter as many, because more regions see it.
@@ -108,7 +108,7 @@ typedef struct SluiceStreamedTextureManagerConfig {
      * Tiles that are still visible are then not evicted because stochastic feedback missed them. 1:
      * only the timeout counts.
      */
-    uint32_t missesToForget;
+    uint32_t missesToExpire;
     /**
      * Number of coarsest regular levels to prefetch, of all textures. They are loaded while nothing
      * is requested, a slot is free and fewer than numExtraStandbyTiles tiles are STANDBY. New views
@@ -117,9 +117,9 @@ typedef struct SluiceStreamedTextureManagerConfig {
     uint32_t prefetchLevels;
     /**
      * Time until GIVEN_UP tiles of a texture are tried again: four tiles first, and all when one of
-     * them loads. Default: 120 * retryDelay; never if retryDelay is 0. UINT64_MAX: never.
+     * them loads. Default: 120 * retryDelayTicks; never if retryDelayTicks is 0. UINT64_MAX: never.
      */
-    uint64_t givenUpRetryDelay;
+    uint64_t givenUpRetryDelayTicks;
     /**
      * Number of heaps to shrink to. While more heaps exist, tiles are evicted until the others fit
      * into so many heaps: STANDBY tiles, oldest first, then wanted tiles, finest first. No heap is
@@ -190,7 +190,7 @@ typedef enum SluiceTileState {
     SLUICE_TILE_STATE_STANDBY = 4,   ///< Resident; not wanted, or evicted to make room.
     SLUICE_TILE_STATE_CANCELLED = 5, ///< Being loaded, but not wanted. Waits for an answer.
     SLUICE_TILE_STATE_FAILED = 6,    ///< Wanted. Its load failed and will be retried.
-    SLUICE_TILE_STATE_GIVEN_UP = 7   ///< Its load failed too often. See givenUpRetryDelay.
+    SLUICE_TILE_STATE_GIVEN_UP = 7   ///< Its load failed too often. See givenUpRetryDelayTicks.
 } SluiceTileState;
 
 /** Tile, and its slot if it has one. Never grows. */
@@ -317,7 +317,7 @@ SLUICE_API SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManage
  * the global mip bias while more is wanted than slots can hold.
  *
  * Expiry: a request counts for at least `timeout`, even while slots are short, and until as many
- * maps have missed it as missesToForget says. Maps that are close in time expire together, at most
+ * maps have missed it as missesToExpire says. Maps that are close in time expire together, at most
  * a quarter of the timeout and one map late. A request that has expired stays expired, even if a
  * later call passes a longer timeout. A texture without new maps keeps its requests, unless
  * sluiceGetTilesToMap needs its slots.
@@ -438,12 +438,12 @@ SLUICE_API SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *m
  * Their slots are free at once.
  *
  * Wanted tiles become FAILED. They become REQUESTED again with the first call whose time stamp is
- * at least `timeStamp + retryDelay * 2^(failures - 1)`. After maxLoadAttempts failures they are
- * GIVEN_UP: the MinMip map stays at the coarser level, and the next try follows after
- * givenUpRetryDelay. A tile that is no longer wanted resets its count of failures.
+ * at least `timeStamp + retryDelayTicks * 2^(failures - 1)`. After maxLoadAttempts failures they
+ * are GIVEN_UP: the MinMip map stays at the coarser level, and the next try follows after
+ * givenUpRetryDelayTicks. A tile that is no longer wanted resets its count of failures.
  *
- * Retrying GIVEN_UP tiles: after givenUpRetryDelay the four tiles of a texture that were given up
- * first become REQUESTED as a probe. At most 16 textures are probed at a time. Packed tiles that
+ * Retrying GIVEN_UP tiles: after givenUpRetryDelayTicks the four tiles of a texture that were given
+ * up first become REQUESTED as a probe. At most 16 textures are probed at a time. Packed tiles that
  * follow the four are included. One more failure makes a probe GIVEN_UP again. When a tile that had
  * failed is MAPPED, all GIVEN_UP tiles of its texture become REQUESTED, once per probe. When
  * another tile of the texture is MAPPED, and an eighth of the delay has passed, the texture is

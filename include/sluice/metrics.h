@@ -108,12 +108,12 @@ SLUICE_API SluiceResult sluiceComputeFlip(const SluicePicturePair *pPair, float 
  * Converts values in [0, 1] to colors from black through purple and orange to pale yellow.
  *
  * The colors interpolate linearly between nine samples of the color map "magma". Values are
- * clamped; NaN counts as 0. `pColours` is [count][4], RGBA8 sRGB, alpha 255.
+ * clamped; NaN counts as 0. `pColors` is [count][4], RGBA8 sRGB, alpha 255.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, unless `count` is 0.
  * Thread safety: any thread.
  */
-SLUICE_API SluiceResult sluiceColourMagma(const float *pValues, size_t count, uint8_t *pColours);
+SLUICE_API SluiceResult sluiceColorMagma(const float *pValues, size_t count, uint8_t *pColors);
 
 #ifdef __cplusplus
 } /* extern "C" */

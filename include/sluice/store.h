@@ -144,8 +144,8 @@ typedef struct SluiceStoreCreateInfo {
      */
     const char *pSourceName; ///< At most SLUICE_STORE_MAX_SOURCE_NAME bytes. Copied. Default: "".
     uint64_t sourceSize;     ///< Bytes.
-    int64_t sourceModifiedTime; ///< Nanoseconds since 1970, UTC.
-    uint64_t settingsHash;      ///< Hash of everything else that determines the texels.
+    int64_t sourceModifiedTimeNs; ///< Nanoseconds since 1970, UTC.
+    uint64_t settingsHash;        ///< Hash of everything else that determines the texels.
     /** Level of zstd, 1 (fast) to SLUICE_STORE_MAX_COMPRESSION_LEVEL (small). 0: uncompressed. */
     uint32_t compressionLevel;
     uint32_t flags; ///< Bits of SluiceStoreWriterFlags.
@@ -355,7 +355,7 @@ typedef struct SluiceStoreInfo {
     SluiceStoreAddressMode addressModeU, addressModeV;
     const char *pSourceName; ///< Never NULL. Lives as long as the source.
     uint64_t sourceSize;
-    int64_t sourceModifiedTime;
+    int64_t sourceModifiedTimeNs;
     uint64_t settingsHash;
     uint32_t compressionLevel;
     uint64_t fileSize; ///< Bytes.

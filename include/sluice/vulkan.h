@@ -230,15 +230,15 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t numExtraStandbyTiles;
     /**
      * Time a region stays requested after a map last requested it. In time stamps
-     * (timeStampsPerSecond). Default: 1 s. UINT64_MAX: forever. For no time, set
+     * (ticksPerSecond). Default: 1 s. UINT64_MAX: forever. For no time, set
      * newestFeedbackMapOnly.
      */
-    uint64_t feedbackTimeout;
+    uint64_t feedbackTimeoutTicks;
     /**
      * Time from a tile's first failed load to the second try, in time stamps. Doubles each time
      * (manager.h). Default: 0.25 s. 1: as soon as possible.
      */
-    uint64_t retryDelay;
+    uint64_t retryDelayTicks;
     bool mapEverything;      ///< Every tile is always wanted. For reference pictures.
     uint32_t maxRegionCount; ///< Feedback regions (tiles of level 0), 4 to 2^28. Default: 2^20.
     /**
@@ -259,9 +259,9 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      *
      * The cost is latency. With N textures that are not in a set, a texture collects marks in one
      * frame of N / texturesPerFrame. Details that few pixels see are noticed later by that factor,
-     * and feedbackTimeout must be longer by it. Best if every visible pixel writes. Avoid an even N
-     * / texturesPerFrame: some corners of sluiceWriteQuadFeedback and some pixels of the lattice
-     * then never have a turn (docs/trade-offs.md).
+     * and feedbackTimeoutTicks must be longer by it. Best if every visible pixel writes. Avoid an
+     * even N / texturesPerFrame: some corners of sluiceWriteQuadFeedback and some pixels of the
+     * lattice then never have a turn (docs/trade-offs.md).
      */
     bool feedbackInTurns;
     /**
@@ -288,10 +288,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * a second is hardly noticeable. Regions become coarser at once, because their tiles are
      * evicted; unless memory is short, such tiles were not in view.
      */
-    uint64_t residencyFadeTime;
+    uint64_t residencyFadeTicks;
     /**
      * Immediate retries of failed reads (loader.h). After they are used up, the manager requests
-     * the tile again after retryDelay.
+     * the tile again after retryDelayTicks.
      */
     SluiceTileRetryPolicy readRetry;
     uint32_t maxReadsPerSource; ///< Default: as in SluiceTileLoaderCreateInfo.
@@ -300,10 +300,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * (nanoseconds). If your time stamps count frames, set the frames per second; otherwise each
      * default time is millions of frames long (a warning is logged after 256 frames).
      */
-    uint64_t timeStampsPerSecond;
+    uint64_t ticksPerSecond;
     /**
      * Only a texture's newest map counts, so stochastic feedback evicts tiles that one map misses.
-     * Requires feedbackTimeout 0.
+     * Requires feedbackTimeoutTicks 0.
      */
     bool newestFeedbackMapOnly;
     bool noStandbyTiles; ///< Evict unwanted tiles at once. Requires numExtraStandbyTiles 0.
@@ -312,7 +312,7 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * (manager.h). In time stamps. Default: 30 s. UINT64_MAX: never. If you know that a source
      * works again, call sluiceRetryVulkanSource.
      */
-    uint64_t givenUpRetryDelay;
+    uint64_t givenUpRetryDelayTicks;
     /**
      * Load packed levels when a map first requests their texture, and evict them like tiles when
      * nothing of it is wanted. Default: false, load them when the texture is added and keep them.
@@ -598,8 +598,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t deviceMemorySize;  ///< Bytes of all device memory that is not host-mapped.
     uint64_t feedbackWords;     ///< Words of 4 bytes of feedback read back.
     uint64_t feedbackPostponed; ///< Maps that had to wait; see feedbackReadbackSize.
-    uint32_t fadingTextures;    ///< Textures that are fading in; see residencyFadeTime.
-    uint64_t tilesRevived; ///< Tiles mapped again without a read: their texels were still resident.
+    uint32_t fadingTextures;    ///< Textures that are fading in; see residencyFadeTicks.
+    uint64_t
+        tilesRestored; ///< Tiles mapped again without a read: their texels were still resident.
     /**
      * Bytes of deviceMemorySize that hold tiles. Sparse: heaps. Dense: images. Paged: pages, packed
      * levels and the page table.
@@ -643,7 +644,7 @@ SLUICE_API SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *stre
  * file was replaced.
  *
  * Does nothing if no texture uses the source. Without this call given-up tiles are tried again
- * after givenUpRetryDelay.
+ * after givenUpRetryDelayTicks.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: external on `streamer`.

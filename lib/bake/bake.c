@@ -74,7 +74,7 @@ static bool is_up_to_date(struct bake *bake)
         return false;
     bool is_same = sluiceGetStoreInfo(source, &store) == SLUICE_SUCCESS &&
                    store.sourceSize == bake->source_size &&
-                   store.sourceModifiedTime == bake->source_time &&
+                   store.sourceModifiedTimeNs == bake->source_time &&
                    store.settingsHash == bake->settings_hash;
     if (is_same) {
         report_image(bake, &store.layout, store.arrayLayerCount);
@@ -129,7 +129,7 @@ static void describe_store(struct bake *bake, const SluiceImageInfo *image)
         .addressModeV = address_mode(settings->wrapY),
         .pSourceName = base_name(bake->info->pInputPath),
         .sourceSize = bake->source_size,
-        .sourceModifiedTime = bake->source_time,
+        .sourceModifiedTimeNs = bake->source_time,
         .settingsHash = bake->settings_hash,
         .compressionLevel = settings->uncompressed       ? 0
                             : settings->compressionLevel ? settings->compressionLevel

@@ -31,7 +31,7 @@
 #define SLC_FIRST_SluiceFileRecordingInfo SLC_UP_TO(SluiceFileRecordingInfo, log)
 #define SLC_FIRST_SluiceReplayInfo SLC_UP_TO(SluiceReplayInfo, pStatistics)
 #define SLC_FIRST_SluiceReplayResult SLC_UP_TO(SluiceReplayResult, demand)
-#define SLC_FIRST_SluiceFeedbackRate SLC_UP_TO(SluiceFeedbackRate, timeout)
+#define SLC_FIRST_SluiceFeedbackRate SLC_UP_TO(SluiceFeedbackRate, timeoutSeconds)
 #define SLC_FIRST_SluiceFeedbackDelay SLC_UP_TO(SluiceFeedbackDelay, percentile99)
 #define SLC_FIRST_SluicePicturePair SLC_UP_TO(SluicePicturePair, peak)
 #define SLC_FIRST_SluiceExrImageSourceCreateInfo                                                   \

@@ -45,7 +45,7 @@ static SluiceResult check_rate(const SluiceFeedbackRate *rate, double probabilit
 {
     bool known = (uint32_t)rate->selection <= SLUICE_FEEDBACK_SELECTION_LATTICE;
     bool counts = rate->regionWidth && rate->regionHeight && rate->textureCount;
-    bool times = rate->frameRate > 0 && isfinite(rate->frameRate) && rate->timeout >= 0;
+    bool times = rate->frameRate > 0 && isfinite(rate->frameRate) && rate->timeoutSeconds >= 0;
     bool share = probability >= 0 && probability <= 1;
     return known && counts && times && share ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
 }
@@ -56,7 +56,7 @@ static SluiceResult check_rate(const SluiceFeedbackRate *rate, double probabilit
  */
 static double collected_frames(const SluiceFeedbackRate *rate)
 {
-    double frames = rate->frameRate * rate->timeout, turn = frames_per_turn(rate);
+    double frames = rate->frameRate * rate->timeoutSeconds, turn = frames_per_turn(rate);
     if (rate->inTurns)
         return fmax(whole_below(frames / turn), 1);
     return fmax(whole_below(frames), whole_below(turn));

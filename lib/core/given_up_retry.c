@@ -12,14 +12,14 @@
 
 #define PROBED_TEXTURES 16u /* at a time, whatever the number of those that are in trouble */
 #define TILES_PER_PROBE 4u  /* more than one, because some may be damaged for good */
-#define DEFAULT_FACTOR 120u /* of retryDelay */
+#define DEFAULT_FACTOR 120u /* of retryDelayTicks */
 #define EARLY_PART 8u       /* of the delay, after which a load that succeeds counts as a sign */
 #define LONGEST (UINT64_C(1) << 62)
 
 /* 0: never. */
 static uint64_t retry_interval(const slc_manager *m)
 {
-    uint64_t given = m->config.givenUpRetryDelay, delay = m->config.retryDelay;
+    uint64_t given = m->config.givenUpRetryDelayTicks, delay = m->config.retryDelayTicks;
     if (given == UINT64_MAX)
         return 0;
     if (given)

@@ -171,8 +171,8 @@ void slc_state_release(slc_manager *m, struct slc_managed_texture *t)
  */
 static uint32_t maps_to_believe(const slc_manager *m, const struct slc_managed_texture *t)
 {
-    if (m->config.missesToForget)
-        return m->config.missesToForget;
+    if (m->config.missesToExpire)
+        return m->config.missesToExpire;
     if (t->returns == 0)
         return 1;
     uint64_t maps = (uint64_t)14 * t->returns / (t->hits + 1) + 7;

@@ -39,7 +39,7 @@ static void set_limits(slc_manager *m)
     m->residency.limits = (struct slc_machine_limits){
         .standby = c->numExtraStandbyTiles,
         .load_attempts = c->maxLoadAttempts ? c->maxLoadAttempts : 5,
-        .retry_delay = c->retryDelay,
+        .retry_delay = c->retryDelayTicks,
     };
 }
 

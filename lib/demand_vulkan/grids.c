@@ -66,10 +66,10 @@ static void fill_grid(SluiceDemandLoader *loader, uint32_t index, uint32_t first
     }
 }
 
-SluiceResult sluiceCreateDemandUdim(SluiceDemandLoader *loader,
-                                    const SluiceDemandTextureId *pTextureIds, uint32_t columns,
-                                    uint32_t rows, const float missingColor[4],
-                                    SluiceDemandTextureId *pTextureId)
+SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
+                                 const SluiceDemandTextureId *pTextureIds, uint32_t columns,
+                                 uint32_t rows, const float missingColor[4],
+                                 SluiceDemandTextureId *pTextureId)
 {
     uint32_t index, first;
     if (!loader || !pTextureIds || !missingColor || !pTextureId)

@@ -174,7 +174,7 @@ static void close_source(SluiceDemandLoader *loader, struct slc_demand_image *im
 {
     if (!image->source)
         return;
-    sluiceForgetTileLoaderSource(loader->reader, image->source);
+    sluiceDropTileLoaderStatistics(loader->reader, image->source);
     if (image->origin.source)
         image->source = NULL; /* the application's own */
     else if (image->origin.pfnClose)

@@ -191,8 +191,8 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
     return tiles;
 }
 
-SluiceResult sluicePrepareDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer,
-                                       SluiceDemandLaunch *pLaunch)
+SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer,
+                                     SluiceDemandLaunch *pLaunch)
 {
     if (!loader || !commandBuffer || !pLaunch)
         return SLUICE_ERROR_NULL_POINTER;
@@ -327,7 +327,7 @@ static SluiceResult wait_for(SluiceDemandLoader *loader, uint64_t launch, uint64
 }
 
 SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
-                                         const SluiceDemandLaunch *pLaunch, uint64_t timeout,
+                                         const SluiceDemandLaunch *pLaunch, uint64_t timeoutNs,
                                          SluiceDemandRequests *pRequests,
                                          SluiceDemandTicket *pTicket)
 {
@@ -338,7 +338,7 @@ SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELLED;
-    SluiceResult result = wait_for(loader, pLaunch->launchIndex, timeout);
+    SluiceResult result = wait_for(loader, pLaunch->launchIndex, timeoutNs);
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_ticket_open(&loader->tickets, &ticket);
@@ -366,9 +366,9 @@ SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader, SluiceDeman
 }
 
 SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTicket ticket,
-                                    uint64_t timeout, SluiceDemandTicketStatus *pStatus)
+                                    uint64_t timeoutNs, SluiceDemandTicketStatus *pStatus)
 {
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    return slc_ticket_wait(&loader->tickets, ticket, timeout, pStatus);
+    return slc_ticket_wait(&loader->tickets, ticket, timeoutNs, pStatus);
 }

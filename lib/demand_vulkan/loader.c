@@ -52,8 +52,8 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
     info->maxRequestsPerLaunch = or_default(info->maxRequestsPerLaunch, 8192);
     info->maxTilesInFlight = or_default(info->maxTilesInFlight, 1024);
     info->maxPageChunkCount = or_default(info->maxPageChunkCount, 64);
-    if (info->failureRetryDelay == 0)
-        info->failureRetryDelay = UINT64_C(30000000000);
+    if (info->failureRetryDelayNs == 0)
+        info->failureRetryDelayNs = UINT64_C(30000000000);
     if (info->pageCapacity == 0)
         info->pageCapacity = UINT64_C(1) << 26;
     SluiceResult result = check_limits(&info->context->vk.log, info);

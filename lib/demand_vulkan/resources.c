@@ -129,9 +129,9 @@ static SluiceResult create(SluiceDemandLoader *loader, const SluiceDemandResourc
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluiceCreateDemandResource(SluiceDemandLoader *loader,
-                                        const SluiceDemandResourceCreateInfo *pCreateInfo,
-                                        SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage)
+SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
+                                     const SluiceDemandResourceCreateInfo *pCreateInfo,
+                                     SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage)
 {
     struct slc_demand_resource *resource;
     if (!loader || !pCreateInfo || !pCreateInfo->pfnFill || !pResourceId || !pFirstPage)
@@ -197,7 +197,7 @@ static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *r
     if (resource->state != SLC_RESOURCE_DESTROYED || resource->job_count ||
         resource->eviction_count)
         return;
-    sluiceForgetTileLoaderSource(loader->reader, &resource->base);
+    sluiceDropTileLoaderStatistics(loader->reader, &resource->base);
     slc_pages_give(loader, resource->first_page, resource->info.pageCount);
     give_class(loader, resource->class_index);
     resource->state = SLC_RESOURCE_FREE;
@@ -312,8 +312,8 @@ SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluiceDestroyDemandResource(SluiceDemandLoader *loader,
-                                         SluiceDemandResourceId resourceId)
+SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
+                                        SluiceDemandResourceId resourceId)
 {
     struct slc_demand_resource *resource;
     if (!loader)

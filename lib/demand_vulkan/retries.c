@@ -1,7 +1,7 @@
 /*
  * What failed is tried again: docs/decisions/0039-given-up-tiles-are-probed.md.
  *
- * Tiles of an image, and pages of a resource, are a group. It rests for failureRetryDelay, then a
+ * Tiles of an image, and pages of a resource, are a group. It rests for failureRetryDelayNs, then a
  * few of its pages stop being refused, so that shaders ask for them. When one of these comes, the
  * others follow. Textures that could not be opened each rest by themselves: their files have
  * nothing in common that is known here.
@@ -176,7 +176,7 @@ void slc_retries_all(SluiceDemandLoader *loader, uint32_t *owner)
 void slc_retries_success(SluiceDemandLoader *loader, uint32_t *owner, uint32_t page)
 {
     struct slc_retries *r = &loader->retries;
-    uint64_t delay = loader->info.failureRetryDelay;
+    uint64_t delay = loader->info.failureRetryDelayNs;
     if (*owner == 0 || delay == UINT64_MAX)
         return;
     struct slc_retry_group *group = &r->groups[*owner];
@@ -233,7 +233,7 @@ static bool opening_is_due(const struct slc_retries *r, uint64_t delay)
 void slc_retries_advance(SluiceDemandLoader *loader)
 {
     struct slc_retries *r = &loader->retries;
-    uint64_t delay = loader->info.failureRetryDelay;
+    uint64_t delay = loader->info.failureRetryDelayNs;
     if ((r->first_group == 0 && r->openings.first == 0) || delay == UINT64_MAX)
         return;
     r->now = slc_monotonic_time();
@@ -261,7 +261,7 @@ void slc_retries_everything(SluiceDemandLoader *loader)
 
 const char *slc_retries_words(const SluiceDemandLoader *loader, char *words, size_t size)
 {
-    uint64_t delay = loader->info.failureRetryDelay;
+    uint64_t delay = loader->info.failureRetryDelayNs;
     if (delay == UINT64_MAX)
         snprintf(words, size, "not retrying");
     else

@@ -114,9 +114,9 @@ SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluiceCreateDemandTexture(SluiceDemandLoader *loader,
-                                       const SluiceDemandTextureCreateInfo *pCreateInfo,
-                                       SluiceDemandTextureId *pTextureId)
+SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
+                                    const SluiceDemandTextureCreateInfo *pCreateInfo,
+                                    SluiceDemandTextureId *pTextureId)
 {
     if (!loader || !pCreateInfo || !pTextureId ||
         (!pCreateInfo->image.source && !pCreateInfo->image.pfnOpen))
@@ -213,10 +213,9 @@ void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_
         show_image(loader, i, image);
 }
 
-SluiceResult sluiceCreateDemandTextureVariant(SluiceDemandLoader *loader,
-                                              SluiceDemandTextureId baseId,
-                                              const SluiceDemandSampler *pSampler,
-                                              SluiceDemandTextureId *pTextureId)
+SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader, SluiceDemandTextureId baseId,
+                                           const SluiceDemandSampler *pSampler,
+                                           SluiceDemandTextureId *pTextureId)
 {
     uint32_t base, index;
     if (!loader || !pSampler || !pTextureId)
@@ -293,7 +292,7 @@ static void unlink_variant(SluiceDemandLoader *loader, uint32_t index)
     loader->textures[at].next = loader->textures[index].next;
 }
 
-SluiceResult sluiceDestroyDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId)
+SluiceResult sluiceRemoveDemandTexture(SluiceDemandLoader *loader, SluiceDemandTextureId textureId)
 {
     uint32_t index;
     if (!loader)

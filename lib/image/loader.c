@@ -224,7 +224,8 @@ SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,
     return SLUICE_SUCCESS;
 }
 
-SluiceResult sluiceForgetTileLoaderSource(SluiceTileLoader *loader, const SluiceImageSource *source)
+SluiceResult sluiceDropTileLoaderStatistics(SluiceTileLoader *loader,
+                                            const SluiceImageSource *source)
 {
     if (!loader || !source)
         return SLUICE_ERROR_NULL_POINTER;

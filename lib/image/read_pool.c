@@ -80,7 +80,7 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
         .result = attempt->result,
         .attempt = read->attempts.count,
         .willRetry = will_retry,
-        .retryDelay = will_retry ? delay : 0,
+        .retryDelayNs = will_retry ? delay : 0,
         .userValue = read->result.userValue,
         .offset = attempt->fault.offset,
     };

@@ -22,8 +22,8 @@ void slc_read_statistics_add_attempt(struct slc_read_statistics *statistics, Slu
         counts->lastFailure = result;
         counts->lastFailureOffset = offset;
     }
-    if (latency > counts->maxLatency)
-        counts->maxLatency = latency;
+    if (latency > counts->maxLatencyNs)
+        counts->maxLatencyNs = latency;
     uint64_t room = UINT64_MAX - statistics->latency_sum;
     statistics->latency_sum += latency < room ? latency : room;
     statistics->latencies[bucket_of(latency)]++;
@@ -52,9 +52,9 @@ static uint64_t percentile(const struct slc_read_statistics *statistics, uint32_
         below += statistics->latencies[i];
         uint64_t edge = ((uint64_t)2 << i) - 1;
         if (below >= wanted)
-            return edge < statistics->counts.maxLatency ? edge : statistics->counts.maxLatency;
+            return edge < statistics->counts.maxLatencyNs ? edge : statistics->counts.maxLatencyNs;
     }
-    return statistics->counts.maxLatency;
+    return statistics->counts.maxLatencyNs;
 }
 
 void slc_read_statistics_write(const struct slc_read_statistics *statistics,
@@ -63,7 +63,7 @@ void slc_read_statistics_write(const struct slc_read_statistics *statistics,
     *out = statistics->counts;
     if (out->attemptCount == 0)
         return;
-    out->meanLatency = statistics->latency_sum / out->attemptCount;
-    out->medianLatency = percentile(statistics, 50);
-    out->latency99 = percentile(statistics, 99);
+    out->meanLatencyNs = statistics->latency_sum / out->attemptCount;
+    out->medianLatencyNs = percentile(statistics, 50);
+    out->latency99Ns = percentile(statistics, 99);
 }

@@ -5,10 +5,10 @@ SluiceTileRetryPolicy slc_retry_policy(const SluiceTileRetryPolicy *given)
     SluiceTileRetryPolicy policy = *given;
     if (policy.maxAttempts == 0)
         policy.maxAttempts = 4;
-    if (policy.firstDelay == 0)
-        policy.firstDelay = 10000000;
-    if (policy.maxDelay == 0)
-        policy.maxDelay = 1000000000;
+    if (policy.firstDelayNs == 0)
+        policy.firstDelayNs = 10000000;
+    if (policy.maxDelayNs == 0)
+        policy.maxDelayNs = 1000000000;
     return policy;
 }
 
@@ -21,10 +21,10 @@ bool slc_retry_is_due(const SluiceTileRetryPolicy *policy, const struct slc_atte
     bool may_be_torn = result == SLUICE_ERROR_CORRUPT_DATA && attempts->corrupt_count == 1;
     if (attempts->count >= policy->maxAttempts || (!is_temporary && !may_be_torn))
         return false;
-    *delay = policy->firstDelay;
-    for (uint32_t i = 1; i < attempts->count && *delay < policy->maxDelay; i++)
+    *delay = policy->firstDelayNs;
+    for (uint32_t i = 1; i < attempts->count && *delay < policy->maxDelayNs; i++)
         *delay = *delay > UINT64_MAX / 2 ? UINT64_MAX : *delay * 2;
-    if (*delay > policy->maxDelay)
-        *delay = policy->maxDelay;
+    if (*delay > policy->maxDelayNs)
+        *delay = policy->maxDelayNs;
     return true;
 }

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
-#include "metrics/flip_colour.h"
+#include "metrics/flip_color.h"
 #include "metrics/flip_kernels.h"
 #include "metrics/pixel_rows.h"
 #include "metrics/window.h"

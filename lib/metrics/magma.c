@@ -17,11 +17,11 @@ static void colour_of(float value, uint8_t colour[4])
     colour[3] = 255;
 }
 
-SluiceResult sluiceColourMagma(const float *pValues, size_t count, uint8_t *pColours)
+SluiceResult sluiceColorMagma(const float *pValues, size_t count, uint8_t *pColors)
 {
-    if (count > 0 && (!pValues || !pColours))
+    if (count > 0 && (!pValues || !pColors))
         return SLUICE_ERROR_NULL_POINTER;
     for (size_t i = 0; i < count; i++)
-        colour_of(pValues[i], pColours + 4 * i);
+        colour_of(pValues[i], pColors + 4 * i);
     return SLUICE_SUCCESS;
 }

@@ -133,11 +133,11 @@ static void add_config(struct slc_dump *dump, const SluiceStreamedTextureManager
     }
     add(dump, " standby=%" PRIu32 " heaps=%" PRIu32 " attempts=%" PRIu32, c->numExtraStandbyTiles,
         c->maxHeapCount, c->maxLoadAttempts);
-    add(dump, " retry-delay=%" PRIu64, c->retryDelay);
-    if (c->missesToForget || c->prefetchLevels)
-        add(dump, " misses=%" PRIu32 " prefetch=%" PRIu32, c->missesToForget, c->prefetchLevels);
-    if (c->givenUpRetryDelay != 0 && c->givenUpRetryDelay != UINT64_MAX)
-        add(dump, " given-up-retry-delay=%" PRIu64, c->givenUpRetryDelay);
+    add(dump, " retry-delay=%" PRIu64, c->retryDelayTicks);
+    if (c->missesToExpire || c->prefetchLevels)
+        add(dump, " misses=%" PRIu32 " prefetch=%" PRIu32, c->missesToExpire, c->prefetchLevels);
+    if (c->givenUpRetryDelayTicks != 0 && c->givenUpRetryDelayTicks != UINT64_MAX)
+        add(dump, " given-up-retry-delay=%" PRIu64, c->givenUpRetryDelayTicks);
     if (c->targetHeapCount)
         add(dump, " target-heaps=%" PRIu32, c->targetHeapCount);
     add(dump, "%s%s", c->noEviction ? " no-eviction" : "", c->noMipBias ? " no-mip-bias" : "");

@@ -47,17 +47,17 @@ static void put_id(struct slc_bytes *out, SluiceTextureId id)
 
 enum { SWITCH_NO_EVICTION = 1, SWITCH_NO_MIP_BIAS = 2 };
 
-/* What the managers did that could not be told: with no retryDelay, 0 means the same. */
+/* What the managers did that could not be told: with no retryDelayTicks, 0 means the same. */
 static uint64_t untold_retries(const SluiceStreamedTextureManagerConfig *config)
 {
-    return config->retryDelay ? UINT64_MAX : 0;
+    return config->retryDelayTicks ? UINT64_MAX : 0;
 }
 
 static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManagerConfig *config)
 {
-    bool more = config && (config->missesToForget || config->prefetchLevels);
+    bool more = config && (config->missesToExpire || config->prefetchLevels);
     bool switches = config && (config->targetHeapCount || config->noEviction || config->noMipBias);
-    bool retries = config && (switches || config->givenUpRetryDelay != untold_retries(config));
+    bool retries = config && (switches || config->givenUpRetryDelayTicks != untold_retries(config));
     slc_put_u8(out, !config    ? SLC_INPUT_NULL
                     : switches ? CONFIG_WITH_SWITCHES
                     : retries  ? CONFIG_WITH_RETRIES
@@ -68,13 +68,13 @@ static void put_config(struct slc_bytes *out, const SluiceStreamedTextureManager
     slc_put_varint(out, config->numExtraStandbyTiles);
     slc_put_varint(out, config->maxHeapCount);
     slc_put_varint(out, config->maxLoadAttempts);
-    slc_put_varint(out, config->retryDelay);
+    slc_put_varint(out, config->retryDelayTicks);
     if (!more && !retries)
         return;
-    slc_put_varint(out, config->missesToForget);
+    slc_put_varint(out, config->missesToExpire);
     slc_put_varint(out, config->prefetchLevels);
     if (retries)
-        slc_put_varint(out, config->givenUpRetryDelay);
+        slc_put_varint(out, config->givenUpRetryDelayTicks);
     if (!switches)
         return;
     slc_put_varint(out, config->targetHeapCount);
@@ -231,14 +231,14 @@ static void get_config(struct slc_cursor *in, struct slc_record *record)
     record->config.numExtraStandbyTiles = slc_get_varint32(in);
     record->config.maxHeapCount = slc_get_varint32(in);
     record->config.maxLoadAttempts = slc_get_varint32(in);
-    record->config.retryDelay = slc_get_varint(in);
+    record->config.retryDelayTicks = slc_get_varint(in);
     if (mark >= CONFIG_WITH_MORE) {
-        record->config.missesToForget = slc_get_varint32(in);
+        record->config.missesToExpire = slc_get_varint32(in);
         record->config.prefetchLevels = slc_get_varint32(in);
     }
-    record->config.givenUpRetryDelay = untold_retries(&record->config);
+    record->config.givenUpRetryDelayTicks = untold_retries(&record->config);
     if (mark >= CONFIG_WITH_RETRIES)
-        record->config.givenUpRetryDelay = slc_get_varint(in);
+        record->config.givenUpRetryDelayTicks = slc_get_varint(in);
     if (mark == CONFIG_WITH_SWITCHES)
         get_switches(in, &record->config);
     record->call.config = &record->config;

@@ -37,10 +37,11 @@ static void write_configuration(SluiceRecorder *recorder,
     const SluiceStreamedTextureManagerConfig *config = slc_manager_config(manager);
     if (config->numExtraStandbyTiles != none.numExtraStandbyTiles ||
         config->maxHeapCount != none.maxHeapCount ||
-        config->maxLoadAttempts != none.maxLoadAttempts || config->retryDelay != none.retryDelay ||
-        config->missesToForget != none.missesToForget ||
+        config->maxLoadAttempts != none.maxLoadAttempts ||
+        config->retryDelayTicks != none.retryDelayTicks ||
+        config->missesToExpire != none.missesToExpire ||
         config->prefetchLevels != none.prefetchLevels ||
-        config->givenUpRetryDelay != none.givenUpRetryDelay || config->targetHeapCount ||
+        config->givenUpRetryDelayTicks != none.givenUpRetryDelayTicks || config->targetHeapCount ||
         config->noEviction || config->noMipBias)
         notify(recorder, manager,
                &(struct slc_call){.kind = SLC_CALL_SET_CONFIG, .config = config});

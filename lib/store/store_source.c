@@ -197,7 +197,7 @@ SluiceResult sluiceGetStoreInfo(SluiceImageSource *source, SluiceStoreInfo *pInf
         .addressModeV = header->address_mode_v,
         .pSourceName = ((struct store_source *)source)->name,
         .sourceSize = header->source_size,
-        .sourceModifiedTime = header->source_time,
+        .sourceModifiedTimeNs = header->source_time,
         .settingsHash = header->settings_hash,
         .compressionLevel = header->compression_level,
         .fileSize = header->file_size,

@@ -20,7 +20,7 @@ static SluiceResult describe(const SluiceStoreCreateInfo *info, struct slc_store
         .address_mode_u = info->addressModeU,
         .address_mode_v = info->addressModeV,
         .source_size = info->sourceSize,
-        .source_time = info->sourceModifiedTime,
+        .source_time = info->sourceModifiedTimeNs,
         .settings_hash = info->settingsHash,
         .compression_level = info->compressionLevel,
         .name_size = (uint32_t)name_size,

@@ -118,9 +118,9 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
         }
         ask_for_all(s, texture, s->info.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
-        SluiceResult result =
-            give_map(s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
-                     texture->layout.feedbackHeight, slot->time_stamp, s->info.feedbackTimeout);
+        SluiceResult result = give_map(
+            s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
+            texture->layout.feedbackHeight, slot->time_stamp, s->info.feedbackTimeoutTicks);
         if (result < 0)
             return result;
     }

@@ -21,7 +21,7 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     const struct slc_residency_interface *interface = s->residency->interface;
     if (interface->revive && interface->revive(s->residency, texture, tile)) {
         s->counts.tilesMapped++;
-        s->counts.tilesRevived++;
+        s->counts.tilesRestored++;
         return slc_streamer_check(
             s, sluiceUpdateTilesMapping(s->manager, s->textures[texture].id, 1, &tile->tileIndex),
             "sluiceUpdateTilesMapping");

@@ -16,7 +16,7 @@ static const char *name_of(const struct slc_texture *texture)
 
 static double seconds(const SluiceVulkanStreamer *s, uint64_t time_stamps)
 {
-    return (double)time_stamps / (double)s->info.timeStampsPerSecond;
+    return (double)time_stamps / (double)s->info.ticksPerSecond;
 }
 
 static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *texture, uint32_t tile,
@@ -33,26 +33,26 @@ static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *textur
     slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
             name_of(texture), place, sluiceResultString(result),
             packed ? "Its packed levels are missing" : "Showing a coarser level",
-            seconds(s, s->info.retryDelay));
+            seconds(s, s->info.retryDelayTicks));
 }
 
 static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                          uint64_t failed_count)
 {
-    if (s->info.givenUpRetryDelay == UINT64_MAX)
+    if (s->info.givenUpRetryDelayTicks == UINT64_MAX)
         slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Not retrying.",
                 name_of(texture), (unsigned long long)failed_count);
     else
         slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Retrying every %.3g s.",
                 name_of(texture), (unsigned long long)failed_count,
-                seconds(s, s->info.givenUpRetryDelay));
+                seconds(s, s->info.givenUpRetryDelayTicks));
 }
 
 /* Of a source that fails and recovers in turns only each interval. */
 static bool may_speak(const SluiceVulkanStreamer *s, const struct slc_read_trouble *trouble)
 {
     return trouble->said != SLC_READS_WELL || !trouble->has_spoken ||
-           s->time_stamp - trouble->time >= s->info.givenUpRetryDelay;
+           s->time_stamp - trouble->time >= s->info.givenUpRetryDelayTicks;
 }
 
 static void note_spoken(const SluiceVulkanStreamer *s, struct slc_read_trouble *trouble)

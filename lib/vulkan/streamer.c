@@ -46,7 +46,7 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
         {"maxRegionCount", info->maxRegionCount, SLC_REGION_ALIGNMENT, 1u << 28},
         {"feedbackEncoding", (uint32_t)info->feedbackEncoding, 0, SLUICE_FEEDBACK_ENCODING_MASKS},
         {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
-        {"residencyFadeTime", info->residencyFadeTime, 0, SLC_MAX_FADE_TIME},
+        {"residencyFadeTicks", info->residencyFadeTicks, 0, SLC_MAX_FADE_TIME},
         {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
     };
     return slc_check_limits(log, limits, sizeof limits / sizeof limits[0]);
@@ -128,8 +128,8 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .structSize = sizeof config,
         .numExtraStandbyTiles = s->info.numExtraStandbyTiles,
         .maxHeapCount = s->info.maxHeapCount,
-        .retryDelay = s->info.retryDelay,
-        .givenUpRetryDelay = s->info.givenUpRetryDelay,
+        .retryDelayTicks = s->info.retryDelayTicks,
+        .givenUpRetryDelayTicks = s->info.givenUpRetryDelayTicks,
     };
     return sluiceSetConfig(s->manager, &config);
 }
@@ -166,7 +166,7 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
-    s->fade_clock.time_per_level = s->info.residencyFadeTime;
+    s->fade_clock.time_per_level = s->info.residencyFadeTicks;
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
 }
 
@@ -317,7 +317,7 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->caps = context->caps;
     s->info = info;
     s->page_user = SLC_MAX_PAGE_USERS;
-    s->time_check.on = pCreateInfo->timeStampsPerSecond == 0;
+    s->time_check.on = pCreateInfo->ticksPerSecond == 0;
     result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
         result = create_device_parts(s);

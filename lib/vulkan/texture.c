@@ -357,7 +357,7 @@ static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *sour
     for (uint32_t i = 0; i < s->texture_high; i++)
         if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
             return;
-    sluiceForgetTileLoaderSource(s->loader, source); /* nothing of it is under way */
+    sluiceDropTileLoaderStatistics(s->loader, source); /* nothing of it is under way */
 }
 
 uint64_t slc_textures_retire(SluiceVulkanStreamer *s, uint64_t limit)

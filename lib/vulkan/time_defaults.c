@@ -7,7 +7,7 @@
 
 uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t milliseconds)
 {
-    uint64_t product = milliseconds * info->timeStampsPerSecond; /* at most 10^18 */
+    uint64_t product = milliseconds * info->ticksPerSecond; /* at most 10^18 */
     return product / 1000 + (product % 1000 != 0);
 }
 
@@ -25,17 +25,17 @@ static void set_default(uint64_t *value, uint64_t otherwise)
 
 SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info, const SluiceLogCallback *log)
 {
-    if (info->timeStampsPerSecond > SLC_MAX_TIME_STAMPS_PER_SECOND)
-        return refuse(log, "timeStampsPerSecond is above 10^12");
-    if (info->newestFeedbackMapOnly && info->feedbackTimeout)
-        return refuse(log, "newestFeedbackMapOnly contradicts a feedbackTimeout above 0");
+    if (info->ticksPerSecond > SLC_MAX_TIME_STAMPS_PER_SECOND)
+        return refuse(log, "ticksPerSecond is above 10^12");
+    if (info->newestFeedbackMapOnly && info->feedbackTimeoutTicks)
+        return refuse(log, "newestFeedbackMapOnly contradicts a feedbackTimeoutTicks above 0");
     if (info->noStandbyTiles && info->numExtraStandbyTiles)
         return refuse(log, "noStandbyTiles contradicts numExtraStandbyTiles above 0");
-    set_default(&info->timeStampsPerSecond, 1000000000);
+    set_default(&info->ticksPerSecond, 1000000000);
     if (!info->newestFeedbackMapOnly)
-        set_default(&info->feedbackTimeout, slc_time_stamps(info, 1000));
-    set_default(&info->retryDelay, slc_time_stamps(info, 250));
-    set_default(&info->givenUpRetryDelay, slc_time_stamps(info, 30000));
+        set_default(&info->feedbackTimeoutTicks, slc_time_stamps(info, 1000));
+    set_default(&info->retryDelayTicks, slc_time_stamps(info, 250));
+    set_default(&info->givenUpRetryDelayTicks, slc_time_stamps(info, 30000));
     if (!info->noStandbyTiles && info->numExtraStandbyTiles == 0)
         info->numExtraStandbyTiles = SLC_DEFAULT_STANDBY_TILES;
     return SLUICE_SUCCESS;
@@ -53,9 +53,8 @@ void slc_time_check_frame(struct slc_time_check *check, const SluiceLogCallback 
     check->on = false;
     uint64_t passed = time_stamp - check->first;
     if (passed < CHECKED_FRAMES * SHORTEST_FRAME)
-        slc_log(
-            log, SLUICE_LOG_WARNING,
-            "%u frames took %llu ns by their time stamps: set timeStampsPerSecond, or give time "
-            "stamps in nanoseconds",
-            CHECKED_FRAMES, (unsigned long long)passed);
+        slc_log(log, SLUICE_LOG_WARNING,
+                "%u frames took %llu ns by their time stamps: set ticksPerSecond, or give time "
+                "stamps in nanoseconds",
+                CHECKED_FRAMES, (unsigned long long)passed);
 }

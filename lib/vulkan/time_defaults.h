@@ -7,11 +7,11 @@
 #define SLC_MAX_TIME_STAMPS_PER_SECOND 1000000000000ull
 #define SLC_DEFAULT_STANDBY_TILES 1024u
 
-/** ceil(milliseconds * timeStampsPerSecond / 1000), at least 1. `milliseconds` is at most 10^6. */
+/** ceil(milliseconds * ticksPerSecond / 1000), at least 1. `milliseconds` is at most 10^6. */
 uint64_t slc_time_stamps(const SluiceVulkanStreamerCreateInfo *info, uint64_t milliseconds);
 
 /**
- * Fills in timeStampsPerSecond first, then every time that is 0 and numExtraStandbyTiles; with
+ * Fills in ticksPerSecond first, then every time that is 0 and numExtraStandbyTiles; with
  * newestFeedbackMapOnly and noStandbyTiles these two become 0. Logs what it refuses.
  * Errors: INVALID_ARGUMENT.
  */
@@ -19,7 +19,7 @@ SluiceResult slc_fill_in_times(SluiceVulkanStreamerCreateInfo *info, const Sluic
 
 /** Notices callers who count frames where the library takes time stamps for nanoseconds. */
 struct slc_time_check {
-    bool on; ///< timeStampsPerSecond was left to the library
+    bool on; ///< ticksPerSecond was left to the library
     uint64_t first;
     uint32_t frame_count;
 };

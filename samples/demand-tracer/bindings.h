@@ -28,7 +28,7 @@ bool bindings_create(const struct gpu *gpu, const struct bindings_request *reque
                      struct bindings *bindings);
 void bindings_destroy(const struct gpu *gpu, struct bindings *bindings);
 
-/** After sluicePrepareDemandLaunch, when no launch is under way: the tile arrays may be others. */
+/** After sluiceBeginDemandLaunch, when no launch is under way: the tile arrays may be others. */
 void bindings_follow_pages(const struct gpu *gpu, const SluiceDemandLoader *loader,
                            struct bindings *bindings);
 

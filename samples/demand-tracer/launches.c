@@ -39,7 +39,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     SluiceDemandLaunch launch;
     if (!gpu_check(vkBeginCommandBuffer(l->commands, &begin), "vkBeginCommandBuffer") ||
-        !check(sluicePrepareDemandLaunch(l->loader, l->commands, &launch),
+        !check(sluiceBeginDemandLaunch(l->loader, l->commands, &launch),
                "a launch cannot be prepared"))
         return false;
     l->tile_count += launch.tileCount;

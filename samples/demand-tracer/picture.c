@@ -122,7 +122,7 @@ static bool compare_flip(const SluicePicturePair *pair, const struct picture_pla
     const SluiceMetricMap map = {.pValues = errors};
     bool done = errors && colours &&
                 sluiceComputeFlip(pair, 0.0f, &map, NULL, flip) == SLUICE_SUCCESS &&
-                sluiceColourMagma(errors, count, colours) == SLUICE_SUCCESS;
+                sluiceColorMagma(errors, count, colours) == SLUICE_SUCCESS;
     if (!done)
         fprintf(stderr, "out of memory\n");
     done = done && write_numbered(place, "flip", colours, pair);

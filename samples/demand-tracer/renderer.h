@@ -29,7 +29,7 @@ bool renderer_create(const struct gpu *gpu, const struct tracer_options *options
                      struct renderer *renderer);
 void renderer_destroy(const struct gpu *gpu, struct renderer *renderer);
 
-/** Between sluicePrepareDemandLaunch and sluiceEndDemandLaunch: traces what the film still misses.
+/** Between sluiceBeginDemandLaunch and sluiceEndDemandLaunch: traces what the film still misses.
  */
 void renderer_record(const struct gpu *gpu, struct renderer *renderer,
                      const SluiceDemandLoader *loader, const struct film *film, uint32_t sample,

@@ -101,7 +101,7 @@ static bool create_texture(const struct tracer_options *options, SluiceDemandLoa
                     .explicitAddressModes = !texture->path},
         .failureColor = {1.0f, 0.0f, 1.0f, 1.0f},
     };
-    SluiceResult result = sluiceCreateDemandTexture(loader, &info, &texture->id);
+    SluiceResult result = sluiceAddDemandTexture(loader, &info, &texture->id);
     if (result != SLUICE_SUCCESS)
         text_say("a texture cannot be created: %s", sluiceResultString(result));
     return result == SLUICE_SUCCESS;

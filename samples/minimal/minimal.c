@@ -74,8 +74,8 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                  .residencyMode = settings->mode,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
                                                  .maxPageChunkCount = PAGE_CHUNKS,
-                                                 .timeStampsPerSecond = 60, /* one a frame */
-                                                 .feedbackTimeout = 128,
+                                                 .ticksPerSecond = 60, /* one a frame */
+                                                 .feedbackTimeoutTicks = 128,
                                                  .mapEverything = settings->everything};
     SLUICE(sluiceCreateVulkanStreamer(&info, &r->streamer));
 }

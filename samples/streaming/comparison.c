@@ -163,7 +163,7 @@ static bool write_errors(const struct pass *pass, uint32_t frame, const float *e
 {
     size_t count = pixel_count(pass->comparison);
     uint8_t *colours = malloc(4 * count);
-    bool written = colours && check(sluiceColourMagma(errors, count, colours), frame) &&
+    bool written = colours && check(sluiceColorMagma(errors, count, colours), frame) &&
                    write_picture(&pass->comparison->gallery->settings, "flip", frame, colours);
     free(colours);
     return written;

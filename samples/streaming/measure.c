@@ -120,7 +120,7 @@ static double loaded_bytes(const struct measure *measure)
 {
     const SluiceVulkanStreamerStatistics *statistics =
         &measure->frames[measure->frame_count - 1].statistics;
-    return MEASURE_TILE_BYTES * (double)(statistics->tilesMapped - statistics->tilesRevived);
+    return MEASURE_TILE_BYTES * (double)(statistics->tilesMapped - statistics->tilesRestored);
 }
 
 static double needed_bytes_peak(const struct measure *measure)

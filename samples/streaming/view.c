@@ -62,11 +62,11 @@ static bool create_streamer(struct view *view)
         .maxHeapCount = settings->max_heaps,
         .numExtraStandbyTiles = settings->standby,
         .noStandbyTiles = settings->standby == 0,
-        .timeStampsPerSecond = 1000000, /* simulated time, see view_frame */
-        .feedbackTimeout = (uint64_t)(settings->timeout * 1e6),
+        .ticksPerSecond = 1000000, /* simulated time, see view_frame */
+        .feedbackTimeoutTicks = (uint64_t)(settings->timeout * 1e6),
         .newestFeedbackMapOnly = settings->timeout * 1e6 < 1,
         .maxLoadsInFlight = settings->loads_in_flight,
-        .residencyFadeTime = (uint64_t)(settings->fade * 1e6),
+        .residencyFadeTicks = (uint64_t)(settings->fade * 1e6),
         .maxTouchedTiles = settings->touched_tiles,
     };
     if (view->request.everything) {
@@ -74,7 +74,7 @@ static bool create_streamer(struct view *view)
         info.tilesPerFrame = 1024;
         info.maxHeapCount = 0;
         info.maxLoadsInFlight = 0;
-        info.residencyFadeTime = 0;
+        info.residencyFadeTicks = 0;
     } else if (!slowness_begin(&view->slowness, settings, info.maxTextureCount)) {
         fprintf(stderr, "out of memory\n");
         return false;

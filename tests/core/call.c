@@ -207,10 +207,11 @@ void call_print(FILE *file, const struct call *c)
     if (c->kind == CALL_SET_CONFIG)
         fprintf(file, " standby %" PRIu32 " heaps %" PRIu32 " attempts %" PRIu32 " delay %" PRIu64,
                 c->config.numExtraStandbyTiles, c->config.maxHeapCount, c->config.maxLoadAttempts,
-                c->config.retryDelay);
+                c->config.retryDelayTicks);
     if (c->kind == CALL_SET_CONFIG)
         fprintf(file, " misses %" PRIu32 " prefetch %" PRIu32 " given up %" PRIu64,
-                c->config.missesToForget, c->config.prefetchLevels, c->config.givenUpRetryDelay);
+                c->config.missesToExpire, c->config.prefetchLevels,
+                c->config.givenUpRetryDelayTicks);
     if (c->kind == CALL_SET_CONFIG)
         fprintf(file, " target %" PRIu32 " switches %d%d", c->config.targetHeapCount,
                 c->config.noEviction, c->config.noMipBias);

@@ -231,10 +231,10 @@ static void make_config(struct call_sequence *s, struct call *call)
                                                           : choice_range(c, 1, 40);
     config->maxHeapCount = choice_once_in(c, 2) ? 0 : choice_range(c, 1, 6);
     config->maxLoadAttempts = choice_below(c, 4);
-    config->missesToForget = choice_once_in(c, 3) ? 0 : choice_below(c, 6);
+    config->missesToExpire = choice_once_in(c, 3) ? 0 : choice_below(c, 6);
     config->prefetchLevels = choice_below(c, 4);
-    config->retryDelay = delays[choice_below(c, COUNT_OF(delays))];
-    config->givenUpRetryDelay = delays[choice_below(c, COUNT_OF(delays))];
+    config->retryDelayTicks = delays[choice_below(c, COUNT_OF(delays))];
+    config->givenUpRetryDelayTicks = delays[choice_below(c, COUNT_OF(delays))];
     config->targetHeapCount = choice_once_in(c, 4) ? choice_range(c, 1, 3) : 0;
     config->noEviction = choice_once_in(c, 8);
     config->noMipBias = choice_once_in(c, 8);

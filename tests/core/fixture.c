@@ -112,8 +112,8 @@ void fixture_configure(struct fixture *f, uint32_t standby, uint32_t max_heaps, 
                                                  .numExtraStandbyTiles = standby,
                                                  .maxHeapCount = max_heaps,
                                                  .maxLoadAttempts = attempts,
-                                                 .retryDelay = retry_delay,
-                                                 .missesToForget = 1};
+                                                 .retryDelayTicks = retry_delay,
+                                                 .missesToExpire = 1};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
 }
 

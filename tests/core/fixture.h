@@ -43,7 +43,7 @@ SluiceStreamedTextureDesc small_texture(void);
 
 SluiceTextureId fixture_add(struct fixture *f, const SluiceStreamedTextureDesc *desc);
 SluiceTextureId fixture_add_small(struct fixture *f);
-/** And missesToForget 1, which is what the fixture begins with. */
+/** And missesToExpire 1, which is what the fixture begins with. */
 void fixture_configure(struct fixture *f, uint32_t standby, uint32_t max_heaps, uint32_t attempts,
                        uint64_t retry_delay);
 

@@ -56,7 +56,7 @@ static void answer_failed(struct naive_manager *n, struct naive_texture *t, stru
     uint32_t most = n->config.maxLoadAttempts ? n->config.maxLoadAttempts : 5;
     if (++tile->failures < most) {
         tile->state = SLUICE_TILE_STATE_FAILED;
-        tile->due = time + retry_delay(n->config.retryDelay, tile->failures);
+        tile->due = time + retry_delay(n->config.retryDelayTicks, tile->failures);
         tile->failed_at = ++n->stamp;
         return;
     }

@@ -7,11 +7,11 @@
 static uint64_t retry_interval(const struct naive_manager *n)
 {
     const uint64_t most = (uint64_t)1 << 62;
-    if (n->config.givenUpRetryDelay == UINT64_MAX)
+    if (n->config.givenUpRetryDelayTicks == UINT64_MAX)
         return 0;
-    if (n->config.givenUpRetryDelay)
-        return n->config.givenUpRetryDelay;
-    return n->config.retryDelay > most / 120 - 1 ? most : 120 * n->config.retryDelay;
+    if (n->config.givenUpRetryDelayTicks)
+        return n->config.givenUpRetryDelayTicks;
+    return n->config.retryDelayTicks > most / 120 - 1 ? most : 120 * n->config.retryDelayTicks;
 }
 
 static void enter(struct naive_manager *n, struct naive_texture *t, enum naive_trouble trouble)

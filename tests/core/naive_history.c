@@ -75,7 +75,7 @@ static void learn(struct naive_manager *n, struct naive_texture *t, const uint8_
             returns++;
     }
     t->returns += returns;
-    n->events[NAIVE_RETURNS] += returns > 0 && n->config.missesToForget == 0;
+    n->events[NAIVE_RETURNS] += returns > 0 && n->config.missesToExpire == 0;
     const uint64_t regions = count_regions(t);
     if (t->hits + t->returns >= (regions > 2048 ? 2 * regions : 4096)) {
         t->hits /= 2;
@@ -114,8 +114,8 @@ static uint64_t absence_after(const struct naive_texture *t, const uint8_t *aske
 /* Step 3. */
 static uint64_t misses_needed(const struct naive_manager *n, const struct naive_texture *t)
 {
-    if (n->config.missesToForget)
-        return n->config.missesToForget;
+    if (n->config.missesToExpire)
+        return n->config.missesToExpire;
     if (!t->returns)
         return 1;
     const uint64_t needed = (uint64_t)14 * t->returns / (t->hits + 1) + 7;

@@ -357,8 +357,8 @@ static void rest_for_1000(struct fixture *f)
 {
     const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
                                                        .maxLoadAttempts = 1,
-                                                       .retryDelay = 10,
-                                                       .givenUpRetryDelay = 1000};
+                                                       .retryDelayTicks = 10,
+                                                       .givenUpRetryDelayTicks = 1000};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
 }
 
@@ -530,7 +530,7 @@ static void without_a_delay_given_up_tiles_wait_for_a_call(void **state)
         {.structSize = sizeof(SluiceStreamedTextureManagerConfig), .maxLoadAttempts = 1},
         {.structSize = sizeof(SluiceStreamedTextureManagerConfig),
          .maxLoadAttempts = 1,
-         .givenUpRetryDelay = UINT64_MAX}};
+         .givenUpRetryDelayTicks = UINT64_MAX}};
     for (int i = 0; i < 2; i++) {
         struct fixture f;
         fixture_open(&f, 64, false);

@@ -18,7 +18,7 @@ static SluiceFeedbackRate usual(SluiceFeedbackSelection selection, uint32_t side
                                 .textureCount = 1000,
                                 .inTurns = in_turns,
                                 .frameRate = 60,
-                                .timeout = 10};
+                                .timeoutSeconds = 10};
 }
 
 static double miss_of(const SluiceFeedbackRate *rate, double probability)
@@ -59,7 +59,7 @@ static SluiceFeedbackRate draw_rate(long double *draws)
                                .texturesPerFrame = per_frame,
                                .inTurns = draw() < 0.5,
                                .frameRate = 1,
-                               .timeout = (double)turn * turns};
+                               .timeoutSeconds = (double)turn * turns};
     bool quads = rate.selection == SLUICE_FEEDBACK_SELECTION_RANDOM_QUADS;
     uint32_t across = quads ? (rate.regionWidth + 1) / 2 : rate.regionWidth;
     uint32_t down = quads ? (rate.regionHeight + 1) / 2 : rate.regionHeight;
@@ -127,12 +127,12 @@ static void whole_frames_and_turns_count(void **state)
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, false);
     rate.textureCount = 1;
-    rate.timeout = 0.29, rate.frameRate = 100;
+    rate.timeoutSeconds = 0.29, rate.frameRate = 100;
     assert_true(fabs(miss_of(&rate, 0.5) - 0x1p-29) < 1e-20);
     rate.frameRate = 103.4;
     assert_true(fabs(miss_of(&rate, 0.5) - 0x1p-29) < 1e-20);
     rate = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, true);
-    rate.timeout = 3.3; /* 1.98 turns: there is one in some timeouts */
+    rate.timeoutSeconds = 3.3; /* 1.98 turns: there is one in some timeouts */
     assert_true(miss_of(&rate, 0.25) == 0.75);
 }
 
@@ -141,7 +141,7 @@ static void newest_map_counts_without_a_timeout(void **state)
     (void)state;
     SluiceFeedbackRate all = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, false);
     SluiceFeedbackRate turns = usual(SLUICE_FEEDBACK_SELECTION_RANDOM_PIXELS, 1, true);
-    all.timeout = turns.timeout = 0;
+    all.timeoutSeconds = turns.timeoutSeconds = 0;
     assert_true(miss_of(&turns, 0.25) == 0.75);
     assert_true(fabs(miss_of(&all, 0.01) - pow(0.99, 100)) < 1e-15);
 }
@@ -151,7 +151,7 @@ static void endless_timeout_misses_nothing_that_is_ever_marked(void **state)
     (void)state;
     for (int selection = 0; selection < 4; selection++) {
         SluiceFeedbackRate rate = usual((SluiceFeedbackSelection)selection, 1, false);
-        rate.timeout = INFINITY;
+        rate.timeoutSeconds = INFINITY;
         float p = -1;
         assert_true(miss_of(&rate, 1e-9) == 0);
         CHECK_OK(sluiceChooseFeedbackProbability(&rate, 0, &p));
@@ -187,10 +187,10 @@ static void shared_corners_need_rounds_of_four_frames(void **state)
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_SHARED_QUADS, 1, false);
     rate.textureCount = 1;
     rate.frameRate = 1;
-    rate.timeout = 11;
+    rate.timeoutSeconds = 11;
     float p = -1;
     assert_true(miss_of(&rate, 0.5) == 0.25);
-    rate.timeout = 3;
+    rate.timeoutSeconds = 3;
     assert_true(miss_of(&rate, 1) == 1);
     CHECK_RESULT(sluiceChooseFeedbackProbability(&rate, 0.5, &p), SLUICE_ERROR_LIMIT_EXCEEDED);
     assert_true(p == -1);
@@ -215,7 +215,7 @@ static void lattice_meets_eight_by_eight_pixels_in_every_frame(void **state)
     (void)state;
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_LATTICE, 8, true);
     SluiceFeedbackDelay delay = {.structSize = sizeof delay};
-    rate.timeout = 0;
+    rate.timeoutSeconds = 0;
     assert_true(miss_of(&rate, 0) == 0);
     CHECK_OK(sluicePredictFeedbackDelay(&rate, 0, &delay));
     assert_true(delay.median == 100 && delay.percentile99 == 100);
@@ -230,7 +230,7 @@ static void lattice_meets_one_pixel_in_sixty_four_frames(void **state)
     rate.textureCount = 1;
     rate.frameRate = 1;
     for (uint32_t n = 1; n <= 64; n++) {
-        rate.timeout = n;
+        rate.timeoutSeconds = n;
         assert_true(miss_of(&rate, 0) == 1 - n / 64.0);
     }
     CHECK_OK(sluicePredictFeedbackDelay(&rate, 0, &delay));
@@ -244,7 +244,7 @@ static void lattice_in_turns_may_never_come_to_a_pixel(void **state)
     SluiceFeedbackRate rate = usual(SLUICE_FEEDBACK_SELECTION_LATTICE, 1, true);
     SluiceFeedbackDelay delay = {.structSize = sizeof delay};
     float p = -1;
-    rate.timeout = INFINITY;
+    rate.timeoutSeconds = INFINITY;
     assert_true(miss_of(&rate, 0) == 0.75);
     CHECK_RESULT(sluiceChooseFeedbackProbability(&rate, 0.5, &p), SLUICE_ERROR_LIMIT_EXCEEDED);
     CHECK_OK(sluicePredictFeedbackDelay(&rate, 0, &delay));
@@ -274,7 +274,7 @@ static void values_out_of_range_are_refused(void **state)
     for (size_t i = 0; i < 4; i++)
         expect_refused(good, bad_shares[i]);
     for (size_t i = 0; i < 3; i++, rate = good)
-        rate.timeout = bad_times[i], expect_refused(rate, 0.5);
+        rate.timeoutSeconds = bad_times[i], expect_refused(rate, 0.5);
     for (size_t i = 0; i < 4; i++, rate = good)
         rate.frameRate = bad_rates[i], expect_refused(rate, 0.5);
     rate.regionWidth = 0, expect_refused(rate, 0.5), rate = good;

@@ -11,7 +11,7 @@ static struct scene_texture *open_scene(uint32_t capacity)
     s.timeout_frames = 2;
     s.loads_per_frame = 512;
     s.releases_heaps = true;
-    s.config.missesToForget = 1; /* else what swings is learned and held */
+    s.config.missesToExpire = 1; /* else what swings is learned and held */
     scene_configure(&s);
     return scene_add(&s, 8192, (struct scene_window){0, 0, 0, 1, 0, 0});
 }

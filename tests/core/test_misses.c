@@ -1,4 +1,4 @@
-/** missesToForget: how many maps have to miss what a region wanted before it is let go. */
+/** missesToExpire: how many maps have to miss what a region wanted before it is let go. */
 #include "core/fixture.h"
 
 enum { TIMEOUT = 100 };
@@ -8,7 +8,7 @@ static SluiceTextureId open_with(struct fixture *f, uint32_t misses)
 {
     fixture_open(f, 64, false);
     SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
-                                                 .missesToForget = misses};
+                                                 .missesToExpire = misses};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
     SluiceStreamedTextureDesc desc = full_chain(1024, 1024, 128, 128);
     return fixture_add(f, &desc);

@@ -52,7 +52,7 @@ static void open_twins(struct twins *t, uint64_t seed)
     const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
                                                        .numExtraStandbyTiles = below(t, 200),
                                                        .maxLoadAttempts = 2,
-                                                       .missesToForget = below(t, 3),
+                                                       .missesToExpire = below(t, 3),
                                                        .prefetchLevels = below(t, 2)};
     for (uint32_t i = 0; i < 2; i++) {
         fixture_open(both[i], 40, seed % 2);

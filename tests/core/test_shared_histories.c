@@ -15,7 +15,7 @@ static void set_config(struct fixture *f, uint32_t prefetch_levels)
     const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
                                                        .numExtraStandbyTiles = 100,
                                                        .maxHeapCount = 1,
-                                                       .missesToForget = 1,
+                                                       .missesToExpire = 1,
                                                        .prefetchLevels = prefetch_levels};
     CHECK_OK(sluiceSetConfig(f->manager, &config));
 }

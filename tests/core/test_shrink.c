@@ -22,7 +22,7 @@ static SluiceTextureId open_with_everything_mapped(void)
 static void configure(const SluiceStreamedTextureManagerConfig *config)
 {
     SluiceStreamedTextureManagerConfig with = *config;
-    with.missesToForget = 1;
+    with.missesToExpire = 1;
     CHECK_OK(sluiceSetConfig(f.manager, &with));
 }
 

@@ -73,7 +73,7 @@ static void set_budget(uint32_t capacity, uint64_t *seed)
                                                  .numExtraStandbyTiles =
                                                      range(seed, 0, 1) ? range(seed, 0, 100) : 0,
                                                  .maxHeapCount = slots / capacity + 1,
-                                                 .missesToForget = range(seed, 0, 1)};
+                                                 .missesToExpire = range(seed, 0, 1)};
     if (range(seed, 0, 1)) { /* the application says when there is no more */
         s.f.heaps.limit = config.maxHeapCount;
         config.maxHeapCount = 0;

@@ -188,7 +188,7 @@ static void several_levels_may_lapse_in_one_call(void **state)
         struct fixture f;
         fixture_open(&f, 16, false);
         const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
-                                                           .missesToForget = 1};
+                                                           .missesToExpire = 1};
         CHECK_OK(sluiceSetConfig(f.manager, &config));
         SluiceStreamedTextureDesc desc = full_chain(512, 512, 128, 128); /* 16, 4, 1 and packed */
         SluiceTextureId id = fixture_add(&f, &desc);

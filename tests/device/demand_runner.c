@@ -228,7 +228,7 @@ static bool abandon_launch(struct runner *r, VkCommandBuffer commands, uint32_t 
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     uint32_t length = h->abandoned_count % 3;
     SluiceDemandLaunch launch;
-    if (sluicePrepareDemandLaunch(r->loader, commands, &launch) != SLUICE_SUCCESS)
+    if (sluiceBeginDemandLaunch(r->loader, commands, &launch) != SLUICE_SUCCESS)
         return false;
     if (length > 0)
         record_samples(r, commands, at);
@@ -252,7 +252,7 @@ SluiceResult runner_submit(struct runner *r)
     while (harness_abandons(h))
         if (!abandon_launch(r, commands, at))
             break;
-    SluiceResult result = sluicePrepareDemandLaunch(r->loader, commands, &launch);
+    SluiceResult result = sluiceBeginDemandLaunch(r->loader, commands, &launch);
     if (result == SLUICE_SUCCESS) {
         record_samples(r, commands, at);
         CHECK_OK(sluiceEndDemandLaunch(r->loader, commands));
@@ -382,7 +382,7 @@ SluiceDemandTextureId runner_add_texture(struct runner *r, struct runner_image *
     SluiceDemandTextureId id;
     const SluiceDemandTextureCreateInfo info = {
         .image = runner_image_desc(image), .sampler = runner_nearest, .failureColor = {1, 0, 1, 1}};
-    CHECK_OK(sluiceCreateDemandTexture(r->loader, &info, &id));
+    CHECK_OK(sluiceAddDemandTexture(r->loader, &info, &id));
     return id;
 }
 

@@ -44,7 +44,7 @@ void runner_add_texel(struct runner *r, SluiceDemandTextureId id, uint32_t width
 void runner_add_page(struct runner *r, uint32_t page);
 
 /** Records and submits a launch, of which at most two may be under way; the answer of
- * sluicePrepareDemandLaunch if that is not SUCCESS. */
+ * sluiceBeginDemandLaunch if that is not SUCCESS. */
 SluiceResult runner_submit(struct runner *r);
 /** And processes it: `requests` and `ticket`. */
 void runner_launch(struct runner *r);

@@ -341,11 +341,11 @@ SluiceResult harness_set_context(struct harness *h, const SluiceAllocationCallba
 /* Time stamps count frames here, and defaults in seconds would hide what tests look for. */
 static void fill_times(SluiceVulkanStreamerCreateInfo *info)
 {
-    info->timeStampsPerSecond = 60;
-    info->newestFeedbackMapOnly = info->feedbackTimeout == 0;
+    info->ticksPerSecond = 60;
+    info->newestFeedbackMapOnly = info->feedbackTimeoutTicks == 0;
     info->noStandbyTiles = info->numExtraStandbyTiles == 0;
-    if (info->retryDelay == 0)
-        info->retryDelay = 1;
+    if (info->retryDelayTicks == 0)
+        info->retryDelayTicks = 1;
 }
 
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)

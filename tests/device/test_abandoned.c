@@ -60,7 +60,7 @@ static void take_walk(struct harness *h, struct walk *walk, uint32_t abandon_one
     h->abandon_one_in = abandon_one_in;
     scene_init(&scene, h,
                (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeout = 6, .tilesPerFrame = 16, .texturesPerFrame = 3});
+                   .feedbackTimeoutTicks = 6, .tilesPerFrame = 16, .texturesPerFrame = 3});
     for (uint32_t leg = 0; leg < LEGS; leg++) {
         uint32_t gone = leg % TEXTURES;
         if (leg > 0)
@@ -116,7 +116,7 @@ static void any_number_of_frames_in_a_row_can_be_given_up(void **state)
     struct scene scene;
     const struct scene_aim fine = {0, 0, 1, 1, 0.1, 0.2, 0, 0};
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
     for (uint32_t round = 0; round < 2; round++) {
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
         scene_aim(&scene, round, SAMPLES, &fine);

@@ -137,10 +137,10 @@ static void take(struct harness *h, const SluiceVulkanStreamerCreateInfo *info, 
 static void a_walk_with_frames_abandoned_ends_as_one_without(void **state)
 {
     const SluiceVulkanStreamerCreateInfo infos[] = {
-        {.feedbackTimeout = 2, .packedLevelsOnDemand = true, .tilesPerFrame = 16},
-        {.feedbackTimeout = 12, .feedbackInTurns = true, .texturesPerFrame = 1},
-        {.feedbackTimeout = 3,
-         .residencyFadeTime = 4,
+        {.feedbackTimeoutTicks = 2, .packedLevelsOnDemand = true, .tilesPerFrame = 16},
+        {.feedbackTimeoutTicks = 12, .feedbackInTurns = true, .texturesPerFrame = 1},
+        {.feedbackTimeoutTicks = 3,
+         .residencyFadeTicks = 4,
          .packedLevelsOnDemand = true,
          .feedbackReadbackSize = 160,
          .numExtraStandbyTiles = 6},

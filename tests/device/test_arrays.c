@@ -89,8 +89,9 @@ static void layers_of_an_array_are_streamed_apart_and_removed_together(void **st
     static const uint32_t size[2] = {2048, 1024};
     struct array_scene a;
     roll_seed(9);
-    assert_true(array_scene_init(
-        &a, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100}, false, size, rgba8));
+    assert_true(array_scene_init(&a, *state,
+                                 (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100},
+                                 false, size, rgba8));
     scene_aim(&a.scene, 1, 64, &fine);
     scene_settle(&a.scene, 14);
     scene_check_levels(&a.scene);
@@ -122,7 +123,7 @@ static void arrays_that_come_and_go_leave_no_memory_behind(void **state)
     struct array_scene a;
     SluiceVulkanStreamerStatistics first, last;
     roll_seed(10);
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeout = 100, .maxTextureCount = 8};
+    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 100, .maxTextureCount = 8};
     if (!array_scene_init(&a, *state, info, false, size, rgba8)) {
         array_scene_finish(&a);
         SKIP_TEST("the device binds the tails of all layers as one");
@@ -152,7 +153,7 @@ static void arrays_that_come_and_go_leave_no_memory_behind(void **state)
 static void arrays_need_the_right_call(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
     SluiceImageSource *layer = pattern_source(PATTERN_LEVEL, 64, 64, rgba8), *array;
     SluiceImageSource *layers[] = {layer, layer};
     CHECK_OK(sluiceCreateArrayImageSource(layers, 2, NULL, &array));
@@ -204,7 +205,7 @@ static bool draw_layers(struct harness *h, SluiceResidencyMode mode, bool array,
                         struct ProbeOutput out[ARRAY_LAYERS][SAMPLES])
 {
     struct array_scene a = {0};
-    SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode, .feedbackTimeout = 100};
+    SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode, .feedbackTimeoutTicks = 100};
     bool drawn = true;
     if (array)
         drawn = array_scene_init(&a, h, info, true, size, rgba8);

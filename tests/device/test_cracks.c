@@ -183,13 +183,13 @@ static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyM
                         bool whole)
 {
     SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode,
-                                           .feedbackTimeout = 6,
-                                           .retryDelay = 1u << 30,
+                                           .feedbackTimeoutTicks = 6,
+                                           .retryDelayTicks = 1u << 30,
                                            .texturesPerFrame = TEXTURES,
                                            .heapTileCapacity = 64,
                                            .maxHeapCount = whole ? 0 : 6,
                                            .mapEverything = whole,
-                                           .residencyFadeTime = fade_time};
+                                           .residencyFadeTicks = fade_time};
     scene_init(scene, h, info);
     for (uint32_t t = 0; t < TEXTURES; t++) {
         const struct kind *k = &kinds[t];

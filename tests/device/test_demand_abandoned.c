@@ -69,11 +69,11 @@ static void give_up_all(struct runner *r, VkCommandBuffer commands)
 {
     SluiceDemandLaunch first, launch;
     begin_commands(commands);
-    CHECK_OK(sluicePrepareDemandLaunch(r->loader, commands, &first));
-    CHECK_RESULT(sluicePrepareDemandLaunch(r->loader, commands, &launch),
+    CHECK_OK(sluiceBeginDemandLaunch(r->loader, commands, &first));
+    CHECK_RESULT(sluiceBeginDemandLaunch(r->loader, commands, &launch),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_OK(sluiceEndDemandLaunch(r->loader, commands));
-    while (sluicePrepareDemandLaunch(r->loader, commands, &launch) == SLUICE_SUCCESS)
+    while (sluiceBeginDemandLaunch(r->loader, commands, &launch) == SLUICE_SUCCESS)
         CHECK_OK(sluiceEndDemandLaunch(r->loader, commands));
     CHECK_OK(sluiceAbandonDemandLaunch(r->loader, &first));
     CHECK_RESULT(sluiceAbandonDemandLaunch(r->loader, &first), SLUICE_ERROR_INVALID_ARGUMENT);

@@ -87,7 +87,7 @@ static void a_failure_names_the_image_that_was_never_open(void **state)
     SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
     create.image.pName = "bricks.store";
     SluiceDemandTextureId id;
-    CHECK_OK(sluiceCreateDemandTexture(r.loader, &create, &id));
+    CHECK_OK(sluiceAddDemandTexture(r.loader, &create, &id));
     runner_add_texel(&r, id, 300, 300, 0, 9, 9);
     runner_load(&r, 9);
     assert_memory_equal(h.last_message, "bricks.store cannot be used as a texture", 40);
@@ -148,7 +148,7 @@ static void images_that_no_shader_could_sample_are_refused(void **state)
         liars[i].base.pInterface = &interface;
         const SluiceDemandTextureCreateInfo info = {.image.source = &liars[i].base,
                                                     .failureColor = {1, 0, 1, 1}};
-        CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+        CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
         runner_add_texel(&r, id, 16, 16, 0, 3, 3);
     }
     runner_load(&r, 9);
@@ -262,7 +262,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     CHECK_RESULT(sluiceWaitDemandTicket(r.loader, r.ticket, 1000, &status), SLUICE_NOT_READY);
     assert_int_equal(status.remainingCount, 8);
     SluiceDemandTicket ticket = r.ticket;
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, id)); /* and does not wait */
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, id)); /* and does not wait */
     assert_int_equal(slow.closed, 0);
     runner_clear(&r);
     runner_add_texel(&r, runner_add_texture(&r, &other), 300, 300, 0, 9, 9);
@@ -292,14 +292,14 @@ static void a_source_may_go_as_soon_as_its_texture_is_destroyed(void **state)
         image.source.delay_us = 200;
         const SluiceDemandTextureCreateInfo info = {.image.source = &image.source.base,
                                                     .sampler = runner_nearest};
-        CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+        CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
         runner_clear(&r);
         for (uint32_t x = 0; x < 64; x++)
             runner_add_texel(&r, id, 1024, 1024, 0, x % 8 * 128, x / 8 * 128);
         runner_launch(&r);
         CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
         runner_launch(&r);
-        CHECK_OK(sluiceDestroyDemandTexture(r.loader, id));
+        CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
         assert_int_equal(image.source.running, 0);
         runner_image_finish(&image); /* its memory may be another's now */
     }

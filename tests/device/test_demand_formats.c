@@ -105,7 +105,7 @@ static void check_format(SluiceFormat format)
     SluiceImageSource *source = create_source(format);
     runner_init(&r, &h, NULL);
     const SluiceDemandTextureCreateInfo info = {.image.source = source, .sampler = runner_nearest};
-    CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+    CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
     for (uint32_t l = 0; l < LEVELS; l++)
         for (uint32_t i = 0, x, y; i < 9; i++) {
             texel_at(l, i, &x, &y);
@@ -198,7 +198,7 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
                 blocks[i].block[0] = (uint8_t)((blocks[i].block[0] | 1) << i % 8);
             const SluiceDemandTextureCreateInfo info = {.image.source = &blocks[i].base,
                                                         .sampler = runner_nearest};
-            CHECK_OK(sluiceCreateDemandTexture(r.loader, &info, &id));
+            CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
             runner_add_texel(&r, id, 2, 2, 0, 0, 0);
             runner_add_texel(&r, id, 2, 2, 1, 0, 0);
         }

@@ -60,7 +60,7 @@ static void change(struct life *life, struct slot *slot)
     switch (random_below(8)) {
     case 0:
     case 1:
-        CHECK_OK(sluiceDestroyDemandTexture(loader, slot->id));
+        CHECK_OK(sluiceRemoveDemandTexture(loader, slot->id));
         *slot = (struct slot){0};
         break;
     case 2:
@@ -72,9 +72,8 @@ static void change(struct life *life, struct slot *slot)
     case 4: CHECK_OK(sluiceInvalidateDemandTexture(loader, slot->id)); break;
     case 5:
         if (slot->variant)
-            CHECK_OK(sluiceDestroyDemandTexture(loader, slot->variant));
-        CHECK_OK(
-            sluiceCreateDemandTextureVariant(loader, slot->id, &runner_nearest, &slot->variant));
+            CHECK_OK(sluiceRemoveDemandTexture(loader, slot->variant));
+        CHECK_OK(sluiceAddDemandTextureVariant(loader, slot->id, &runner_nearest, &slot->variant));
         break;
     case 6: CHECK_OK(sluicePreloadDemandTexture(loader, slot->id, random_below(12), NULL)); break;
     default:

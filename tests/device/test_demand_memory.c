@@ -514,7 +514,7 @@ static bool live(struct failing_allocator *allocator, struct runner_image *image
     }
     const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(image),
                                                   .sampler = runner_nearest};
-    result = sluiceCreateDemandTexture(loader, &create, &id);
+    result = sluiceAddDemandTexture(loader, &create, &id);
     if (result != SLUICE_SUCCESS) {
         CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
         sluiceDestroyDemandLoader(loader);

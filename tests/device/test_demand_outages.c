@@ -15,7 +15,7 @@ static const uint64_t soon = 1, never = UINT64_MAX;
 
 static SluiceDemandLoaderCreateInfo quick_retries(uint64_t delay)
 {
-    return (SluiceDemandLoaderCreateInfo){.readRetry = {2, 1, 1}, .failureRetryDelay = delay};
+    return (SluiceDemandLoaderCreateInfo){.readRetry = {2, 1, 1}, .failureRetryDelayNs = delay};
 }
 
 /* Level 0 cannot be read while it is out. */
@@ -68,7 +68,7 @@ static void begin_outage(struct scene *s, uint64_t delay)
         .base.pInterface = &outage_interface, .inner = s->image.inner, .is_out = true};
     const SluiceDemandTextureCreateInfo texture = {.image.source = &s->outage.base,
                                                    .sampler = runner_nearest};
-    CHECK_OK(sluiceCreateDemandTexture(s->r.loader, &texture, &s->id));
+    CHECK_OK(sluiceAddDemandTexture(s->r.loader, &texture, &s->id));
     for (uint32_t i = 0; i < TILES * TILES; i++)
         runner_add_texel(&s->r, s->id, SIZE, SIZE, 0, i % TILES * TILE, i / TILES * TILE);
 }
@@ -217,7 +217,7 @@ static void values_that_could_not_be_found_are_found_later(void **state)
         .pageCount = PAGES, .pUserData = &fills, .pfnFill = fill};
     h.quiet = true;
     runner_init(&r, &h, &info);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &resource, &id, &first));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &resource, &id, &first));
     for (uint32_t i = 0; i < PAGES; i++)
         runner_add_page(&r, first + i);
     for (uint32_t i = 0; i < 10; i++) {
@@ -244,7 +244,7 @@ static void textures_may_go_while_they_wait_to_be_tried_again(void **state)
     runner_load(&s.r, 5);
     CHECK_OK(sluiceInvalidateDemandTexture(s.r.loader, s.id));
     runner_load(&s.r, 5);
-    CHECK_OK(sluiceDestroyDemandTexture(s.r.loader, s.id));
+    CHECK_OK(sluiceRemoveDemandTexture(s.r.loader, s.id));
     SluiceDemandTextureId stale = s.id;
     struct runner_image other;
     runner_image_init(&other, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 2);

@@ -92,7 +92,7 @@ static void shaders_get_what_the_callback_says(void **state)
     store_init(&store);
     runner_init(&r, &h, NULL);
     const SluiceDemandResourceCreateInfo info = describe(&store, 0);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &id, &first));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     const uint32_t pages[] = {0, 1, 31, 32, 1023, 1024, PAGES - 1};
     for (uint32_t i = 0; i < 7; i++)
         runner_add_page(&r, first + pages[i]);
@@ -125,7 +125,7 @@ static void values_beyond_the_limit_go_once_and_when_no_launch_reads_them(void *
     store_init(&store);
     runner_init(&r, &h, NULL);
     const SluiceDemandResourceCreateInfo info = describe(&store, LIMIT);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &id, &first));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     for (uint32_t round = 0; round < 30; round++) {
         runner_clear(&r);
         for (uint32_t i = 0; i < LIMIT * 3 / 4; i++)
@@ -152,28 +152,28 @@ static void a_destroyed_resource_gets_all_values_back_after_the_launches(void **
     store_init(&store);
     runner_init(&r, &h, NULL);
     SluiceDemandResourceCreateInfo info = describe(&store, 0);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &id, &first));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     for (uint32_t i = 0; i < 50; i++)
         runner_add_page(&r, first + i);
     runner_load(&r, 9);
     CHECK_OK(runner_submit(&r));
-    CHECK_OK(sluiceDestroyDemandResource(r.loader, id));
-    CHECK_RESULT(sluiceDestroyDemandResource(r.loader, id), SLUICE_ERROR_STALE_TEXTURE);
+    CHECK_OK(sluiceRemoveDemandResource(r.loader, id));
+    CHECK_RESULT(sluiceRemoveDemandResource(r.loader, id), SLUICE_ERROR_STALE_TEXTURE);
     CHECK_RESULT(sluiceInvalidateDemandPages(r.loader, id, 0, 1), SLUICE_ERROR_STALE_TEXTURE);
     assert_int_equal(store.evictions, 0); /* a launch reads them */
     CHECK_OK(sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, NULL));
     assert_int_equal(store.evictions, 50);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &next, &second));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &info, &next, &second));
     assert_true(next != id);
     runner_clear(&r);
     runner_add_page(&r, second + 49);
     runner_load(&r, 9);
     check_value(&r, &store, 0, 49);
     info.pageCount = 0;
-    CHECK_RESULT(sluiceCreateDemandResource(r.loader, &info, &id, &first),
+    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     info.pageCount = 1u << 30;
-    CHECK_RESULT(sluiceCreateDemandResource(r.loader, &info, &id, &first),
+    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
                  SLUICE_ERROR_LIMIT_EXCEEDED);
     runner_finish(&r);
     store_finish(&store);
@@ -192,7 +192,7 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     const SluiceDemandLoaderCreateInfo create = {.readRetry = {2, 1, 1}};
     runner_init(&r, &h, &create);
     const SluiceDemandResourceCreateInfo info = describe(&store, 0);
-    CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &id, &first));
+    CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     runner_add_page(&r, first + 10);
     assert_in_range(runner_load(&r, 20), 5, 5); /* 2 + 2 + 2 + 2 attempts, and a look */
     check_value(&r, &store, 0, 10);
@@ -220,7 +220,7 @@ static void resources_are_served_by_rank_and_before_finer_tiles(void **state)
         store_init(&stores[i]);
         SluiceDemandResourceCreateInfo info = describe(&stores[i], 0);
         info.rank = i ? 2 : 9;
-        CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &id, &first[i]));
+        CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first[i]));
         for (uint32_t p = 0; p < 10; p++)
             runner_add_page(&r, first[i] + p);
     }

@@ -146,13 +146,13 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
     SluiceDemandSampler clamp = runner_nearest;
     clamp.addressModeU = clamp.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    CHECK_OK(sluiceCreateDemandTextureVariant(r.loader, id, &clamp, &variant));
+    CHECK_OK(sluiceAddDemandTextureVariant(r.loader, id, &clamp, &variant));
     runner_add(&r, (struct RunnerInput){
                        .kind = RUNNER_LOD, .index = (uint32_t)variant, .uv = {1.001f, 0.001f}});
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 511, 0);
     uint64_t reads = image.source.read_count;
-    CHECK_OK(sluiceCreateDemandTextureVariant(r.loader, variant, &clamp, &late));
+    CHECK_OK(sluiceAddDemandTextureVariant(r.loader, variant, &clamp, &late));
     runner_clear(&r);
     runner_add_texel(&r, id, 512, 512, 0, 511, 0);
     runner_add_texel(&r, late, 512, 512, 0, 511, 0);
@@ -162,9 +162,9 @@ static void a_variant_shares_tiles_and_not_the_sampler(void **state)
     assert_int_equal(image.source.read_count, reads);
     assert_int_equal(image.opened, 1);
     /* With their base they go. */
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, late));
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, id));
-    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, variant), SLUICE_ERROR_STALE_TEXTURE);
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, late));
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, id));
+    CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, variant), SLUICE_ERROR_STALE_TEXTURE);
     runner_finish(&r);
     runner_image_finish(&image);
 }
@@ -190,7 +190,7 @@ static void address_modes_are_those_of_the_image_unless_they_are_explicit(void *
     SluiceDemandTextureCreateInfo repeats = {.image = runner_image_desc(&clamped),
                                              .sampler = runner_nearest};
     repeats.sampler.explicitAddressModes = true;
-    CHECK_OK(sluiceCreateDemandTexture(r.loader, &repeats, &ids[2]));
+    CHECK_OK(sluiceAddDemandTexture(r.loader, &repeats, &ids[2]));
     uint32_t told = h.log_count[SLUICE_LOG_WARNING];
     for (uint32_t i = 0; i < 3; i++)
         runner_add(&r, (struct RunnerInput){.kind = RUNNER_LOD,
@@ -218,7 +218,7 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
         runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 256 << i, 256, i);
     cells[1] = runner_add_texture(&r, &images[0]); /* column 1, row 0 */
     cells[5] = runner_add_texture(&r, &images[1]); /* column 2, row 1 */
-    CHECK_OK(sluiceCreateDemandUdim(r.loader, cells, 3, 2, missing, &grid));
+    CHECK_OK(sluiceAddDemandUdim(r.loader, cells, 3, 2, missing, &grid));
     const float at[5][2] = {{1 + 10.5f / 256, 20.5f / 256},
                             {2 + 300.5f / 512, 1 + 20.5f / 256},
                             {0.5f, 0.5f},
@@ -236,17 +236,17 @@ static void a_grid_shows_the_texture_of_each_cell(void **state)
         assert_true(out.resident);
         assert_memory_equal(out.color, missing, sizeof missing);
     }
-    CHECK_RESULT(sluiceCreateDemandUdim(r.loader, &grid, 1, 1, missing, &cells[0]),
+    CHECK_RESULT(sluiceAddDemandUdim(r.loader, &grid, 1, 1, missing, &cells[0]),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     /* A texture that goes leaves a hole. */
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, cells[1]));
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[1]));
     runner_launch(&r);
     struct RunnerOutput out = runner_output(&r, 0);
     assert_memory_equal(out.color, missing, sizeof missing);
     runner_check_texel(&r, 1, &images[1], 0, 300, 20);
     /* And a grid that goes shows nothing else any more. */
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, grid));
-    CHECK_OK(sluiceDestroyDemandTexture(r.loader, cells[5]));
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, grid));
+    CHECK_OK(sluiceRemoveDemandTexture(r.loader, cells[5]));
     runner_launch(&r);
     for (uint32_t i = 0; i < 5; i++) {
         out = runner_output(&r, i);
@@ -336,24 +336,23 @@ static void ids_of_destroyed_textures_are_refused_and_their_places_used_again(vo
         runner_add_texel(&r, ids[i], 300, 300, 0, 9, 9);
     }
     const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&images[0])};
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &last), SLUICE_ERROR_LIMIT_EXCEEDED);
-    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, ids[1] + 1), SLUICE_ERROR_UNKNOWN_TEXTURE);
-    CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, 0), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &last), SLUICE_ERROR_LIMIT_EXCEEDED);
+    CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, ids[1] + 1), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, 0), SLUICE_ERROR_UNKNOWN_TEXTURE);
     for (uint32_t i = 0; i < 5; i++) {
         runner_load(&r, 9);
         runner_check_texel(&r, 0, &images[0], 0, 9, 9);
         CHECK_OK(runner_submit(&r)); /* which names the index */
-        CHECK_OK(sluiceDestroyDemandTexture(r.loader, ids[0]));
-        CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
+        CHECK_OK(sluiceRemoveDemandTexture(r.loader, ids[0]));
+        CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
         CHECK_RESULT(sluiceInvalidateDemandTexture(r.loader, ids[0]), SLUICE_ERROR_STALE_TEXTURE);
-        CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &last),
-                     SLUICE_ERROR_LIMIT_EXCEEDED);
+        CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &last), SLUICE_ERROR_LIMIT_EXCEEDED);
         CHECK_OK(
             sluiceProcessDemandRequests(r.loader, &r.launch, UINT64_MAX, &r.requests, &r.ticket));
         last = ids[0];
         ids[0] = runner_add_texture(&r, &images[0]);
         assert_true(ids[0] != last && (uint32_t)ids[0] == (uint32_t)last);
-        CHECK_RESULT(sluiceDestroyDemandTexture(r.loader, last), SLUICE_ERROR_STALE_TEXTURE);
+        CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, last), SLUICE_ERROR_STALE_TEXTURE);
         assert_int_equal(images[0].closed, i + 1);
     }
     runner_finish(&r);
@@ -383,7 +382,7 @@ static void textures_by_the_hundred_thousand_cost_nothing_before_they_are_sample
         runner_check_texel(&r, i, &image, 0, i, 299);
     assert_int_equal(image.opened, 3);
     for (uint32_t i = 0; i < COUNT; i++)
-        CHECK_OK(sluiceDestroyDemandTexture(r.loader, ids[i]));
+        CHECK_OK(sluiceRemoveDemandTexture(r.loader, ids[i]));
     assert_int_equal(image.closed, 3);
     runner_finish(&r);
     runner_image_finish(&image);
@@ -398,15 +397,15 @@ static void wrong_arguments_are_refused(void **state)
     runner_init(&r, &h, NULL);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 64, 64, 1);
     SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, NULL), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, NULL), SLUICE_ERROR_NULL_POINTER);
     create.sampler.maxAnisotropy = 65;
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.sampler = (SluiceDemandSampler){.lodBias = -17};
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.sampler = (SluiceDemandSampler){.filter = (SluiceDemandFilter)2};
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.image = (SluiceDemandImage){0};
-    CHECK_RESULT(sluiceCreateDemandTexture(r.loader, &create, &id), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_NULL_POINTER);
     SluiceDemandLaunch none = {.launchIndex = 1};
     CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &none, 0, &r.requests, NULL),
                  SLUICE_ERROR_INVALID_ARGUMENT);

@@ -26,9 +26,9 @@ static struct ProbeOutput expected[TEXTURES][SCENE_SAMPLES];
 static void begin(struct scene *scene, struct harness *h)
 {
     scene_init(scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1u << 20,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1u << 20,
                                                 .texturesPerFrame = TEXTURES,
-                                                .residencyFadeTime = 1u << 30});
+                                                .residencyFadeTicks = 1u << 30});
     for (uint32_t t = 0; t < TEXTURES; t++) {
         VkSamplerAddressMode mode = (VkSamplerAddressMode)(t % 5);
         if (mode == VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE && !h->mirror_clamp)

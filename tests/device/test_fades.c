@@ -40,10 +40,10 @@ static struct ProbeOutput settled[TEXTURES][SCENE_SAMPLES], shown[TEXTURES][SCEN
 static void begin(struct scene *scene, struct harness *h, uint64_t fade_time)
 {
     scene_init(scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
                                                 .texturesPerFrame = TEXTURES,
                                                 .tilesPerFrame = 64,
-                                                .residencyFadeTime = fade_time});
+                                                .residencyFadeTicks = fade_time});
     const struct scene_aim aim = {-0.5, -0.5, 2, 2, -1, 3, 0, 0};
     roll_seed(51);
     for (uint32_t t = 0; t < TEXTURES; t++) {
@@ -204,12 +204,12 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
     struct harness *h = *state;
     struct scene scene;
     scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 4,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4,
                                                 .tilesPerFrame = 32,
                                                 .heapTileCapacity = 64,
                                                 .maxHeapCount = 4,
                                                 .texturesPerFrame = TEXTURES,
-                                                .residencyFadeTime = 6});
+                                                .residencyFadeTicks = 6});
     roll_seed(52);
     for (uint32_t t = 0; t < TEXTURES; t++)
         scene_add_as(
@@ -270,7 +270,7 @@ static void a_fade_that_would_not_end_is_refused(void **state)
 {
     struct harness *h = *state;
     SluiceVulkanStreamer *streamer;
-    SluiceVulkanStreamerCreateInfo info = {.residencyFadeTime = (1ull << 40) + 1};
+    SluiceVulkanStreamerCreateInfo info = {.residencyFadeTicks = (1ull << 40) + 1};
     harness_fill(h, &info);
     CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_INVALID_ARGUMENT);
 }

@@ -47,8 +47,9 @@ static void check_fallback(const struct scene *scene, uint32_t texture, uint32_t
 static void failing_tiles_leave_the_coarse_picture_until_the_source_recovers(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state,
-                (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .retryDelay = 2});
+    faulty_init(
+        &f, *state,
+        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .retryDelayTicks = 2});
     scene_settle(&f.scene, 6); /* the packed levels */
     f.fault.fail_at = atomic_load(&f.fault.read_count) + 1;
     f.fault.fails_on = true;
@@ -73,8 +74,9 @@ static void failing_tiles_leave_the_coarse_picture_until_the_source_recovers(voi
 static void failing_packed_levels_show_the_fallback_until_the_source_recovers(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state,
-                (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .retryDelay = 2});
+    faulty_init(
+        &f, *state,
+        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .retryDelayTicks = 2});
     f.fault.fail_at = 1;
     f.fault.fails_on = true;
     scene_aim(&f.scene, f.texture, 100, &fine);
@@ -90,7 +92,7 @@ static void failing_packed_levels_show_the_fallback_until_the_source_recovers(vo
 static void source_that_is_not_ready_is_asked_again(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
     f.fault.postponed = 40;
     scene_aim(&f.scene, f.texture, 100, &fine);
     for (int i = 0; i < 200 && (i < 20 || scene_missing(&f.scene)); i++)
@@ -105,7 +107,7 @@ static void source_that_is_not_ready_is_asked_again(void **state)
 static void texture_removed_while_it_loads_leaves_the_others_alone(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
     uint32_t other = scene_add(
         &f.scene, pattern_source(PATTERN_LEVEL, 1000, 500, SLUICE_FORMAT_R16G16B16A16_SFLOAT));
     scene_aim(&f.scene, f.texture, 100, &fine);
@@ -130,8 +132,9 @@ static void texture_removed_while_it_loads_leaves_the_others_alone(void **state)
 static void texture_can_be_removed_after_any_number_of_frames(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .maxTextureCount = 3});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .maxTextureCount = 3});
     for (int frames = 0; frames < 9; frames++)
         for (int waits = 0; waits < 2; waits++) {
             uint32_t t = scene_add(
@@ -157,8 +160,9 @@ static void texture_can_be_removed_after_any_number_of_frames(void **state)
 static void loads_nobody_wants_any_more_are_cancelled(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state,
-                (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 2, .loaderThreadCount = 1});
+    faulty_init(
+        &f, *state,
+        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 2, .loaderThreadCount = 1});
     const struct scene_aim left = {0.02, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     const struct scene_aim right = {0.7, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     scene_settle(&f.scene, 6);
@@ -186,7 +190,7 @@ static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
     struct scene scene;
     scene_init(&scene, *state,
                (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeout = 1000, .heapTileCapacity = 48, .maxHeapCount = 1});
+                   .feedbackTimeoutTicks = 1000, .heapTileCapacity = 48, .maxHeapCount = 1});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, t, SCENE_SAMPLES, &fine);
@@ -257,7 +261,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     failing_allocator_init(&a, UINT64_MAX);
     SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeout = 1000};
+    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 1000};
     CHECK_OK(harness_set_context(h, &a.callbacks, NULL));
     harness_fill(h, &info);
     h->quiet = true;

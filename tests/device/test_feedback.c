@@ -343,8 +343,9 @@ static void marked_is_between_required_and_allowed(void **state)
 static void resolve_hands_over_and_clears_only_the_maps_of_its_turn(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 1, .feedbackTimeout = 1000});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 1, .feedbackTimeoutTicks = 1000});
     for (uint32_t i = 0; i < 3; i++)
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     harness_frame(scene.h, scene.streamer, true, NULL, NULL); /* the turn of the first */

@@ -23,7 +23,7 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
 {
     struct scene scene;
     scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
                                                 .mapEverything = way == EVERYTHING});
     uint32_t t = scene_add_as(
         &scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),

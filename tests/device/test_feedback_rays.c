@@ -24,7 +24,7 @@ struct stage {
 static void stage_init(struct stage *stage, struct harness *h)
 {
     *stage = (struct stage){.h = h};
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeout = 1000};
+    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 1000};
     harness_fill(h, &info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &stage->streamer));
     stage->source = pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);

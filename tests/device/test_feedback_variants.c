@@ -38,7 +38,7 @@ static void stage_init(struct stage *stage, struct harness *h, SluiceVulkanStrea
 {
     *stage = (struct stage){.h = h};
     info.loaderThreadCount = 1; /* reads arrive in the same order every time */
-    info.feedbackTimeout = 1000;
+    info.feedbackTimeoutTicks = 1000;
     harness_fill(h, &info);
     h->time = 0;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &stage->streamer));

@@ -145,7 +145,7 @@ static void texels_of_every_elongated_format_are_as_in_the_source(void **state)
 static void compressed_textures_are_streamed_by_feedback(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
     roll_seed(4);
     const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
                                     SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC5_UNORM_BLOCK};

@@ -21,7 +21,7 @@ static void picture_init(struct picture *p, struct harness *h, bool everything, 
 {
     scene_init(&p->scene, h,
                (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeout = 1000, .mapEverything = everything, .tilesPerFrame = 64});
+                   .feedbackTimeoutTicks = 1000, .mapEverything = everything, .tilesPerFrame = 64});
     p->texture = scene_add_as(
         &p->scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, anisotropy,

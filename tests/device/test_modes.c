@@ -78,8 +78,9 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
 {
     struct ProbeOutput *pictures = out->pixels;
     struct session s = {.feedback_count = feedback_count};
-    scene_init(&s.scene, h,
-               (SluiceVulkanStreamerCreateInfo){.residencyMode = mode, .feedbackTimeout = 1000});
+    scene_init(
+        &s.scene, h,
+        (SluiceVulkanStreamerCreateInfo){.residencyMode = mode, .feedbackTimeoutTicks = 1000});
     s.texture = scene_add_as(&s.scene, pattern_source(kind, c->width, c->height, c->format), c->u,
                              c->v, c->anisotropy, SLUICE_NO_TEXTURE);
     for (uint32_t l = 0; l < look_count; l++) {

@@ -27,7 +27,7 @@ static uint64_t generation(const struct scene *scene)
 static void memory_comes_back_when_no_tile_needs_it(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
     uint32_t stays =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, stays, 200, &everything_fine);
@@ -60,11 +60,11 @@ static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(
     struct scene scene;
     h->quiet = true;
     scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000,
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
                                                 .maxPageChunkCount = 1,
                                                 .tilesPerFrame = 16,
                                                 .maxLoadsInFlight = 64,
-                                                .retryDelay = 3});
+                                                .retryDelayTicks = 3});
     uint32_t first =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, first, SCENE_SAMPLES, &everything_fine);
@@ -96,7 +96,7 @@ static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
     for (int loop = 0; loop < 2; loop++) {
         h->page_loop = loop;
         struct scene scene;
-        scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+        scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
         roll_seed(41);
         for (uint32_t i = 0; i < 4; i++) {
             const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8_UNORM,
@@ -123,8 +123,9 @@ static void standby_tiles_make_room_for_those_of_another_format(void **state)
     SluiceVulkanStreamerStatistics stats;
     h->quiet = true; /* that pages are short */
     scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeout = 4, .maxPageChunkCount = 2, .numExtraStandbyTiles = 1024});
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4,
+                                                .maxPageChunkCount = 2,
+                                                .numExtraStandbyTiles = 1024});
     uint32_t first =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     uint32_t second = scene_add(

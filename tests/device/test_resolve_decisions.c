@@ -117,7 +117,7 @@ static void changes_and_whole_maps_decide_the_same(void **state)
     const uint32_t shares[] = {3, TEXTURES};
     for (size_t i = 0; i < 2; i++) {
         SluiceVulkanStreamerCreateInfo info = {
-            .texturesPerFrame = shares[i], .feedbackTimeout = 5, .maxHeapCount = 2};
+            .texturesPerFrame = shares[i], .feedbackTimeoutTicks = 5, .maxHeapCount = 2};
         play(*state, &changes, info, 0);
         info.wholeFeedbackMaps = true;
         play(*state, &whole, info, 0);
@@ -137,7 +137,8 @@ static void changes_and_whole_maps_decide_the_same(void **state)
 static void little_room_delays_but_loses_nothing(void **state)
 {
     static struct run wide, narrow;
-    SluiceVulkanStreamerCreateInfo info = {.texturesPerFrame = TEXTURES, .feedbackTimeout = 40};
+    SluiceVulkanStreamerCreateInfo info = {.texturesPerFrame = TEXTURES,
+                                           .feedbackTimeoutTicks = 40};
     play(*state, &wide, info, 100);
     info.feedbackReadbackSize = 1024; /* the map of the largest one */
     play(*state, &narrow, info, 100);

@@ -57,7 +57,7 @@ static void probe_init(struct array_probe *p, struct harness *h, const uint32_t 
 {
     *p = (struct array_probe){0};
     scene_init(&p->a.scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .tilesPerFrame = 64});
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .tilesPerFrame = 64});
     for (uint32_t i = 0; i < ARRAY_LAYERS; i++)
         p->a.layers[i] = pattern_source(array_scene_kind(i), size[0], size[1], format);
     CHECK_OK(sluiceCreateArrayImageSource(p->a.layers, ARRAY_LAYERS, NULL, &p->a.source));

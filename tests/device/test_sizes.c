@@ -26,7 +26,7 @@ static void check_sizes(struct harness *h, const uint32_t (*sizes)[2], uint32_t 
 {
     struct scene scene;
     scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100, .tilesPerFrame = 64});
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100, .tilesPerFrame = 64});
     roll_seed(5);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t t =
@@ -80,7 +80,7 @@ static void images_beyond_the_limit_are_refused(void **state)
     SluiceVulkanFormatCapabilities format = r8_limits(h);
     uint32_t width = format.maxWidth, height = format.maxHeight;
     struct scene scene;
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
+    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
     h->quiet = true;
     const uint32_t beyond[][2] = {{width + 1, 1}, {1, height + 1}, {2 * width, 2 * height}};
     for (uint32_t i = 0; i < 3; i++) {

@@ -9,7 +9,7 @@
 static SluiceVulkanStreamerCreateInfo sparse_info(void)
 {
     return (SluiceVulkanStreamerCreateInfo){.residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
-                                            .feedbackTimeout = 100};
+                                            .feedbackTimeoutTicks = 100};
 }
 
 static const SluiceFormat rgba8 = SLUICE_FORMAT_R8G8B8A8_UNORM;
@@ -109,7 +109,7 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
 {
     struct scene scene;
     SluiceVulkanStreamerCreateInfo info = sparse_info();
-    info.feedbackTimeout = 3;
+    info.feedbackTimeoutTicks = 3;
     scene_init(&scene, *state, info);
     roll_seed(7);
     uint32_t t = scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, rgba8));
@@ -126,7 +126,7 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_true(stats.tilesUnmapped > 40);
     assert_true(stats.unbindsSaved > 40);
-    assert_true(stats.tilesRevived > 40); /* their texels are there, too */
+    assert_true(stats.tilesRestored > 40); /* their texels are there, too */
     assert_true(stats.unbinds + stats.unbindsSaved <= stats.tilesUnmapped);
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);

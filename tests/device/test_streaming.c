@@ -20,7 +20,7 @@ static const struct scene_aim everywhere = {0, 0, 1, 1, 0, 7, 0, 0};
 static void settled_sample_shows_the_level_that_was_wanted(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     roll_seed(1);
@@ -40,7 +40,7 @@ static void picture_gets_sharper_frame_by_frame(void **state)
 {
     struct scene scene;
     scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 100, .tilesPerFrame = 8});
+               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100, .tilesPerFrame = 8});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     const struct scene_aim fine = {0, 0, 1, 1, 0.2, 0.3, 0, 0};
@@ -150,9 +150,9 @@ static void settled_colours_are_those_of_a_resident_texture(void **state)
     static struct ProbeOutput truth[PROBE_CAPACITY];
     for (int streamed = 0; streamed < 2; streamed++) {
         struct scene scene;
-        scene_init(
-            &scene, *state,
-            (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .mapEverything = !streamed});
+        scene_init(&scene, *state,
+                   (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
+                                                    .mapEverything = !streamed});
         roll_seed(2);
         const uint32_t sizes[][2] = {{1024, 1024}, {1000, 600}, {777, 1311}, {2048, 100}};
         for (uint32_t i = 0; i < 12; i++) {
@@ -182,7 +182,7 @@ static void settled_colours_are_those_of_a_resident_texture(void **state)
 static void tiles_nobody_wants_any_more_are_unmapped_and_come_back_right(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 3});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 3});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     const struct scene_aim left = {0.02, 0.02, 0.4, 0.9, 0.3, 0.4, 0, 0};
@@ -208,7 +208,7 @@ static void tiles_nobody_wants_any_more_are_unmapped_and_come_back_right(void **
 static void followers_get_what_their_primary_wants(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000});
+    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
     uint32_t primary =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
     uint32_t follower = scene_add_as(

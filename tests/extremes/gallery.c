@@ -69,7 +69,7 @@ SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = 8,
-                                           .feedbackTimeout = 20};
+                                           .feedbackTimeoutTicks = 20};
     g->fake.pAllocator = &g->memory.callbacks;
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

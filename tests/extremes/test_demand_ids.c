@@ -44,7 +44,7 @@ static void a_texture_of_the_last_generation_is_the_last_of_its_index(void **sta
         runner_add_texel(&r, ids[i], 300, 300, 0, 5, 5);
         runner_load(&r, 9);
         runner_check_texel(&r, 0, &image, 0, 5, 5);
-        CHECK_OK(sluiceDestroyDemandTexture(r.loader, ids[i]));
+        CHECK_OK(sluiceRemoveDemandTexture(r.loader, ids[i]));
         pass_launches(&r);
         for (uint32_t j = 0; j <= i; j++)
             CHECK_RESULT(sluiceInvalidateDemandTexture(r.loader, ids[j]),
@@ -67,7 +67,7 @@ static void a_resource_of_the_last_generation_is_the_last_of_its_index(void **st
     uint32_t first, repeated = 0;
     runner_init(&r, &h, NULL);
     for (uint32_t i = 0; i < ROUNDS; i++) {
-        CHECK_OK(sluiceCreateDemandResource(r.loader, &info, &ids[i], &first));
+        CHECK_OK(sluiceAddDemandResource(r.loader, &info, &ids[i], &first));
         for (uint32_t j = 0; j < i; j++)
             repeated += ids[i] == ids[j];
         if (i == 1) {
@@ -75,7 +75,7 @@ static void a_resource_of_the_last_generation_is_the_last_of_its_index(void **st
             ids[1] = (uint64_t)(UINT32_MAX - 1) << 32 | (uint32_t)ids[1];
         }
         CHECK_OK(sluiceInvalidateDemandPages(r.loader, ids[i], 0, 10));
-        CHECK_OK(sluiceDestroyDemandResource(r.loader, ids[i]));
+        CHECK_OK(sluiceRemoveDemandResource(r.loader, ids[i]));
         pass_launches(&r);
         for (uint32_t j = 0; j <= i; j++)
             assert_true(sluiceInvalidateDemandPages(r.loader, ids[j], 0, 1) < 0);

@@ -26,13 +26,13 @@ static SluiceResult create_texture(struct life *l)
 {
     const SluiceDemandTextureCreateInfo info = {.image = runner_image_desc(&l->image),
                                                 .sampler = runner_nearest};
-    return sluiceCreateDemandTexture(l->r.loader, &info, &l->texture);
+    return sluiceAddDemandTexture(l->r.loader, &info, &l->texture);
 }
 
 static SluiceResult create_variant(struct life *l)
 {
     const SluiceDemandSampler sampler = {.maxAnisotropy = 8};
-    return sluiceCreateDemandTextureVariant(l->r.loader, l->texture, &sampler, &l->variant);
+    return sluiceAddDemandTextureVariant(l->r.loader, l->texture, &sampler, &l->variant);
 }
 
 static SluiceResult create_grid(struct life *l)
@@ -41,14 +41,14 @@ static SluiceResult create_grid(struct life *l)
     const float missing[4] = {1, 0, 1, 1};
     for (uint32_t i = 0; i < 40; i++)
         ids[i] = i % 2 ? l->texture : SLUICE_NO_DEMAND_TEXTURE;
-    return sluiceCreateDemandUdim(l->r.loader, ids, 8, 5, missing, &l->grid);
+    return sluiceAddDemandUdim(l->r.loader, ids, 8, 5, missing, &l->grid);
 }
 
 static SluiceResult create_resource(struct life *l)
 {
     const SluiceDemandResourceCreateInfo info = {
         .pageCount = 3000, .maxResidentPageCount = 100, .pfnFill = fill};
-    return sluiceCreateDemandResource(l->r.loader, &info, &l->resource, &l->first_page);
+    return sluiceAddDemandResource(l->r.loader, &info, &l->resource, &l->first_page);
 }
 
 static SluiceResult preload(struct life *l)
@@ -87,11 +87,11 @@ static SluiceResult invalidate(struct life *l)
 
 static SluiceResult destroy(struct life *l)
 {
-    SluiceResult result = sluiceDestroyDemandTexture(l->r.loader, l->grid);
+    SluiceResult result = sluiceRemoveDemandTexture(l->r.loader, l->grid);
     if (result == SLUICE_SUCCESS)
-        result = sluiceDestroyDemandTexture(l->r.loader, l->texture);
+        result = sluiceRemoveDemandTexture(l->r.loader, l->texture);
     if (result == SLUICE_SUCCESS)
-        result = sluiceDestroyDemandResource(l->r.loader, l->resource);
+        result = sluiceRemoveDemandResource(l->r.loader, l->resource);
     return result;
 }
 
@@ -198,7 +198,7 @@ static void questions_take_no_memory(void **state)
     SluiceDemandLaunch launch;
     assert_int_equal(h.DeviceWaitIdle(h.device), VK_SUCCESS);
     assert_int_equal(h.BeginCommandBuffer(h.commands[0], &begin), VK_SUCCESS);
-    CHECK_OK(sluicePrepareDemandLaunch(l.r.loader, h.commands[0], &launch));
+    CHECK_OK(sluiceBeginDemandLaunch(l.r.loader, h.commands[0], &launch));
     uint64_t calls_before = l.memory.calls;
     l.memory.refuse_from = 0;
     CHECK_OK(sluiceAbandonDemandLaunch(l.r.loader, &launch));

@@ -106,7 +106,7 @@ static void a_loader_takes_no_memory_once_it_is_there(void **state)
         assert_int_equal(count, 3);
         assert_true(texels[0] == (float)(i + 5) && texels[2] == (float)(i + 5));
         CHECK_OK(sluiceGetTileLoaderStatistics(loader, source, &statistics));
-        CHECK_OK(sluiceForgetTileLoaderSource(loader, source));
+        CHECK_OK(sluiceDropTileLoaderStatistics(loader, source));
     }
     assert_int_equal(memory.calls, memory.refuse_from);
     sluiceDestroyTileLoader(loader);

@@ -162,14 +162,14 @@ static void predicted_misses_are_those_of_long_double(void **state)
                                    .regionHeight = 1 + extremes_random(i + 1) % (1u << i % 11),
                                    .textureCount = 1,
                                    .frameRate = 1 + extremes_random(i + 2) % 1000,
-                                   .timeout = extremes_random(i + 3) % (1u << i % 20)};
+                                   .timeoutSeconds = extremes_random(i + 3) % (1u << i % 20)};
         double p = i % 2 ? extremes_random(i + 4) / 4294967296.0
                          : fabs((double)extremes_float(i / 2)),
                miss;
         if (!(p <= 1))
             continue;
         CHECK_OK(sluicePredictFeedbackMiss(&rate, p, &miss));
-        long double frames = fmaxl(floorl((long double)rate.frameRate * rate.timeout), 1);
+        long double frames = fmaxl(floorl((long double)rate.frameRate * rate.timeoutSeconds), 1);
         long double draws = frames * rate.regionWidth * rate.regionHeight;
         long double wanted = p == 0 ? 1 : expl(draws * log1pl(-(long double)p));
         if (wanted < (long double)DBL_MIN)

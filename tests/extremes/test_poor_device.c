@@ -12,8 +12,9 @@ static const struct scene_aim fine = {0.05, 0.05, 0.9, 0.9, 0.2, 0.3, 0, 0};
 static uint32_t stream_with(struct harness *h, uint64_t memory, uint32_t *frames)
 {
     struct scene scene;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeout = 1000, .heapTileCapacity = 32});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .heapTileCapacity = 32});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM));
     failing_layer.memory_left = memory;

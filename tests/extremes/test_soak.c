@@ -165,7 +165,7 @@ static void open_soak(struct soak *s)
     s->f.heaps.limit = 12; /* too few for the nearest views */
     const SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
                                                        .numExtraStandbyTiles = 64,
-                                                       .retryDelay = 3 * frame_time,
+                                                       .retryDelayTicks = 3 * frame_time,
                                                        .maxLoadAttempts = 3,
                                                        .prefetchLevels = 1};
     CHECK_OK(sluiceSetConfig(s->f.manager, &config));

@@ -81,7 +81,7 @@ static void resume(const char *path, const SluiceStoreInfo *info, bool finishes)
         .addressModeV = info->addressModeV,
         .pSourceName = info->pSourceName,
         .sourceSize = info->sourceSize,
-        .sourceModifiedTime = info->sourceModifiedTime,
+        .sourceModifiedTimeNs = info->sourceModifiedTimeNs,
         .settingsHash = info->settingsHash,
         .compressionLevel = info->compressionLevel,
         .flags = SLUICE_STORE_WRITER_RESUME,

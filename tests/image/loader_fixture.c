@@ -35,7 +35,7 @@ void fixture_init(struct loader_fixture *f, SluiceTileLoaderCreateInfo create)
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &f->inner));
     fault_source_init(&f->source, f->inner);
     create.threadCount = create.threadCount ? create.threadCount : 1;
-    create.retry.firstDelay = create.retry.firstDelay ? create.retry.firstDelay : 1;
+    create.retry.firstDelayNs = create.retry.firstDelayNs ? create.retry.firstDelayNs : 1;
     create.failure = (SluiceTileReadFailureCallback){f, on_failure};
     CHECK_OK(sluiceCreateTileLoader(&create, &f->loader));
 }

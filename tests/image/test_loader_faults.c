@@ -47,8 +47,8 @@ static void check_story(const struct story *story)
         assert_int_equal(s.givenUpCount, !succeeded);
         assert_int_equal(s.byteCount, succeeded ? 4 : 0);
         assert_true(s.delayedCount == 0 && s.cancelledCount == 0);
-        assert_true(s.meanLatency <= s.maxLatency && s.medianLatency <= s.latency99 &&
-                    s.latency99 <= s.maxLatency);
+        assert_true(s.meanLatencyNs <= s.maxLatencyNs && s.medianLatencyNs <= s.latency99Ns &&
+                    s.latency99Ns <= s.maxLatencyNs);
     }
     assert_int_equal(f.source.read_count, story->attempts);
     assert_int_equal(f.failure_count, story->reported);
@@ -104,7 +104,7 @@ static void failures_are_reported_with_source_region_and_what_follows(void **sta
         CHECK_RESULT(failure->result, SLUICE_ERROR_IO);
         assert_int_equal(failure->attempt, i + 1);
         assert_int_equal(failure->willRetry, i < 2);
-        assert_int_equal(failure->retryDelay, delays[i]);
+        assert_int_equal(failure->retryDelayNs, delays[i]);
         assert_int_equal(failure->userValue, 9);
         assert_true(failure->offset == SLUICE_UNKNOWN_OFFSET); /* it is no file */
     }
@@ -207,7 +207,7 @@ static void many_reads_of_failing_sources_all_end_and_are_counted(void **state)
         attempts += counts.attemptCount;
         for (uint32_t i = 0; i < PER_SOURCE; i++)
             assert_true(texels[s][i] == (float)(i % FIXTURE_SIZE));
-        CHECK_OK(sluiceForgetTileLoaderSource(f.loader, &sources[s].base));
+        CHECK_OK(sluiceDropTileLoaderStatistics(f.loader, &sources[s].base));
         assert_int_equal(fixture_statistics(&f, &sources[s]).readCount, 0);
     }
     assert_int_equal(fixture_statistics(&f, NULL).attemptCount, attempts);
@@ -225,11 +225,11 @@ static void a_source_with_reads_is_not_forgotten(void **state)
                  (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     fixture_submit(&f, &f.source, 0, &texel, 0);
     sluiceWaitTileLoaderIdle(f.loader);
-    CHECK_RESULT(sluiceForgetTileLoaderSource(f.loader, &f.source.base), SLUICE_NOT_READY);
+    CHECK_RESULT(sluiceDropTileLoaderStatistics(f.loader, &f.source.base), SLUICE_NOT_READY);
     assert_int_equal(fixture_statistics(&f, &f.source).readCount, 1);
     CHECK_OK(fixture_collect(&f).result);
-    CHECK_OK(sluiceForgetTileLoaderSource(f.loader, &f.source.base));
-    CHECK_OK(sluiceForgetTileLoaderSource(f.loader, &f.source.base));
+    CHECK_OK(sluiceDropTileLoaderStatistics(f.loader, &f.source.base));
+    CHECK_OK(sluiceDropTileLoaderStatistics(f.loader, &f.source.base));
     fixture_finish(&f);
 }
 
@@ -276,8 +276,8 @@ static void wrong_arguments_are_refused(void **state)
                  (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo)});
     CHECK_RESULT(sluiceGetTileLoaderStatistics(NULL, NULL, &s), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceGetTileLoaderStatistics(f.loader, NULL, NULL), SLUICE_ERROR_NULL_POINTER);
-    CHECK_RESULT(sluiceForgetTileLoaderSource(NULL, &f.source.base), SLUICE_ERROR_NULL_POINTER);
-    CHECK_RESULT(sluiceForgetTileLoaderSource(f.loader, NULL), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceDropTileLoaderStatistics(NULL, &f.source.base), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceDropTileLoaderStatistics(f.loader, NULL), SLUICE_ERROR_NULL_POINTER);
     CHECK_OK(sluiceGetTileLoaderStatistics(f.loader, f.inner, &s));
     assert_int_equal(s.readCount, 0);
     fixture_finish(&f);

@@ -238,8 +238,8 @@ static void a_source_is_forgotten_by_one_loader_alone(void **state)
     r.source.holds = true;
     submit(&r, 1, &r.source, 0, 0);
     fault_source_await(&r.source, 1);
-    CHECK_OK(sluiceForgetTileLoaderSource(r.loaders[0], &r.source.base));
-    CHECK_RESULT(sluiceForgetTileLoaderSource(r.loaders[1], &r.source.base), SLUICE_NOT_READY);
+    CHECK_OK(sluiceDropTileLoaderStatistics(r.loaders[0], &r.source.base));
+    CHECK_RESULT(sluiceDropTileLoaderStatistics(r.loaders[1], &r.source.base), SLUICE_NOT_READY);
     submit(&r, 0, &r.source, 1, 0);
     assert_int_equal(r.source.waiting, 1); /* the new record knows the limit */
     fault_source_release(&r.source);

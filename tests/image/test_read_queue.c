@@ -170,7 +170,7 @@ static void a_delayed_read_is_started_when_it_is_due(void **state)
     slc_read_queue_end(&queue, read, SLUICE_SUCCESS);
     slc_read_queue_write_statistics(&queue, NULL, &s);
     assert_true(s.delayedCount == 0 && s.retriedCount == 1 && s.succeededCount == 1);
-    assert_true(s.attemptCount == 2 && s.meanLatency == 8 && s.maxLatency == 9);
+    assert_true(s.attemptCount == 2 && s.meanLatencyNs == 8 && s.maxLatencyNs == 9);
     SluiceTileReadResult result;
     assert_true(slc_read_queue_collect(&queue, &result));
     assert_int_equal(result.ticket, ticket);

@@ -37,10 +37,10 @@ static void percentiles_are_at_most_twice_too_large(void **state)
         slc_read_statistics_write(&statistics, &s);
         uint64_t median = exact_percentile(sorted, count, 50);
         uint64_t high = exact_percentile(sorted, count, 99);
-        assert_true(s.medianLatency >= median && s.medianLatency <= 2 * median + 1);
-        assert_true(s.latency99 >= high && s.latency99 <= 2 * high + 1);
-        assert_true(s.latency99 <= s.maxLatency && s.maxLatency == sorted[count - 1]);
-        assert_int_equal(s.meanLatency, sum / count);
+        assert_true(s.medianLatencyNs >= median && s.medianLatencyNs <= 2 * median + 1);
+        assert_true(s.latency99Ns >= high && s.latency99Ns <= 2 * high + 1);
+        assert_true(s.latency99Ns <= s.maxLatencyNs && s.maxLatencyNs == sorted[count - 1]);
+        assert_int_equal(s.meanLatencyNs, sum / count);
     }
 }
 
@@ -53,8 +53,8 @@ static void equal_latencies_are_told_exactly(void **state)
         SluiceTileLoaderStatistics s = {.structSize = sizeof s};
         slc_read_statistics_add_attempt(&statistics, SLUICE_SUCCESS, 0, latencies[i]);
         slc_read_statistics_write(&statistics, &s);
-        assert_true(s.medianLatency == latencies[i] && s.latency99 == latencies[i]);
-        assert_true(s.meanLatency == latencies[i] && s.maxLatency == latencies[i]);
+        assert_true(s.medianLatencyNs == latencies[i] && s.latency99Ns == latencies[i]);
+        assert_true(s.meanLatencyNs == latencies[i] && s.maxLatencyNs == latencies[i]);
     }
 }
 
@@ -91,7 +91,8 @@ static void nothing_is_all_zeros(void **state)
     struct slc_read_statistics statistics = {0};
     SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     slc_read_statistics_write(&statistics, &s);
-    assert_true(s.meanLatency == 0 && s.medianLatency == 0 && s.latency99 == 0 && s.readCount == 0);
+    assert_true(s.meanLatencyNs == 0 && s.medianLatencyNs == 0 && s.latency99Ns == 0 &&
+                s.readCount == 0);
     assert_true(s.lastFailure == SLUICE_SUCCESS && s.lastFailureOffset == 0);
 }
 

@@ -52,8 +52,8 @@ static void zeros_are_the_defaults_and_one_attempt_is_no_retry(void **state)
     struct slc_attempts attempts = {1, 0};
     uint64_t delay;
     assert_int_equal(policy.maxAttempts, 4);
-    assert_int_equal(policy.firstDelay, 10000000);
-    assert_int_equal(policy.maxDelay, 1000000000);
+    assert_int_equal(policy.firstDelayNs, 10000000);
+    assert_int_equal(policy.maxDelayNs, 1000000000);
     policy = slc_retry_policy(&(SluiceTileRetryPolicy){.maxAttempts = 1});
     assert_false(slc_retry_is_due(&policy, &attempts, SLUICE_ERROR_IO, &delay));
 }

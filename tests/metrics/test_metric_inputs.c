@@ -234,11 +234,11 @@ static void magma_goes_from_black_to_pale_yellow(void **state)
         {0, 0, 4, 255}, {252, 253, 191, 255}, {181, 54, 122, 255},  {14, 8, 36, 255},
         {0, 0, 4, 255}, {0, 0, 4, 255},       {252, 253, 191, 255}, {252, 253, 191, 255}};
     uint8_t colours[8][4];
-    CHECK_OK(sluiceColourMagma(values, 8, colours[0]));
+    CHECK_OK(sluiceColorMagma(values, 8, colours[0]));
     assert_memory_equal(colours, expected, sizeof expected);
-    CHECK_OK(sluiceColourMagma(NULL, 0, NULL));
-    CHECK_RESULT(sluiceColourMagma(NULL, 1, colours[0]), SLUICE_ERROR_NULL_POINTER);
-    CHECK_RESULT(sluiceColourMagma(values, 1, NULL), SLUICE_ERROR_NULL_POINTER);
+    CHECK_OK(sluiceColorMagma(NULL, 0, NULL));
+    CHECK_RESULT(sluiceColorMagma(NULL, 1, colours[0]), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceColorMagma(values, 1, NULL), SLUICE_ERROR_NULL_POINTER);
 }
 
 int main(void)

@@ -40,7 +40,7 @@ sluiceCancelTileRead(f->loader, 1)
 sluiceCollectTileReads(f->loader, one(f), &f->out.read)
 sluiceWaitTileLoaderIdle(f->loader)
 sluiceGetTileLoaderStatistics(f->loader, ?f->source, &f->out.loader_statistics)
-sluiceForgetTileLoaderSource(f->loader, f->source)
+sluiceDropTileLoaderStatistics(f->loader, f->source)
 
 sluiceCreateStreamedTextureManager(&f->manager_info, &f->out.manager) => sluiceDestroyStreamedTextureManager(f->out.manager)
 !sluiceDestroyStreamedTextureManager(f->manager)
@@ -75,7 +75,7 @@ sluiceGetStatistics(f->manager, &f->out.statistics)
 sluiceComputePsnr8(f->texels, f->texels, 4, 4, 4, &f->out.number)
 sluiceComputeSsim(&f->pair, ?NULL, ?NULL, &f->out.number)
 sluiceComputeFlip(&f->pair, 60, ?NULL, ?NULL, &f->out.number)
-~sluiceColourMagma(f->values, 2, f->out.texels)
+~sluiceColorMagma(f->values, 2, f->out.texels)
 
 sluiceBeginRecording(f->fresh, &f->writer, ?NULL, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
 sluiceBeginRecordingToFile(f->fresh, f->path, ?NULL, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
@@ -206,7 +206,7 @@ static void fixture_init(struct fixture *f, void **state)
                                    .regionHeight = 4,
                                    .textureCount = 10,
                                    .frameRate = 60,
-                                   .timeout = 1};
+                                   .timeoutSeconds = 1};
     f->image = (SluiceProceduralImage){NULL, texel};
     f->info = (SluiceImageInfo){.structSize = sizeof(SluiceImageInfo),
                                 .width = 256,

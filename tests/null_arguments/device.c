@@ -35,21 +35,21 @@ sluiceGetVulkanStreamerManager(f->streamer)
 
 sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemandLoader(f->out.loader)
 !sluiceDestroyDemandLoader(f->loader)
-sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->out.id)
-sluiceCreateDemandTextureVariant(f->loader, f->id, &f->sampler, &f->out.id)
-sluiceCreateDemandUdim(f->loader, &f->id, 1, 1, f->color, &f->out.id)
-sluiceDestroyDemandTexture(f->loader, f->id)
+sluiceAddDemandTexture(f->loader, &f->demand_info, &f->out.id)
+sluiceAddDemandTextureVariant(f->loader, f->id, &f->sampler, &f->out.id)
+sluiceAddDemandUdim(f->loader, &f->id, 1, 1, f->color, &f->out.id)
+sluiceRemoveDemandTexture(f->loader, f->id)
 sluiceReplaceDemandImage(f->loader, f->id, &f->demand_info.image)
 sluiceInvalidateDemandTexture(f->loader, f->id)
 sluiceRetryDemandTexture(f->loader, ?f->id)
 sluicePreloadDemandTexture(f->loader, f->id, 0, ?&f->out.ticket)
-sluiceCreateDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
-sluiceDestroyDemandResource(f->loader, f->resource)
+sluiceAddDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
+sluiceRemoveDemandResource(f->loader, f->resource)
 sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
 sluiceGetDemandDescriptorSetLayout(f->loader, &f->out.set_layout)
-sluicePrepareDemandLaunch(f->loader, f->commands, &f->out.launch) => sluiceAbandonDemandLaunch(f->loader, &f->out.launch)
+sluiceBeginDemandLaunch(f->loader, f->commands, &f->out.launch) => sluiceAbandonDemandLaunch(f->loader, &f->out.launch)
 !sluiceEndDemandLaunch(f->loader, f->commands)
 !sluiceAbandonDemandLaunch(f->loader, &f->launch)
 !sluiceProcessDemandRequests(f->loader, &f->launch, 1, &f->out.requests, ?&f->out.ticket)
@@ -153,10 +153,10 @@ static void init_loader(struct fixture *f)
     f->recording = (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo),
                                              .pPath = "null_arguments_demand.trace"};
     f->demand_info.image.source = f->source;
-    CHECK_OK(sluiceCreateDemandTexture(f->loader, &f->demand_info, &f->id));
+    CHECK_OK(sluiceAddDemandTexture(f->loader, &f->demand_info, &f->id));
     f->resource_info = (SluiceDemandResourceCreateInfo){.pageCount = 4, .pfnFill = fill};
     uint32_t first;
-    CHECK_OK(sluiceCreateDemandResource(f->loader, &f->resource_info, &f->resource, &first));
+    CHECK_OK(sluiceAddDemandResource(f->loader, &f->resource_info, &f->resource, &first));
 }
 
 static void fixture_init(struct fixture *f, void **state)

@@ -267,10 +267,10 @@ static SluiceResult set_config(struct random_app *app)
         .numExtraStandbyTiles = random_app_below(app, 30),
         .maxHeapCount = random_app_below(app, RANDOM_APP_HEAPS),
         .maxLoadAttempts = random_app_below(app, 3),
-        .retryDelay = random_app_below(app, 4),
-        .missesToForget = random_app_below(app, 3),
+        .retryDelayTicks = random_app_below(app, 4),
+        .missesToExpire = random_app_below(app, 3),
         .prefetchLevels = random_app_below(app, 3),
-        .givenUpRetryDelay = one_in(app, 3) ? UINT64_MAX : random_app_below(app, 10),
+        .givenUpRetryDelayTicks = one_in(app, 3) ? UINT64_MAX : random_app_below(app, 10),
     };
     return sluiceSetConfig(app->manager, one_in(app, 20) ? NULL : &config);
 }

@@ -34,10 +34,10 @@ static void fill_inputs(struct example *e, uint64_t *seed)
     e->config.numExtraStandbyTiles = (uint32_t)next_random(seed);
     e->config.maxHeapCount = (uint32_t)next_random(seed);
     e->config.maxLoadAttempts = (uint32_t)next_random(seed);
-    e->config.retryDelay = next_random(seed);
-    e->config.missesToForget = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
+    e->config.retryDelayTicks = next_random(seed);
+    e->config.missesToExpire = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
     e->config.prefetchLevels = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
-    e->config.givenUpRetryDelay = next_random(seed);
+    e->config.givenUpRetryDelayTicks = next_random(seed);
     e->config.targetHeapCount = next_random(seed) % 2 ? 0 : (uint32_t)next_random(seed);
     e->config.noEviction = next_random(seed) % 4 == 0;
     e->config.noMipBias = next_random(seed) % 4 == 0;
@@ -141,10 +141,10 @@ static void check_same(const struct example *e, struct slc_record *back)
             assert_int_equal(a->config->numExtraStandbyTiles, b->config->numExtraStandbyTiles);
             assert_int_equal(a->config->maxHeapCount, b->config->maxHeapCount);
             assert_int_equal(a->config->maxLoadAttempts, b->config->maxLoadAttempts);
-            assert_true(a->config->retryDelay == b->config->retryDelay);
-            assert_int_equal(a->config->missesToForget, b->config->missesToForget);
+            assert_true(a->config->retryDelayTicks == b->config->retryDelayTicks);
+            assert_int_equal(a->config->missesToExpire, b->config->missesToExpire);
             assert_int_equal(a->config->prefetchLevels, b->config->prefetchLevels);
-            assert_true(a->config->givenUpRetryDelay == b->config->givenUpRetryDelay);
+            assert_true(a->config->givenUpRetryDelayTicks == b->config->givenUpRetryDelayTicks);
             assert_int_equal(a->config->targetHeapCount, b->config->targetHeapCount);
             assert_int_equal(a->config->noEviction, b->config->noEviction);
             assert_int_equal(a->config->noMipBias, b->config->noMipBias);

@@ -134,7 +134,7 @@ static void play_cancel(struct scene *scene)
 static void play_failures(struct scene *scene)
 {
     const SluiceStreamedTextureManagerConfig config = {
-        .structSize = sizeof config, .maxLoadAttempts = 2, .retryDelay = 10};
+        .structSize = sizeof config, .maxLoadAttempts = 2, .retryDelayTicks = 10};
     CHECK_OK(sluiceSetConfig(scene->manager, &config));
     SluiceTextureId id = add_texture(scene, 64, 64);
     for (uint64_t time = 1; time < 40; time += 6) {

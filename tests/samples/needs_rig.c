@@ -26,7 +26,7 @@ SluiceStreamedTextureManager *needs_rig_manager(struct needs_rig *rig, SluiceTex
         .heapAllocator = {&rig->heap_count, allocate_heap, release_heap},
         .heapTileCapacity = 256,
         .tileSize = 65536};
-    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config, .missesToForget = 1};
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config, .missesToExpire = 1};
     CHECK_OK(sluiceCreateStreamedTextureManager(&info, &manager));
     CHECK_OK(sluiceSetConfig(manager, &config));
     for (uint32_t i = 0; i < rig->count; i++)

@@ -214,7 +214,7 @@ static void other_settings_begin_anew(void **state)
         case 4: info.compressionLevel = 4; break;
         case 5: info.pSourceName = "picture.pn"; break;
         case 6: info.sourceSize = 1; break;
-        case 7: info.sourceModifiedTime = 1; break;
+        case 7: info.sourceModifiedTimeNs = 1; break;
         case 8: info.settingsHash = 2; break;
         case 9: info.meaning = SLUICE_STORE_MEANING_DATA; break;
         case 10: info.addressModeV = SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE; break;

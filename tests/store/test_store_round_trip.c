@@ -139,7 +139,7 @@ static void what_a_file_says_of_itself_comes_back(void **state)
                                   .addressModeV = SLUICE_STORE_ADDRESS_MODE_MIRRORED_REPEAT,
                                   .pSourceName = name,
                                   .sourceSize = UINT64_C(0xFEDCBA9876543210),
-                                  .sourceModifiedTime = INT64_C(-1234567890123456789),
+                                  .sourceModifiedTimeNs = INT64_C(-1234567890123456789),
                                   .settingsHash = UINT64_C(0x0123456789ABCDEF),
                                   .compressionLevel = 5};
     CHECK_OK(write_store(&info, PICTURE_SMOOTH));
@@ -162,7 +162,7 @@ static void what_a_file_says_of_itself_comes_back(void **state)
     assert_int_equal(got.addressModeV, info.addressModeV);
     assert_string_equal(got.pSourceName, name);
     assert_true(got.sourceSize == info.sourceSize);
-    assert_true(got.sourceModifiedTime == info.sourceModifiedTime);
+    assert_true(got.sourceModifiedTimeNs == info.sourceModifiedTimeNs);
     assert_true(got.settingsHash == info.settingsHash);
     assert_int_equal(got.compressionLevel, 5);
     assert_int_equal(image.width, 300);
@@ -184,7 +184,7 @@ static void what_a_file_says_of_itself_comes_back(void **state)
     assert_int_equal(store.compression, 5);
     assert_string_equal(store.name, name);
     assert_true(store.source_size == info.sourceSize && store.settings == info.settingsHash &&
-                store.source_time == info.sourceModifiedTime);
+                store.source_time == info.sourceModifiedTimeNs);
     naive_store_finish(&store);
     scratch_finish(&scratch);
 }

@@ -854,13 +854,13 @@ void fake_vulkan_destroy(SluiceVulkanStreamer *streamer)
 
 void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info)
 {
-    if (info->timeStampsPerSecond)
+    if (info->ticksPerSecond)
         return;
-    info->timeStampsPerSecond = 60;
-    info->newestFeedbackMapOnly = info->feedbackTimeout == 0;
+    info->ticksPerSecond = 60;
+    info->newestFeedbackMapOnly = info->feedbackTimeoutTicks == 0;
     info->noStandbyTiles = info->numExtraStandbyTiles == 0;
-    if (info->retryDelay == 0)
-        info->retryDelay = 1;
+    if (info->retryDelayTicks == 0)
+        info->retryDelayTicks = 1;
 }
 
 VkCommandBuffer fake_vulkan_commands(struct fake_vulkan *fake)

@@ -123,7 +123,7 @@ struct fake_vulkan {
     uint32_t dispatch_count;
 };
 
-/** Fills in the times: if timeStampsPerSecond is 0, time stamps count frames, and 0 is the newest
+/** Fills in the times: if ticksPerSecond is 0, time stamps count frames, and 0 is the newest
  *  map alone, no standby tiles, and a second try at once. */
 void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info);
 /** Settings of a context on the device, with the log and the allocator of `fake`. */

@@ -92,7 +92,7 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                                            .texturesPerFrame = share,
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = 64,
-                                           .feedbackTimeout = 3 * TEXTURES / share + 10};
+                                           .feedbackTimeoutTicks = 3 * TEXTURES / share + 10};
     w->fake.pAllocator = &w->allocations.callbacks;
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

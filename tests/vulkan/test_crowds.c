@@ -98,7 +98,7 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
                                            .maxRegionCount = 1024,
                                            .loaderThreadCount = 1,
-                                           .feedbackTimeout = 1000,
+                                           .feedbackTimeoutTicks = 1000,
                                            .maxPageChunkCount = 2};
     fake.log = (SluiceLogCallback){&warnings, count_shortages};
     fake_vulkan_fill(&info);
@@ -145,7 +145,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
                                            .maxRegionCount = 1024,
                                            .loaderThreadCount = 1,
-                                           .feedbackTimeout = 2,
+                                           .feedbackTimeoutTicks = 2,
                                            .numExtraStandbyTiles = 1024,
                                            .maxPageChunkCount = 2};
     fake_vulkan_fill(&info);

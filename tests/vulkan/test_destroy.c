@@ -238,7 +238,7 @@ static SluiceDemandLaunch prepare(struct stage *s)
 {
     SluiceDemandLaunch launch;
     s->fake.published = false;
-    CHECK_OK(sluicePrepareDemandLaunch(s->loader, fake_vulkan_commands(&s->fake), &launch));
+    CHECK_OK(sluiceBeginDemandLaunch(s->loader, fake_vulkan_commands(&s->fake), &launch));
     s->fake.frame_semaphore = launch.semaphore;
     return launch;
 }

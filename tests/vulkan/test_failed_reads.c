@@ -101,11 +101,11 @@ static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_
     SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 2,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 2,
-                                           .feedbackTimeout = 1u << 30,
-                                           .retryDelay = 1,
+                                           .feedbackTimeoutTicks = 1u << 30,
+                                           .retryDelayTicks = 1,
                                            .readRetry = {LOADER_ATTEMPTS, 1, 1},
                                            .maxLoadsInFlight = f->loads_in_flight,
-                                           .givenUpRetryDelay = rest};
+                                           .givenUpRetryDelayTicks = rest};
     f->fake.log = (SluiceLogCallback){f, on_log};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

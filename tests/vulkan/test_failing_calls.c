@@ -51,7 +51,7 @@ static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **stre
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
-                                           .feedbackTimeout = 100};
+                                           .feedbackTimeoutTicks = 100};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     return fake_vulkan_create(fake, &info, streamer);

@@ -80,7 +80,7 @@ static bool timeout_misses(const struct picture *p, uint32_t last, uint32_t fram
 /** Timeouts that share no frame, whose beginnings come to every frame of the lattice. */
 static uint32_t count_misses(const struct picture *p, uint32_t trials)
 {
-    uint32_t frames = (uint32_t)(p->rate.frameRate * p->rate.timeout), misses = 0;
+    uint32_t frames = (uint32_t)(p->rate.frameRate * p->rate.timeoutSeconds), misses = 0;
     uint32_t turn = p->rate.textureCount / p->rate.texturesPerFrame;
     uint32_t distance = (frames > turn ? frames : turn) | 1;
     for (uint32_t trial = 1; trial <= trials; trial++)
@@ -138,7 +138,7 @@ static struct picture picture_of(SluiceFeedbackSelection selection, struct recta
                                      .texturesPerFrame = 1,
                                      .inTurns = in_turns,
                                      .frameRate = 60,
-                                     .timeout = 1},
+                                     .timeoutSeconds = 1},
                             .pixels = pixels};
 }
 
@@ -284,7 +284,7 @@ static uint32_t count_quads(const struct picture *p, uint32_t frame)
 /** What is promised of four frames, from the prediction: at p = 1/2 each quad halves the chance. */
 static uint32_t promised_quads(struct picture *p)
 {
-    p->rate.timeout = 4 / p->rate.frameRate;
+    p->rate.timeoutSeconds = 4 / p->rate.frameRate;
     p->probability = 0.5f;
     return (uint32_t)lround(-log2(predicted(p)));
 }

@@ -389,7 +389,7 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = heap_capacity,
                                            .maxHeapCount = heaps,
-                                           .feedbackTimeout = 2,
+                                           .feedbackTimeoutTicks = 2,
                                            .maxRegionCount = 1 << 14};
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
@@ -413,7 +413,7 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.unbinds + stats.unbindsSaved > 50);
     assert_true(stats.unbindsSaved > 0);
-    assert_true(stats.tilesRevived > 100);
+    assert_true(stats.tilesRestored > 100);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     assert_in_range(m->fake.frame_value, 1000, m->frame); /* the timeline went on */
     /* once each, but for those that came last */
@@ -486,7 +486,7 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     static struct model model; /* large */
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = 1, .want = want, .user = m}};
-    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .feedbackTimeout = 2};
+    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     for (uint64_t i = 1; i <= 3; i++) {

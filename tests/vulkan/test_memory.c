@@ -56,7 +56,7 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = {
-        .feedbackTimeout = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};
+        .feedbackTimeoutTicks = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));

@@ -51,7 +51,7 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     info.packedLevelsOnDemand = true;
-    info.feedbackTimeout = 2;
+    info.feedbackTimeoutTicks = 2;
     info.maxTextureCount = 4;
     info.maxRegionCount = 256;
     info.tilesPerFrame = 4; /* so that packed tiles are handed out in parts */

@@ -319,7 +319,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
                                            .loaderThreadCount = 1,
                                            .heapTileCapacity = heap_capacity,
                                            .maxHeapCount = heaps,
-                                           .feedbackTimeout = 2,
+                                           .feedbackTimeoutTicks = 2,
                                            .maxRegionCount = 1 << 14,
                                            .maxPageChunkCount = CHUNKS};
     fake_vulkan_fill(&info);
@@ -341,7 +341,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     generation = pages.generation;
     assert_true(shown > 10000);
     assert_true(stats.tilesUnmapped > 50);
-    assert_true(stats.tilesRevived > 500);
+    assert_true(stats.tilesRestored > 500);
     assert_true(generation >= 6); /* images came, went, and came again */
     check_buffers(&m->fake, &buffers);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);

@@ -38,7 +38,7 @@ static void count_warnings(void *user, SluiceLogSeverity severity, const char *m
     if (severity != SLUICE_LOG_WARNING)
         return;
     s->warnings++;
-    assert_non_null(strstr(message, "timeStampsPerSecond"));
+    assert_non_null(strstr(message, "ticksPerSecond"));
 }
 
 /* Of `info`, unit and times stay as they are. */
@@ -55,10 +55,10 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
     const SluiceVulkanStreamerCreateInfo asked = info;
     fake_vulkan_fill(&info);
-    info.timeStampsPerSecond = asked.timeStampsPerSecond;
+    info.ticksPerSecond = asked.ticksPerSecond;
     info.newestFeedbackMapOnly = asked.newestFeedbackMapOnly;
     info.noStandbyTiles = asked.noStandbyTiles;
-    info.retryDelay = asked.retryDelay;
+    info.retryDelayTicks = asked.retryDelayTicks;
     info.maxTextureCount = 4;
     info.maxRegionCount = 256;
     info.loaderThreadCount = 1;
@@ -108,7 +108,7 @@ static void what_a_few_maps_miss_stays_by_default(void **state)
     const uint64_t units[] = {0, 1000000, 60};
     for (int i = 0; i < 3; i++) {
         struct stage *s =
-            stage_init((SluiceVulkanStreamerCreateInfo){.timeStampsPerSecond = units[i]}, steps[i]);
+            stage_init((SluiceVulkanStreamerCreateInfo){.ticksPerSecond = units[i]}, steps[i]);
         s->looks = true;
         frames(s, 12);
         uint32_t mapped = statistics(s).mappedTileCount;
@@ -149,7 +149,7 @@ static void frames_taken_for_nanoseconds_are_warned_of_once(void **state)
     frames(s, 300);
     assert_int_equal(s->warnings, 1);
     stage_finish(s);
-    s = stage_init((SluiceVulkanStreamerCreateInfo){.timeStampsPerSecond = 60}, 1);
+    s = stage_init((SluiceVulkanStreamerCreateInfo){.ticksPerSecond = 60}, 1);
     frames(s, 300);
     assert_int_equal(s->warnings, 0);
     stage_finish(s);
@@ -170,17 +170,17 @@ static void defaults_are_seconds_in_any_unit(void **state)
                  {1, 1, 1},
                  {1000000000000, 1000000000000, 250000000000}};
     for (int i = 0; i < 5; i++) {
-        SluiceVulkanStreamerCreateInfo info = {.timeStampsPerSecond = cases[i].unit};
+        SluiceVulkanStreamerCreateInfo info = {.ticksPerSecond = cases[i].unit};
         CHECK_OK(slc_fill_in_times(&info, NULL));
-        assert_true(info.feedbackTimeout == cases[i].timeout);
-        assert_true(info.retryDelay == cases[i].retry);
+        assert_true(info.feedbackTimeoutTicks == cases[i].timeout);
+        assert_true(info.retryDelayTicks == cases[i].retry);
         assert_int_equal(info.numExtraStandbyTiles, 1024);
-        assert_int_equal(info.residencyFadeTime, 0);
+        assert_int_equal(info.residencyFadeTicks, 0);
     }
     SluiceVulkanStreamerCreateInfo info = {
-        .feedbackTimeout = UINT64_MAX, .retryDelay = 1, .numExtraStandbyTiles = 1};
+        .feedbackTimeoutTicks = UINT64_MAX, .retryDelayTicks = 1, .numExtraStandbyTiles = 1};
     CHECK_OK(slc_fill_in_times(&info, NULL));
-    assert_true(info.feedbackTimeout == UINT64_MAX && info.retryDelay == 1);
+    assert_true(info.feedbackTimeoutTicks == UINT64_MAX && info.retryDelayTicks == 1);
     assert_int_equal(info.numExtraStandbyTiles, 1);
 }
 
@@ -188,8 +188,8 @@ static void contradictions_are_refused(void **state)
 {
     (void)state;
     SluiceVulkanStreamerCreateInfo cases[] = {
-        {.timeStampsPerSecond = 1000000000001},
-        {.newestFeedbackMapOnly = true, .feedbackTimeout = 1},
+        {.ticksPerSecond = 1000000000001},
+        {.newestFeedbackMapOnly = true, .feedbackTimeoutTicks = 1},
         {.noStandbyTiles = true, .numExtraStandbyTiles = 1},
     };
     for (int i = 0; i < 3; i++)

@@ -190,7 +190,7 @@ static void streamers_take_every_limit_of_the_header_and_nothing_beyond(void **s
         FIELD(SluiceVulkanStreamerCreateInfo, heapTileCapacity, 1u << 20),
         FIELD(SluiceVulkanStreamerCreateInfo, maxRegionCount, 1u << 28),
         FIELD(SluiceVulkanStreamerCreateInfo, maxPageChunkCount, 1u << 10),
-        FIELD(SluiceVulkanStreamerCreateInfo, residencyFadeTime, UINT64_C(1) << 40),
+        FIELD(SluiceVulkanStreamerCreateInfo, residencyFadeTicks, UINT64_C(1) << 40),
         FIELD(SluiceVulkanStreamerCreateInfo, feedbackEncoding, SLUICE_FEEDBACK_ENCODING_MASKS),
         FIELD(SluiceVulkanStreamerCreateInfo, residencyMode, SLUICE_RESIDENCY_MODE_DENSE)};
     static struct fake_vulkan fake; /* large */
@@ -287,7 +287,7 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     SluiceVulkanStreamer *streamer;
     SluiceStreamingFrame frame;
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
-    info.timeStampsPerSecond = 60;
+    info.ticksPerSecond = 60;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     VkCommandBuffer commands = fake_vulkan_commands(&fake);
     CHECK_RESULT(sluiceEndStreamingFrame(streamer, commands), SLUICE_ERROR_INVALID_ARGUMENT);

@@ -84,7 +84,7 @@ static void print_store(const SluiceStoreInfo *s)
     printf("  made from               ");
     text_write(stdout, s->pSourceName);
     printf(", %" PRIu64 " bytes", s->sourceSize);
-    print_time(s->sourceModifiedTime);
+    print_time(s->sourceModifiedTimeNs);
     printf("  settings                %016" PRIx64 "\n", s->settingsHash);
     printf("  compression             %u\n", s->compressionLevel);
     printf("  tiles                   %u x %u texels, %" PRIu64 " per layer\n", s->layout.tileWidth,
@@ -99,9 +99,9 @@ static void print_store_json(const SluiceStoreInfo *s)
     printf(", \"addressModeU\": \"%s\", \"addressModeV\": \"%s\", \"sourceName\": ",
            name_of(modes, 4, s->addressModeU), name_of(modes, 4, s->addressModeV));
     text_write_json(stdout, s->pSourceName);
-    printf(", \"sourceSize\": %" PRIu64 ", \"sourceModifiedTime\": %" PRId64
+    printf(", \"sourceSize\": %" PRIu64 ", \"sourceModifiedTimeNs\": %" PRId64
            ", \"settingsHash\": \"%016" PRIx64 "\", \"compressionLevel\": %u",
-           s->sourceSize, s->sourceModifiedTime, s->settingsHash, s->compressionLevel);
+           s->sourceSize, s->sourceModifiedTimeNs, s->settingsHash, s->compressionLevel);
     printf(", \"tileWidth\": %u, \"tileHeight\": %u, \"tileCount\": %" PRIu64
            ", \"tailFirstLevel\": %u, \"tailSize\": %u",
            s->layout.tileWidth, s->layout.tileHeight, s->layout.tileCount, s->layout.tailFirstLevel,

@@ -115,7 +115,7 @@ double play_feedback_predict_miss(const struct play_feedback *f, double frame_ra
         .texturesPerFrame = o->textures_per_frame ? o->textures_per_frame : f->count,
         .inTurns = o->in_turns,
         .frameRate = frame_rate,
-        .timeout = o->timeout,
+        .timeoutSeconds = o->timeout,
     };
     const double probability = o->probability < 1 ? o->probability : 1 - o->drop;
     if (o->drop > 0)

@@ -66,7 +66,7 @@ static bool create_manager(struct play_loop *l)
         .structSize = sizeof config,
         .numExtraStandbyTiles = o->standby,
         .maxHeapCount = o->max_heaps,
-        .missesToForget = o->misses_to_forget,
+        .missesToExpire = o->misses_to_forget,
         .prefetchLevels = o->prefetch_levels,
     };
     return check(sluiceCreateStreamedTextureManager(&info, &l->manager), "the manager") &&

@@ -1,6 +1,6 @@
 /** Colours of FLIP: opponents, which are filtered, and how far two filtered ones are apart. */
-#ifndef SLC_METRICS_FLIP_COLOUR_H
-#define SLC_METRICS_FLIP_COLOUR_H
+#ifndef SLC_METRICS_FLIP_COLOR_H
+#define SLC_METRICS_FLIP_COLOR_H
 
 /**
  * Luminance, red against green, blue against yellow: YCxCz without its scales and offset, which
@@ -24,4 +24,4 @@ void slc_flip_curve_init(struct slc_flip_curve *curve);
 double slc_flip_error(const struct slc_flip_curve *curve, const double a[3], const double b[3],
                       double feature);
 
-#endif /* SLC_METRICS_FLIP_COLOUR_H */
+#endif /* SLC_METRICS_FLIP_COLOR_H */

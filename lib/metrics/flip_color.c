@@ -1,4 +1,4 @@
-#include "metrics/flip_colour.h"
+#include "metrics/flip_color.h"
 
 #include <math.h>
 #include <stdint.h>
