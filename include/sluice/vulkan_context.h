@@ -19,6 +19,62 @@ extern "C" {
 
 typedef struct SluiceVulkanContext SluiceVulkanContext;
 
+/** What a block of device memory is for. */
+typedef enum SluiceDeviceMemoryPurpose {
+    /** Images whose memory is resident as a whole: dense mode, packed levels, metadata. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE = 0,
+    /** Heaps of tiles, bound to sparse images. Offsets are multiples of 64 KiB. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_HEAP = 1,
+    /** Array images whose layers hold tiles: paged mode and demand loading. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_PAGES = 2,
+    /** Buffers that shaders read and write, and other small things. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_TABLE = 3,
+    /** Mapped buffers that the host writes and the GPU reads. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_STAGING = 4,
+    /** Mapped buffers that the GPU writes and the host reads. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_READBACK = 5
+} SluiceDeviceMemoryPurpose;
+
+/** Block of device memory that is requested from the application. */
+typedef struct SluiceDeviceMemoryRequest {
+    uint32_t structSize; ///< sizeof(SluiceDeviceMemoryRequest) of the library.
+    SluiceDeviceMemoryPurpose purpose;
+    uint64_t size;            ///< Bytes.
+    uint64_t alignment;       ///< Bytes. Of the offset. A power of two.
+    uint32_t memoryTypeIndex; ///< Memory type to allocate from.
+    bool mapped;              ///< Map it until it is freed. Its type is host-visible and coherent.
+    bool images; ///< For images of VK_IMAGE_TILING_OPTIMAL, else for a buffer or for sparse binds.
+    const char *pName; ///< For debuggers. Valid during the call.
+} SluiceDeviceMemoryRequest;
+
+/** Block of device memory. Never grows. */
+typedef struct SluiceDeviceMemory {
+    VkDeviceMemory memory;
+    uint64_t offset;   ///< Bytes from the start of `memory`.
+    void *pMapped;     ///< The byte at `offset`, if the memory is mapped.
+    void *pAllocation; ///< For the application: pfnFree gets it back.
+} SluiceDeviceMemory;
+
+/**
+ * Functions that allocate and free device memory, for applications with an allocator of their own,
+ * such as VMA. Never grows.
+ *
+ * Called on the threads that use the context's streamers and demand loaders; on several at the same
+ * time if these run on several threads. Must not call functions of Sluice.
+ */
+typedef struct SluiceDeviceMemoryCallbacks {
+    void *pUserData;
+    /**
+     * Allocates a block: a VkDeviceMemory of its own, or a part of one. Fills in `*pMemory` and
+     * returns VK_SUCCESS, or returns an error. VK_ERROR_OUT_OF_DEVICE_MEMORY means that Sluice must
+     * do with less: tiles stay unloaded, textures coarser.
+     */
+    VkResult (*pfnAllocate)(void *pUserData, const SluiceDeviceMemoryRequest *pRequest,
+                            SluiceDeviceMemory *pMemory);
+    /** Frees a block. The GPU does not use it any more, and nothing is bound to it. */
+    void (*pfnFree)(void *pUserData, const SluiceDeviceMemory *pMemory);
+} SluiceDeviceMemoryCallbacks;
+
 /** Settings of a context. A field of zero selects its default. */
 typedef struct SluiceVulkanContextCreateInfo {
     uint32_t structSize;             ///< sizeof(SluiceVulkanContextCreateInfo).
@@ -35,14 +91,24 @@ typedef struct SluiceVulkanContextCreateInfo {
     const SluiceAllocationCallbacks *pAllocator; ///< Copied. Default: malloc and free.
     /** Receives the messages of the context and of everything created from it. */
     SluiceLogCallback log;
+    /** Allocates every block of device memory. Copied. Default: vkAllocateMemory. */
+    const SluiceDeviceMemoryCallbacks *pDeviceMemory;
+    /**
+     * Bytes of device memory for the tiles of all streamers and demand loaders together: purposes
+     * IMAGE, HEAP and PAGES. Hard limit, at least 4 MiB. Beyond it, allocations fail as on a device
+     * without memory. Default: no limit but those of the streamers and demand loaders
+     * (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
+     */
+    uint64_t memoryBudget;
 } SluiceVulkanContextCreateInfo;
 
 /**
  * Creates a context.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a queue family that does not
- * exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance or device were created for less
- * than Vulkan 1.2; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety: any thread.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a memoryBudget below 4 MiB,
+ * or a queue family that does not exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance
+ * or device were created for less than Vulkan 1.2; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety:
+ * any thread.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCreateInfo,
                                                   SluiceVulkanContext **pContext);
@@ -56,6 +122,43 @@ SLUICE_API SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreat
  * Thread safety: external on `context`.
  */
 SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
+
+/**
+ * Sets the memory budget (SluiceVulkanContextCreateInfo.memoryBudget), in bytes. 0: no limit.
+ *
+ * If more is in use, nothing is freed by this call. Nothing more is allocated, and streamers and
+ * demand loaders release what they do not need when their next frames and launches begin.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
+ *         4 MiB.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceSetVulkanMemoryBudget(SluiceVulkanContext *context,
+                                                    uint64_t memoryBudget);
+
+/** Device memory of a context: what its streamers and demand loaders have allocated, in bytes. */
+typedef struct SluiceVulkanContextStatistics {
+    uint32_t structSize;         ///< Set it to sizeof(SluiceVulkanContextStatistics).
+    uint32_t memoryBlockCount;   ///< Blocks allocated at present.
+    uint64_t memoryBudget;       ///< Limit of tileMemorySize. UINT64_MAX: none.
+    uint64_t tileMemorySize;     ///< Sum of the next three.
+    uint64_t imageMemorySize;    ///< SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE
+    uint64_t heapMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_HEAP
+    uint64_t pageMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_PAGES
+    uint64_t tableMemorySize;    ///< SLUICE_DEVICE_MEMORY_PURPOSE_TABLE
+    uint64_t stagingMemorySize;  ///< SLUICE_DEVICE_MEMORY_PURPOSE_STAGING
+    uint64_t readbackMemorySize; ///< SLUICE_DEVICE_MEMORY_PURPOSE_READBACK
+    uint64_t refusedBlockCount;  ///< Blocks that did not fit into the budget, since creation.
+} SluiceVulkanContextStatistics;
+
+/**
+ * Gets the statistics of a context.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ * Thread safety: any thread.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanContextStatistics(
+    SluiceVulkanContext *context, SluiceVulkanContextStatistics *pStatistics);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -52,6 +52,10 @@
 #define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
-#define SLC_FIRST_SluiceVulkanContextCreateInfo SLC_UP_TO(SluiceVulkanContextCreateInfo, log)
+#define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
+    SLC_UP_TO(SluiceVulkanContextCreateInfo, memoryBudget)
+#define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
+#define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
+    SLC_UP_TO(SluiceVulkanContextStatistics, refusedBlockCount)
 
 #endif /* SLC_BASE_FIRST_RELEASE_H */

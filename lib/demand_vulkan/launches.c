@@ -208,6 +208,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
         return SLUICE_NOT_READY;
     uint64_t launch = loader->launch + 1;
     bool tracking = wants_used(loader);
+    loader->memory_pressure = slc_memory_client_begin(&loader->memory);
     exhume(loader);
     slc_staging_trim(&loader->staging); /* it counts launches */
     gather(loader, launch, tracking);

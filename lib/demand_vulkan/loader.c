@@ -207,7 +207,7 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
         slc_use_pages(loader->context, loader->info.maxPageChunkCount, &loader->pages);
     if (result == SLUICE_SUCCESS)
         result = slc_page_pool_add_user(loader->pages, loader->semaphore, loader->info.memoryBudget,
-                                        &loader->page_user);
+                                        &loader->memory, &loader->page_user);
     if (result == SLUICE_SUCCESS)
         slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
                              loader->info.memoryBudget);
@@ -262,7 +262,8 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->context = context;
     loader->cb = context->cb;
     loader->vk = context->vk;
-    loader->vk.memory_use = &loader->memory_use;
+    slc_memory_client_init(&loader->memory, &context->budget);
+    loader->vk.memory_client = &loader->memory;
     loader->caps = context->caps;
     loader->info = *info;
     loader->page_user = SLC_MAX_PAGE_USERS;
@@ -272,6 +273,7 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->free_resource = SLC_NONE;
     slc_image_opener_init(&loader->opener);
     if (slc_tickets_init(&loader->tickets, &loader->cb) != SLUICE_SUCCESS) {
+        slc_memory_client_finish(&loader->memory);
         slc_free(&context->cb, loader, 1, sizeof *loader);
         return NULL;
     }
@@ -343,6 +345,7 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_residency_destroy(loader->residency);
     slc_page_space_destroy(loader->space);
     destroy_device_parts(loader);
+    slc_memory_client_finish(&loader->memory);
     slc_table_mirror_finish(&loader->table);
     slc_table_mirror_finish(&loader->levels);
     slc_table_mirror_finish(&loader->grids);
@@ -396,9 +399,10 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     pStatistics->residentTileCount = tiles.resident;
     pStatistics->residentResourcePageCount = loader->held_count;
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);
+    slc_memory_client_get(&loader->memory, &pStatistics->deviceMemorySize,
+                          &pStatistics->hostVisibleMemorySize);
     pStatistics->tileMemorySize = pool.tile_memory_size;
-    pStatistics->deviceMemorySize = loader->memory_use.device + pool.device_memory_size;
-    pStatistics->hostVisibleMemorySize = loader->memory_use.host;
+    pStatistics->deviceMemorySize += pool.device_memory_size;
     pStatistics->pageChunkCount = pool.chunk_count;
     pStatistics->pageChunkShortages = pool.shortages;
     pStatistics->lodBias = slc_residency_lod_bias(loader->residency);

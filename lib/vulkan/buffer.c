@@ -21,6 +21,15 @@ static uint32_t find_type(const struct slc_caps *caps, uint32_t type_bits,
     return UINT32_MAX;
 }
 
+static SluiceDeviceMemoryPurpose purpose_of(enum slc_buffer_kind kind)
+{
+    switch (kind) {
+    case SLC_BUFFER_UPLOAD: return SLUICE_DEVICE_MEMORY_PURPOSE_STAGING;
+    case SLC_BUFFER_READBACK: return SLUICE_DEVICE_MEMORY_PURPOSE_READBACK;
+    default: return SLUICE_DEVICE_MEMORY_PURPOSE_TABLE;
+    }
+}
+
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                              const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
                              enum slc_buffer_kind kind)
@@ -37,15 +46,19 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
     VkMemoryRequirements memory;
     vk->GetBufferMemoryRequirements(vk->device, buffer->buffer, &memory);
     uint32_t type = find_type(caps, memory.memoryTypeBits, kind);
-    buffer->memory_size = memory.size;
-    buffer->memory_kind = kind == SLC_BUFFER_DEVICE ? SLC_MEMORY_DEVICE : SLC_MEMORY_HOST;
+    const struct slc_memory_request request = {.size = memory.size,
+                                               .alignment = memory.alignment,
+                                               .type = type,
+                                               .purpose = purpose_of(kind),
+                                               .mapped = kind != SLC_BUFFER_DEVICE,
+                                               .name = "buffer"};
     VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (type != UINT32_MAX)
-        status = slc_memory_allocate(vk, memory.size, type, buffer->memory_kind, &buffer->memory);
+        status = slc_memory_allocate(vk, &request, &buffer->memory);
+    buffer->mapped = buffer->memory.mapped;
     if (status == VK_SUCCESS)
-        status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory, 0);
-    if (status == VK_SUCCESS && kind != SLC_BUFFER_DEVICE)
-        status = vk->MapMemory(vk->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->mapped);
+        status = vk->BindBufferMemory(vk->device, buffer->buffer, buffer->memory.memory,
+                                      buffer->memory.offset);
     result = slc_vk_result(vk, status, "memory of a buffer");
     if (result != SLUICE_SUCCESS)
         slc_buffer_finish(buffer, vk);
@@ -54,9 +67,9 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
 
 void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk)
 {
-    if (!buffer->buffer && !buffer->memory)
+    if (!buffer->buffer)
         return; /* also where nothing was loaded yet */
     vk->DestroyBuffer(vk->device, buffer->buffer, NULL);
-    slc_memory_free(vk, buffer->memory, buffer->memory_size, buffer->memory_kind);
+    slc_memory_free(vk, &buffer->memory);
     *buffer = (struct slc_buffer){0};
 }

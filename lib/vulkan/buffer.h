@@ -14,10 +14,8 @@ enum slc_buffer_kind {
 
 struct slc_buffer {
     VkBuffer buffer;
-    VkDeviceMemory memory;
+    struct slc_memory memory;
     uint64_t size;
-    uint64_t memory_size;
-    enum slc_memory_kind memory_kind;
     void *mapped; ///< NULL for DEVICE
 };
 

@@ -7,15 +7,28 @@
 
 #include <assert.h>
 
+#define MIN_BUDGET (UINT64_C(4) << 20)
+
+static SluiceResult check_budget(const SluiceLogCallback *log, uint64_t bytes)
+{
+    const struct slc_limit limit = {"memoryBudget", bytes ? bytes : MIN_BUDGET, MIN_BUDGET,
+                                    UINT64_MAX};
+    return slc_check_limits(log, &limit, 1);
+}
+
 static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
 {
+    const SluiceDeviceMemoryCallbacks *memory = info->pDeviceMemory;
     const struct slc_required fields[] = {
         {"instance", info->instance},
         {"physicalDevice", info->physicalDevice},
         {"device", info->device},
         {"pfnGetInstanceProcAddr", info->pfnGetInstanceProcAddr},
-        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)}};
-    return slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+        {"a function of pAllocator", slc_allocator_is_valid(info->pAllocator)},
+        {"a function of pDeviceMemory",
+         memory == NULL || (memory->pfnAllocate && memory->pfnFree)}};
+    SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+    return result == SLUICE_SUCCESS ? check_budget(&info->log, info->memoryBudget) : result;
 }
 
 static SluiceResult check_queues(const struct slc_vk *vk, const SluiceVulkanContextCreateInfo *info)
@@ -43,6 +56,17 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
     pthread_mutex_init(&context->shared.mutex, NULL);
     slc_staging_group_init(&context->shared.staging);
     atomic_init(&context->child_count, 0);
+    if (info->pDeviceMemory) {
+        context->memory_callbacks = *info->pDeviceMemory;
+        context->vk.memory_callbacks = &context->memory_callbacks;
+    }
+    result = slc_memory_budget_init(&context->budget);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (info->memoryBudget)
+        slc_memory_budget_set_limit(&context->budget, info->memoryBudget);
+    slc_memory_client_init(&context->memory, &context->budget);
+    context->vk.memory_client = &context->memory;
     return SLUICE_SUCCESS;
 }
 
@@ -88,8 +112,36 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
     }
     SluiceAllocationCallbacks cb = context->cb;
     slc_staging_group_finish(&context->shared.staging);
+    slc_memory_client_finish(&context->memory);
+    slc_memory_budget_finish(&context->budget);
     pthread_mutex_destroy(&context->shared.mutex);
     slc_free(&cb, context, 1, sizeof *context);
+}
+
+SluiceResult sluiceSetVulkanMemoryBudget(SluiceVulkanContext *context, uint64_t memoryBudget)
+{
+    if (!context)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult result = check_budget(&context->vk.log, memoryBudget);
+    if (result == SLUICE_SUCCESS)
+        slc_memory_budget_set_limit(&context->budget,
+                                    memoryBudget ? memoryBudget : SLC_NO_MEMORY_LIMIT);
+    return result;
+}
+
+SluiceResult sluiceGetVulkanContextStatistics(SluiceVulkanContext *context,
+                                              SluiceVulkanContextStatistics *pStatistics)
+{
+    if (!context || !pStatistics)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct slc_struct *type = SLC_STRUCT(SluiceVulkanContextStatistics);
+    SluiceResult result = slc_struct_check(type, pStatistics, &context->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    SluiceVulkanContextStatistics statistics = {.structSize = sizeof statistics};
+    slc_memory_budget_get(&context->budget, &statistics);
+    slc_struct_write(type, pStatistics, &statistics);
+    return SLUICE_SUCCESS;
 }
 
 void slc_context_add_child(SluiceVulkanContext *context)

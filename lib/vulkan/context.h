@@ -3,6 +3,7 @@
 #define SLC_VULKAN_CONTEXT_H
 
 #include "vulkan/caps.h"
+#include "vulkan/memory_budget.h"
 #include "vulkan/staging.h"
 
 #include <sluice/vulkan_context.h>
@@ -28,7 +29,10 @@ struct SluiceVulkanContext {
     struct slc_vk vk;
     struct slc_caps caps;
     struct slc_shared_parts shared;
-    atomic_uint child_count; ///< streamers and demand loaders
+    SluiceDeviceMemoryCallbacks memory_callbacks; ///< of vk, if the application has any
+    struct slc_memory_budget budget;
+    struct slc_memory_client memory; ///< of vk: what all front ends share
+    atomic_uint child_count;         ///< streamers and demand loaders
 };
 
 /** A streamer or demand loader counts as a child from the start of its creation to its end. */

@@ -1,12 +1,11 @@
-/** Heaps of tile slots as device memory, one VkDeviceMemory each. */
+/** Heaps of tile slots as device memory, one block each. */
 #ifndef SLC_VULKAN_DEVICE_HEAP_H
 #define SLC_VULKAN_DEVICE_HEAP_H
 
-#include "vulkan/dispatch.h"
+#include "vulkan/memory.h"
 
 struct slc_device_heaps {
-    VkDeviceMemory *memory; ///< owned; by heap id, VK_NULL_HANDLE: free id
-    uint64_t *sizes;        ///< owned; bytes
+    struct slc_memory *memory; ///< owned; by heap id; none: free id
     uint32_t capacity;
     uint64_t total_size;
 };

@@ -28,7 +28,7 @@
     X(WaitSemaphores)
 /* clang-format on */
 
-struct slc_memory_use; ///< memory.h
+struct slc_memory_client; ///< memory_budget.h
 
 struct slc_vk {
     VkInstance instance;
@@ -39,7 +39,8 @@ struct slc_vk {
     SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
 #undef SLC_VK_MEMBER
     SluiceLogCallback log;
-    struct slc_memory_use *memory_use; ///< NULL: nobody counts
+    struct slc_memory_client *memory_client;             ///< NULL: nobody counts
+    const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates
 };
 
 /** Only what needs no device. Errors: UNSUPPORTED if a function is missing. */

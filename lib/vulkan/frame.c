@@ -209,6 +209,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
     *pFrame = (SluiceStreamingFrame){
         .frameIndex = s->frame, .semaphore = s->semaphore, .signalValue = s->frame};
+    s->memory_pressure = slc_memory_client_begin(&s->memory);
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)

@@ -9,11 +9,19 @@
 #define FIRST_UNITS 64u   /* 64 KiB: the first block of a pool */
 #define BLOCK_UNITS 8192u /* 8 MiB: the largest */
 #define SMALL_UNITS 2048u
+#define BLOCK_ALIGNMENT 4096u /* images round their offset up themselves */
 
-static SluiceResult allocate(const struct slc_vk *vk, uint64_t size, uint32_t type,
-                             VkDeviceMemory *memory)
+static SluiceResult allocate(const struct slc_image_memory *pool, const struct slc_vk *vk,
+                             uint64_t size, uint64_t alignment, uint32_t type,
+                             struct slc_memory *memory)
 {
-    return slc_vk_result(vk, slc_memory_allocate(vk, size, type, SLC_MEMORY_DEVICE, memory),
+    const struct slc_memory_request request = {.size = size,
+                                               .alignment = alignment,
+                                               .type = type,
+                                               .purpose = pool->purpose,
+                                               .images = true,
+                                               .name = "images"};
+    return slc_vk_result(vk, slc_memory_allocate(vk, &request, memory),
                          "vkAllocateMemory for an image");
 }
 
@@ -45,7 +53,7 @@ static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk
                               uint32_t *index)
 {
     uint32_t at = 0;
-    while (at < pool->block_capacity && pool->blocks[at].memory)
+    while (at < pool->block_capacity && pool->blocks[at].memory.memory)
         at++;
     SluiceResult result = at == pool->block_capacity ? grow(pool, cb) : SLUICE_SUCCESS;
     if (result != SLUICE_SUCCESS)
@@ -54,15 +62,13 @@ static SluiceResult add_block(struct slc_image_memory *pool, const struct slc_vk
     uint32_t units = next_block_units(pool, needed);
     result = slc_region_arena_init(&block->arena, cb, units, units / SLC_REGION_ALIGNMENT);
     if (result == SLUICE_SUCCESS)
-        result = allocate(vk, (uint64_t)units * UNIT, type, &block->memory);
+        result = allocate(pool, vk, (uint64_t)units * UNIT, BLOCK_ALIGNMENT, type, &block->memory);
     if (result != SLUICE_SUCCESS) {
         slc_region_arena_finish(&block->arena, cb);
-        block->memory = VK_NULL_HANDLE;
         return result;
     }
     block->type = type;
-    block->size = (uint64_t)units * UNIT;
-    pool->total_size += block->size;
+    pool->total_size += block->memory.size;
     *index = at;
     return SLUICE_SUCCESS;
 }
@@ -72,7 +78,7 @@ static SluiceResult take(struct slc_image_memory *pool, const struct slc_vk *vk,
                          struct slc_image_place *place)
 {
     for (uint32_t i = 0; i < pool->block_capacity; i++)
-        if (pool->blocks[i].memory && pool->blocks[i].type == type &&
+        if (pool->blocks[i].memory.memory && pool->blocks[i].type == type &&
             slc_region_arena_take(&pool->blocks[i].arena, place->count, &place->first)) {
             place->block = i;
             return SLUICE_SUCCESS;
@@ -99,11 +105,11 @@ SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct s
     SluiceResult result;
     VkDeviceSize offset = 0;
     if (size > (uint64_t)SMALL_UNITS * UNIT) {
-        result = allocate(vk, memory.size, type, &place->own);
+        result = allocate(pool, vk, memory.size, memory.alignment, type, &place->own);
         if (result != SLUICE_SUCCESS)
             return result;
-        place->own_size = memory.size;
         pool->total_size += memory.size;
+        offset = place->own.offset;
     } else {
         place->count = (uint32_t)((size + UNIT - 1) / UNIT);
         result = take(pool, vk, cb, type, place);
@@ -112,10 +118,12 @@ SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct s
             return result;
         }
         pool->blocks[place->block].used++;
-        offset = ((VkDeviceSize)place->first * UNIT + memory.alignment - 1) / memory.alignment *
-                 memory.alignment;
+        VkDeviceSize first =
+            pool->blocks[place->block].memory.offset + (VkDeviceSize)place->first * UNIT;
+        offset = (first + memory.alignment - 1) / memory.alignment * memory.alignment;
     }
-    VkDeviceMemory from = place->own ? place->own : pool->blocks[place->block].memory;
+    VkDeviceMemory from =
+        place->own.memory ? place->own.memory : pool->blocks[place->block].memory.memory;
     result = slc_vk_result(vk, vk->BindImageMemory(vk->device, image, from, offset),
                            "vkBindImageMemory");
     if (result != SLUICE_SUCCESS)
@@ -126,17 +134,15 @@ SluiceResult slc_image_memory_bind(struct slc_image_memory *pool, const struct s
 void slc_image_memory_release(struct slc_image_memory *pool, const struct slc_vk *vk,
                               const SluiceAllocationCallbacks *cb, struct slc_image_place *place)
 {
-    if (place->own) {
-        slc_memory_free(vk, place->own, place->own_size, SLC_MEMORY_DEVICE);
-        pool->total_size -= place->own_size;
-    }
+    pool->total_size -= place->own.size;
+    slc_memory_free(vk, &place->own);
     if (place->count) {
         struct slc_image_block *block = &pool->blocks[place->block];
         slc_region_arena_give(&block->arena, place->first, place->count);
         if (--block->used == 0) {
-            slc_memory_free(vk, block->memory, block->size, SLC_MEMORY_DEVICE);
+            pool->total_size -= block->memory.size;
+            slc_memory_free(vk, &block->memory);
             slc_region_arena_finish(&block->arena, cb);
-            pool->total_size -= block->size;
             *block = (struct slc_image_block){0};
         }
     }

@@ -6,17 +6,19 @@
 #define SLC_VULKAN_IMAGE_MEMORY_H
 
 #include "vulkan/caps.h"
+#include "vulkan/memory.h"
 #include "vulkan/region_arena.h"
 
 struct slc_image_block {
-    VkDeviceMemory memory; ///< VK_NULL_HANDLE: free
-    uint64_t size;         ///< bytes
+    struct slc_memory memory; ///< none: free
     uint32_t type;
     struct slc_region_arena arena; ///< in units of 1 KiB
     uint32_t used;                 ///< images
 };
 
+/** Zeroed: an empty one, for images that are resident as a whole. */
 struct slc_image_memory {
+    SluiceDeviceMemoryPurpose purpose;
     struct slc_image_block *blocks; ///< owned
     uint32_t block_capacity;
     uint64_t total_size; ///< bytes allocated
@@ -24,8 +26,7 @@ struct slc_image_memory {
 
 /** Where an image lies; zeroed: nowhere. */
 struct slc_image_place {
-    VkDeviceMemory own;    ///< of a large image
-    uint64_t own_size;     ///< bytes
+    struct slc_memory own; ///< of a large image
     uint32_t block;        ///< of a small one
     uint32_t first, count; ///< units; count 0: not in a block
 };

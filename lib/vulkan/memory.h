@@ -1,25 +1,39 @@
-/** Device memory, counted: all of it is allocated and freed here. */
+/** Blocks of device memory: all of it is allocated and freed here, by the application's callbacks
+ *  if there are any, and counted. */
 #ifndef SLC_VULKAN_MEMORY_H
 #define SLC_VULKAN_MEMORY_H
 
 #include "vulkan/dispatch.h"
 
-/** Bytes allocated now. `host` is memory that is mapped, `device` all other. */
-struct slc_memory_use {
-    uint64_t device, host;
+struct slc_memory_request {
+    uint64_t size, alignment; ///< bytes; the alignment is a power of two
+    uint32_t type;            ///< memory type index
+    SluiceDeviceMemoryPurpose purpose;
+    bool mapped, images;
+    const char *name; ///< for debuggers
 };
 
-enum slc_memory_kind { SLC_MEMORY_DEVICE, SLC_MEMORY_HOST };
+/** Part of a VkDeviceMemory, or all of it. Zeroed: none. */
+struct slc_memory {
+    VkDeviceMemory memory;
+    uint64_t offset, size; ///< bytes
+    void *mapped;          ///< the first byte at `offset`; NULL: not mapped
+    void *allocation;      ///< what the callbacks call it
+    SluiceDeviceMemoryPurpose purpose;
+};
 
-/** `*memory` is VK_NULL_HANDLE after a failure, and nothing is counted. */
-VkResult slc_memory_allocate(const struct slc_vk *vk, uint64_t size, uint32_t type,
-                             enum slc_memory_kind kind, VkDeviceMemory *memory);
-/** With the size and kind that it was allocated with. VK_NULL_HANDLE is allowed. */
-void slc_memory_free(const struct slc_vk *vk, VkDeviceMemory memory, uint64_t size,
-                     enum slc_memory_kind kind);
+/**
+ * `*memory` is zeroed after a failure, and nothing is counted. VK_ERROR_OUT_OF_DEVICE_MEMORY for
+ * tile memory beyond the budget, which is not logged. VK_ERROR_UNKNOWN, logged, if the callbacks
+ * returned something else than was requested.
+ */
+VkResult slc_memory_allocate(const struct slc_vk *vk, const struct slc_memory_request *request,
+                             struct slc_memory *memory);
+/** A zeroed block is allowed, and what it is afterwards. */
+void slc_memory_free(const struct slc_vk *vk, struct slc_memory *memory);
 
 /** Memory that `from` counts is counted by `to` from now on. */
-void slc_memory_move(const struct slc_vk *from, const struct slc_vk *to, uint64_t size,
-                     enum slc_memory_kind kind);
+void slc_memory_move(const struct slc_vk *from, const struct slc_vk *to,
+                     const struct slc_memory *memory);
 
 #endif /* SLC_VULKAN_MEMORY_H */

@@ -29,7 +29,11 @@ SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk 
                                 uint32_t chunk_count)
 {
     *pool = (struct slc_page_pool){.vk = *vk, .caps = caps, .cb = cb, .has_mutex = true};
-    pool->vk.memory_use = &pool->memory_use;
+    pool->memory.purpose = SLUICE_DEVICE_MEMORY_PURPOSE_PAGES;
+    if (vk->memory_client) {
+        slc_memory_client_init(&pool->client, vk->memory_client->budget);
+        pool->vk.memory_client = &pool->client;
+    }
     pthread_mutex_init(&pool->mutex, NULL);
     pool->max_layer_count = slc_min_u32(SLC_PAGE_CHUNK_LAYERS, caps->max_image_array_layers);
     SluiceResult result = slc_page_views_init(&pool->views, &pool->vk, caps, cb, chunk_count);
@@ -58,6 +62,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool)
     slc_image_memory_finish(&pool->memory, pool->cb);
     slc_free(pool->cb, pool->chunks, pool->views.count, sizeof *pool->chunks);
     slc_page_views_finish(&pool->views, &pool->vk, pool->cb);
+    slc_memory_client_finish(&pool->client);
     pthread_mutex_destroy(&pool->mutex);
     *pool = (struct slc_page_pool){0};
 }
@@ -76,14 +81,17 @@ static void sum_limits(struct slc_page_pool *pool)
 }
 
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
-                                    uint64_t max_size, uint32_t *user)
+                                    uint64_t max_size, struct slc_memory_client *client,
+                                    uint32_t *user)
 {
     uint32_t at = 0;
     pthread_mutex_lock(&pool->mutex);
     while (at < SLC_MAX_PAGE_USERS && pool->users[at].semaphore)
         at++;
     if (at < SLC_MAX_PAGE_USERS) {
-        pool->users[at] = (struct slc_page_user){.semaphore = semaphore, .max_size = max_size};
+        pool->users[at] =
+            (struct slc_page_user){.semaphore = semaphore, .max_size = max_size, .client = client};
+        slc_memory_client_set_source(client, &pool->client);
         pool->user_count++;
         sum_limits(pool);
     }
@@ -293,6 +301,7 @@ static bool add_chunk(struct slc_page_pool *pool, uint32_t user, SluiceFormat fo
             pool->page_count[format] += layers;
             pool->last_chunk[format] = at;
             pool->refused_tick = 0;
+            slc_memory_client_blame(&pool->client, NULL); /* a smaller one will do */
             slc_page_views_set(&pool->views, at, chunk->view);
             return true;
         }
@@ -300,6 +309,7 @@ static bool add_chunk(struct slc_page_pool *pool, uint32_t user, SluiceFormat fo
         if (capped && layers <= MIN_LAYERS / 2)
             break;
     }
+    slc_memory_client_blame(&pool->client, pool->users[user].client);
     pool->refused_tick = pool->tick + 1;
     pool->has_freed = false;
     return false;
@@ -409,6 +419,7 @@ void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
         forget_user(pool, i, user);
     pool->empty_is_ready |= pool->users[user].empty_frame > 0;
     assert(pool->users[user].held_count == 0);
+    slc_memory_client_set_source(pool->users[user].client, NULL);
     pool->users[user] = (struct slc_page_user){0};
     pool->user_count--;
     sum_limits(pool);
@@ -550,8 +561,10 @@ void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t f
 struct slc_page_pool_counts slc_page_pool_get_counts(struct slc_page_pool *pool)
 {
     pthread_mutex_lock(&pool->mutex);
-    struct slc_page_pool_counts counts = {pool->memory.total_size, pool->memory_use.device,
-                                          pool->chunk_count, pool->shortages};
+    struct slc_page_pool_counts counts = {.tile_memory_size = pool->memory.total_size,
+                                          .chunk_count = pool->chunk_count,
+                                          .shortages = pool->shortages};
+    slc_memory_client_get(&pool->client, &counts.device_memory_size, NULL);
     pthread_mutex_unlock(&pool->mutex);
     return counts;
 }

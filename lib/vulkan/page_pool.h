@@ -15,6 +15,7 @@
 #define SLC_VULKAN_PAGE_POOL_H
 
 #include "vulkan/memory.h"
+#include "vulkan/memory_budget.h"
 #include "vulkan/page_views.h"
 
 #include <pthread.h>
@@ -55,8 +56,9 @@ struct slc_page_chunk {
 
 /** One timeline. */
 struct slc_page_user {
-    VkSemaphore semaphore; ///< VK_NULL_HANDLE: the place is free
-    uint64_t recorded;     ///< the last frame that was recorded
+    VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
+    struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
+    uint64_t recorded;                ///< the last frame that was recorded
     uint64_t completed;
     uint32_t held_count;  ///< pages
     uint64_t max_size;    ///< bytes; 0: no limit of its own
@@ -64,8 +66,8 @@ struct slc_page_user {
 };
 
 struct slc_page_pool {
-    struct slc_vk vk; ///< the context's, but for memory_use
-    struct slc_memory_use memory_use;
+    struct slc_vk vk; ///< the context's, but for memory_client
+    struct slc_memory_client client;
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     pthread_mutex_t mutex; ///< around everything below; users may be on different threads
@@ -97,9 +99,11 @@ SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk 
 void slc_page_pool_finish(struct slc_page_pool *pool);
 
 /** `semaphore`: timeline that the user's frames signal with their numbers. `max_size`: bytes that
- *  the pool may allocate for the user; 0: no limit. Errors: LIMIT_EXCEEDED. */
+ *  the pool may allocate for the user; 0: no limit. `client`: where memory that the user was
+ * refused counts, may be NULL. Errors: LIMIT_EXCEEDED. */
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
-                                    uint64_t max_size, uint32_t *user);
+                                    uint64_t max_size, struct slc_memory_client *client,
+                                    uint32_t *user);
 /** The user's frames are complete. Pages that it still holds are given back. */
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
 

@@ -39,6 +39,7 @@ SluiceResult slc_page_views_init(struct slc_page_views *views, const struct slc_
                                  uint32_t count)
 {
     *views = (struct slc_page_views){.count = count, .generation = 1};
+    views->memory.purpose = SLUICE_DEVICE_MEMORY_PURPOSE_TABLE; /* of a texel; no tile's */
     views->views = slc_calloc(cb, count, sizeof *views->views);
     if (!views->views)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;

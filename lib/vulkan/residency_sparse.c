@@ -338,6 +338,22 @@ static uint64_t retire_limit(const struct slc_residency *residency, uint64_t com
     return min_u64(completed_frame, first - 1);
 }
 
+struct slot_memory {
+    VkDeviceMemory memory; ///< VK_NULL_HANDLE to unbind
+    VkDeviceSize offset;
+};
+
+/* Of the first slot of a run. */
+static struct slot_memory slot_memory(const struct sparse_residency *s,
+                                      const struct slc_bind_run *run)
+{
+    if (run->heap_id == SLC_UNBIND)
+        return (struct slot_memory){0};
+    const struct slc_memory *heap = &s->heaps.memory[run->heap_id];
+    return (struct slot_memory){heap->memory,
+                                heap->offset + (VkDeviceSize)run->slot * SLC_TILE_SIZE};
+}
+
 static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
                                          const struct slc_sparse_image *image,
                                          const struct slc_bind_run *run)
@@ -345,15 +361,15 @@ static VkSparseImageMemoryBind tile_bind(const struct sparse_residency *s,
     const SluiceStreamedTextureDesc *desc = &image->layout.desc;
     uint32_t level = run->place.level;
     uint32_t x = run->place.x * desc->tileWidth, y = run->place.y * desc->tileHeight;
-    bool bound = run->heap_id != SLC_UNBIND;
+    const struct slot_memory heap = slot_memory(s, run);
     return (VkSparseImageMemoryBind){
         .subresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, image->layer},
         .offset = {(int32_t)x, (int32_t)y, 0},
         /* A tile at the edge ends with the level. */
         .extent = {slc_min_u32(run->count * desc->tileWidth, slc_mip_size(desc->width, level) - x),
                    slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, level) - y), 1},
-        .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
-        .memoryOffset = bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
+        .memory = heap.memory,
+        .memoryOffset = heap.offset};
 }
 
 /* Pages one by one: a driver takes a longer opaque bind for its first page only. */
@@ -363,13 +379,12 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
 {
     const struct slc_sparse_layout *layout = &image->layout;
     uint64_t offset = (uint64_t)run->place.x * SLC_TILE_SIZE;
-    bool bound = run->heap_id != SLC_UNBIND;
+    const struct slot_memory heap = slot_memory(s, run);
     uint64_t tail = layout->tail_offset + image->layer * layout->tail_stride;
     return (VkSparseMemoryBind){.resourceOffset = tail + offset,
                                 .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
-                                .memory = bound ? s->heaps.memory[run->heap_id] : VK_NULL_HANDLE,
-                                .memoryOffset =
-                                    bound ? (VkDeviceSize)run->slot * SLC_TILE_SIZE : 0};
+                                .memory = heap.memory,
+                                .memoryOffset = heap.offset};
 }
 
 /* The binds of one image: runs[0..count), all of it, and its metadata if that is not bound yet. */
@@ -384,14 +399,14 @@ static void add_image(struct sparse_residency *s, VkBindSparseInfo *info, uint32
         else
             s->tile_binds[(*tile_count)++] = tile_bind(s, image, &runs[i]);
     }
-    if (image->metadata && !image->metadata_bound) {
-        s->page_binds[(*page_count)++] =
-            (VkSparseMemoryBind){.resourceOffset = image->layout.metadata_offset +
-                                                   image->layer * image->layout.metadata_stride,
-                                 .size = image->layout.metadata_size,
-                                 .memory = image->metadata,
-                                 .memoryOffset = image->layer * image->layout.metadata_size,
-                                 .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
+    if (image->metadata.memory && !image->metadata_bound) {
+        s->page_binds[(*page_count)++] = (VkSparseMemoryBind){
+            .resourceOffset =
+                image->layout.metadata_offset + image->layer * image->layout.metadata_stride,
+            .size = image->layout.metadata_size,
+            .memory = image->metadata.memory,
+            .memoryOffset = image->metadata.offset + image->layer * image->layout.metadata_size,
+            .flags = VK_SPARSE_MEMORY_BIND_METADATA_BIT};
         image->metadata_bound = true;
     }
     if (*tile_count > first_tile)

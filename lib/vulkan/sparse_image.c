@@ -119,9 +119,14 @@ static const char *read_layout(struct slc_sparse_image *image, const struct slc_
 static SluiceResult allocate_metadata(struct slc_sparse_image *image, const struct slc_vk *vk,
                                       uint32_t memory_type, uint32_t count)
 {
-    return slc_vk_result(vk,
-                         slc_memory_allocate(vk, image->layout.metadata_size * count, memory_type,
-                                             SLC_MEMORY_DEVICE, &image->metadata),
+    VkMemoryRequirements memory;
+    vk->GetImageMemoryRequirements(vk->device, image->image, &memory);
+    const struct slc_memory_request request = {.size = image->layout.metadata_size * count,
+                                               .alignment = memory.alignment,
+                                               .type = memory_type,
+                                               .purpose = SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE,
+                                               .name = "image metadata"};
+    return slc_vk_result(vk, slc_memory_allocate(vk, &request, &image->metadata),
                          "vkAllocateMemory for image metadata");
 }
 
@@ -170,9 +175,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk)
 {
     vk->DestroyImage(vk->device, images->image, NULL);
-    slc_memory_free(vk, images->metadata,
-                    images->layout.metadata_size * slc_max_u32(1, images->layer_count),
-                    SLC_MEMORY_DEVICE);
+    slc_memory_free(vk, &images->metadata);
     for (uint32_t i = images->layer_count; i-- > 1;)
         images[i] = (struct slc_sparse_image){0};
     *images = (struct slc_sparse_image){0};

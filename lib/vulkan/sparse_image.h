@@ -3,6 +3,7 @@
 #define SLC_VULKAN_SPARSE_IMAGE_H
 
 #include "vulkan/caps.h"
+#include "vulkan/memory.h"
 #include "vulkan/sparse_layout.h"
 #include "vulkan/touched_tiles.h"
 
@@ -11,7 +12,7 @@ struct slc_sparse_image {
     VkImage image; ///< owned by the first layer
     struct slc_sparse_layout layout;
     uint32_t layer, layer_count;
-    VkDeviceMemory metadata;          ///< as the image; VK_NULL_HANDLE where there is none
+    struct slc_memory metadata;       ///< as the image; zeroed where there is none
     bool metadata_bound;              ///< of this layer
     struct slc_touched_tiles touched; ///< the residency's business
     uint64_t last_value;              ///< of the last batch that names it

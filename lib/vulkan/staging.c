@@ -46,7 +46,7 @@ static bool take_idle(struct slc_staging *s, uint32_t index)
             struct slc_buffer *from = &other->blocks[i].buffer;
             if (!from->buffer || other->blocks[i].used_count || from->size != block_size(s, index))
                 continue;
-            slc_memory_move(other->vk, s->vk, from->memory_size, from->memory_kind);
+            slc_memory_move(other->vk, s->vk, &from->memory);
             *to = *from;
             *from = (struct slc_buffer){0};
             s->blocks[index].idle_since = s->tick;

@@ -279,7 +279,7 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
     if (result == SLUICE_SUCCESS)
         result = slc_use_pages(s->context, s->info.maxPageChunkCount, &s->pages);
     if (result == SLUICE_SUCCESS)
-        result = slc_page_pool_add_user(s->pages, s->semaphore, 0, &s->page_user);
+        result = slc_page_pool_add_user(s->pages, s->semaphore, 0, &s->memory, &s->page_user);
     if (result == SLUICE_SUCCESS)
         result = create_residency(s);
     if (result == SLUICE_SUCCESS)
@@ -313,7 +313,8 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->context = context;
     s->cb = context->cb;
     s->vk = context->vk;
-    s->vk.memory_use = &s->memory_use;
+    slc_memory_client_init(&s->memory, &context->budget);
+    s->vk.memory_client = &s->memory;
     s->caps = context->caps;
     s->info = info;
     s->page_user = SLC_MAX_PAGE_USERS;
@@ -396,6 +397,7 @@ void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer)
         return;
     SluiceVulkanContext *context = streamer->context;
     destroy_device_parts(streamer);
+    slc_memory_client_finish(&streamer->memory);
     free_arrays(streamer);
     slc_free(&context->cb, streamer, 1, sizeof *streamer);
     slc_context_remove_child(context);
@@ -454,9 +456,9 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     pStatistics->unbinds = counters->unbinds;
     pStatistics->unbindsSaved = counters->unbinds_saved;
     pStatistics->tileMemorySize = counters->device_memory_size;
-    pStatistics->deviceMemorySize =
-        streamer->memory_use.device + slc_page_pool_get_counts(streamer->pages).device_memory_size;
-    pStatistics->hostVisibleMemorySize = streamer->memory_use.host;
+    slc_memory_client_get(streamer->vk.memory_client, &pStatistics->deviceMemorySize,
+                          &pStatistics->hostVisibleMemorySize);
+    pStatistics->deviceMemorySize += slc_page_pool_get_counts(streamer->pages).device_memory_size;
     pStatistics->pageChunkCount = counters->page_chunks;
     pStatistics->pageChunkShortages = counters->page_chunk_shortages;
     pStatistics->fadingTextures = streamer->fade_count;

@@ -14,6 +14,8 @@ sluiceGetVulkanFormatCapabilities(f->h->instance, f->h->physical_device, f->h->g
 sluiceRequireVulkanFeatures(f->h->instance, f->h->physical_device, f->h->get, f->h->mode, ?NULL, &f->out.features, &f->out.features12)
 sluiceCreateVulkanContext(&f->context_info, &f->out.context) => sluiceDestroyVulkanContext(f->out.context)
 !sluiceDestroyVulkanContext(f->h->context)
+sluiceSetVulkanMemoryBudget(f->h->context, ?0)
+sluiceGetVulkanContextStatistics(f->h->context, &f->out.context_statistics)
 sluiceCreateVulkanStreamer(&f->streamer_info, &f->out.streamer) => sluiceDestroyVulkanStreamer(f->out.streamer)
 !sluiceDestroyVulkanStreamer(f->streamer)
 sluiceWaitVulkanStreamerIdle(f->streamer)
@@ -90,6 +92,7 @@ struct fixture {
         VkPhysicalDeviceFeatures features;
         VkPhysicalDeviceVulkan12Features features12;
         SluiceVulkanContext *context;
+        SluiceVulkanContextStatistics context_statistics;
         SluiceVulkanStreamer *streamer;
         SluiceVulkanTexture texture;
         SluiceVulkanBuffers buffers;

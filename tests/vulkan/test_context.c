@@ -1,5 +1,6 @@
 /* Contexts: what they refuse and name, and that their children keep them alive. */
 #include "vulkan/fake_vulkan.h"
+#include "vulkan/streamer.h"
 
 #include "support/failing_allocator.h"
 #include "support/test.h"
@@ -170,6 +171,230 @@ static void contexts_outlive_their_children(void **state)
     assert_int_equal(fake.live_memory, 0);
 }
 
+struct block {
+    struct fake_vulkan *fake;
+    uint32_t live, calls;
+    int mistake; ///< in the answers
+};
+
+static VkResult take_block(void *user, const SluiceDeviceMemoryRequest *request,
+                           SluiceDeviceMemory *memory)
+{
+    struct block *b = user;
+    assert_int_equal(request->structSize, sizeof *request);
+    assert_true(request->size > 0 && request->alignment > 0 && request->pName);
+    b->calls++;
+    if (b->mistake == 4)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (b->mistake == 5)
+        return VK_INCOMPLETE;
+    b->live++;
+    *memory = (SluiceDeviceMemory){.pAllocation = b};
+    memory->memory = b->mistake == 1 ? VK_NULL_HANDLE : (VkDeviceMemory)(void *)b;
+    memory->offset = b->mistake == 2 ? request->alignment / 2 : 0;
+    memory->pMapped = b->mistake == 3 ? NULL : (void *)b;
+    return VK_SUCCESS;
+}
+
+static void give_block(void *user, const SluiceDeviceMemory *memory)
+{
+    struct block *b = user;
+    assert_ptr_equal(memory->pAllocation, b);
+    assert_true(b->live > 0);
+    b->live--;
+}
+
+static void answers_of_memory_callbacks_are_checked(void **state)
+{
+    (void)state;
+    static const struct {
+        SluiceResult result;
+        const char *line;
+    } cases[] = {{SLUICE_ERROR_VULKAN, "memory is NULL"},
+                 {SLUICE_ERROR_VULKAN, "offset is not a multiple of alignment"},
+                 {SLUICE_ERROR_VULKAN, "pMapped is NULL"},
+                 {SLUICE_ERROR_OUT_OF_DEVICE_MEMORY, NULL},
+                 {SLUICE_ERROR_VULKAN, NULL}};
+    for (int i = 0; i < 5; i++) {
+        SluiceVulkanContext *context;
+        SluiceVulkanContextCreateInfo create = start();
+        struct block block = {.fake = &fake, .mistake = i + 1};
+        const SluiceDeviceMemoryCallbacks callbacks = {&block, take_block, give_block};
+        create.pDeviceMemory = &callbacks;
+        CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+        struct slc_memory memory;
+        const struct slc_memory_request request = {.size = 100,
+                                                   .alignment = 8,
+                                                   .purpose = SLUICE_DEVICE_MEMORY_PURPOSE_STAGING,
+                                                   .mapped = true,
+                                                   .name = "test"};
+        VkResult result = slc_memory_allocate(&context->vk, &request, &memory);
+        CHECK_RESULT(slc_vk_result(&(const struct slc_vk){0}, result, ""), cases[i].result);
+        if (cases[i].line)
+            check_line(&lines, cases[i].line);
+        assert_int_equal(block.calls, 1);
+        assert_int_equal(block.live, 0);
+        assert_int_equal(context->memory.host, 0);
+        sluiceDestroyVulkanContext(context);
+    }
+}
+
+static void memory_callbacks_must_be_whole(void **state)
+{
+    (void)state;
+    static const SluiceDeviceMemoryCallbacks halves[] = {{NULL, take_block, NULL},
+                                                         {NULL, NULL, give_block}};
+    for (int i = 0; i < 2; i++) {
+        SluiceVulkanContext *context;
+        SluiceVulkanContextCreateInfo info = start();
+        info.pDeviceMemory = &halves[i];
+        CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_NULL_POINTER);
+        check_line(&lines, "pDeviceMemory is NULL");
+    }
+}
+
+static void budgets_below_4_mib_are_refused(void **state)
+{
+    (void)state;
+    const uint64_t least = UINT64_C(4) << 20;
+    SluiceVulkanContext *context;
+    SluiceVulkanContextStatistics statistics = {.structSize = sizeof statistics};
+    SluiceVulkanContextCreateInfo info = start();
+    info.memoryBudget = least - 1;
+    CHECK_RESULT(sluiceCreateVulkanContext(&info, &context), SLUICE_ERROR_INVALID_ARGUMENT);
+    check_line(&lines, "memoryBudget is 4194303");
+    info.memoryBudget = least;
+    CHECK_OK(sluiceCreateVulkanContext(&info, &context));
+    CHECK_RESULT(sluiceSetVulkanMemoryBudget(context, 1), SLUICE_ERROR_INVALID_ARGUMENT);
+    check_line(&lines, "memoryBudget is 1;");
+    CHECK_OK(sluiceGetVulkanContextStatistics(context, &statistics));
+    assert_true(statistics.memoryBudget == least);
+    CHECK_OK(sluiceSetVulkanMemoryBudget(context, 0));
+    CHECK_OK(sluiceGetVulkanContextStatistics(context, &statistics));
+    assert_true(statistics.memoryBudget == UINT64_MAX);
+    statistics.structSize = 4;
+    CHECK_RESULT(sluiceGetVulkanContextStatistics(context, &statistics),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    sluiceDestroyVulkanContext(context);
+}
+
+static uint8_t want_all(void *user, uint32_t region)
+{
+    (void)user, (void)region;
+    return 0;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static void run_frames(SluiceVulkanStreamer *streamer, uint64_t *time, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        SluiceStreamingFrame frame;
+        VkCommandBuffer commands = fake_vulkan_commands(&fake);
+        fake.published = false;
+        fake.copy_count = fake.bind_count = fake.destroyed_count = fake.freed_count = 0;
+        fake.bind_value = fake.submitted_bind_value;
+        CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));
+        CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, ++*time, &frame));
+        CHECK_OK(sluiceEndStreamingFrame(streamer, commands));
+        fake.frame_semaphore = frame.semaphore;
+        fake.frame_value = frame.signalValue;
+    }
+}
+
+static SluiceVulkanContextStatistics statistics_of(SluiceVulkanContext *context)
+{
+    SluiceVulkanContextStatistics statistics = {.structSize = sizeof statistics};
+    CHECK_OK(sluiceGetVulkanContextStatistics(context, &statistics));
+    return statistics;
+}
+
+/* Sparse heaps and pages; 4096 x 4096 texels are 88 MiB of tiles. */
+static void two_streamers_stay_within_one_budget(void **state)
+{
+    (void)state;
+    static const SluiceResidencyMode modes[] = {SLUICE_RESIDENCY_MODE_SPARSE,
+                                                SLUICE_RESIDENCY_MODE_PAGED};
+    const uint64_t mib = 1 << 20, budget = 40 * mib;
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = 4096,
+                            .height = 4096,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
+    SluiceImageSource *source;
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &source));
+    for (int m = 1; m < 4; m++) { /* one sparse streamer at most: the fake has one such queue */
+        SluiceVulkanContext *context;
+        SluiceVulkanStreamer *streamers[2];
+        SluiceVulkanContextCreateInfo create = start();
+        fake.want = want_all;
+        fake.layer_size = 65536;
+        create.memoryBudget = budget;
+        CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+        for (int i = 0; i < 2; i++) {
+            SluiceVulkanStreamerCreateInfo info = {.context = context,
+                                                   .residencyMode = modes[i ? m / 2 : m % 2],
+                                                   .maxTextureCount = 4,
+                                                   .maxRegionCount = 1 << 12,
+                                                   .feedbackTimeoutTicks = 100,
+                                                   .heapTileCapacity = 64,
+                                                   .loaderThreadCount = 1};
+            const SluiceVulkanTextureCreateInfo add = {.source = source};
+            SluiceVulkanTexture texture;
+            fake_vulkan_fill(&info);
+            CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamers[i]));
+            CHECK_OK(sluiceAddVulkanTexture(streamers[i], &add, &texture));
+        }
+        uint64_t times[2] = {0, 0};
+        for (int round = 0; round < 10; round++) {
+            run_frames(streamers[0], &times[0], 4);
+            run_frames(streamers[1], &times[1], 4);
+            assert_true(statistics_of(context).tileMemorySize <= budget);
+        }
+        SluiceVulkanContextStatistics full = statistics_of(context);
+        assert_true(full.tileMemorySize > budget - 8 * mib);
+        assert_true(full.refusedBlockCount > 0);
+        assert_true(full.tileMemorySize + full.tableMemorySize + full.stagingMemorySize +
+                        full.readbackMemorySize ==
+                    fake.live_memory);
+        CHECK_OK(sluiceSetVulkanMemoryBudget(context, 8 * mib));
+        run_frames(streamers[0], &times[0], 1);
+        assert_true(streamers[0]->memory_pressure > 0);
+        for (int i = 0; i < 2; i++)
+            sluiceDestroyVulkanStreamer(streamers[i]);
+        assert_int_equal(statistics_of(context).memoryBlockCount, 0);
+        sluiceDestroyVulkanContext(context);
+        assert_int_equal(fake.live_objects, 0);
+    }
+    sluiceDestroyImageSource(source);
+}
+
+static void questions_take_no_memory(void **state)
+{
+    (void)state;
+    struct failing_allocator memory;
+    SluiceVulkanContext *context;
+    SluiceVulkanContextCreateInfo create = start();
+    failing_allocator_init(&memory, UINT64_MAX);
+    create.pAllocator = &memory.callbacks;
+    CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+    uint64_t calls = memory.calls;
+    memory.refuse_from = 0;
+    (void)statistics_of(context);
+    SluiceVulkanContextStatistics statistics = {.structSize = sizeof statistics};
+    CHECK_OK(sluiceGetVulkanContextStatistics(context, &statistics));
+    CHECK_OK(sluiceSetVulkanMemoryBudget(context, UINT64_C(8) << 20));
+    assert_int_equal(memory.calls, calls);
+    sluiceDestroyVulkanContext(context);
+    assert_int_equal(memory.live_count, 0);
+}
+
 /* Those that could not be created are none. */
 static void creation_that_fails_leaves_no_child(void **state)
 {
@@ -210,6 +435,11 @@ int main(void)
         cmocka_unit_test(another_struct_size_is_refused),
         cmocka_unit_test(creation_survives_every_refused_allocation),
         cmocka_unit_test(contexts_outlive_their_children),
+        cmocka_unit_test(answers_of_memory_callbacks_are_checked),
+        cmocka_unit_test(memory_callbacks_must_be_whole),
+        cmocka_unit_test(budgets_below_4_mib_are_refused),
+        cmocka_unit_test(two_streamers_stay_within_one_budget),
+        cmocka_unit_test(questions_take_no_memory),
         cmocka_unit_test(creation_that_fails_leaves_no_child),
     };
     return RUN_TESTS(tests);

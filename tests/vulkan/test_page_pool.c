@@ -54,7 +54,8 @@ static void init(struct rig *r, uint64_t max_size)
     r->pool.vk.CmdPipelineBarrier = barrier;
     for (uintptr_t i = 0; i < USERS; i++) {
         timelines[i] = 0;
-        CHECK_OK(slc_page_pool_add_user(&r->pool, (VkSemaphore)(i + 1), max_size, &r->users[i]));
+        CHECK_OK(
+            slc_page_pool_add_user(&r->pool, (VkSemaphore)(i + 1), max_size, NULL, &r->users[i]));
     }
 }
 
