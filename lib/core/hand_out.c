@@ -3,7 +3,7 @@
 #include "core/mip_bias.h"
 #include "core/eviction.h"
 #include "core/history.h"
-#include "core/lookup.h"
+#include "core/list_call.h"
 #include "core/observer.h"
 #include "core/prefetch.h"
 #include "core/request_walk.h"
@@ -133,24 +133,20 @@ static SluiceResult hand_out(slc_manager *m, const struct slc_managed_texture *s
     return result == SLUICE_SUCCESS && left > 0 ? SLUICE_INCOMPLETE : result;
 }
 
-static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_t *count,
-                                     SluiceTile *tiles)
+static SluiceResult get_tiles_to_map(slc_manager *m, struct slc_managed_texture *scope,
+                                     const struct slc_list_call *call)
 {
-    struct slc_managed_texture *scope;
-    SluiceResult result = slc_find_scope(m, id, &scope);
-    if (result != SLUICE_SUCCESS)
-        return result;
     uint32_t requests = requests_in_scope(m, scope);
-    if (!tiles) {
-        *count = requests;
+    if (!call->tiles) {
+        *call->count = requests;
         return SLUICE_SUCCESS;
     }
     if (!scope || requests == 0)
-        return hand_out(m, scope, NULL, count, tiles);
+        return hand_out(m, scope, NULL, call->count, call->tiles);
     struct slc_request_key *keys = slc_sort_requests(m, scope);
     if (!keys)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    result = hand_out(m, scope, keys, count, tiles);
+    SluiceResult result = hand_out(m, scope, keys, call->count, call->tiles);
     slc_free(&m->cb, keys, requests, sizeof *keys);
     return result;
 }
@@ -158,24 +154,6 @@ static SluiceResult get_tiles_to_map(slc_manager *m, SluiceTextureId id, uint32_
 SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
                                  uint32_t *pTileCount, SluiceTile *pTiles)
 {
-    if (!manager)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_MAP,
-                            .texture_id = textureId,
-                            .query = !pTiles,
-                            .tiles = pTiles};
-    if (!pTileCount) {
-        call.result = SLUICE_ERROR_NULL_POINTER;
-    } else {
-        call.room = *pTileCount;
-        manager->cut_short = false;
-        call.result = get_tiles_to_map(manager, textureId, pTileCount, pTiles);
-        call.count = *pTileCount;
-        if (manager->cut_short)
-            call.room = call.count; /* which gives the same where memory suffices */
-    }
-    slc_notify(manager, &call);
-    return call.result;
+    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_MAP, textureId, 0, pTileCount, pTiles};
+    return slc_list_call_make(manager, &call, get_tiles_to_map);
 }

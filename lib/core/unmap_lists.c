@@ -1,7 +1,7 @@
 /* Lists of tiles to unmap and to cancel. */
 #include "core/clock.h"
 #include "core/history.h"
-#include "core/lookup.h"
+#include "core/list_call.h"
 #include "core/observer.h"
 #include "core/texture_tiles.h"
 #include "residency/node.h"
@@ -77,79 +77,40 @@ static bool take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
     return true;
 }
 
-static SluiceResult get_tiles_to_unmap(slc_manager *m, SluiceTextureId id, uint64_t retire_value,
-                                       uint32_t *count, SluiceTile *tiles)
+static SluiceResult get_tiles_to_unmap(slc_manager *m, struct slc_managed_texture *scope,
+                                       const struct slc_list_call *call)
 {
-    struct slc_managed_texture *scope;
-    SluiceResult result = slc_find_scope(m, id, &scope);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    if (slc_retire_is_backwards(m, retire_value))
+    if (slc_retire_is_backwards(m, call->retire_value))
         return SLUICE_ERROR_TIME_BACKWARDS;
-    result = take_list(m, &m->residency.evicted, scope, retire_value, take_unmapped, count, tiles);
-    if (tiles && retire_value && result >= SLUICE_SUCCESS)
-        m->last_retire = retire_value;
+    SluiceResult result = take_list(m, &m->residency.evicted, scope, call->retire_value,
+                                    take_unmapped, call->count, call->tiles);
+    if (call->tiles && call->retire_value && result >= SLUICE_SUCCESS)
+        m->last_retire = call->retire_value;
     return result;
 }
 
-static SluiceResult get_tiles_to_cancel(slc_manager *m, SluiceTextureId id, uint32_t *count,
-                                        SluiceTile *tiles)
+static SluiceResult get_tiles_to_cancel(slc_manager *m, struct slc_managed_texture *scope,
+                                        const struct slc_list_call *call)
 {
-    struct slc_managed_texture *scope;
-    SluiceResult result = slc_find_scope(m, id, &scope);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    return take_list(m, &m->residency.cancelled, scope, 0, take_cancelled, count, tiles);
+    return take_list(m, &m->residency.cancelled, scope, 0, take_cancelled, call->count,
+                     call->tiles);
 }
 
 SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
                                    uint64_t retireValue, uint32_t *pTileCount, SluiceTile *pTiles)
 {
-    if (!manager)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_UNMAP,
-                            .texture_id = textureId,
-                            .retire_value = retireValue,
-                            .query = !pTiles,
-                            .tiles = pTiles};
-    if (!pTileCount) {
-        call.result = SLUICE_ERROR_NULL_POINTER;
-    } else {
-        call.room = *pTileCount;
-        manager->cut_short = false;
-        call.result = get_tiles_to_unmap(manager, textureId, retireValue, pTileCount, pTiles);
-        call.count = *pTileCount;
-        if (manager->cut_short)
-            call.room = call.count;
-    }
-    slc_notify(manager, &call);
-    return call.result;
+    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_UNMAP, textureId, retireValue,
+                                       pTileCount, pTiles};
+    return slc_list_call_make(manager, &call, get_tiles_to_unmap);
 }
 
 SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *manager,
                                     SluiceTextureId textureId, uint32_t *pTileCount,
                                     SluiceTile *pTiles)
 {
-    if (!manager)
-        return SLUICE_ERROR_NULL_POINTER;
-    if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_CANCEL,
-                            .texture_id = textureId,
-                            .query = !pTiles,
-                            .tiles = pTiles};
-    if (!pTileCount) {
-        call.result = SLUICE_ERROR_NULL_POINTER;
-    } else {
-        call.room = *pTileCount;
-        manager->cut_short = false;
-        call.result = get_tiles_to_cancel(manager, textureId, pTileCount, pTiles);
-        call.count = *pTileCount;
-    }
-    slc_notify(manager, &call);
-    return call.result;
+    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_CANCEL, textureId, 0, pTileCount,
+                                       pTiles};
+    return slc_list_call_make(manager, &call, get_tiles_to_cancel);
 }
 
 SluiceResult sluiceCompleteRetireValue(SluiceStreamedTextureManager *manager, uint64_t retireValue)
