@@ -1,5 +1,7 @@
 #include "base/said.h"
 
+#include "base/log.h"
+
 #include <stdatomic.h>
 
 /* FNV-1a. */
@@ -24,4 +26,14 @@ enum slc_say slc_said_note(struct slc_said *said, uint64_t key)
             return SLC_SAY_NOTHING;
     }
     return SLC_SAY_NOTHING;
+}
+
+void slc_said_log(struct slc_said *said, const SluiceLogCallback *log, const char *path,
+                  uint64_t key, const char *message)
+{
+    enum slc_say say = slc_said_note(said, key);
+    if (say != SLC_SAY_NOTHING)
+        slc_log(log, SLUICE_LOG_ERROR, "%s: %s%s", path, message,
+                say == SLC_SAY_IT_LAST ? "; further faults of this file are counted, not logged"
+                                       : "");
 }

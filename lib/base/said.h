@@ -5,8 +5,7 @@
 #ifndef SLC_BASE_SAID_H
 #define SLC_BASE_SAID_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include <sluice/base.h>
 
 #define SLC_SAID_MAX 16u
 
@@ -27,7 +26,8 @@ uint64_t slc_said_key(const char *text);
 /** Notes that it is said now. `said` NULL: SAY_IT. Any thread. */
 enum slc_say slc_said_note(struct slc_said *said, uint64_t key);
 
-/** To be added to a message that is the last. */
-#define SLC_SAID_ENOUGH "; further faults of this file are counted, not logged"
+/** Logs "PATH: MESSAGE" as an error, unless it was said or too much was. Any thread. */
+void slc_said_log(struct slc_said *said, const SluiceLogCallback *log, const char *path,
+                  uint64_t key, const char *message);
 
 #endif /* SLC_BASE_SAID_H */

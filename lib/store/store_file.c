@@ -17,10 +17,7 @@
 static SluiceResult say(const struct slc_store_file *file, SluiceResult result, uint64_t key,
                         const char *message)
 {
-    enum slc_say say = slc_said_note(file->said, key);
-    if (say != SLC_SAY_NOTHING)
-        slc_log(&file->log, SLUICE_LOG_ERROR, "%s: %s%s", file->path, message,
-                say == SLC_SAY_IT_LAST ? SLC_SAID_ENOUGH : "");
+    slc_said_log(file->said, &file->log, file->path, key, message);
     return result;
 }
 
