@@ -1,5 +1,5 @@
-#define _POSIX_C_SOURCE 200809L
 /* What the programs' log leaves out. */
+#include "support/captured_stderr.h"
 #include "support/test.h"
 
 #include "log.h"
@@ -7,33 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-static char text[1 << 16];
-
-/* Stderr goes to a file from begin to end; end gives what was written. */
-static int kept;
-static FILE *caught;
-
-static void begin(void)
-{
-    fflush(stderr);
-    kept = dup(STDERR_FILENO);
-    caught = tmpfile();
-    assert_non_null(caught);
-    assert_true(dup2(fileno(caught), STDERR_FILENO) >= 0);
-}
-
-static void end(void)
-{
-    fflush(stderr);
-    rewind(caught);
-    size_t size = fread(text, 1, sizeof text - 1, caught);
-    text[size] = '\0';
-    dup2(kept, STDERR_FILENO);
-    close(kept);
-    fclose(caught);
-}
+static const char *text; ///< what was said
 
 static uint32_t count_lines(const char *part)
 {
@@ -55,12 +30,12 @@ static void say_tile(const char *file, uint32_t tile)
 static void a_message_is_said_once_then_counted(void **state)
 {
     (void)state;
-    begin();
+    captured_stderr_begin();
     for (int i = 0; i < 100; i++)
         say_tile("a.store", 1);
     say_tile("a.store", 2);
     log_finish();
-    end();
+    text = captured_stderr_end();
     assert_int_equal(count_lines("tile 1 "), 1);
     assert_int_equal(count_lines("tile 2 "), 1);
     assert_int_equal(count_lines("a.store: 99 more messages"), 1);
@@ -70,13 +45,13 @@ static void a_message_is_said_once_then_counted(void **state)
 static void a_file_with_many_damaged_tiles_takes_few_lines(void **state)
 {
     (void)state;
-    begin();
+    captured_stderr_begin();
     for (int round = 0; round < 3; round++)
         for (uint32_t tile = 0; tile < 182; tile++)
             say_tile("a.store", tile);
     say_tile("b.store", 7);
     log_finish();
-    end();
+    text = captured_stderr_end();
     assert_int_equal(count_lines("a.store: tile"), LOG_LINES_PER_FILE);
     assert_int_equal(count_lines("b.store: tile 7 "), 1);
     assert_int_equal(count_lines("a.store: 514 more messages"), 1);
@@ -88,14 +63,14 @@ static void more_files_than_there_is_room_for_are_counted(void **state)
 {
     char name[32];
     (void)state;
-    begin();
+    captured_stderr_begin();
     for (uint32_t file = 0; file < 1000; file++) {
         snprintf(name, sizeof name, "%u.store", file);
         say_tile(name, 0);
         say_tile(name, 0);
     }
     log_finish();
-    end();
+    text = captured_stderr_end();
     assert_int_equal(count_lines("tile 0 "), 255 + LOG_LINES_PER_FILE);
     assert_int_equal(count_lines("0.store: 1 more messages"), 26);
     assert_int_equal(count_lines("other files: 1458 more messages"), 1);
@@ -104,24 +79,24 @@ static void more_files_than_there_is_room_for_are_counted(void **state)
 static void infos_are_left_out_and_escapes_are_shown(void **state)
 {
     (void)state;
-    begin();
+    captured_stderr_begin();
     log_say(NULL, SLUICE_LOG_INFO, "nothing to see");
     static char speaker[] = "program: ";
     log_say(speaker, SLUICE_LOG_WARNING, "\x1b[31mred: bad");
     log_finish();
-    end();
+    text = captured_stderr_end();
     assert_string_equal(text, "program: \\x1b[31mred: bad\n");
 }
 
 static void after_the_end_it_begins_anew(void **state)
 {
     (void)state;
-    begin();
+    captured_stderr_begin();
     say_tile("a.store", 1);
     log_finish();
     say_tile("a.store", 1);
     log_finish();
-    end();
+    text = captured_stderr_end();
     assert_int_equal(count_lines("tile 1 "), 2);
     assert_int_equal(count_lines(""), 2);
 }

@@ -1,5 +1,5 @@
 /* Command lines, what becomes of them, and what is said of those that are wrong. */
-#define _POSIX_C_SOURCE 200809L
+#include "support/captured_stderr.h"
 #include "support/test.h"
 
 #include "option_help.h"
@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define MOST_WORDS 160
 
@@ -55,42 +54,18 @@ static const struct option rows[] = {
 static const struct option_table table = {"program", "usage: program FIRST [OTHERS...]\n",
                                           "The end.\n", rows, sizeof rows / sizeof *rows};
 
-static char said[1 << 14];
-
-static int kept;
-static FILE *caught;
-
-/* What stderr is told, from begin to end, goes to `said`. */
-static void begin(void)
-{
-    fflush(stderr);
-    kept = dup(STDERR_FILENO);
-    caught = tmpfile();
-    assert_non_null(caught);
-    assert_true(dup2(fileno(caught), STDERR_FILENO) >= 0);
-}
-
-static void take_what_was_said(FILE *file)
-{
-    rewind(file);
-    said[fread(said, 1, sizeof said - 1, file)] = '\0';
-    fclose(file);
-}
-
-static void end(void)
-{
-    fflush(stderr);
-    dup2(kept, STDERR_FILENO);
-    close(kept);
-    take_what_was_said(caught);
-}
+static const char *said; ///< on stderr, or in a help text
 
 static void print_help(const struct option_table *t)
 {
+    static char text[1 << 13];
     FILE *file = tmpfile();
     assert_non_null(file);
     option_help_print(t, file);
-    take_what_was_said(file);
+    rewind(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    said = text;
 }
 
 /* Of a command line whose words are separated by spaces; `said` has what stderr was told. */
@@ -104,9 +79,9 @@ static enum option_outcome parse_with(const struct option_table *t, const char *
     for (char *word = strtok(words, " "); word && argc < MOST_WORDS; word = strtok(NULL, " "))
         argv[argc++] = word;
     v = (struct values){0};
-    begin();
+    captured_stderr_begin();
     enum option_outcome outcome = options_parse(t, argc, argv);
-    end();
+    said = captured_stderr_end();
     return outcome;
 }
 
@@ -370,8 +345,8 @@ static void long_help_is_wrapped_and_long_choices_follow_it(void **state)
     print_help(&wide);
     assert_non_null(strstr(said, "  --format NAME               words that fill"));
     assert_non_null(strstr(said, "One of auto, one-of-many-formats,"));
-    for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n"))
-        assert_true(strlen(line) <= 96);
+    for (const char *line = said; *line; line += strcspn(line, "\n") + 1)
+        assert_true(strcspn(line, "\n") <= 96);
 }
 
 int main(void)

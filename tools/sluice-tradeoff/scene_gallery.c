@@ -141,12 +141,7 @@ static void add_repeat_arguments(const struct program *program, uint32_t repeat,
     /* A walk that begins with nothing in memory shows little else. */
     if (program_has_option(program, "warm-up"))
         text_list_add_parts(arguments, "--warm-up " WARM_UP_FRAMES, ' ');
-    if (program_has_option(program, "seed")) {
-        char *seed = memory_text("%u", repeat + 1);
-        text_list_add(arguments, "--seed");
-        text_list_add(arguments, seed);
-        free(seed);
-    }
+    scene_add_seed(program, repeat, arguments);
     text_list_add(arguments, "--json");
 }
 

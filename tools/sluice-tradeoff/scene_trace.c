@@ -1,8 +1,5 @@
 /* Recorded feedback, played against a manager without a device: this tool's own `play`. */
 #include "scenes.h"
-
-#include <stdlib.h>
-
 static const struct scene_setting settings[] = {
     {{"budget", "memory for all heaps; 0: any amount", "MiB"},
      "0",
@@ -76,12 +73,7 @@ static const char *const times[] = {"loaded_bytes", NULL};
 static void add_repeat_arguments(const struct program *program, uint32_t repeat,
                                  struct text_list *arguments)
 {
-    if (program_has_option(program, "seed")) {
-        char *seed = memory_text("%u", repeat + 1);
-        text_list_add(arguments, "--seed");
-        text_list_add(arguments, seed);
-        free(seed);
-    }
+    scene_add_seed(program, repeat, arguments);
     text_list_add(arguments, "--json");
 }
 

@@ -48,6 +48,9 @@ struct scene {
                                  struct text_list *arguments);
 };
 
+/** Adds "--seed REPEAT" where the program has that option. Repeats count from 1 there. */
+void scene_add_seed(const struct program *program, uint32_t repeat, struct text_list *arguments);
+
 /** NULL: there is none of that name. */
 const struct scene *scene_find(const char *name);
 
