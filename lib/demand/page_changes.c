@@ -100,10 +100,8 @@ uint32_t slc_residency_take_changes(struct slc_demand_residency *residency,
         wait_for_launch(residency, index);
         drop_if_useless(residency, index);
     }
-    slc_notify_pages(residency, &(struct slc_page_call){.kind = SLC_PAGE_CALL_TAKE_CHANGES,
-                                                        .capacity = capacity,
-                                                        .count = count,
-                                                        .changes = changes});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_TAKE_CHANGES, .capacity = capacity,
+                   .count = count, .changes = changes);
     return count;
 }
 
@@ -134,9 +132,7 @@ uint32_t slc_residency_take_evicted(struct slc_demand_residency *residency,
         residency->evicted_begin = (residency->evicted_begin + 1) % residency->evicted_capacity;
         residency->evicted_count--;
     }
-    slc_notify_pages(residency, &(struct slc_page_call){.kind = SLC_PAGE_CALL_TAKE_EVICTED,
-                                                        .capacity = capacity,
-                                                        .count = count,
-                                                        .evicted = evicted});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_TAKE_EVICTED, .capacity = capacity,
+                   .count = count, .evicted = evicted);
     return count;
 }

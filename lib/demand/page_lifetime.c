@@ -55,10 +55,8 @@ SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uin
         c->memory = *memory;
     slc_residency_trim(residency, class_index);
     residency->over_limit |= c->held > c->limit;
-    slc_notify_pages(residency, &(struct slc_page_call){.kind = SLC_PAGE_CALL_SET_CLASS,
-                                                        .class_index = (uint8_t)class_index,
-                                                        .value = limit,
-                                                        .flag = memory != NULL});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_SET_CLASS, .class_index = (uint8_t)class_index,
+                   .value = limit, .flag = memory != NULL);
     return SLUICE_SUCCESS;
 }
 

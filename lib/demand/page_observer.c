@@ -16,6 +16,11 @@ struct slc_page_observer slc_residency_observer(const struct slc_demand_residenc
     return residency->observer;
 }
 
+void slc_tell_use(const struct slc_demand_residency *r, uint32_t page)
+{
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_USE, .page = page);
+}
+
 bool slc_residency_is_used(const struct slc_demand_residency *residency)
 {
     return residency->used || residency->observer.notify;

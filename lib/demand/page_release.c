@@ -28,11 +28,9 @@ static void give_place(struct slc_demand_residency *r, uint32_t index, bool evic
 {
     struct slc_page_class *c = slc_class_of(r, index);
     struct slc_page_node *node = slc_node(r, index);
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_GIVE,
-                                 .place = node->place,
-                                 .page = evicted ? node->page : SLC_NO_PAGE};
-    c->memory.give(c->memory.user, call.place, call.page);
-    slc_notify_pages(r, &call);
+    uint32_t place = node->place, page = evicted ? node->page : SLC_NO_PAGE;
+    c->memory.give(c->memory.user, place, page);
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_GIVE, .place = place, .page = page);
     if (evicted)
         slc_residency_become_ghost(r, index, node->place);
     else
@@ -88,8 +86,7 @@ void slc_residency_loaded(struct slc_demand_residency *residency, uint32_t page,
     if (slc_node(residency, index)->dropped)
         slc_residency_release(residency, index, false);
     slc_residency_note(residency, index);
-    slc_notify_pages(residency, &(struct slc_page_call){
-                                    .kind = SLC_PAGE_CALL_LOADED, .page = page, .value = value});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_LOADED, .page = page, .value = value);
 }
 
 void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page, bool refuse)
@@ -97,16 +94,15 @@ void slc_residency_failed(struct slc_demand_residency *residency, uint32_t page,
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);
     assert(index != SLC_NO_NODE && slc_node(residency, index)->state == SLC_PAGE_LOADING);
     struct slc_page_node *node = slc_node(residency, index);
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_FAILED, .page = page, .flag = refuse};
-    refuse = refuse && !node->dropped;
+    bool refused = refuse && !node->dropped;
     residency->failed_loads += node->class_index == SLC_TILES;
     slc_residency_release(residency, index, false);
-    if (refuse) {
+    if (refused) {
         node->state = SLC_PAGE_REFUSED;
         slc_class_of(residency, index)->counts.refused++;
     }
     slc_residency_note(residency, index);
-    slc_notify_pages(residency, &call);
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_FAILED, .page = page, .flag = refuse);
 }
 
 static void forget(struct slc_demand_residency *r, uint32_t index)
@@ -153,17 +149,15 @@ static void forget_range(struct slc_demand_residency *residency, uint32_t first,
 void slc_residency_forget(struct slc_demand_residency *residency, uint32_t first, uint64_t count)
 {
     forget_range(residency, first, count);
-    slc_notify_pages(residency, &(struct slc_page_call){
-                                    .kind = SLC_PAGE_CALL_FORGET, .page = first, .count = count});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_FORGET, .page = first, .count = count);
 }
 
 bool slc_residency_retry(struct slc_demand_residency *residency, uint32_t page)
 {
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_RETRY, .page = page};
     uint32_t index = slc_page_nodes_find(&residency->nodes, page);
-    call.answer = index != SLC_NO_NODE && slc_node(residency, index)->state == SLC_PAGE_REFUSED;
-    if (call.answer)
+    bool refused = index != SLC_NO_NODE && slc_node(residency, index)->state == SLC_PAGE_REFUSED;
+    if (refused)
         forget(residency, index);
-    slc_notify_pages(residency, &call);
-    return call.answer;
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_RETRY, .page = page, .answer = refused);
+    return refused;
 }

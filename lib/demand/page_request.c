@@ -37,10 +37,9 @@ static void use(struct slc_demand_residency *residency, uint32_t page)
 
 void slc_residency_use(struct slc_demand_residency *residency, uint32_t page)
 {
-    use(residency, page);
     if (residency->observer.notify)
-        slc_notify_pages(residency,
-                         &(struct slc_page_call){.kind = SLC_PAGE_CALL_USE, .page = page});
+        slc_tell_use(residency, page);
+    use(residency, page);
 }
 
 /* It was asked for as any other page, and now as one that stays. */
@@ -82,19 +81,17 @@ static bool make_room(struct slc_demand_residency *r, uint32_t class_index)
 static uint32_t take(struct slc_demand_residency *r, const struct slc_page_memory *memory,
                      uint32_t kind)
 {
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_TAKE, .page_kind = kind};
-    call.place = memory->take(memory->user, kind);
-    slc_notify_pages(r, &call);
-    return call.place;
+    uint32_t place = memory->take(memory->user, kind);
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_TAKE, .page_kind = kind, .place = place);
+    return place;
 }
 
 static bool retake(struct slc_demand_residency *r, const struct slc_page_memory *memory,
                    uint32_t place, uint32_t page)
 {
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_RETAKE, .place = place, .page = page};
-    call.answer = memory->retake(memory->user, place, page);
-    slc_notify_pages(r, &call);
-    return call.answer;
+    bool answer = memory->retake(memory->user, place, page);
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_RETAKE, .place = place, .page = page, .answer = answer);
+    return answer;
 }
 
 /* There may be memory for one kind and not for another: places of the same kind help at once,
@@ -244,12 +241,11 @@ enum slc_request_answer slc_residency_request(struct slc_demand_residency *resid
                                               const struct slc_page_request *request,
                                               SluiceResult *result)
 {
-    struct slc_page_call call = {.kind = SLC_PAGE_CALL_REQUEST, .request = *request};
     residency->used = true;
-    call.request_answer = answer(residency, request, &call.result);
-    *result = call.result;
-    slc_notify_pages(residency, &call);
-    return call.request_answer;
+    enum slc_request_answer given = answer(residency, request, result);
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_REQUEST, .request = *request, .result = *result,
+                   .request_answer = given);
+    return given;
 }
 
 uint32_t slc_residency_place(const struct slc_demand_residency *residency, uint32_t page)

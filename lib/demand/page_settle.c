@@ -27,7 +27,7 @@ void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch
         slc_residency_leave_home(r, index);
         slc_residency_enter_pool(r, index, launch - 1);
     }
-    slc_notify_pages(r, &(struct slc_page_call){.kind = SLC_PAGE_CALL_BEGIN, .launch = launch});
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_BEGIN, .launch = launch);
 }
 
 float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t launch)
@@ -40,8 +40,7 @@ float slc_residency_prepare(struct slc_demand_residency *residency, uint64_t lau
         residency->bias_from = launch;
     }
     float bias = slc_residency_lod_bias(residency);
-    slc_notify_pages(residency, &(struct slc_page_call){
-                                    .kind = SLC_PAGE_CALL_PREPARE, .launch = launch, .bias = bias});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_PREPARE, .launch = launch, .bias = bias);
     return bias;
 }
 
@@ -50,8 +49,7 @@ void slc_residency_abandon(struct slc_demand_residency *residency, uint64_t laun
     assert(launch > residency->launch);
     if (residency->prepared >= launch)
         residency->prepared = launch - 1;
-    slc_notify_pages(residency,
-                     &(struct slc_page_call){.kind = SLC_PAGE_CALL_ABANDON, .launch = launch});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_ABANDON, .launch = launch);
 }
 
 float slc_residency_lod_bias(const struct slc_demand_residency *residency)
@@ -131,6 +129,5 @@ void slc_residency_settle(struct slc_demand_residency *residency, uint64_t missi
     lift_refusals(residency);
     if (residency->over_limit)
         trim_classes(residency);
-    slc_notify_pages(residency,
-                     &(struct slc_page_call){.kind = SLC_PAGE_CALL_SETTLE, .value = missing});
+    SLC_TELL_PAGES(residency, .kind = SLC_PAGE_CALL_SETTLE, .value = missing);
 }

@@ -75,12 +75,18 @@ static inline struct slc_page_class *slc_class_of(struct slc_demand_residency *r
     return &r->classes[r->nodes.at[index].class_index];
 }
 
-/** Tells the observer, if there is one. */
-static inline void slc_notify_pages(const struct slc_demand_residency *r,
-                                    const struct slc_page_call *call)
-{
-    if (r->observer.notify)
-        r->observer.notify(r->observer.user, call);
-}
+/** Tells the observer, which is there, of a use. Not in line: it would slow down uses without one.
+ */
+void slc_tell_use(const struct slc_demand_residency *r, uint32_t page);
+
+/**
+ * Tells the observer of a call, if there is one; the fields of the call follow. A macro, because
+ * without an observer the call must not even be built: pages are used by the thousand.
+ */
+#define SLC_TELL_PAGES(r, ...)                                                                     \
+    do {                                                                                           \
+        if ((r)->observer.notify)                                                                  \
+            (r)->observer.notify((r)->observer.user, &(struct slc_page_call){__VA_ARGS__});        \
+    } while (0)
 
 #endif /* SLC_DEMAND_PAGE_STATE_H */
