@@ -100,15 +100,22 @@ typedef struct SluiceVulkanContextCreateInfo {
      * (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
      */
     uint64_t memoryBudget;
+    /** Cache for the compute pipelines of the library, so that the application can store it. Must
+     *  outlive the context. Default: the context makes one of its own. */
+    VkPipelineCache pipelineCache;
 } SluiceVulkanContextCreateInfo;
 
 /**
  * Creates a context.
  *
+ * If the instance has VK_EXT_debug_utils, objects of the library have names that begin with
+ * "sluice: ".
+ *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a memoryBudget below 4 MiB,
- * or a queue family that does not exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance
- * or device were created for less than Vulkan 1.2; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Thread safety:
- * any thread.
+ *         or a queue family that does not exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if
+ *         instance or device were created for less than Vulkan 1.2;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCreateVulkanContext(const SluiceVulkanContextCreateInfo *pCreateInfo,
                                                   SluiceVulkanContext **pContext);

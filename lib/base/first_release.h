@@ -53,7 +53,7 @@
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
-    SLC_UP_TO(SluiceVulkanContextCreateInfo, memoryBudget)
+    SLC_UP_TO(SluiceVulkanContextCreateInfo, pipelineCache)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, refusedBlockCount)

@@ -100,9 +100,13 @@ static SluiceResult create_semaphore(SluiceDemandLoader *loader)
                                             .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
                                         .pNext = &type};
-    return slc_vk_result(
+    SluiceResult result = slc_vk_result(
         &loader->vk, loader->vk.CreateSemaphore(loader->vk.device, &info, NULL, &loader->semaphore),
         "vkCreateSemaphore");
+    if (result != SLUICE_SUCCESS)
+        loader->semaphore = VK_NULL_HANDLE;
+    slc_vk_name(&loader->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)loader->semaphore, "launches");
+    return result;
 }
 
 static SluiceResult create_buffer(SluiceDemandLoader *loader, struct slc_buffer *buffer,
@@ -128,6 +132,8 @@ static SluiceResult create_tables(SluiceDemandLoader *loader)
     if (result == SLUICE_SUCCESS)
         result = slc_region_arena_init(&loader->grid_arena, &loader->cb, grids,
                                        slc_min_u32(grids, MAX_GRIDS));
+    slc_buffer_set_name(&loader->table_buffer, &loader->vk, "demand textures");
+    slc_buffer_set_name(&loader->levels_buffer, &loader->vk, "demand levels");
     if (result != SLUICE_SUCCESS)
         return result;
     slc_table_mirror_init(&loader->table, &loader->cb, loader->table_buffer.buffer, 0,

@@ -52,6 +52,8 @@ static SluiceResult create_buffers(struct slc_page_directory *d)
                      ? SLUICE_ERROR_LIMIT_EXCEEDED
                      : slc_buffer_init(buffers[i].buffer, d->vk, d->caps, buffers[i].size, usage,
                                        buffers[i].kind);
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0] && result == SLUICE_SUCCESS; i++)
+        slc_buffer_set_name(buffers[i].buffer, d->vk, "page table");
     return result;
 }
 

@@ -81,6 +81,8 @@ static SluiceResult create_buffers(struct slc_demand_scan *s, const struct slc_v
                      ? SLUICE_ERROR_LIMIT_EXCEEDED
                      : slc_buffer_init(buffers[i].buffer, vk, caps, buffers[i].size,
                                        buffers[i].usage, buffers[i].kind);
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0] && result == SLUICE_SUCCESS; i++)
+        slc_buffer_set_name(buffers[i].buffer, vk, "requests of launches");
     return result;
 }
 
@@ -100,7 +102,8 @@ static SluiceResult create_passes(struct slc_demand_scan *s, const struct slc_vk
                                            .push_size = sizeof(struct SluiceDemandScanParams),
                                            .set_count = 1,
                                            .passes = passes,
-                                           .pass_count = PASSES};
+                                           .pass_count = PASSES,
+                                           .name = "scan requests"};
     SluiceResult result = slc_compute_init(&s->compute, vk, &info);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -30,6 +30,15 @@ static SluiceDeviceMemoryPurpose purpose_of(enum slc_buffer_kind kind)
     }
 }
 
+static const char *name_of(enum slc_buffer_kind kind)
+{
+    switch (kind) {
+    case SLC_BUFFER_UPLOAD: return "staging";
+    case SLC_BUFFER_READBACK: return "readback";
+    default: return "table";
+    }
+}
+
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                              const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
                              enum slc_buffer_kind kind)
@@ -51,7 +60,7 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                                                .type = type,
                                                .purpose = purpose_of(kind),
                                                .mapped = kind != SLC_BUFFER_DEVICE,
-                                               .name = "buffer"};
+                                               .name = name_of(kind)};
     VkResult status = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (type != UINT32_MAX)
         status = slc_memory_allocate(vk, &request, &buffer->memory);
@@ -62,7 +71,14 @@ SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
     result = slc_vk_result(vk, status, "memory of a buffer");
     if (result != SLUICE_SUCCESS)
         slc_buffer_finish(buffer, vk);
+    else
+        slc_buffer_set_name(buffer, vk, name_of(kind));
     return result;
+}
+
+void slc_buffer_set_name(const struct slc_buffer *buffer, const struct slc_vk *vk, const char *name)
+{
+    slc_vk_name(vk, VK_OBJECT_TYPE_BUFFER, (uint64_t)buffer->buffer, name);
 }
 
 void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk)

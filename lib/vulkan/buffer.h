@@ -23,6 +23,9 @@ struct slc_buffer {
 SluiceResult slc_buffer_init(struct slc_buffer *buffer, const struct slc_vk *vk,
                              const struct slc_caps *caps, uint64_t size, VkBufferUsageFlags usage,
                              enum slc_buffer_kind kind);
+/** For debuggers; without it a buffer has a name that says its kind. */
+void slc_buffer_set_name(const struct slc_buffer *buffer, const struct slc_vk *vk,
+                         const char *name);
 void slc_buffer_finish(struct slc_buffer *buffer, const struct slc_vk *vk);
 
 #endif /* SLC_VULKAN_BUFFER_H */

@@ -54,7 +54,7 @@ static SluiceResult create_pipeline(const struct slc_compute *c, const struct sl
                   .pSpecializationInfo = &specialization},
         .layout = c->layout};
     result = slc_vk_result(
-        vk, vk->CreateComputePipelines(vk->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
+        vk, vk->CreateComputePipelines(vk->device, vk->pipeline_cache, 1, &info, NULL, pipeline),
         "vkCreateComputePipelines");
     vk->DestroyShaderModule(vk->device, module, NULL);
     return result;
@@ -91,8 +91,11 @@ SluiceResult slc_compute_init(struct slc_compute *compute, const struct slc_vk *
     *compute =
         (struct slc_compute){.binding_count = info->binding_count, .push_size = info->push_size};
     SluiceResult result = create_layouts(compute, vk);
-    for (uint32_t i = 0; i < info->pass_count && result == SLUICE_SUCCESS; i++)
+    for (uint32_t i = 0; i < info->pass_count && result == SLUICE_SUCCESS; i++) {
         result = create_pipeline(compute, vk, &info->passes[i], &compute->pipelines[i]);
+        if (result == SLUICE_SUCCESS)
+            slc_vk_name(vk, VK_OBJECT_TYPE_PIPELINE, (uint64_t)compute->pipelines[i], info->name);
+    }
     if (result == SLUICE_SUCCESS)
         result = create_sets(compute, vk, info->set_count);
     return result;

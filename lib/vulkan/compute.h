@@ -20,6 +20,7 @@ struct slc_compute_create_info {
     uint32_t set_count;
     const struct slc_compute_pass *passes;
     uint32_t pass_count;
+    const char *name; ///< of the pipelines, for debuggers
 };
 
 /** A zeroed one is finished with nothing to do. */

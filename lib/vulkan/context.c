@@ -41,6 +41,25 @@ static SluiceResult check_queues(const struct slc_vk *vk, const SluiceVulkanCont
                                   VK_QUEUE_SPARSE_BINDING_BIT, "have VK_QUEUE_SPARSE_BINDING_BIT");
 }
 
+static SluiceResult create_pipeline_cache(SluiceVulkanContext *context,
+                                          const SluiceVulkanContextCreateInfo *info)
+{
+    struct slc_vk *vk = &context->vk;
+    vk->pipeline_cache = info->pipelineCache;
+    if (info->pipelineCache)
+        return SLUICE_SUCCESS;
+    const VkPipelineCacheCreateInfo create = {.sType =
+                                                  VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+    SluiceResult result = slc_vk_result(
+        vk, vk->CreatePipelineCache(vk->device, &create, NULL, &context->pipeline_cache),
+        "vkCreatePipelineCache");
+    if (result != SLUICE_SUCCESS)
+        return result;
+    vk->pipeline_cache = context->pipeline_cache;
+    slc_vk_name(vk, VK_OBJECT_TYPE_PIPELINE_CACHE, (uint64_t)vk->pipeline_cache, "pipelines");
+    return SLUICE_SUCCESS;
+}
+
 static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContextCreateInfo *info)
 {
     SluiceResult result = slc_vk_init_instance(&context->vk, info->instance, info->physicalDevice,
@@ -49,6 +68,13 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         result = slc_vk_init_device(&context->vk, info->device);
     if (result == SLUICE_SUCCESS)
         result = check_queues(&context->vk, info);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    /* Functions of instance extensions are found by the instance alone, and only if enabled. */
+    context->vk.SetDebugUtilsObjectNameEXT =
+        (PFN_vkSetDebugUtilsObjectNameEXT)info->pfnGetInstanceProcAddr(
+            info->instance, "vkSetDebugUtilsObjectNameEXT");
+    result = create_pipeline_cache(context, info);
     if (result != SLUICE_SUCCESS)
         return result;
     slc_caps_init(&context->caps, &context->vk);
@@ -61,8 +87,10 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         context->vk.memory_callbacks = &context->memory_callbacks;
     }
     result = slc_memory_budget_init(&context->budget);
-    if (result != SLUICE_SUCCESS)
+    if (result != SLUICE_SUCCESS) {
+        context->vk.DestroyPipelineCache(context->vk.device, context->pipeline_cache, NULL);
         return result;
+    }
     if (info->memoryBudget)
         slc_memory_budget_set_limit(&context->budget, info->memoryBudget);
     slc_memory_client_init(&context->memory, &context->budget);
@@ -114,6 +142,7 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
     slc_staging_group_finish(&context->shared.staging);
     slc_memory_client_finish(&context->memory);
     slc_memory_budget_finish(&context->budget);
+    context->vk.DestroyPipelineCache(context->vk.device, context->pipeline_cache, NULL);
     pthread_mutex_destroy(&context->shared.mutex);
     slc_free(&cb, context, 1, sizeof *context);
 }

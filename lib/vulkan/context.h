@@ -27,6 +27,7 @@ struct SluiceVulkanContext {
     SluiceAllocationCallbacks cb;
     VkQueue sparse_queue; ///< VK_NULL_HANDLE: none
     struct slc_vk vk;
+    VkPipelineCache pipeline_cache; ///< owned; VK_NULL_HANDLE: vk has the application's
     struct slc_caps caps;
     struct slc_shared_parts shared;
     SluiceDeviceMemoryCallbacks memory_callbacks; ///< of vk, if the application has any

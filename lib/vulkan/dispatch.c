@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Loaders and drivers hide what is newer than the version that the instance was created for. */
@@ -54,6 +55,20 @@ SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device)
     SLC_VK_DEVICE_FUNCTIONS(LOAD)
 #undef LOAD
     return SLUICE_SUCCESS;
+}
+
+void slc_vk_name(const struct slc_vk *vk, VkObjectType type, uint64_t handle, const char *name)
+{
+    if (!vk->SetDebugUtilsObjectNameEXT || !handle)
+        return;
+    char text[128];
+    snprintf(text, sizeof text, "sluice: %s", name);
+    const VkDebugUtilsObjectNameInfoEXT info = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+        .objectType = type,
+        .objectHandle = handle,
+        .pObjectName = text};
+    vk->SetDebugUtilsObjectNameEXT(vk->device, &info); /* only a name: failure does no harm */
 }
 
 SluiceResult slc_vk_result(const struct slc_vk *vk, VkResult result, const char *what)

@@ -18,10 +18,10 @@
     X(CmdFillBuffer)                                                        \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
     X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \
-    X(CreateImageView) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \
+    X(CreateImageView) X(CreatePipelineCache) X(CreatePipelineLayout) X(CreateSampler) X(CreateSemaphore)                 \
     X(CreateShaderModule)                                                                         \
     X(DestroyBuffer) X(DestroyDescriptorPool) X(DestroyDescriptorSetLayout) X(DestroyImage)        \
-    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineLayout) X(DestroySampler) X(DestroySemaphore)             \
+    X(DestroyImageView) X(DestroyPipeline) X(DestroyPipelineCache) X(DestroyPipelineLayout) X(DestroySampler) X(DestroySemaphore)             \
     X(DestroyShaderModule) X(DeviceWaitIdle) X(FreeMemory) X(GetBufferMemoryRequirements)          \
     X(GetImageMemoryRequirements) X(GetImageSparseMemoryRequirements) X(GetSemaphoreCounterValue)  \
     X(MapMemory) X(QueueBindSparse) X(UpdateDescriptorSets)        \
@@ -38,6 +38,8 @@ struct slc_vk {
     SLC_VK_INSTANCE_FUNCTIONS(SLC_VK_MEMBER)
     SLC_VK_DEVICE_FUNCTIONS(SLC_VK_MEMBER)
 #undef SLC_VK_MEMBER
+    PFN_vkSetDebugUtilsObjectNameEXT SetDebugUtilsObjectNameEXT; ///< NULL: names go nowhere
+    VkPipelineCache pipeline_cache;                              ///< may be VK_NULL_HANDLE
     SluiceLogCallback log;
     struct slc_memory_client *memory_client;             ///< NULL: nobody counts
     const SluiceDeviceMemoryCallbacks *memory_callbacks; ///< NULL: Vulkan allocates
@@ -50,6 +52,10 @@ SluiceResult slc_vk_init_instance(struct slc_vk *vk, VkInstance instance,
 
 /** The rest, after slc_vk_init_instance. */
 SluiceResult slc_vk_init_device(struct slc_vk *vk, VkDevice device);
+
+/** Names an object for debuggers, if the instance has VK_EXT_debug_utils: "sluice: " and `name`.
+ *  VK_NULL_HANDLE is allowed. */
+void slc_vk_name(const struct slc_vk *vk, VkObjectType type, uint64_t handle, const char *name);
 
 /** What a VkResult means here; logs `what` and the code unless it is success. */
 SluiceResult slc_vk_result(const struct slc_vk *vk, VkResult result, const char *what);

@@ -21,6 +21,8 @@ static VkResult allocate_by_vulkan(const struct slc_vk *vk,
         result = vk->MapMemory(vk->device, memory->memory, 0, VK_WHOLE_SIZE, 0, &memory->mapped);
     if (result != VK_SUCCESS)
         vk->FreeMemory(vk->device, memory->memory, NULL);
+    else
+        slc_vk_name(vk, VK_OBJECT_TYPE_DEVICE_MEMORY, (uint64_t)memory->memory, request->name);
     return result;
 }
 

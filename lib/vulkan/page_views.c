@@ -15,6 +15,7 @@ SluiceResult slc_create_array_view(const struct slc_vk *vk, VkImage image, VkFor
         slc_vk_result(vk, vk->CreateImageView(vk->device, &info, NULL, view), "vkCreateImageView");
     if (result != SLUICE_SUCCESS)
         *view = VK_NULL_HANDLE;
+    slc_vk_name(vk, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)*view, "pages");
     return result;
 }
 
@@ -31,6 +32,7 @@ static SluiceResult create_sampler(struct slc_page_views *views, const struct sl
         vk, vk->CreateSampler(vk->device, &info, NULL, &views->sampler), "vkCreateSampler");
     if (result != SLUICE_SUCCESS)
         views->sampler = VK_NULL_HANDLE;
+    slc_vk_name(vk, VK_OBJECT_TYPE_SAMPLER, (uint64_t)views->sampler, "pages");
     return result;
 }
 

@@ -64,6 +64,8 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
         image->image = VK_NULL_HANDLE;
         return result;
     }
+    slc_vk_name(vk, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image,
+                info->pName ? info->pName : "texture");
     result = slc_image_memory_bind(memory, vk, caps, cb, image->image, &image->place);
     if (result != SLUICE_SUCCESS)
         slc_plain_image_destroy(image, memory, vk, cb);

@@ -556,8 +556,13 @@ static SluiceResult create_semaphore(struct sparse_residency *s)
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                       .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    return slc_vk_result(s->vk, s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
-                         "vkCreateSemaphore");
+    SluiceResult result =
+        slc_vk_result(s->vk, s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
+                      "vkCreateSemaphore");
+    if (result != SLUICE_SUCCESS)
+        s->semaphore = VK_NULL_HANDLE;
+    slc_vk_name(s->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)s->semaphore, "binds");
+    return result;
 }
 
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,

@@ -39,7 +39,8 @@ static SluiceResult create_passes(struct slc_resolve *r, const struct slc_vk *vk
                                               .push_size = sizeof(struct SluiceResolveParams),
                                               .set_count = 1,
                                               .passes = passes,
-                                              .pass_count = 3};
+                                              .pass_count = 3,
+                                              .name = "resolve feedback"};
     SluiceResult result = slc_compute_init(&r->compute, vk, &compute);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -155,6 +155,8 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
                                "vkCreateImage");
         if (result != SLUICE_SUCCESS)
             return result;
+        slc_vk_name(vk, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image,
+                    info->pName ? info->pName : "texture");
         trouble = read_layout(image, vk, caps, memory_type, info);
     }
     if (trouble) {

@@ -202,6 +202,14 @@ static SluiceResult check_buffer_sizes(const SluiceVulkanStreamer *s)
     return SLUICE_ERROR_LIMIT_EXCEEDED;
 }
 
+static void name_buffers(const SluiceVulkanStreamer *s)
+{
+    slc_buffer_set_name(&s->texture_table, &s->vk, "texture table");
+    slc_buffer_set_name(&s->feedback, &s->vk, "feedback");
+    slc_buffer_set_name(&s->feedback_turns, &s->vk, "feedback turns");
+    slc_buffer_set_name(&s->min_mip, &s->vk, "MinMip maps");
+}
+
 static SluiceResult create_buffers(SluiceVulkanStreamer *s)
 {
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
@@ -227,6 +235,7 @@ static SluiceResult create_buffers(SluiceVulkanStreamer *s)
         result =
             slc_readback_ring_init(&s->readback, &s->vk, &s->caps, &s->cb, s->info.framesInFlight,
                                    s->info.texturesPerFrame, s->info.feedbackReadbackSize / 4);
+    name_buffers(s);
     struct slc_resolve_create_info resolve = resolve_info(s);
     if (result == SLUICE_SUCCESS)
         result = slc_resolve_init(&s->resolve, &s->vk, &s->caps, &resolve);
@@ -269,8 +278,13 @@ static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
     VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                       .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    return slc_vk_result(&s->vk, s->vk.CreateSemaphore(s->vk.device, &info, NULL, &s->semaphore),
-                         "vkCreateSemaphore");
+    SluiceResult result =
+        slc_vk_result(&s->vk, s->vk.CreateSemaphore(s->vk.device, &info, NULL, &s->semaphore),
+                      "vkCreateSemaphore");
+    if (result != SLUICE_SUCCESS)
+        s->semaphore = VK_NULL_HANDLE;
+    slc_vk_name(&s->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)s->semaphore, "frames");
+    return result;
 }
 
 static SluiceResult create_device_parts(SluiceVulkanStreamer *s)

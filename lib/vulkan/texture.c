@@ -44,8 +44,11 @@ static SluiceResult create_view(SluiceVulkanStreamer *s, const struct slc_textur
                                   .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0,
                                                        VK_REMAINING_MIP_LEVELS, texture->layer,
                                                        layer_count}};
-    return slc_vk_result(&s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, view),
-                         "vkCreateImageView");
+    SluiceResult result = slc_vk_result(
+        &s->vk, s->vk.CreateImageView(s->vk.device, &info, NULL, view), "vkCreateImageView");
+    if (result == SLUICE_SUCCESS)
+        slc_vk_name(&s->vk, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)*view, "texture");
+    return result;
 }
 
 static SluiceResult take_regions(SluiceVulkanStreamer *s, struct slc_texture *texture)

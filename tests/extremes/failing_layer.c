@@ -30,6 +30,7 @@ CREATE(DescriptorPool)
 CREATE(DescriptorSetLayout)
 CREATE(Image)
 CREATE(ImageView)
+CREATE(PipelineCache)
 CREATE(PipelineLayout)
 CREATE(Sampler)
 CREATE(Semaphore)
@@ -97,7 +98,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL layer_WaitSemaphores(VkDevice device,
 #define FUNCTIONS(X)                                                                               \
     X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
     X(CreateBuffer) X(CreateComputePipelines) X(CreateDescriptorPool)                              \
-    X(CreateDescriptorSetLayout) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout)         \
+    X(CreateDescriptorSetLayout) X(CreateImage) X(CreateImageView) X(CreatePipelineCache) X(CreatePipelineLayout)         \
     X(CreateSampler) X(CreateSemaphore) X(CreateShaderModule) X(DeviceWaitIdle)                    \
     X(GetSemaphoreCounterValue) X(MapMemory) X(QueueBindSparse) X(WaitSemaphores)
 /* clang-format on */

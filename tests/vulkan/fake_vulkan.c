@@ -15,8 +15,9 @@ struct fake_object {
     uint32_t level_count, layer_count;
     uint64_t size;
     void *memory;
-    VkImage image;        ///< of a view
-    bool general;         ///< the layout of an image
+    VkImage image; ///< of a view
+    bool general;  ///< the layout of an image
+    bool has_name, needs_name;
     uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
 };
 
@@ -52,12 +53,38 @@ static void *make(struct fake_vulkan *fake, uint64_t size)
 
 static void drop(struct fake_vulkan *fake, void *object)
 {
-    if (object)
+    if (object) {
+        const struct fake_object *o = object;
         fake->live_objects--;
+        fake->unnamed_objects -= o->needs_name && !o->has_name;
+    }
     free(object);
 }
 
 #define OBJECT(handle) ((struct fake_object *)(handle))
+
+/* An object of a kind that debuggers show. */
+static void *make_shown(struct fake_vulkan *fake, uint64_t size)
+{
+    struct fake_object *object = make(fake, size);
+    object->needs_name = true;
+    fake->unnamed_objects++;
+    return object;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL set_name(VkDevice device,
+                                               const VkDebugUtilsObjectNameInfoEXT *info)
+{
+    struct fake_object *object = (struct fake_object *)info->objectHandle;
+    struct fake_vulkan *fake = fake_of(device);
+    assert_memory_equal(info->pObjectName, "sluice: ", 8);
+    if (object->needs_name && !object->has_name) {
+        fake->unnamed_objects--;
+        fake->named_count++;
+    }
+    object->has_name = true;
+    return VK_SUCCESS;
+}
 
 /* Functions that make and drop objects of which nothing is asked. */
 #define PLAIN_OBJECT(name, info_type)                                                              \
@@ -78,6 +105,7 @@ static void drop(struct fake_vulkan *fake, void *object)
     }
 
 PLAIN_OBJECT(Sampler, VkSamplerCreateInfo)
+PLAIN_OBJECT(PipelineCache, VkPipelineCacheCreateInfo)
 PLAIN_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
 PLAIN_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
 
@@ -136,7 +164,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_ImageView(VkDevice device,
 {
     (void)cb;
     MAY_FAIL(device);
-    struct fake_object *object = make(fake_of(device), 0);
+    struct fake_object *object = make_shown(fake_of(device), 0);
     object->image = info->image;
     *view = (VkImageView)object;
     return VK_SUCCESS;
@@ -246,7 +274,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_image(VkDevice device, const VkImag
 {
     MAY_FAIL(device);
     (void)cb;
-    struct fake_object *object = make(fake_of(device), 0);
+    struct fake_object *object = make_shown(fake_of(device), 0);
     object->extent = info->extent;
     object->level_count = info->mipLevels;
     object->layer_count = info->arrayLayers;
@@ -301,7 +329,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_buffer(VkDevice device, const VkBuf
 {
     MAY_FAIL(device);
     (void)cb;
-    *buffer = make(fake_of(device), info->size);
+    *buffer = make_shown(fake_of(device), info->size);
     return VK_SUCCESS;
 }
 
@@ -330,7 +358,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAl
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (fake->refused_size == info->allocationSize)
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    struct fake_object *object = make(fake, info->allocationSize);
+    struct fake_object *object = make_shown(fake, info->allocationSize);
     fake->live_memory += info->allocationSize;
     *memory = (VkDeviceMemory)object;
     return VK_SUCCESS;
@@ -385,7 +413,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_semaphore(VkDevice device,
 {
     MAY_FAIL(device);
     (void)info, (void)cb;
-    *semaphore = make(fake_of(device), 0);
+    *semaphore = make_shown(fake_of(device), 0);
     return VK_SUCCESS;
 }
 
@@ -563,7 +591,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipeli
 {
     MAY_FAIL(device);
     (void)cache, (void)infos, (void)cb, (void)count;
-    pipelines[0] = make(fake_of(device), 0);
+    assert_true(cache != VK_NULL_HANDLE);
+    pipelines[0] = make_shown(fake_of(device), 0);
     return VK_SUCCESS;
 }
 
@@ -764,6 +793,7 @@ static const struct {
     ENTRY(CreateDescriptorSetLayout, create_DescriptorSetLayout),
     ENTRY(CreateImage, create_image),
     ENTRY(CreateImageView, create_ImageView),
+    ENTRY(CreatePipelineCache, create_PipelineCache),
     ENTRY(CreatePipelineLayout, create_PipelineLayout),
     ENTRY(CreateSampler, create_Sampler),
     ENTRY(CreateSemaphore, create_semaphore),
@@ -774,6 +804,7 @@ static const struct {
     ENTRY(DestroyImage, destroy_image),
     ENTRY(DestroyImageView, destroy_ImageView),
     ENTRY(DestroyPipeline, destroy_pipeline),
+    ENTRY(DestroyPipelineCache, destroy_PipelineCache),
     ENTRY(DestroyPipelineLayout, destroy_PipelineLayout),
     ENTRY(DestroySampler, destroy_Sampler),
     ENTRY(DestroySemaphore, destroy_semaphore),
@@ -786,6 +817,7 @@ static const struct {
     ENTRY(GetSemaphoreCounterValue, counter_value),
     ENTRY(MapMemory, map_memory),
     ENTRY(QueueBindSparse, bind_sparse),
+    ENTRY(SetDebugUtilsObjectNameEXT, set_name),
     ENTRY(UpdateDescriptorSets, update_sets),
     ENTRY(WaitSemaphores, wait_semaphores),
 };

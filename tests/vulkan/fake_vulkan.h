@@ -106,7 +106,9 @@ struct fake_vulkan {
     const char *missing; ///< function that neither instance nor device has; NULL: none
 
     uint64_t live_objects; ///< created and not destroyed
-    uint64_t live_memory;  ///< bytes
+    /** Buffers, images, views, memory, pipelines, semaphores without a name; and that got one. */
+    uint64_t unnamed_objects, named_count;
+    uint64_t live_memory; ///< bytes
 
     void *user;
     /** The feedback of one region, by its index in the feedback buffer. */

@@ -314,6 +314,48 @@ static SluiceVulkanContextStatistics statistics_of(SluiceVulkanContext *context)
     return statistics;
 }
 
+static void objects_go_without_names_if_the_instance_has_no_debug_utils(void **state)
+{
+    (void)state;
+    SluiceVulkanContext *context;
+    SluiceVulkanStreamer *streamer;
+    SluiceDemandLoader *loader;
+    SluiceVulkanContextCreateInfo create = start();
+    for (int i = 0; i < 2; i++) {
+        fake.missing = i ? NULL : "vkSetDebugUtilsObjectNameEXT";
+        CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+        SluiceVulkanStreamerCreateInfo info = {.context = context, .maxRegionCount = 256};
+        const SluiceDemandLoaderCreateInfo demand = {.context = context, .pageCapacity = 1u << 18};
+        fake_vulkan_fill(&info);
+        CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
+        CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
+        assert_true((fake.named_count > 0) == (i == 1));
+        assert_true((fake.unnamed_objects == 0) == (i == 1));
+        sluiceDestroyVulkanStreamer(streamer);
+        sluiceDestroyDemandLoader(loader);
+        sluiceDestroyVulkanContext(context);
+        assert_int_equal(fake.live_objects, 0);
+    }
+}
+
+/* It is the application's, and stays when the context goes. */
+static void a_given_pipeline_cache_is_used_and_kept(void **state)
+{
+    (void)state;
+    SluiceVulkanContext *context;
+    SluiceVulkanContextCreateInfo create = start();
+    create.pipelineCache = (VkPipelineCache)(void *)&fake;
+    CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+    assert_true(context->vk.pipeline_cache == create.pipelineCache);
+    assert_int_equal(fake.live_objects, 0);
+    sluiceDestroyVulkanContext(context);
+    create.pipelineCache = VK_NULL_HANDLE;
+    CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+    assert_int_equal(fake.live_objects, 1);
+    sluiceDestroyVulkanContext(context);
+    assert_int_equal(fake.live_objects, 0);
+}
+
 /* Sparse heaps and pages; 4096 x 4096 texels are 88 MiB of tiles. */
 static void two_streamers_stay_within_one_budget(void **state)
 {
@@ -357,6 +399,8 @@ static void two_streamers_stay_within_one_budget(void **state)
             run_frames(streamers[1], &times[1], 4);
             assert_true(statistics_of(context).tileMemorySize <= budget);
         }
+        assert_int_equal(fake.unnamed_objects, 0);
+        assert_true(fake.named_count > 30);
         SluiceVulkanContextStatistics full = statistics_of(context);
         assert_true(full.tileMemorySize > budget - 8 * mib);
         assert_true(full.refusedBlockCount > 0);
@@ -438,6 +482,8 @@ int main(void)
         cmocka_unit_test(answers_of_memory_callbacks_are_checked),
         cmocka_unit_test(memory_callbacks_must_be_whole),
         cmocka_unit_test(budgets_below_4_mib_are_refused),
+        cmocka_unit_test(objects_go_without_names_if_the_instance_has_no_debug_utils),
+        cmocka_unit_test(a_given_pipeline_cache_is_used_and_kept),
         cmocka_unit_test(two_streamers_stay_within_one_budget),
         cmocka_unit_test(questions_take_no_memory),
         cmocka_unit_test(creation_that_fails_leaves_no_child),
