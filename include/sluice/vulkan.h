@@ -59,6 +59,18 @@ typedef enum SluiceFeedbackEncoding {
     SLUICE_FEEDBACK_ENCODING_MASKS = 1   ///< Half a word per region: a bit per level.
 } SluiceFeedbackEncoding;
 
+/** Array of all textures in the descriptor sets of frames, for shaders that choose a texture by
+ * number. */
+typedef enum SluiceTextureArray {
+    SLUICE_TEXTURE_ARRAY_NONE = 0,
+    SLUICE_TEXTURE_ARRAY_COMBINED = 1, ///< Combined image samplers (sampler2D).
+    /**
+     * Images (texture2D), and one sampler per kind of texture. For devices with few samplers per
+     * shader stage. At most 15 kinds (SLUICE_SAMPLER_COUNT).
+     */
+    SLUICE_TEXTURE_ARRAY_SEPARATE = 2
+} SluiceTextureArray;
+
 /** Capabilities of a device, and its known quirks. */
 typedef struct SluiceVulkanDeviceCapabilities {
     bool sparse;                     ///< Sparse residency 2D images, and a queue that binds them.
@@ -199,7 +211,8 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
  *
  * Enabled in every mode if available, for shaders that serve all modes and for arrays of textures:
  * shaderSampledImageArrayDynamicIndexing, shaderSampledImageArrayNonUniformIndexing,
- * runtimeDescriptorArray.
+ * runtimeDescriptorArray; and for the samplers of textures: samplerAnisotropy,
+ * samplerMirrorClampToEdge.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown mode;
  *         SLUICE_ERROR_UNSUPPORTED if the device lacks a feature (the log names it).
@@ -330,6 +343,14 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * 4 MiB.
      */
     uint64_t minStagingSize;
+    /**
+     * Whether the descriptor sets of frames have an array of all textures. It has maxTextureCount
+     * elements; the index is SluiceVulkanTexture.tableIndex, also for layers of arrays. Requires
+     * the features shaderSampledImageArrayNonUniformIndexing and runtimeDescriptorArray, which
+     * sluiceRequireVulkanFeatures enables if available. Shaders define SLUICE_TEXTURE_ARRAY
+     * (bindings.glsl). Default: none.
+     */
+    SluiceTextureArray textureArray;
 } SluiceVulkanStreamerCreateInfo;
 
 /**
@@ -340,7 +361,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
  *         a setting together with the one that turns it off; SLUICE_ERROR_UNSUPPORTED if the device
  *         does not support the requested mode; SLUICE_ERROR_LIMIT_EXCEEDED if maxTextureCount,
  *         maxRegionCount, texturesPerFrame or feedbackReadbackSize require a storage buffer above
- *         the device's maxStorageBufferRange; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         the device's maxStorageBufferRange, or if textureArray needs more images or samplers per
+ *         shader stage than the device has; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  * Thread safety: any thread.
  */
@@ -387,6 +409,12 @@ typedef struct SluiceVulkanTextureCreateInfo {
      */
     VkSamplerAddressMode addressModeU, addressModeV;
     bool explicitAddressModes; ///< Use the address modes above even if they are 0.
+    /**
+     * Anisotropy of its sampler, at most 16. The device's maxSamplerAnisotropy is used if lower;
+     * SluiceVulkanTexture returns the value used. Above 1 requires the feature samplerAnisotropy.
+     * Default: 1, none.
+     */
+    float maxAnisotropy;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. */
@@ -405,6 +433,7 @@ typedef struct SluiceVulkanTexture {
     uint32_t arrayLayer;   ///< Layer of `image`.
     VkImageView arrayView; ///< 2D_ARRAY, all layers and levels. VK_NULL_HANDLE if not an array.
     VkSamplerAddressMode addressModeU, addressModeV; ///< Modes of its sampler.
+    float maxAnisotropy; ///< Of its sampler, 1 to 16. Pass it to the shader functions.
 } SluiceVulkanTexture;
 
 /**
@@ -447,6 +476,18 @@ SLUICE_API SluiceResult sluiceAddVulkanTextureArray(
  */
 SLUICE_API SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer,
                                                   SluiceTextureId textureId);
+
+/**
+ * Gets a sampler for a texture: trilinear, without LOD bias, all levels, with the texture's address
+ * modes and maxAnisotropy. Border: transparent black.
+ *
+ * Textures of one kind share a sampler. The streamer owns it; it lives as long as the streamer.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanSampler(SluiceVulkanStreamer *streamer,
+                                               SluiceTextureId textureId, VkSampler *pSampler);
 
 /**
  * Storage buffers for shaders. The handles never change during the streamer's life.
@@ -502,10 +543,11 @@ SLUICE_API SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streame
  * Gets the layout of the descriptor sets of frames (SluiceStreamingFrame). The streamer owns the
  * layout; it never changes.
  *
- * shaders/include/sluice/bindings.glsl declares what such a set holds: the buffers above and the
- * array of pages. Use the layout in your pipeline layouts, at the set number that your shaders
- * define as SLUICE_SET. All shader stages may read the set. In paged mode the array of pages has
- * maxPageChunkCount elements, in other modes one.
+ * shaders/include/sluice/bindings.glsl declares what such a set holds: the buffers above, the array
+ * of pages, and the array of textures if there is one (textureArray). Use the layout in your
+ * pipeline layouts, at the set number that your shaders define as SLUICE_SET. All shader stages may
+ * read the set. In paged mode the array of pages has maxPageChunkCount elements, in other modes
+ * one.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED, with a log message, if the device
  *         supports fewer samplers per shader stage than maxPageChunkCount. Frames then have no

@@ -225,7 +225,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
                                     .signalValue = launch,
                                     .tileCount = record_transfers(loader, commandBuffer)};
     pLaunch->descriptorSet = slc_descriptors_update(&loader->descriptors, &loader->vk,
-                                                    slot_of(loader, launch), &loader->pages->views);
+                                                    slot_of(loader, launch), loader->pages, NULL);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;
 }

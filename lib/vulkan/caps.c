@@ -75,14 +75,14 @@ static void take_properties(SluiceVulkanDeviceCapabilities *out,
     out->timestampPeriod = p->limits.timestampComputeAndGraphics ? p->limits.timestampPeriod : 0.0f;
 }
 
-/* Combined image samplers count as both, per stage and per pipeline layout. */
-static uint32_t max_stage_samplers(const VkPhysicalDeviceLimits *limits)
+/* Per stage and per pipeline layout. Combined image samplers count as both. */
+static void take_descriptor_limits(struct slc_caps *caps, const VkPhysicalDeviceLimits *limits)
 {
-    uint32_t samplers =
-        slc_min_u32(limits->maxPerStageDescriptorSamplers, limits->maxDescriptorSetSamplers);
-    uint32_t images = slc_min_u32(limits->maxPerStageDescriptorSampledImages,
-                                  limits->maxDescriptorSetSampledImages);
-    return slc_min_u32(samplers, images);
+    caps->max_stage_images = slc_min_u32(limits->maxPerStageDescriptorSampledImages,
+                                         limits->maxDescriptorSetSampledImages);
+    caps->max_stage_samplers =
+        slc_min_u32(caps->max_stage_images, slc_min_u32(limits->maxPerStageDescriptorSamplers,
+                                                        limits->maxDescriptorSetSamplers));
 }
 
 static uint64_t largest_local_heap(const VkPhysicalDeviceMemoryProperties *memory)
@@ -117,7 +117,7 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     out->deviceLocalMemorySize = largest_local_heap(&caps->memory);
     out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
     out->runtimeDescriptorArrays = features12.runtimeDescriptorArray;
-    caps->max_stage_samplers = max_stage_samplers(&properties.properties.limits);
+    take_descriptor_limits(caps, &properties.properties.limits);
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
     caps->max_image_array_layers = out->maxImageArrayLayers;
     caps->max_storage_buffer_range = out->maxStorageBufferRange;
@@ -214,6 +214,18 @@ static void require_arrays(const struct slc_caps *caps, VkPhysicalDeviceFeatures
         vulkan12->runtimeDescriptorArray = VK_TRUE;
 }
 
+/* Of textures (sluiceGetVulkanSampler). */
+static void require_samplers(const VkPhysicalDeviceFeatures *there,
+                             const VkPhysicalDeviceVulkan12Features *there12,
+                             VkPhysicalDeviceFeatures *features,
+                             VkPhysicalDeviceVulkan12Features *vulkan12)
+{
+    if (there->samplerAnisotropy)
+        features->samplerAnisotropy = VK_TRUE;
+    if (there12->samplerMirrorClampToEdge)
+        vulkan12->samplerMirrorClampToEdge = VK_TRUE;
+}
+
 SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice physicalDevice,
                                          PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                          SluiceResidencyMode mode, const SluiceLogCallback *pLog,
@@ -232,7 +244,10 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
     mode = slc_choose_mode(&caps, mode, 0);
-    VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    VkPhysicalDeviceVulkan12Features there12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 there = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                       .pNext = &there12};
     vk.GetPhysicalDeviceFeatures2(physicalDevice, &there);
     const char *missing = slc_missing_for_mode(&caps, mode);
     if (!missing && !there.features.fragmentStoresAndAtomics)
@@ -246,6 +261,7 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
         pFeatures->sparseResidencyImage2D = VK_TRUE;
     }
     require_arrays(&caps, pFeatures, pVulkan12);
+    require_samplers(&there.features, &there12, pFeatures, pVulkan12);
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     if (there.features.textureCompressionBC)
         pFeatures->textureCompressionBC = VK_TRUE;

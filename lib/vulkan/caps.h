@@ -9,8 +9,8 @@ struct slc_caps {
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t max_storage_buffer_range; ///< bytes
     uint32_t max_image_array_layers;
-    uint32_t max_stage_samplers; ///< combined image samplers that one shader stage may use
-    bool array_dynamic_indexing; ///< shaderSampledImageArrayDynamicIndexing
+    uint32_t max_stage_samplers, max_stage_images; ///< per shader stage; samplers: also combined
+    bool array_dynamic_indexing;                   ///< shaderSampledImageArrayDynamicIndexing
     bool timeline_semaphore;
 };
 

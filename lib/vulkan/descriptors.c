@@ -4,8 +4,9 @@
 #include "base/log.h"
 
 #include <assert.h>
+#include <sluice/shared/bindings.h>
 
-#define MAX_BINDINGS (SLC_DESCRIPTOR_BUFFERS + 1)
+#define MAX_BINDINGS (SLC_DESCRIPTOR_BUFFERS + 1 + SLC_TEXTURE_ARRAY_BINDINGS)
 #define WRITES_AT_ONCE 64u
 
 /* Any stage may use them: nobody knows here which one samples. */
@@ -77,6 +78,26 @@ static SluiceResult allocate_set(struct slc_descriptors *d, const struct slc_vk 
     return SLUICE_SUCCESS;
 }
 
+/* Combined image samplers need a sampler each; separate images only those of the array of samplers.
+ */
+static SluiceResult check_limits(const struct slc_vk *vk, const struct slc_caps *caps,
+                                 const struct slc_descriptors_create_info *info)
+{
+    const struct slc_texture_array *textures = info->textures;
+    bool separate = textures->kind == SLUICE_TEXTURE_ARRAY_SEPARATE;
+    uint64_t images = (uint64_t)info->page_count + textures->count;
+    uint64_t samplers = separate ? (uint64_t)info->page_count + SLUICE_SAMPLER_COUNT : images;
+    if (images <= caps->max_stage_images && samplers <= caps->max_stage_samplers)
+        return SLUICE_SUCCESS;
+    slc_log(&vk->log, SLUICE_LOG_ERROR,
+            "textureArray with maxTextureCount %u and %u pages needs %llu images and %llu samplers "
+            "per shader stage; %s has %u and %u",
+            textures->count, info->page_count, (unsigned long long)images,
+            (unsigned long long)samplers, caps->public.deviceName, caps->max_stage_images,
+            caps->max_stage_samplers);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
+}
+
 SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                   const struct slc_caps *caps,
                                   const struct slc_descriptors_create_info *info)
@@ -85,8 +106,13 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
     assert(info->buffer_count <= SLC_DESCRIPTOR_BUFFERS && info->set_count <= SLC_DESCRIPTOR_SETS);
     *d = (struct slc_descriptors){.page_binding = info->buffer_count,
                                   .page_count = info->page_count};
-    if (info->page_count > caps->max_stage_samplers)
+    if (info->textures && info->textures->count) {
+        SluiceResult result = check_limits(vk, caps, info);
+        if (result != SLUICE_SUCCESS)
+            return result;
+    } else if (info->page_count > caps->max_stage_samplers) {
         return SLUICE_SUCCESS;
+    }
     VkDescriptorSetLayoutBinding bindings[MAX_BINDINGS];
     uint32_t count = 0;
     for (; count < info->buffer_count; count++)
@@ -94,6 +120,8 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
     bindings[count] =
         binding_of(count, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, info->page_count);
     count++;
+    if (info->textures)
+        count += slc_texture_array_bindings(info->textures, count, &bindings[count]);
     SluiceResult result = create_layout(d, vk, bindings, count);
     if (result == SLUICE_SUCCESS)
         result = create_pool(d, vk, bindings, count, info->set_count);
@@ -131,15 +159,31 @@ static void write_pages(const struct slc_descriptors *d, const struct slc_vk *vk
     }
 }
 
+static void update_pages(const struct slc_descriptors *d, const struct slc_vk *vk,
+                         struct slc_descriptor_set *set, struct slc_page_pool *pages)
+{
+    pthread_mutex_lock(&pages->mutex); /* other users of the pool may be on other threads */
+    if (set->page_generation != pages->views.generation) {
+        assert(d->page_count <= pages->views.count);
+        write_pages(d, vk, set->set, &pages->views);
+        set->page_generation = pages->views.generation;
+    }
+    pthread_mutex_unlock(&pages->mutex);
+}
+
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
-                                       uint32_t index, const struct slc_page_views *pages)
+                                       uint32_t index, struct slc_page_pool *pages,
+                                       const struct slc_texture_array *textures)
 {
     struct slc_descriptor_set *set = &descriptors->sets[index];
-    if (!set->set || set->page_generation == pages->generation)
-        return set->set;
-    assert(descriptors->page_count <= pages->count);
-    write_pages(descriptors, vk, set->set, pages);
-    set->page_generation = pages->generation;
+    if (!set->set)
+        return VK_NULL_HANDLE;
+    update_pages(descriptors, vk, set, pages);
+    if (textures && set->texture_generation != textures->generation) {
+        slc_texture_array_write(textures, vk, set->set, descriptors->page_binding + 1,
+                                set->texture_generation);
+        set->texture_generation = textures->generation;
+    }
     return set->set;
 }
 

@@ -2,14 +2,15 @@
  * Descriptor sets that the application's shaders bind: one per frame or launch in flight, written
  * as that begins, when no earlier one uses the set any more. So no binding flags are required.
  *
- * Bindings in this order: storage buffers, then the array of pages. shared/bindings.h has the
- * numbers.
+ * Bindings in this order: storage buffers, the array of pages, the array of textures if there is
+ * one. shared/bindings.h has the numbers.
  */
 #ifndef SLC_VULKAN_DESCRIPTORS_H
 #define SLC_VULKAN_DESCRIPTORS_H
 
 #include "vulkan/caps.h"
-#include "vulkan/page_views.h"
+#include "vulkan/page_pool.h"
+#include "vulkan/texture_array.h"
 
 #define SLC_DESCRIPTOR_BUFFERS 8u
 #define SLC_DESCRIPTOR_SETS 16u
@@ -17,13 +18,14 @@
 struct slc_descriptors_create_info {
     VkBuffer buffers[SLC_DESCRIPTOR_BUFFERS]; ///< bindings 0 to buffer_count - 1
     uint32_t buffer_count;
-    uint32_t page_count; ///< elements of the array of pages
-    uint32_t set_count;  ///< at most SLC_DESCRIPTOR_SETS
+    uint32_t page_count;                      ///< elements of the array of pages
+    const struct slc_texture_array *textures; ///< NULL: none
+    uint32_t set_count;                       ///< at most SLC_DESCRIPTOR_SETS
 };
 
 struct slc_descriptor_set {
     VkDescriptorSet set;
-    uint64_t page_generation; ///< of the pages that it holds; 0: none yet
+    uint64_t page_generation, texture_generation; ///< of what it holds; 0: nothing yet
 };
 
 /** A zeroed one has no layout and no sets, and is finished with nothing to do. */
@@ -38,16 +40,19 @@ struct slc_descriptors {
  * Leaves the sets out if the device has fewer samplers per shader stage than `page_count`: layout
  * and sets are then VK_NULL_HANDLE. After an error it can be finished.
  *
- * Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Errors: LIMIT_EXCEEDED, with a log message, if pages and textures are too many for a stage;
+ *         OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                   const struct slc_caps *caps,
                                   const struct slc_descriptors_create_info *info);
 void slc_descriptors_finish(struct slc_descriptors *descriptors, const struct slc_vk *vk);
 
-/** Makes set `index` current, which no commands in progress use, and returns it. */
+/** Makes set `index` current, which no commands in progress use, and returns it. `textures` as
+ * given at creation. */
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
-                                       uint32_t index, const struct slc_page_views *pages);
+                                       uint32_t index, struct slc_page_pool *pages,
+                                       const struct slc_texture_array *textures);
 
 /** The layout for the application. Errors: UNSUPPORTED, with a log message, if there are no sets.
  */

@@ -220,7 +220,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         return result;
     }
     pFrame->descriptorSet =
-        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, &s->pages->views);
+        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages, &s->texture_array);
     return SLUICE_SUCCESS;
 }
 

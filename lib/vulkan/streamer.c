@@ -48,6 +48,7 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
         {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
         {"residencyFadeTicks", info->residencyFadeTicks, 0, SLC_MAX_FADE_TIME},
         {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
+        {"textureArray", (uint32_t)info->textureArray, 0, SLUICE_TEXTURE_ARRAY_SEPARATE},
     };
     return slc_check_limits(log, limits, sizeof limits / sizeof limits[0]);
 }
@@ -262,6 +263,7 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
     bool paged = s->info.residencyMode == SLUICE_RESIDENCY_MODE_PAGED;
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_BINDING_BUFFER_COUNT,
                                                .page_count = paged ? s->pages->views.count : 1,
+                                               .textures = &s->texture_array,
                                                .set_count = s->info.framesInFlight};
     SluiceVulkanBuffers buffers;
     fill_buffers(s, &buffers);
@@ -270,7 +272,12 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
     info.buffers[SLUICE_BINDING_FEEDBACK] = buffers.feedback;
     info.buffers[SLUICE_BINDING_FEEDBACK_TURNS] = buffers.feedbackTurns;
     info.buffers[SLUICE_BINDING_PAGE_TABLE] = buffers.pageTable;
-    return slc_descriptors_init(&s->descriptors, &s->vk, &s->caps, &info);
+    SluiceResult result = slc_texture_array_init(
+        &s->texture_array, &s->vk, &s->cb, s->info.textureArray, s->info.maxTextureCount,
+        s->pages->views.image.image, s->pages->views.sampler, &s->samplers);
+    if (result == SLUICE_SUCCESS)
+        result = slc_descriptors_init(&s->descriptors, &s->vk, &s->caps, &info);
+    return result;
 }
 
 static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
@@ -389,6 +396,8 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
     s->manager_locked = false;
     sluiceDestroyStreamedTextureManager(s->manager); /* releases its heaps */
     slc_descriptors_finish(&s->descriptors, &s->vk);
+    slc_texture_array_finish(&s->texture_array, &s->vk, &s->cb);
+    slc_samplers_finish(&s->samplers, &s->vk, &s->cb);
     slc_resolve_finish(&s->resolve, &s->vk);
     slc_readback_ring_finish(&s->readback, &s->vk, &s->cb);
     for (uint32_t i = 0; s->min_mip_staging && i < s->info.framesInFlight; i++)

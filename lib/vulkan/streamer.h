@@ -59,6 +59,8 @@ struct slc_texture {
     VkImageView array_view; ///< owned by layer 0, of all layers
     SluiceStreamedTextureLayout layout;
     VkSamplerAddressMode address_modes[2];
+    float max_anisotropy; ///< of its sampler
+    uint32_t sampler;     ///< index in samplers, if there is a texture array
     uint32_t region_first, region_count;
     struct slc_fade_rect fade;
     uint16_t whole_shown; ///< the largest texel of its MinMip map, as the texture table has it
@@ -169,6 +171,8 @@ struct SluiceVulkanStreamer {
     SluiceTile *tiles;      ///< owned; tilesPerFrame
     uint32_t *tile_indices; ///< owned; tilesPerFrame
 
+    struct slc_samplers samplers;
+    struct slc_texture_array texture_array;
     struct slc_descriptors descriptors; ///< a set per frame in flight
     struct slc_buffer texture_table, feedback, min_mip;
     struct slc_buffer *min_mip_staging; ///< owned; per frame in flight, as large as one needed it

@@ -12,6 +12,9 @@
 
 #include <assert.h>
 #include <math.h>
+#include <sluice/shared/bindings.h>
+
+#define MAX_ANISOTROPY 16.0f /* of sample.glsl */
 
 /* The first of `count` free ones side by side. */
 static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
@@ -25,6 +28,11 @@ static uint32_t find_free(const SluiceVulkanStreamer *s, uint32_t count)
 static SluiceResult check_create_info(const SluiceVulkanStreamer *s,
                                       const SluiceVulkanTextureCreateInfo *info)
 {
+    if (!(info->maxAnisotropy >= 0.0f && info->maxAnisotropy <= MAX_ANISOTROPY)) {
+        slc_log(&s->vk.log, SLUICE_LOG_ERROR, "maxAnisotropy is %g; it must be 0 to %g",
+                (double)info->maxAnisotropy, (double)MAX_ANISOTROPY);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     if (info->addressModeU > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE ||
         info->addressModeV > VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE)
         return SLUICE_ERROR_INVALID_ARGUMENT;
@@ -163,6 +171,29 @@ static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
     return result;
 }
 
+static float choose_anisotropy(const SluiceVulkanStreamer *s, float wanted)
+{
+    const SluiceVulkanDeviceCapabilities *caps = &s->caps.public;
+    float most = caps->samplerAnisotropy ? caps->maxSamplerAnisotropy : 1.0f;
+    return fmaxf(fminf(wanted, most), 1.0f);
+}
+
+/* Known by its index before the texture is added: an array of textures shows both at once. */
+static SluiceResult find_sampler(SluiceVulkanStreamer *s, const VkSamplerAddressMode modes[2],
+                                 float max_anisotropy, uint32_t *index)
+{
+    SluiceResult result =
+        slc_samplers_get(&s->samplers, &s->vk, &s->cb, modes, max_anisotropy, index);
+    if (result != SLUICE_SUCCESS || s->info.textureArray != SLUICE_TEXTURE_ARRAY_SEPARATE ||
+        *index < SLUICE_SAMPLER_COUNT)
+        return result;
+    slc_log(
+        &s->vk.log, SLUICE_LOG_ERROR,
+        "SLUICE_TEXTURE_ARRAY_SEPARATE has samplers of %d kinds; this texture needs another one",
+        SLUICE_SAMPLER_COUNT);
+    return SLUICE_ERROR_LIMIT_EXCEEDED;
+}
+
 static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreateInfo *info,
                          const SluiceImageInfo *image, VkSamplerAddressMode modes[2])
 {
@@ -189,9 +220,15 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
 {
     struct slc_residency_image residency_image;
     VkSamplerAddressMode modes[2];
+    uint32_t sampler = 0;
+    const float max_anisotropy = choose_anisotropy(s, info->maxAnisotropy);
+    SluiceResult result = SLUICE_SUCCESS;
     choose_modes(s, info, image, modes);
-    SluiceResult result =
-        s->residency->interface->create_image(s->residency, first, image, &residency_image);
+    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
+        result = find_sampler(s, modes, max_anisotropy, &sampler);
+    if (result == SLUICE_SUCCESS)
+        result =
+            s->residency->interface->create_image(s->residency, first, image, &residency_image);
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < count; i++)
@@ -205,6 +242,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                                  .layer = i,
                                  .layer_count = count,
                                  .added_frame = s->frame,
+                                 .max_anisotropy = max_anisotropy,
+                                 .sampler = sampler,
                                  .address_modes = {modes[0], modes[1]}};
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = build(s, &s->textures[first + i]);
@@ -247,7 +286,11 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
         .arrayView = s->textures[texture->first].array_view,
         .addressModeU = texture->address_modes[0],
         .addressModeV = texture->address_modes[1],
+        .maxAnisotropy = texture->max_anisotropy,
     };
+    if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
+        slc_texture_array_set(&s->texture_array, index, texture->view,
+                              s->samplers.list[texture->sampler].sampler);
 }
 
 SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
@@ -318,6 +361,7 @@ static SluiceResult remove_layer(SluiceVulkanStreamer *s, uint32_t index)
     texture->state = SLC_TEXTURE_REMOVED;
     texture->removed_frame = s->frame;
     s->removed_count++;
+    slc_texture_array_clear(&s->texture_array, index);
     slc_loads_drop(s, index);
     remove_primary(s, index);
     free_followers(s, id);
@@ -342,6 +386,25 @@ SluiceResult sluiceRemoveVulkanTexture(SluiceVulkanStreamer *streamer, SluiceTex
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = remove_layer(s, first + i);
     s->manager_locked = true;
+    return result;
+}
+
+SluiceResult sluiceGetVulkanSampler(SluiceVulkanStreamer *streamer, SluiceTextureId textureId,
+                                    VkSampler *pSampler)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !pSampler)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pSampler = VK_NULL_HANDLE;
+    SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
+    SluiceResult result = sluiceGetTextureLayout(s->manager, textureId, &layout);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    const struct slc_texture *texture = slc_streamer_texture(s, textureId);
+    uint32_t index;
+    result = find_sampler(s, texture->address_modes, texture->max_anisotropy, &index);
+    if (result == SLUICE_SUCCESS)
+        *pSampler = s->samplers.list[index].sampler;
     return result;
 }
 
@@ -441,6 +504,7 @@ static struct SluiceTextureEntry table_entry(const SluiceVulkanStreamer *s, uint
         .addressModeV = (uint)texture->address_modes[1],
         .pageTableOffset = page_table_offset(s, index),
         .tileShift = slc_log2_u32(desc->tileWidth) | slc_log2_u32(desc->tileHeight) << 8,
+        .samplerIndex = texture->sampler,
         .quickReach2 = quick_reach2(desc),
         .quickPacked2 = quick_packed2(desc),
         .flags = (texture->image.uneven ? SLUICE_TEXTURE_FLAG_UNEVEN : 0u) |

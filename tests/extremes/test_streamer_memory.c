@@ -65,6 +65,12 @@ static SluiceResult add_follower(struct gallery *gallery)
     return gallery_add(gallery, GALLERY_TEXTURES - 1);
 }
 
+static SluiceResult get_sampler(struct gallery *gallery)
+{
+    VkSampler sampler;
+    return sluiceGetVulkanSampler(gallery->streamer, gallery->textures[0].textureId, &sampler);
+}
+
 static void creating_and_adding_survive_every_refused_allocation(void **state)
 {
     (void)state;
@@ -76,6 +82,8 @@ static void creating_and_adding_survive_every_refused_allocation(void **state)
         uint64_t added = press(add_first, i % 2);
         added += press(add_follower, i % 2);
         uint64_t array = press(gallery_add_array, i % 2);
+        assert_int_equal(press(get_sampler, i % 2), 1);
+        assert_int_equal(press(get_sampler, i % 2), 0); /* it is there now */
         assert_true(created > 20 && added > 0 && array > 0);
         refusals += created + added + array;
         for (uint32_t frame = 0; frame < FRAMES; frame++) /* nothing is missing after all that */

@@ -22,6 +22,7 @@ sluiceWaitVulkanStreamerIdle(f->streamer)
 sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->out.texture)
 sluiceAddVulkanTextureArray(f->streamer, &f->texture_info, 1, &f->out.texture)
 sluiceRemoveVulkanTexture(f->streamer, f->texture.textureId)
+sluiceGetVulkanSampler(f->streamer, f->texture.textureId, &f->out.sampler_handle)
 sluiceGetVulkanBuffers(f->streamer, &f->out.buffers)
 sluiceGetVulkanPages(f->streamer, &f->out.pages)
 sluiceGetVulkanDescriptorSetLayout(f->streamer, &f->out.set_layout)
@@ -98,6 +99,7 @@ struct fixture {
         SluiceVulkanBuffers buffers;
         SluiceVulkanPages pages;
         VkDescriptorSetLayout set_layout;
+        VkSampler sampler_handle;
         SluiceStreamingFrame frame;
         SluiceVulkanStreamerStatistics statistics;
         SluiceTileLoaderStatistics reads;

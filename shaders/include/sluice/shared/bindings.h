@@ -16,6 +16,10 @@
 #define SLUICE_BINDING_TEXTURES 6 /* combined image samplers, or images */
 #define SLUICE_BINDING_SAMPLERS 7 /* of images */
 
+/* SLUICE_TEXTURE_ARRAY, as SluiceTextureArray */
+#define SLUICE_TEXTURES_COMBINED 1
+#define SLUICE_TEXTURES_SEPARATE 2
+
 /* Demand loading: SluiceDemandLaunch.descriptorSet */
 #define SLUICE_DEMAND_BINDING_TEXTURES 0
 #define SLUICE_DEMAND_BINDING_LEVELS 1

@@ -92,7 +92,7 @@ struct SluiceTextureEntry {
     float quickReach2; /* samples of a smaller sum of squared derivatives touch regions around alone
                         */
     float quickPacked2; /* samples of squared derivatives from there on touch packed levels alone */
-    uint reserved;
+    uint samplerIndex;  /* in the array of samplers, if there is one (bindings.glsl) */
 };
 SLUICE_SHARED_SIZE(struct SluiceTextureEntry, 96)
 

@@ -1,0 +1,28 @@
+/** Samplers for streamed textures: one for each kind that was asked for. */
+#ifndef SLC_VULKAN_SAMPLERS_H
+#define SLC_VULKAN_SAMPLERS_H
+
+#include "vulkan/dispatch.h"
+
+struct slc_sampler {
+    VkSamplerAddressMode modes[2];
+    float max_anisotropy; ///< 1: none
+    VkSampler sampler;
+};
+
+/** A zeroed one has no samplers yet. */
+struct slc_samplers {
+    struct slc_sampler *list; ///< owned; `count`
+    uint32_t count, capacity;
+};
+
+/** Finds or makes one. `*index` never changes. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY,
+ *  VULKAN. */
+SluiceResult slc_samplers_get(struct slc_samplers *samplers, const struct slc_vk *vk,
+                              const SluiceAllocationCallbacks *cb,
+                              const VkSamplerAddressMode modes[2], float max_anisotropy,
+                              uint32_t *index);
+void slc_samplers_finish(struct slc_samplers *samplers, const struct slc_vk *vk,
+                         const SluiceAllocationCallbacks *cb);
+
+#endif /* SLC_VULKAN_SAMPLERS_H */
