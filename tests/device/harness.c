@@ -427,6 +427,7 @@ static void abandon_frame(struct harness *h, SluiceVulkanStreamer *streamer,
     SluiceStreamingFrame frame;
     uint32_t length = h->abandoned_count % 3;
     CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, h->time, &frame));
+    h->set = frame.descriptorSet;
     if (record && length > 0)
         record(user, commands);
     if (length > 1)
@@ -449,6 +450,7 @@ void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
     while (harness_abandons(h))
         abandon_frame(h, streamer, commands, record, user);
     CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, h->time, &frame));
+    h->set = frame.descriptorSet;
     if (record)
         record(user, commands);
     CHECK_OK(sluiceEndStreamingFrame(streamer, commands));

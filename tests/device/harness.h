@@ -71,6 +71,7 @@ struct harness {
     VkCommandPool pool;
     VkCommandBuffer commands[HARNESS_FRAMES];
     uint32_t frame_count;
+    VkDescriptorSet set;                       ///< of the frame that is recorded
     SluiceStreamingFrame last[HARNESS_FRAMES]; ///< that used each command buffer
     uint64_t time;                             ///< of the last frame; one more each frame
     uint32_t log_count[3];                     ///< messages of the library by severity

@@ -5,15 +5,23 @@
  *     #define SLUICE_SET 0                   // set number; default 0
  *     #define SLUICE_PAGED true              // as in buffers.glsl; leave it out: never paged mode
  *     #define SLUICE_FEEDBACK_IN_TURNS       // for feedbackInTurns; default: every texture
+ *     #define SLUICE_TEXTURE_ARRAY SLUICE_TEXTURES_COMBINED  // as the streamer's textureArray; default: none
  *     #include "sluice/bindings.glsl"
  *     #include "sluice/sample.glsl"
  *     #include "sluice/feedback.glsl"
  *
+ * With SLUICE_TEXTURE_ARRAY all textures of the streamer are in the set, at their tableIndex:
+ *
+ *     vec4 color = sluiceSample(tableIndex, tableIndex, uv, 0.0, 1.0, missing);
+ *
+ * tableIndex may differ between invocations. SLUICE_TEXTURES_SEPARATE has images and samplers.
+ *
  * The pipeline layout has the set layout of sluiceGetVulkanDescriptorSetLayout at that number.
  *
  * Requires the device features runtimeDescriptorArray and
- * shaderSampledImageArrayNonUniformIndexing with SLUICE_PAGED. Without them define SLUICE_PAGE_LOOP
- * as the number of pages: maxPageChunkCount in paged mode, 1 in other modes.
+ * shaderSampledImageArrayNonUniformIndexing with SLUICE_PAGED and with SLUICE_TEXTURE_ARRAY. Without
+ * them define SLUICE_PAGE_LOOP as the number of pages: maxPageChunkCount in paged mode, 1 in other
+ * modes. There is no array of textures then.
  */
 #ifndef SLUICE_BINDINGS_GLSL
 #define SLUICE_BINDINGS_GLSL
@@ -69,6 +77,19 @@ layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray 
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[];
 #define SLUICE_PAGE_TEXTURE(i) sluicePages[nonuniformEXT(i)]
 #endif
+#endif
+#endif
+
+#ifdef SLUICE_TEXTURE_ARRAY
+#if SLUICE_TEXTURE_ARRAY == SLUICE_TEXTURES_SEPARATE
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform texture2D sluiceTextureImages[];
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_SAMPLERS) uniform sampler sluiceSamplers[SLUICE_SAMPLER_COUNT];
+#define SLUICE_TEXTURE(i)                                                                         \
+    nonuniformEXT(sampler2D(sluiceTextureImages[nonuniformEXT(i)],                                 \
+                            sluiceSamplers[nonuniformEXT(SLUICE_TEXTURE_ENTRY(i).samplerIndex)]))
+#else
+layout(set = SLUICE_SET, binding = SLUICE_BINDING_TEXTURES) uniform sampler2D sluiceTextures[];
+#define SLUICE_TEXTURE(i) sluiceTextures[nonuniformEXT(i)]
 #endif
 #endif
 

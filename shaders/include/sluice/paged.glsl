@@ -7,6 +7,7 @@
  * width is correct. Packed levels are sampled from the texture's own image, with its sampler.
  *
  * Only sample.glsl and residency.glsl include this file, if SLUICE_PAGED is defined (buffers.glsl).
+ * sample_textures.glsl has the functions that take a texture.
  */
 #ifndef SLUICE_PAGED_GLSL
 #define SLUICE_PAGED_GLSL
@@ -103,14 +104,6 @@ vec4 sluiceSamplePages(SluiceTextureEntry entry, uint level, vec2 uv)
     return color;
 }
 
-/** Returns a bilinear sample of any level. `tail` has the packed levels. */
-vec4 sluiceSampleLevel(sampler2D tail, SluiceTextureEntry entry, uint level, vec2 uv)
-{
-    if (level >= entry.regularMipCount)
-        return textureLod(tail, uv, float(level - entry.regularMipCount));
-    return sluiceSamplePages(entry, level, uv);
-}
-
 /**
  * Returns the scale of derivatives for the packed levels' image, whose sampler uses its own size.
  */
@@ -118,12 +111,6 @@ vec2 sluiceTailScale(SluiceTextureEntry entry)
 {
     return vec2(entry.width, entry.height) / (vec2(sluiceLevelSize(entry, entry.regularMipCount)) *
                                               exp2(float(entry.regularMipCount)));
-}
-
-vec4 sluiceSampleTail(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy)
-{
-    vec2 scale = sluiceTailScale(entry);
-    return textureGrad(tail, uv, dx * scale, dy * scale);
 }
 
 float sluiceClampPagedLod(SluiceTextureEntry entry, float lod)
@@ -149,29 +136,6 @@ vec4 sluiceMixLevels(SluicePagedTaps taps, vec4 fine, vec4 coarse)
     if (taps.fraction >= 1.0)
         return coarse;
     return taps.fraction > 0.0 ? mix(fine, coarse, taps.fraction) : fine;
-}
-
-/**
- * Samples like a trilinear or anisotropic sampler at `lod`. `dx` and `dy` include all LOD bias.
- */
-vec4 sluiceSamplePaged(sampler2D tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
-                       float lod, float maxAnisotropy)
-{
-    lod = sluiceClampPagedLod(entry, lod);
-    if (lod >= float(entry.regularMipCount))
-        return sluiceSampleTail(tail, entry, uv, dx, dy);
-    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < taps.count; i++) {
-        vec2 at = sluicePagedTap(taps, uv, i);
-        vec4 fine = vec4(0.0), coarse = vec4(0.0);
-        if (taps.fraction < 1.0)
-            fine = sluiceSampleLevel(tail, entry, taps.fine, at);
-        if (taps.fraction > 0.0)
-            coarse = sluiceSampleLevel(tail, entry, taps.coarse, at);
-        sum += sluiceMixLevels(taps, fine, coarse);
-    }
-    return sum / float(taps.count);
 }
 
 /** Returns 1 if a texel of a bilinear sample has no page, else 0. */

@@ -5,6 +5,15 @@
  * The sampler must have no LOD bias, minLod 0, maxLod VK_LOD_CLAMP_NONE, and the address modes of
  * SluiceVulkanTexture.
  *
+ * Every function takes the texture as its first argument: a sampler2D; or a number, if SLUICE_TEXTURE
+ * is defined. Then the texture is SLUICE_TEXTURE(number), and the number need not be uniform:
+ *
+ *     #define SLUICE_TEXTURE(i) textures[nonuniformEXT(i)]
+ *     #define SLUICE_TEXTURE(i) nonuniformEXT(sampler2D(images[nonuniformEXT(i)], samplers[0]))
+ *
+ * The outer nonuniformEXT() is required: without it compilers do not mark the sampler2D as
+ * non-uniform. bindings.glsl defines SLUICE_TEXTURE for the array of textures of a streamer.
+ *
  * In paged mode the sampler sees only the packed levels; paged.glsl samples the others. In other
  * modes a sample that needs no clamping uses the texture like one that is not streamed, so the
  * settled picture equals that of a fully resident texture.
@@ -260,9 +269,8 @@ bool sluiceIsSurelyThere(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBi
 /**
  * Determines what a sample may touch. `dx` and `dy` are the derivatives of `uv` per pixel.
  *
- * Use it where sluiceSampleGrad cannot be called, for instance with a non-uniform index into an
- * array of textures: then call sluiceTextureGrad(tex[i], s), or sluiceSamplePaged in paged mode. If
- * s.level is SLUICE_MIP_UNTOUCHED, do not sample.
+ * Use it where sluiceSampleGrad cannot be called: then call sluiceTextureGrad, or sluiceSamplePaged in
+ * paged mode. If s.level is SLUICE_MIP_UNTOUCHED, do not sample.
  */
 SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
                                      float maxAnisotropy)
@@ -340,81 +348,11 @@ SluiceSampling sluiceResolveSampling(uint tableIndex, vec2 uv, vec2 dx, vec2 dy,
 }
 
 /**
- * Samples after sluiceResolveSampling. For sparse and dense mode. s.level must not be
- * SLUICE_MIP_UNTOUCHED.
- */
-vec4 sluiceTextureGrad(sampler2D tex, SluiceSampling s)
-{
-#ifdef SLUICE_MIN_LOD
-    return textureGradClampARB(tex, s.uv, s.dx, s.dy, s.minLod);
-#else
-    return textureGrad(tex, s.uv, s.dx, s.dy);
-#endif
-}
-
-/**
  * Returns by how many levels a sample is too coarse. SLUICE_MIP_UNTOUCHED if nothing is resident.
  */
 uint sluiceMissingLevels(SluiceSampling s)
 {
     return s.missing;
-}
-
-#ifdef SLUICE_PAGED
-/** Samples in paged mode if everything is resident. */
-vec4 sluiceSampleAsPages(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                         float maxAnisotropy)
-{
-    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-    vec2 size = vec2(entry.sizeX, entry.sizeY);
-    float scale = exp2(sluiceClampLodBias(lodBias));
-    return sluiceSamplePaged(tex, entry, uv, dx * scale, dy * scale,
-                             sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy),
-                             maxAnisotropy);
-}
-#endif
-
-/**
- * Samples with explicit derivatives of `uv` per pixel. Any stage.
- *
- * `missingLevels` is the result of sluiceMissingLevels: 0 when the texture is as sharp as wanted.
- */
-vec4 sluiceSampleGrad(sampler2D tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
-                      float maxAnisotropy, out uint missingLevels)
-{
-    if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
-        float scale = exp2(sluiceClampLodBias(lodBias));
-        missingLevels = 0u;
-#ifdef SLUICE_PAGED
-        if (SLUICE_PAGED)
-            return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-#endif
-        return textureGrad(tex, uv, dx * scale, dy * scale);
-    }
-    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-    missingLevels = sluiceMissingLevels(s);
-    if (s.level == SLUICE_MIP_UNTOUCHED)
-        return SLUICE_FALLBACK_COLOR;
-#ifdef SLUICE_PAGED
-    if (SLUICE_PAGED)
-        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
-                                 maxAnisotropy);
-#endif
-    return sluiceTextureGrad(tex, s);
-}
-
-/** Fetches one texel. It must be resident: see sluiceResolveSampling. */
-vec4 sluiceTexelFetch(sampler2D tex, uint tableIndex, ivec2 texel, uint level)
-{
-#ifdef SLUICE_PAGED
-    if (SLUICE_PAGED) {
-        SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
-        if (level < entry.regularMipCount)
-            return sluiceFetchPaged(entry, level, texel);
-        return texelFetch(tex, texel, int(level - entry.regularMipCount));
-    }
-#endif
-    return texelFetch(tex, texel, int(level));
 }
 
 #ifdef GL_FRAGMENT_SHADER
@@ -439,51 +377,23 @@ bool sluiceAnyInQuad(bool value)
     return any > 0.0;
 }
 
-/**
- * Samples like sluiceSampleGrad with the fragment's own derivatives. Call in control flow that is
- * uniform over the quad.
- */
-vec4 sluiceSample(sampler2D tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
-                  out uint missingLevels)
+/** Returns true in all four pixels of a quad if `number` differs among them. Numbers up to 2^24. */
+bool sluiceDiffersInQuad(uint number)
 {
-    missingLevels = 0u;
-    if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
-        bool finite = sluiceIsFinite(uv);
-        vec4 color = texture(tex, finite ? uv : vec2(0.0), lodBias);
-        return finite ? color : textureLod(tex, vec2(0.0), SLUICE_LOD_LIMIT);
-    }
-    vec2 dx = dFdx(uv);
-    vec2 dy = dFdy(uv);
-    bool sure = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
-                sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-#ifdef SLUICE_PAGED
-    if (SLUICE_PAGED && sure)
-        return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-#endif
-    /* The quad decides as one, because implicit derivatives need all of it. */
-    if (!sluiceAnyInQuad(!sure))
-        return texture(tex, uv, lodBias);
-    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
-    missingLevels = sluiceMissingLevels(s);
-#ifdef SLUICE_PAGED
-    if (SLUICE_PAGED) {
-        if (s.level == SLUICE_MIP_UNTOUCHED)
-            return SLUICE_FALLBACK_COLOR;
-        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
-                                 maxAnisotropy);
-    }
-#endif
-    if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
-        return texture(tex, uv, lodBias);
-    if (s.level == SLUICE_MIP_UNTOUCHED)
-        return SLUICE_FALLBACK_COLOR;
-#ifndef SLUICE_MIN_LOD
-    if (!(maxAnisotropy > 1.0)) /* derivatives need not be kept until here */
-        return textureLod(tex, s.uv, s.lod);
-#endif
-    return sluiceTextureGrad(tex, s);
+    return sluiceAnyInQuad(abs(dFdxFine(float(number))) + abs(dFdyFine(float(number))) > 0.0);
 }
 
+#endif
+
+/* The functions that take a texture, in both forms. */
+#define SLUICE_FORM sampler2D
+#define SLUICE_FORM_TEXTURE(tex) tex
+#include "sample_textures.glsl"
+#ifdef SLUICE_TEXTURE
+#define SLUICE_FORM uint
+#define SLUICE_FORM_TEXTURE(tex) SLUICE_TEXTURE(tex)
+#define SLUICE_FORM_IS_NUMBER
+#include "sample_textures.glsl"
 #endif
 
 #endif

@@ -1,0 +1,176 @@
+/*
+ * The functions of sample.glsl and paged.glsl that take a texture. Only sample.glsl includes this
+ * file: once for a sampler2D, and once for a number, the argument of SLUICE_TEXTURE. A sampler2D that
+ * is chosen by a non-uniform number cannot be an argument: the function's own load of it would not be
+ * marked as non-uniform.
+ *
+ * SLUICE_FORM is the type of the argument; SLUICE_FORM_TEXTURE turns it into a sampler2D. Both are
+ * undefined at the end.
+ */
+#ifdef SLUICE_PAGED
+/** Returns a bilinear sample of any level. `tail` has the packed levels. */
+vec4 sluiceSampleLevel(SLUICE_FORM tail, SluiceTextureEntry entry, uint level, vec2 uv)
+{
+    if (level >= entry.regularMipCount)
+        return textureLod(SLUICE_FORM_TEXTURE(tail), uv, float(level - entry.regularMipCount));
+    return sluiceSamplePages(entry, level, uv);
+}
+
+vec4 sluiceSampleTail(SLUICE_FORM tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy)
+{
+    vec2 scale = sluiceTailScale(entry);
+    return textureGrad(SLUICE_FORM_TEXTURE(tail), uv, dx * scale, dy * scale);
+}
+
+/**
+ * Samples like a trilinear or anisotropic sampler at `lod`. `dx` and `dy` include all LOD bias.
+ */
+vec4 sluiceSamplePaged(SLUICE_FORM tail, SluiceTextureEntry entry, vec2 uv, vec2 dx, vec2 dy,
+                       float lod, float maxAnisotropy)
+{
+    lod = sluiceClampPagedLod(entry, lod);
+    if (lod >= float(entry.regularMipCount))
+        return sluiceSampleTail(tail, entry, uv, dx, dy);
+    SluicePagedTaps taps = sluicePlacePagedTaps(entry, dx, dy, lod, maxAnisotropy);
+    vec4 sum = vec4(0.0);
+    for (uint i = 0u; i < taps.count; i++) {
+        vec2 at = sluicePagedTap(taps, uv, i);
+        vec4 fine = vec4(0.0), coarse = vec4(0.0);
+        if (taps.fraction < 1.0)
+            fine = sluiceSampleLevel(tail, entry, taps.fine, at);
+        if (taps.fraction > 0.0)
+            coarse = sluiceSampleLevel(tail, entry, taps.coarse, at);
+        sum += sluiceMixLevels(taps, fine, coarse);
+    }
+    return sum / float(taps.count);
+}
+#endif
+
+/**
+ * Samples after sluiceResolveSampling. For sparse and dense mode. s.level must not be
+ * SLUICE_MIP_UNTOUCHED.
+ */
+vec4 sluiceTextureGrad(SLUICE_FORM tex, SluiceSampling s)
+{
+#ifdef SLUICE_MIN_LOD
+    return textureGradClampARB(SLUICE_FORM_TEXTURE(tex), s.uv, s.dx, s.dy, s.minLod);
+#else
+    return textureGrad(SLUICE_FORM_TEXTURE(tex), s.uv, s.dx, s.dy);
+#endif
+}
+
+#ifdef SLUICE_PAGED
+/** Samples in paged mode if everything is resident. */
+vec4 sluiceSampleAsPages(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                         float maxAnisotropy)
+{
+    SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+    vec2 size = vec2(entry.sizeX, entry.sizeY);
+    float scale = exp2(sluiceClampLodBias(lodBias));
+    return sluiceSamplePaged(tex, entry, uv, dx * scale, dy * scale,
+                             sluiceComputeLod(dx * size, dy * size, lodBias, maxAnisotropy),
+                             maxAnisotropy);
+}
+#endif
+
+/**
+ * Samples with explicit derivatives of `uv` per pixel. Any stage.
+ *
+ * `missingLevels` is the result of sluiceMissingLevels: 0 when the texture is as sharp as wanted.
+ */
+vec4 sluiceSampleGrad(SLUICE_FORM tex, uint tableIndex, vec2 uv, vec2 dx, vec2 dy, float lodBias,
+                      float maxAnisotropy, out uint missingLevels)
+{
+    if (sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy)) {
+        float scale = exp2(sluiceClampLodBias(lodBias));
+        missingLevels = 0u;
+#ifdef SLUICE_PAGED
+        if (SLUICE_PAGED)
+            return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+#endif
+        return textureGrad(SLUICE_FORM_TEXTURE(tex), uv, dx * scale, dy * scale);
+    }
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED)
+        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+                                 maxAnisotropy);
+#endif
+    return sluiceTextureGrad(tex, s);
+}
+
+/** Fetches one texel. It must be resident: see sluiceResolveSampling. */
+vec4 sluiceTexelFetch(SLUICE_FORM tex, uint tableIndex, ivec2 texel, uint level)
+{
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        SluiceTextureEntry entry = SLUICE_TEXTURE_ENTRY(tableIndex);
+        if (level < entry.regularMipCount)
+            return sluiceFetchPaged(entry, level, texel);
+        return texelFetch(SLUICE_FORM_TEXTURE(tex), texel, int(level - entry.regularMipCount));
+    }
+#endif
+    return texelFetch(SLUICE_FORM_TEXTURE(tex), texel, int(level));
+}
+
+#ifdef GL_FRAGMENT_SHADER
+
+/**
+ * Samples like sluiceSampleGrad with the fragment's own derivatives. Call in control flow that is
+ * uniform over the quad. A number for SLUICE_TEXTURE, and its tableIndex, may differ in the quad.
+ */
+vec4 sluiceSample(SLUICE_FORM tex, uint tableIndex, vec2 uv, float lodBias, float maxAnisotropy,
+                  out uint missingLevels)
+{
+#ifdef SLUICE_FORM_IS_NUMBER
+    /* Implicit derivatives need a quad that samples one texture. */
+    bool differs = sluiceDiffersInQuad(tex), other = sluiceDiffersInQuad(tableIndex);
+    if (differs || other)
+        return sluiceSampleGrad(tex, tableIndex, uv, dFdx(uv), dFdy(uv), lodBias, maxAnisotropy,
+                                missingLevels);
+#endif
+    missingLevels = 0u;
+    if (sluiceIsWhole(tableIndex, lodBias, maxAnisotropy)) {
+        bool finite = sluiceIsFinite(uv);
+        vec4 color = texture(SLUICE_FORM_TEXTURE(tex), finite ? uv : vec2(0.0), lodBias);
+        return finite ? color : textureLod(SLUICE_FORM_TEXTURE(tex), vec2(0.0), SLUICE_LOD_LIMIT);
+    }
+    vec2 dx = dFdx(uv);
+    vec2 dy = dFdy(uv);
+    bool sure = abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS &&
+                sluiceIsSurelyThere(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED && sure)
+        return sluiceSampleAsPages(tex, tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+#endif
+    /* The quad decides as one, because implicit derivatives need all of it. */
+    if (!sluiceAnyInQuad(!sure))
+        return texture(SLUICE_FORM_TEXTURE(tex), uv, lodBias);
+    SluiceSampling s = sluiceResolveSampling(tableIndex, uv, dx, dy, lodBias, maxAnisotropy);
+    missingLevels = sluiceMissingLevels(s);
+#ifdef SLUICE_PAGED
+    if (SLUICE_PAGED) {
+        if (s.level == SLUICE_MIP_UNTOUCHED)
+            return SLUICE_FALLBACK_COLOR;
+        return sluiceSamplePaged(tex, SLUICE_TEXTURE_ENTRY(tableIndex), s.uv, s.dx, s.dy, s.lod,
+                                 maxAnisotropy);
+    }
+#endif
+    if (!sluiceAnyInQuad(!(s.plain && abs(lodBias) <= SLUICE_MAX_IMPLICIT_LOD_BIAS)))
+        return texture(SLUICE_FORM_TEXTURE(tex), uv, lodBias);
+    if (s.level == SLUICE_MIP_UNTOUCHED)
+        return SLUICE_FALLBACK_COLOR;
+#ifndef SLUICE_MIN_LOD
+    if (!(maxAnisotropy > 1.0)) /* derivatives need not be kept until here */
+        return textureLod(SLUICE_FORM_TEXTURE(tex), s.uv, s.lod);
+#endif
+    return sluiceTextureGrad(tex, s);
+}
+
+#endif
+
+#undef SLUICE_FORM
+#undef SLUICE_FORM_TEXTURE
