@@ -67,11 +67,12 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * retry.
      */
     uint32_t maxTilesInFlight;
-    uint32_t loaderThreadCount;      ///< Default: as in SluiceTileLoaderCreateInfo.
+    uint32_t loaderThreadCount;      ///< As in SluiceVulkanStreamerCreateInfo.
     SluiceTileRetryPolicy readRetry; ///< Also for resources that return SLUICE_NOT_READY.
     /**
      * Most concurrent reads per source. All openings together count as one source, and so do the
-     * fills of one resource. Default: as in SluiceTileLoaderCreateInfo.
+     * fills of one resource. Default: as in SluiceTileLoaderCreateInfo. The first front end of the
+     * context decides.
      */
     uint32_t maxReadsPerSource;
     uint32_t
@@ -555,6 +556,8 @@ typedef struct SluiceDemandStatistics {
     uint64_t hostVisibleMemorySize;
     uint32_t pageChunkCount;     ///< As in SluiceVulkanStreamerStatistics.
     uint64_t pageChunkShortages; ///< As in SluiceVulkanStreamerStatistics.
+    uint64_t
+        sharedCount; ///< Tiles that a front end of the same context had: resident without a read.
 } SluiceDemandStatistics;
 
 /**

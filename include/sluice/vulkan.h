@@ -232,10 +232,12 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t maxTextureCount;          ///< 1 to 2^20. Default: 1024.
     uint32_t texturesPerFrame;         ///< Feedback maps read back per frame. Default: 10.
     uint32_t tilesPerFrame; ///< Most tiles mapped and uploaded per frame, 1 to 2^14. Default: 256.
-    uint32_t maxLoadsInFlight;  ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
-    uint32_t loaderThreadCount; ///< Default: as in SluiceTileLoaderCreateInfo.
-    uint32_t heapTileCapacity;  ///< Tiles per heap, 1 to 2^20. Default: 256.
-    uint32_t maxHeapCount;      ///< Default: as many as fit into device memory.
+    uint32_t maxLoadsInFlight; ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
+    /** Threads that read. Default: as in SluiceTileLoaderCreateInfo. The first front end of the
+     *  context decides; see vulkan_context.h. */
+    uint32_t loaderThreadCount;
+    uint32_t heapTileCapacity; ///< Tiles per heap, 1 to 2^20. Default: 256.
+    uint32_t maxHeapCount;     ///< Default: as many as fit into device memory.
     /**
      * Tiles that stay resident after they are no longer requested. They are evicted first when
      * memory is short. Default: 1024 (64 MiB). For none, set noStandbyTiles.
@@ -293,6 +295,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * 128 MiB). They are smaller if the device lacks memory or supports fewer layers. 64 images
      * hold 120 832 tiles (7.4 GiB) of one format, or 49 152 tiles (3 GiB) of eight formats: the
      * first 2048 tiles of a format take six images.
+     *
+     * The first front end of the context decides; see vulkan_context.h.
      */
     uint32_t maxPageChunkCount;
     /**
@@ -307,7 +311,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * the tile again after retryDelayTicks.
      */
     SluiceTileRetryPolicy readRetry;
-    uint32_t maxReadsPerSource; ///< Default: as in SluiceTileLoaderCreateInfo.
+    /** Default: as in SluiceTileLoaderCreateInfo. The first front end of the context decides. */
+    uint32_t maxReadsPerSource;
     /**
      * Unit of time stamps and of all times in this struct. At most 10^12. Default: 10^9
      * (nanoseconds). If your time stamps count frames, set the frames per second; otherwise each
@@ -659,6 +664,8 @@ typedef struct SluiceVulkanStreamerStatistics {
      * counted at most once in 60 frames. The first is logged. Such tiles show coarser levels.
      */
     uint64_t pageChunkShortages;
+    /** Paged: tiles mapped without a read, because a front end of the same context had them. */
+    uint64_t tilesShared;
 } SluiceVulkanStreamerStatistics;
 
 /**

@@ -5,6 +5,15 @@
  * Create one context per VkDevice, then create streamers and demand loaders from it. The
  * application keeps ownership of instance, device and queues. Destroy streamers and demand loaders
  * first, then the context, then the device.
+ *
+ * Front ends of a context share loader threads, staging memory and the images of pages. The first
+ * one makes them with its loaderThreadCount, maxReadsPerSource and maxPageChunkCount; they go with
+ * the last one. A streamer in paged mode and a demand loader that have the same SluiceImageSource
+ * read each tile once and keep it on one page.
+ *
+ * Frames and launches of a context go to queues of one family. The functions that begin, end,
+ * abandon, prepare or process them must not run at the same time for two front ends of one context.
+ * Use a context per thread otherwise.
  */
 #ifndef SLUICE_VULKAN_CONTEXT_H
 #define SLUICE_VULKAN_CONTEXT_H

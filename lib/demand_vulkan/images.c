@@ -279,6 +279,8 @@ static void leave_refresh_list(SluiceDemandLoader *loader, struct slc_demand_ima
 void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     leave_refresh_list(loader, image);
+    if (image->source)
+        slc_page_share_leave(loader->pages, loader->page_user, image->source);
     slc_retries_all(loader, &image->retry_group);
     slc_preloads_detach(loader, image->texture);
     drop_jobs(loader, image);
@@ -312,6 +314,7 @@ void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *i
     if (image->state != SLC_IMAGE_OPEN)
         return; /* what is read now is as good as what is read next */
     drop_jobs(loader, image);
+    slc_page_share_drop(loader->pages, image->source);
     slc_retries_all(loader, &image->retry_group);
     slc_image_forget(loader, image);
     if (image->refresh)

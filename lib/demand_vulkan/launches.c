@@ -159,8 +159,9 @@ static void record_ranks(SluiceDemandLoader *loader, VkCommandBuffer commands)
 
 static bool has_transfers(const SluiceDemandLoader *loader)
 {
-    return !loader->cleared || loader->space_changed || count_forgotten(loader) ||
-           loader->admitted.first != SLC_NONE || slc_table_mirror_has_changes(&loader->table) ||
+    return !loader->cleared || loader->has_shared || loader->space_changed ||
+           count_forgotten(loader) || loader->admitted.first != SLC_NONE ||
+           slc_table_mirror_has_changes(&loader->table) ||
            slc_table_mirror_has_changes(&loader->levels) ||
            slc_table_mirror_has_changes(&loader->grids);
 }
@@ -181,7 +182,7 @@ static uint32_t record_transfers(SluiceDemandLoader *loader, VkCommandBuffer com
         record_first(loader, commands);
     if (loader->space_changed)
         record_ranks(loader, commands);
-    loader->space_changed = false;
+    loader->space_changed = loader->has_shared = false;
     record_forgotten(loader, commands);
     uint32_t tiles = slc_uploads_record(loader, commands);
     slc_table_mirror_record(&loader->table, &loader->vk, commands, loader->launch);
@@ -224,8 +225,9 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
                                     .semaphore = loader->semaphore,
                                     .signalValue = launch,
                                     .tileCount = record_transfers(loader, commandBuffer)};
-    pLaunch->descriptorSet = slc_descriptors_update(&loader->descriptors, &loader->vk,
-                                                    slot_of(loader, launch), loader->pages, NULL);
+    pLaunch->descriptorSet =
+        slc_descriptors_update(&loader->descriptors, &loader->vk, slot_of(loader, launch),
+                               loader->pages, loader->page_user, NULL);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;
 }
@@ -270,6 +272,7 @@ static SluiceResult put_back(SluiceDemandLoader *loader, uint64_t launch)
     loader->cleared &= loader->cleared_launch < launch;
     slc_page_pool_abandon(loader->pages, loader->page_user, launch);
     slc_uploads_abandon(loader, launch);
+    loader->has_shared = true;
     slc_table_mirror_abandon(&loader->table, launch);
     slc_table_mirror_abandon(&loader->levels, launch);
     slc_table_mirror_abandon(&loader->grids, launch);

@@ -384,7 +384,7 @@ SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkan
 {
     if (!loader || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_page_views *views = &loader->pages->views;
+    const struct slc_page_views *views = slc_page_pool_views(loader->pages, loader->page_user);
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,

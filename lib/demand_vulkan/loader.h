@@ -233,7 +233,8 @@ struct SluiceDemandLoader {
     struct slc_page_memory tile_interface;
     uint32_t *owners; ///< owned; whose pages a block of SLUICE_DEMAND_BLOCK_PAGES has, see pages.h
     uint32_t owner_capacity;
-    bool space_changed;                          ///< ids were given since the last launch
+    bool has_shared;    ///< pages of other front ends are shown from the next launch on
+    bool space_changed; ///< ids were given since the last launch
     struct slc_rank_run ranks[SLC_MAX_LAUNCHES]; ///< by launch
     /** Owned; pages whose requests the next launch clears, after those of launches under way. */
     struct slc_page_run *forgotten;

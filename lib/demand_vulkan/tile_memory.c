@@ -16,7 +16,13 @@ void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *
 static uint32_t take(void *user, uint32_t kind)
 {
     struct slc_tile_memory *memory = user;
-    uint32_t place = slc_page_pool_take(memory->pool, memory->user, (SluiceFormat)kind);
+    uint32_t place = SLUICE_PAGE_NONE;
+    if (memory->offered)
+        place = slc_page_share_take(memory->pool, memory->user, memory->offered);
+    memory->offer_taken = place != SLUICE_PAGE_NONE;
+    if (memory->offer_taken)
+        return place;
+    place = slc_page_pool_take(memory->pool, memory->user, (SluiceFormat)kind);
     if (place != SLUICE_PAGE_NONE)
         return place;
     memory->short_of = true;
@@ -34,7 +40,12 @@ static void give(void *user, uint32_t place, uint32_t page)
 static bool retake(void *user, uint32_t place, uint32_t page)
 {
     struct slc_tile_memory *memory = user;
-    return slc_page_pool_retake(memory->pool, memory->user, place, page);
+    if (memory->offered)
+        return false; /* one copy of a tile is enough */
+    if (!slc_page_pool_retake(memory->pool, memory->user, place, page))
+        return false;
+    memory->retaken = place;
+    return true;
 }
 
 struct slc_page_memory slc_tile_memory_interface(struct slc_tile_memory *memory)

@@ -5,14 +5,17 @@
 #define SLC_DEMAND_VULKAN_TILE_MEMORY_H
 
 #include "demand/page_residency.h"
-#include "vulkan/page_pool.h"
+#include "vulkan/page_sharing.h"
 
 struct slc_tile_memory {
-    struct slc_page_pool *pool; ///< borrowed
-    uint32_t user;              ///< of the pool
-    uint64_t limit;             ///< tiles that the budget and the chunks hold
-    bool short_of;              ///< a place was asked for and not there since the last look
-    uint32_t wanted;            ///< the format it was asked for
+    struct slc_page_pool *pool;         ///< borrowed
+    uint32_t user;                      ///< of the pool
+    uint64_t limit;                     ///< tiles that the budget and the chunks hold
+    const struct slc_tile_key *offered; ///< the page that is requested has this page to share
+    bool offer_taken;
+    uint32_t retaken; ///< the page that was given back last and taken again
+    bool short_of;    ///< a place was asked for and not there since the last look
+    uint32_t wanted;  ///< the format it was asked for
 };
 
 /** `user` of the pool was added with `budget`, bytes. */

@@ -77,6 +77,13 @@ static SluiceResult submit(SluiceDemandLoader *loader, struct slc_demand_image *
     return slc_job_submit(loader, job, &read, ticket);
 }
 
+static struct slc_tile_key key_of(const struct slc_demand_image *image, uint32_t level,
+                                  uint32_t index)
+{
+    uint32_t width = slc_image_level_width(image, level);
+    return (struct slc_tile_key){image->source, 0, level, index % width, index / width};
+}
+
 /* The page has a place. */
 static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                const struct slc_page_request *request, SluiceDemandTicket ticket)
@@ -95,6 +102,55 @@ static SluiceResult begin_read(SluiceDemandLoader *loader, struct slc_demand_ima
         slc_job_free(loader, job);
     }
     return result;
+}
+
+/* A page that another front end has, if there is a key. */
+static enum slc_request_answer request_shared(SluiceDemandLoader *loader,
+                                              const struct slc_page_request *request,
+                                              const struct slc_tile_key *key, SluiceResult *result)
+{
+    struct slc_tile_memory *tiles = &loader->tiles;
+    tiles->offered = key;
+    tiles->offer_taken = false;
+    tiles->retaken = SLC_NO_PLACE;
+    enum slc_request_answer answer = slc_residency_request(loader->residency, request, result);
+    tiles->offered = NULL;
+    if (answer != SLC_REQUEST_LOAD || !tiles->offer_taken)
+        return answer;
+    slc_residency_loaded(loader->residency, request->page,
+                         slc_residency_place(loader->residency, request->page));
+    loader->counts.sharedCount++;
+    loader->has_shared = true;
+    return SLC_REQUEST_RESTORED;
+}
+
+/* `key`: of tiles that others may have; or NULL. */
+static enum slc_request_answer request_page(SluiceDemandLoader *loader,
+                                            struct slc_demand_image *image,
+                                            const struct slc_page_request *request,
+                                            const struct slc_tile_key *key,
+                                            SluiceDemandTicket ticket, SluiceResult *result)
+{
+    struct slc_page_pool *pool = loader->pages;
+    enum slc_share share = key ? slc_page_share_look(pool, loader->page_user, key) : SLC_SHARE_NONE;
+    if (share == SLC_SHARE_WAIT)
+        return SLC_REQUEST_POSTPONED;
+    enum slc_request_answer answer =
+        request_shared(loader, request, share == SLC_SHARE_READY ? key : NULL, result);
+    if (key && loader->tiles.retaken != SLC_NO_PLACE)
+        slc_page_share_adopt(pool, loader->page_user, key, loader->tiles.retaken);
+    if (answer != SLC_REQUEST_LOAD)
+        return answer;
+    *result = begin_read(loader, image, request, ticket);
+    if (*result == SLUICE_SUCCESS && key) {
+        slc_page_share_announce(pool, loader->page_user, key);
+        slc_page_share_place(pool, loader->page_user, key,
+                             slc_residency_place(loader->residency, request->page));
+    }
+    if (*result == SLUICE_SUCCESS)
+        return SLC_REQUEST_LOAD;
+    slc_residency_failed(loader->residency, request->page, false);
+    return SLC_REQUEST_POSTPONED;
 }
 
 enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_demand_image *image,
@@ -116,14 +172,10 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
         .rank = (uint8_t)(tail ? 0 : slc_image_level_rank(image, level)),
         .pinned = tail,
         .kind = image->info.format};
-    enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
-    if (answer != SLC_REQUEST_LOAD)
-        return answer;
-    *result = begin_read(loader, image, &request, ticket);
-    if (*result == SLUICE_SUCCESS)
-        return SLC_REQUEST_LOAD;
-    slc_residency_failed(loader->residency, page, false);
-    return SLC_REQUEST_POSTPONED;
+    if (tail) /* streamers keep their packed levels in images of their own */
+        return request_page(loader, image, &request, NULL, ticket, result);
+    const struct slc_tile_key key = key_of(image, level, index);
+    return request_page(loader, image, &request, &key, ticket, result);
 }
 
 /* Once for a file, until it is well again: the statistics count the rest. */

@@ -102,6 +102,7 @@ uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
         if (is_wanted(loader, job)) {
             struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
+            slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
             uint32_t part_count = slc_tile_parts(job->image, job->page, parts);
             for (uint32_t i = 0; i < part_count; i++)
                 add(&copies, job, &parts[i]);

@@ -52,6 +52,7 @@ void slc_descriptors_finish(struct slc_descriptors *descriptors, const struct sl
  * given at creation. */
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                        uint32_t index, struct slc_page_pool *pages,
+                                       uint32_t page_user,
                                        const struct slc_texture_array *textures);
 
 /** The layout for the application. Errors: UNSUPPORTED, with a log message, if there are no sets.

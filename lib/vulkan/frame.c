@@ -219,8 +219,8 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         s->ended_frame = s->frame;
         return result;
     }
-    pFrame->descriptorSet =
-        slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages, &s->texture_array);
+    pFrame->descriptorSet = slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages,
+                                                   s->page_user, &s->texture_array);
     return SLUICE_SUCCESS;
 }
 

@@ -79,6 +79,8 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
         slc_unit_list_append(s, &s->arrived, index);
         return SLUICE_SUCCESS;
     }
+    if (s->residency->interface->withdraw)
+        s->residency->interface->withdraw(s->residency, unit->texture, &unit->tile);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);
     return result;

@@ -25,6 +25,8 @@ static void bind_packed(SluiceVulkanStreamer *s)
 static void refuse_unit(SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
+    if (s->residency->interface->withdraw)
+        s->residency->interface->withdraw(s->residency, unit->texture, &unit->tile);
     slc_load_defer(s, unit->texture, &unit->tile);
     slc_unit_forget_tile(s, unit);
     slc_unit_free(s, index);

@@ -38,7 +38,8 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
                 continue;
             }
             uint32_t unit = slc_map_get(&s->tile_units, slc_pair_key(texture, tiles[i].tileIndex));
-            if (slc_deferred_tiles_remove(&s->deferred, texture, tiles[i].tileIndex)) {
+            if (slc_deferred_tiles_remove(&s->deferred, texture, tiles[i].tileIndex) ||
+                slc_deferred_tiles_remove(&s->awaited, texture, tiles[i].tileIndex)) {
                 slc_load_give_back(s, texture, &tiles[i]);
                 continue;
             }
@@ -56,6 +57,9 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
 void slc_loads_drop(SluiceVulkanStreamer *s, uint32_t index)
 {
     slc_deferred_tiles_drop(&s->deferred, index);
+    slc_deferred_tiles_drop(&s->awaited, index);
+    if (s->residency->interface->leave_source)
+        s->residency->interface->leave_source(s->residency, index);
     struct slc_texture *texture = &s->textures[index];
     for (uint32_t i = 0; i < s->packed_queue_count;) {
         if (s->packed_queue[i] == index)

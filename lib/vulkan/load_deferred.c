@@ -2,15 +2,26 @@
 
 #include "vulkan/load_units.h"
 
-/* There is no page for it. One that was asked to stop is not waited for. */
-SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+/* One that was asked to stop is not waited for. */
+static SluiceResult wait_in(SluiceVulkanStreamer *s, struct slc_deferred_tiles *list,
+                            uint32_t texture, const SluiceTile *tile)
 {
     SluiceTileState state = SLUICE_TILE_STATE_CANCELLED;
     sluiceGetTileState(s->manager, s->textures[texture].id, tile->tileIndex, &state, NULL);
     if (state == SLUICE_TILE_STATE_CANCELLED ||
-        !slc_deferred_tiles_add(&s->deferred, &s->cb, texture, tile))
+        !slc_deferred_tiles_add(list, &s->cb, texture, tile))
         return slc_load_give_back(s, texture, tile);
     return SLUICE_SUCCESS;
+}
+
+SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    return wait_in(s, &s->deferred, texture, tile);
+}
+
+SluiceResult slc_load_await(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    return wait_in(s, &s->awaited, texture, tile);
 }
 
 /* Tiles that are going to ask for a page of the format. */

@@ -16,9 +16,31 @@ static SluiceResult refuse_tile(SluiceVulkanStreamer *s, uint32_t texture, const
                               "sluiceReportFailedTiles");
 }
 
+/* SLC_SHARE_READY: it is mapped, WAIT: it waits, or was given back; `*result` says so. */
+static enum slc_share share_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile,
+                                 SluiceResult *result)
+{
+    const struct slc_residency_interface *interface = s->residency->interface;
+    enum slc_share share =
+        interface->share ? interface->share(s->residency, texture, tile) : SLC_SHARE_NONE;
+    if (share == SLC_SHARE_WAIT)
+        *result = slc_load_await(s, texture, tile);
+    if (share != SLC_SHARE_READY)
+        return share;
+    s->counts.tilesMapped++;
+    s->counts.tilesShared++;
+    *result = slc_streamer_check(
+        s, sluiceUpdateTilesMapping(s->manager, s->textures[texture].id, 1, &tile->tileIndex),
+        "sluiceUpdateTilesMapping");
+    return share;
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
+    SluiceResult result = SLUICE_SUCCESS;
+    if (share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
+        return result;
     if (interface->revive && interface->revive(s->residency, texture, tile)) {
         s->counts.tilesMapped++;
         s->counts.tilesRestored++;
@@ -36,7 +58,9 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     uint32_t unit = slc_unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
-    SluiceResult result = slc_unit_submit(s, unit);
+    if (interface->announce)
+        interface->announce(s->residency, texture, tile);
+    result = slc_unit_submit(s, unit);
     return result == SLUICE_SUCCESS ? result : slc_tile_back(s, unit, result);
 }
 
@@ -67,6 +91,20 @@ static void check_packed(SluiceVulkanStreamer *s, uint32_t index)
         return;
     texture->packed_state = SLC_PACKED_READY;
     s->packed_queue[s->packed_queue_count++] = index;
+}
+
+/* Those that another front end has now, or will not have. The others go on waiting. */
+static SluiceResult start_awaited(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    uint32_t left =
+        slc_min_u32(s->awaited.count, slc_min_u32(s->info.tilesPerFrame, s->info.maxLoadsInFlight));
+    for (; left > 0 && result >= 0; left--) {
+        struct slc_deferred_tile awaited = s->awaited.tiles[0];
+        slc_deferred_tiles_remove_at(&s->awaited, 0);
+        result = start_tile(s, awaited.texture, &awaited.tile);
+    }
+    return result;
 }
 
 /* One that comes while the others are on their way was evicted meanwhile. Its turn is later. */
@@ -128,6 +166,8 @@ SluiceResult slc_loads_start(SluiceVulkanStreamer *s)
     slc_pages_left_forget(s);
     if (result >= 0 && !waits)
         result = start_deferred(s);
+    if (result >= 0 && !waits)
+        result = start_awaited(s);
     uint32_t count = slc_min_u32(s->info.tilesPerFrame, s->free_unit_count);
     if (result < 0 || waits || count == 0)
         return result;

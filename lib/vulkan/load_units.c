@@ -130,5 +130,6 @@ void slc_loads_finish(SluiceVulkanStreamer *s)
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);
     slc_deferred_tiles_finish(&s->deferred, &s->cb);
+    slc_deferred_tiles_finish(&s->awaited, &s->cb);
     slc_free(&s->cb, s->units, s->info.maxLoadsInFlight, sizeof *s->units);
 }

@@ -34,6 +34,7 @@ SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk 
         slc_memory_client_init(&pool->client, vk->memory_client->budget);
         pool->vk.memory_client = &pool->client;
     }
+    pool->shared.free = SLC_NONE;
     pthread_mutex_init(&pool->mutex, NULL);
     pool->max_layer_count = slc_min_u32(SLC_PAGE_CHUNK_LAYERS, caps->max_image_array_layers);
     SluiceResult result = slc_page_views_init(&pool->views, &pool->vk, caps, cb, chunk_count);
@@ -59,6 +60,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool)
         destroy_chunk(pool, &pool->chunks[i]);
     if (!pool->has_mutex)
         return;
+    slc_shared_tiles_finish(&pool->shared, pool->cb);
     slc_image_memory_finish(&pool->memory, pool->cb);
     slc_free(pool->cb, pool->chunks, pool->views.count, sizeof *pool->chunks);
     slc_page_views_finish(&pool->views, &pool->vk, pool->cb);
@@ -80,6 +82,27 @@ static void sum_limits(struct slc_page_pool *pool)
         pool->max_size = 0;
 }
 
+/* New chunks belong to their maker until its layout transition is over. */
+static bool is_ready(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
+                     uint32_t user)
+{
+    if (chunk->maker == user)
+        return true;
+    if (chunk->maker == SLC_MAX_PAGE_USERS)
+        return !chunk->fresh;
+    return chunk->layout_frame && pool->users[chunk->maker].completed >= chunk->layout_frame;
+}
+
+/* Images that shaders of the user's next frame may find in its array. */
+static void show_chunks(struct slc_page_pool *pool, uint32_t user)
+{
+    for (uint32_t i = 0; i < pool->views.count; i++) {
+        const struct slc_page_chunk *chunk = &pool->chunks[i];
+        if (chunk->state == SLC_CHUNK_LIVE && is_ready(pool, chunk, user))
+            slc_page_views_set(&pool->users[user].shown, i, chunk->view);
+    }
+}
+
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
                                     uint64_t max_size, struct slc_memory_client *client,
                                     uint32_t *user)
@@ -88,16 +111,22 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
     pthread_mutex_lock(&pool->mutex);
     while (at < SLC_MAX_PAGE_USERS && pool->users[at].semaphore)
         at++;
-    if (at < SLC_MAX_PAGE_USERS) {
-        pool->users[at] =
-            (struct slc_page_user){.semaphore = semaphore, .max_size = max_size, .client = client};
+    SluiceResult result = SLUICE_ERROR_LIMIT_EXCEEDED;
+    if (at < SLC_MAX_PAGE_USERS)
+        result = slc_page_views_copy(&pool->users[at].shown, &pool->views, pool->cb);
+    if (result == SLUICE_SUCCESS) {
+        pool->users[at].semaphore = semaphore;
+        pool->users[at].max_size = max_size;
+        pool->users[at].client = client;
         slc_memory_client_set_source(client, &pool->client);
         pool->user_count++;
+        show_chunks(pool, at);
         sum_limits(pool);
     }
     pthread_mutex_unlock(&pool->mutex);
-    *user = at;
-    return at < SLC_MAX_PAGE_USERS ? SLUICE_SUCCESS : SLUICE_ERROR_LIMIT_EXCEEDED;
+    if (result == SLUICE_SUCCESS)
+        *user = at;
+    return result;
 }
 
 static SluiceResult create_chunk(struct slc_page_pool *pool, struct slc_page_chunk *chunk,
@@ -205,17 +234,6 @@ uint64_t slc_page_pool_capacity(struct slc_page_pool *pool, uint32_t user)
     return count > others ? count - others : 0;
 }
 
-/* New chunks belong to their maker until its layout transition is over. */
-static bool is_ready(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
-                     uint32_t user)
-{
-    if (chunk->maker == user)
-        return true;
-    if (chunk->maker == SLC_MAX_PAGE_USERS)
-        return !chunk->fresh;
-    return chunk->layout_frame && pool->users[chunk->maker].completed >= chunk->layout_frame;
-}
-
 /* The one that was given back longest ago, of those that the user may write to; layer_count if
  * there is none. */
 static uint32_t find_layer(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
@@ -302,7 +320,6 @@ static bool add_chunk(struct slc_page_pool *pool, uint32_t user, SluiceFormat fo
             pool->last_chunk[format] = at;
             pool->refused_tick = 0;
             slc_memory_client_blame(&pool->client, NULL); /* a smaller one will do */
-            slc_page_views_set(&pool->views, at, chunk->view);
             return true;
         }
         destroy_chunk(pool, chunk);
@@ -341,6 +358,7 @@ static void take_layer(struct slc_page_pool *pool, struct slc_page_chunk *chunk,
     taken->owner = SLC_NO_OWNER; /* nobody can take it again */
     taken->user = (uint8_t)user;
     taken->held = true;
+    taken->shared = 0;
     chunk->free_count--;
     pool->held_count++;
     pool->users[user].held_count++;
@@ -369,7 +387,9 @@ uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFor
     return page;
 }
 
-static void give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
+/* `value`: the last frame of `user` that may read it. */
+static void free_layer(struct slc_page_pool *pool, uint32_t page, uint32_t user, uint64_t value,
+                       uint32_t owner)
 {
     struct slc_page_chunk *chunk = &pool->chunks[page >> 16];
     assert(chunk->state == SLC_CHUNK_LIVE && chunk->free_count < chunk->layer_count);
@@ -378,13 +398,79 @@ static void give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint3
     layers[layer] = (struct slc_page_layer){.previous = layers[head].previous,
                                             .next = head,
                                             .owner = owner,
-                                            .value = pool->users[user].recorded,
+                                            .value = value,
                                             .user = (uint8_t)user};
     layers[layers[head].previous].next = layer;
     layers[head].previous = layer;
     chunk->free_count++;
     pool->held_count--;
+}
+
+/* Nobody holds the page and no frame of others reads it. */
+static void end_shared(struct slc_page_pool *pool, uint32_t index, uint32_t owner)
+{
+    uint32_t page = pool->shared.entries[index].page, user = pool->shared.entries[index].last_user;
+    bool is_there = user < SLC_MAX_PAGE_USERS;
+    slc_shared_tiles_remove(&pool->shared, index);
+    free_layer(pool, page, is_there ? user : 0, is_there ? pool->users[user].recorded : 0, owner);
+}
+
+static bool others_are_idle(const struct slc_page_pool *pool, const struct slc_shared_tile *tile)
+{
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
+        if (tile->readers & 1u << i && i != tile->last_user &&
+            pool->users[i].completed < pool->users[i].recorded)
+            return false;
+    return true;
+}
+
+static void release_shared(struct slc_page_pool *pool, uint32_t user, uint32_t index,
+                           uint32_t owner)
+{
+    struct slc_shared_tile *tile = &pool->shared.entries[index];
+    assert(tile->users & 1u << user);
+    tile->users &= ~(1u << user);
+    if (tile->users) { /* who took it after the writer saw its copy complete */
+        if (tile->writer == user)
+            tile->writer = SLC_MAX_PAGE_USERS;
+        slc_page_layer(pool, tile->page)->user = (uint8_t)slc_log2_u32(tile->users);
+        return;
+    }
+    tile->last_user = (uint8_t)user;
+    slc_shared_tiles_unlist(&pool->shared, index);
+    if (others_are_idle(pool, tile)) {
+        end_shared(pool, index, owner);
+    } else {
+        tile->going = true;
+        tile->value = pool->tick;
+        pool->shared.going_count++;
+    }
+}
+
+static void give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
+{
+    uint32_t shared = slc_page_layer(pool, page)->shared;
     pool->users[user].held_count--;
+    if (shared)
+        release_shared(pool, user, shared - 1, owner);
+    else
+        free_layer(pool, page, user, pool->users[user].recorded, owner);
+}
+
+static bool has_gone(const struct slc_page_pool *pool, const struct slc_shared_tile *tile)
+{
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
+        if (tile->readers & 1u << i && i != tile->last_user &&
+            pool->users[i].safe_tick < tile->value)
+            return false;
+    return true;
+}
+
+static void end_going(struct slc_page_pool *pool)
+{
+    for (uint32_t i = 0; pool->shared.going_count && i < pool->shared.high; i++)
+        if (pool->shared.entries[i].going && has_gone(pool, &pool->shared.entries[i]))
+            end_shared(pool, i, SLC_NO_OWNER);
 }
 
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner)
@@ -405,21 +491,42 @@ static void forget_user(struct slc_page_pool *pool, uint32_t index, uint32_t use
     }
     for (uint32_t i = 0; i < chunk->layer_count; i++)
         if (chunk->layers[i].user == user) {
-            if (chunk->layers[i].held)
+            if (chunk->layers[i].held && !chunk->layers[i].shared)
                 give(pool, user, index << 16 | i, SLC_NO_OWNER);
             chunk->layers[i].value = 0;
             chunk->layers[i].owner = SLC_NO_OWNER;
         }
 }
 
+/* Tiles that others show from a page that the user copied stay. */
+static void leave_shared(struct slc_page_pool *pool, uint32_t user)
+{
+    for (uint32_t i = 0; i < pool->shared.high; i++) {
+        struct slc_shared_tile *tile = &pool->shared.entries[i];
+        if (tile->listed && tile->page == SLC_NONE && tile->writer == user)
+            slc_shared_tiles_remove(&pool->shared, i);
+        if (tile->users & 1u << user) {
+            pool->users[user].held_count--;
+            release_shared(pool, user, i, SLC_NO_OWNER);
+        }
+        if (tile->writer == user)
+            tile->writer = SLC_MAX_PAGE_USERS;
+        if (tile->going && tile->last_user == user)
+            tile->last_user = SLC_MAX_PAGE_USERS;
+        tile->readers &= ~(1u << user);
+    }
+}
+
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
 {
     pthread_mutex_lock(&pool->mutex);
+    leave_shared(pool, user);
     for (uint32_t i = 0; i < pool->views.count; i++)
         forget_user(pool, i, user);
     pool->empty_is_ready |= pool->users[user].empty_frame > 0;
     assert(pool->users[user].held_count == 0);
     slc_memory_client_set_source(pool->users[user].client, NULL);
+    slc_page_views_finish_copy(&pool->users[user].shown, pool->cb);
     pool->users[user] = (struct slc_page_user){0};
     pool->user_count--;
     sum_limits(pool);
@@ -465,7 +572,9 @@ static void retire(struct slc_page_pool *pool, uint32_t index)
     for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
         chunk->retire_values[i] = pool->users[i].recorded;
     pool->page_count[chunk->format] -= chunk->layer_count;
-    slc_page_views_set(&pool->views, index, VK_NULL_HANDLE);
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
+        if (pool->users[i].semaphore)
+            slc_page_views_set(&pool->users[i].shown, index, VK_NULL_HANDLE);
 }
 
 static bool is_over(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk)
@@ -490,6 +599,35 @@ static void poll_others(struct slc_page_pool *pool, uint32_t user)
     }
 }
 
+/* After polling: up to which tick each user's frames are complete. */
+static void advance_safe_ticks(struct slc_page_pool *pool)
+{
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) {
+        struct slc_page_user *user = &pool->users[i];
+        if (user->completed >= user->recorded) {
+            user->safe_tick = pool->tick;
+            user->mark_frame = 0;
+        } else if (user->mark_frame && user->completed >= user->mark_frame) {
+            user->safe_tick = user->mark_tick;
+            user->mark_frame = 0;
+        }
+        if (user->completed < user->recorded && user->mark_frame == 0) {
+            user->mark_frame = user->recorded;
+            user->mark_tick = pool->tick;
+        }
+    }
+}
+
+/* Whether the others go on, as the user sees it. */
+static void look_at_others(struct slc_page_pool *pool, struct slc_page_user *self)
+{
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) {
+        uint64_t progress = pool->users[i].recorded + pool->users[i].completed;
+        self->still[i] = progress == self->seen[i] ? self->still[i] + 1 : 0;
+        self->seen[i] = progress;
+    }
+}
+
 static void record_layout(struct slc_page_pool *pool, struct slc_page_chunk *chunk, uint32_t user,
                           VkCommandBuffer commands)
 {
@@ -509,6 +647,9 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
     struct slc_page_user *self = &pool->users[user];
     self->completed = completed_frame > self->completed ? completed_frame : self->completed;
     poll_others(pool, user);
+    advance_safe_ticks(pool);
+    look_at_others(pool, self);
+    end_going(pool);
     pool->tick++;
     for (uint32_t i = 0; i < pool->views.count; i++) {
         struct slc_page_chunk *chunk = &pool->chunks[i];
@@ -524,6 +665,7 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
     for (uint32_t i = 0; i < pool->views.count; i++)
         if (pool->chunks[i].state == SLC_CHUNK_LIVE && pool->chunks[i].fresh)
             record_layout(pool, &pool->chunks[i], user, commands);
+    show_chunks(pool, user);
     pool->hurry = false;
     pthread_mutex_unlock(&pool->mutex);
 }
@@ -554,6 +696,11 @@ void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t f
             continue;
         chunk->fresh = true;
         chunk->layout_frame = 0;
+    }
+    for (uint32_t i = 0; i < pool->shared.high; i++) {
+        struct slc_shared_tile *tile = &pool->shared.entries[i];
+        if (tile->writer == user && !tile->going && tile->value >= frame)
+            tile->written = false; /* copied again, or given back */
     }
     pthread_mutex_unlock(&pool->mutex);
 }

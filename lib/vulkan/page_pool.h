@@ -17,6 +17,7 @@
 #include "vulkan/memory.h"
 #include "vulkan/memory_budget.h"
 #include "vulkan/page_views.h"
+#include "vulkan/shared_tiles.h"
 
 #include <pthread.h>
 
@@ -38,6 +39,7 @@ struct slc_page_layer {
     uint64_t value;          ///< free: the last frame of `user` that could read it; 0: none could
     uint8_t user;            ///< that holds it, or gave it back
     bool held;
+    uint32_t shared; ///< held: 1 + the index of its entry in the directory; 0: it has none
 };
 
 struct slc_page_chunk {
@@ -60,7 +62,16 @@ struct slc_page_user {
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
     uint64_t recorded;                ///< the last frame that was recorded
     uint64_t completed;
-    uint32_t held_count;  ///< pages
+    /** What its shaders get; owns the array of views alone. A new image is in its maker's array as
+     *  soon as a frame of the maker puts it into its layout, and in others when that is complete.
+     */
+    struct slc_page_views shown;
+    uint32_t held_count;            ///< pages
+    uint64_t safe_tick;             ///< frames that were recorded up to this tick are complete
+    uint64_t mark_frame, mark_tick; ///< what comes next there; 0: nothing
+    /** By user: its progress as this one saw it last, and for how many frames it stood still. */
+    uint64_t seen[SLC_MAX_PAGE_USERS];
+    uint32_t still[SLC_MAX_PAGE_USERS];
     uint64_t max_size;    ///< bytes; 0: no limit of its own
     uint64_t empty_frame; ///< that put the image of empty places into its layout; 0: none did
 };
@@ -72,11 +83,12 @@ struct slc_page_pool {
     const SluiceAllocationCallbacks *cb;
     pthread_mutex_t mutex; ///< around everything below; users may be on different threads
     bool has_mutex;
-    struct slc_page_views views;   ///< one per chunk
+    struct slc_page_views views;   ///< what the users' arrays are made of
     struct slc_page_chunk *chunks; ///< owned; views.count
     struct slc_image_memory memory;
     struct slc_page_user users[SLC_MAX_PAGE_USERS];
     uint32_t user_count;
+    struct slc_shared_tiles shared;        ///< see page_sharing.h
     uint32_t last_chunk[SLC_PAGE_FORMATS]; ///< that a page was taken from
     uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
     uint32_t held_count;                   ///< pages, each once
@@ -100,12 +112,19 @@ void slc_page_pool_finish(struct slc_page_pool *pool);
 
 /** `semaphore`: timeline that the user's frames signal with their numbers. `max_size`: bytes that
  *  the pool may allocate for the user; 0: no limit. `client`: where memory that the user was
- * refused counts, may be NULL. Errors: LIMIT_EXCEEDED. */
+ * refused counts, may be NULL. Errors: LIMIT_EXCEEDED, OUT_OF_HOST_MEMORY. */
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
                                     uint64_t max_size, struct slc_memory_client *client,
                                     uint32_t *user);
 /** The user's frames are complete. Pages that it still holds are given back. */
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
+
+/** The array of views for shaders of the user's frames, as of the last frame that was recorded. */
+static inline const struct slc_page_views *slc_page_pool_views(const struct slc_page_pool *pool,
+                                                               uint32_t user)
+{
+    return &pool->users[user].shown;
+}
 
 /** Pages that so many chunks hold, at most: if all are of one format. */
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
@@ -129,7 +148,7 @@ uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, Slu
 
 /** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
 uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
-/** `owner` may ask for it again; or SLC_NO_OWNER. */
+/** `owner` may ask for it again; or SLC_NO_OWNER. A page that others hold, too, stays theirs. */
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
 /** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
  *  again. */
@@ -140,6 +159,11 @@ void slc_page_pool_hurry(struct slc_page_pool *pool);
 /** First frame of a user: shaders may read the image of empty places from now on. */
 void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                                 VkCommandBuffer commands);
+
+static inline struct slc_page_layer *slc_page_layer(const struct slc_page_pool *pool, uint32_t page)
+{
+    return &pool->chunks[page >> 16].layers[page & 0xFFFFu];
+}
 
 /** The image of a page that is held. */
 static inline VkImage slc_page_image(const struct slc_page_pool *pool, uint32_t page)

@@ -76,10 +76,30 @@ void slc_page_views_finish(struct slc_page_views *views, const struct slc_vk *vk
     *views = (struct slc_page_views){0};
 }
 
+SluiceResult slc_page_views_copy(struct slc_page_views *copy, const struct slc_page_views *views,
+                                 const SluiceAllocationCallbacks *cb)
+{
+    *copy = (struct slc_page_views){
+        .count = views->count, .generation = 1, .sampler = views->sampler, .empty = views->empty};
+    copy->views = slc_alloc(cb, copy->count, sizeof *copy->views);
+    if (!copy->views)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint32_t i = 0; i < copy->count; i++)
+        copy->views[i] = copy->empty;
+    return SLUICE_SUCCESS;
+}
+
+void slc_page_views_finish_copy(struct slc_page_views *copy, const SluiceAllocationCallbacks *cb)
+{
+    slc_free(cb, copy->views, copy->count, sizeof *copy->views);
+    *copy = (struct slc_page_views){0};
+}
+
 void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view)
 {
-    views->views[index] = view ? view : views->empty;
-    views->generation++;
+    VkImageView now = view ? view : views->empty;
+    views->generation += views->views[index] != now;
+    views->views[index] = now;
 }
 
 void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands, VkImage image)

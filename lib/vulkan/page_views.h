@@ -31,7 +31,13 @@ void slc_page_views_record(const struct slc_page_views *views, const struct slc_
 /** From nothing into VK_IMAGE_LAYOUT_GENERAL, all layers of the only level. */
 void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands, VkImage image);
 
-/** VK_NULL_HANDLE: the place is empty again. */
+/** A copy of what all places of `views` are when they are empty, with an array of its own. Finish
+ * it with slc_page_views_finish_copy. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_page_views_copy(struct slc_page_views *copy, const struct slc_page_views *views,
+                                 const SluiceAllocationCallbacks *cb);
+void slc_page_views_finish_copy(struct slc_page_views *copy, const SluiceAllocationCallbacks *cb);
+
+/** VK_NULL_HANDLE: the place is empty again. Nothing happens if it is what it was. */
 void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view);
 
 /** A view of all layers of an image of one level. */

@@ -20,8 +20,8 @@
 #define SLC_VULKAN_RESIDENCY_H
 
 #include "vulkan/caps.h"
+#include "vulkan/page_sharing.h"
 
-struct slc_page_pool;
 struct slc_residency;
 
 /** The image of one streamed texture. */
@@ -50,6 +50,21 @@ struct slc_residency_interface {
     /** True: the texels of a tile that was unmapped are still there, and it is mapped again; shown
      *  by this frame at the earliest. Asked before its texels are read. NULL: they never are. */
     bool (*revive)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+
+    /** The texels of an image's layer come from this layer of the source: another front end may
+     * show the same tiles. NULL, as the next four are then: no tile is shared. */
+    void (*set_source)(struct slc_residency *residency, uint32_t index,
+                       const SluiceImageSource *source, uint32_t layer);
+    /** SLC_SHARE_READY: another front end has the tile, and it is mapped, as by revive; asked
+     * before that. SLC_SHARE_WAIT: it will have it. Of regular tiles. */
+    enum slc_share (*share)(struct slc_residency *residency, uint32_t index,
+                            const SluiceTile *tile);
+    /** A read of the tile begins. */
+    void (*announce)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+    /** It failed, or what it read is not mapped. */
+    void (*withdraw)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
+    /** The image is removed: its source need not live longer. */
+    void (*leave_source)(struct slc_residency *residency, uint32_t index);
 
     /** False: no more tiles may ever be bound, and this one was not yet. NULL: all may. */
     bool (*reserve)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);

@@ -34,6 +34,8 @@ struct paged_image {
     VkImage tail;
     uint32_t layer_count; ///< 0 but for layer 0
     SluiceStreamedTextureDesc desc;
+    const SluiceImageSource *source; ///< borrowed
+    uint32_t source_layer;
     SluiceFormat format;
     uint32_t block_width, block_height; ///< texels
     uint32_t first_word, word_count;    ///< in the table; 0: all levels are packed
@@ -249,6 +251,40 @@ static SluiceResult update(struct slc_residency *residency, uint64_t frame,
     return SLUICE_SUCCESS;
 }
 
+static struct slc_tile_key key_of(const struct paged_image *image, const SluiceTile *tile)
+{
+    return (struct slc_tile_key){image->source, image->source_layer, tile->mipLevel, tile->x,
+                                 tile->y};
+}
+
+static void set_source(struct slc_residency *residency, uint32_t index,
+                       const SluiceImageSource *source, uint32_t layer)
+{
+    struct paged_image *image = &paged(residency)->images[index];
+    image->source = source;
+    image->source_layer = layer;
+}
+
+static void announce(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    slc_page_share_announce(p->pool, p->user, &key);
+}
+
+static void withdraw(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    slc_page_share_withdraw(p->pool, p->user, &key);
+}
+
+static void leave_source(struct slc_residency *residency, uint32_t index)
+{
+    struct paged_residency *p = paged(residency);
+    slc_page_share_leave(p->pool, p->user, p->images[index].source);
+}
+
 static SluiceResult map(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
@@ -259,7 +295,11 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     assert(!is_taken(*page));
     *page = slc_page_pool_take(p->pool, p->user, image->format);
     count_memory(p);
-    return *page == SLUICE_PAGE_NONE ? SLUICE_ERROR_OUT_OF_DEVICE_MEMORY : SLUICE_SUCCESS;
+    if (*page == SLUICE_PAGE_NONE)
+        return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
+    const struct slc_tile_key key = key_of(image, tile);
+    slc_page_share_place(p->pool, p->user, &key, *page);
+    return SLUICE_SUCCESS;
 }
 
 /* What the table is to show of the entry in `pages` from this frame on. */
@@ -300,9 +340,30 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
     uint32_t page = page_of(p->pages[word]);
     bool there = slc_page_pool_retake(p->pool, p->user, page, word);
     p->pages[word] = there ? page | PAGE_SHOWN : SLUICE_PAGE_NONE;
-    if (there)
-        store(p, &p->images[index], word);
-    return there;
+    if (!there)
+        return false;
+    const struct slc_tile_key key = key_of(&p->images[index], tile);
+    slc_page_share_adopt(p->pool, p->user, &key, page);
+    store(p, &p->images[index], word);
+    return true;
+}
+
+static enum slc_share share(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    struct paged_image *image = &p->images[index];
+    const struct slc_tile_key key = key_of(image, tile);
+    enum slc_share answer = slc_page_share_look(p->pool, p->user, &key);
+    if (answer != SLC_SHARE_READY)
+        return answer;
+    uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
+    assert(!is_taken(p->pages[word]));
+    uint32_t page = slc_page_share_take(p->pool, p->user, &key);
+    if (page == SLUICE_PAGE_NONE)
+        return SLC_SHARE_NONE;
+    p->pages[word] = page | PAGE_SHOWN;
+    store(p, image, word);
+    return SLC_SHARE_READY;
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
@@ -449,6 +510,7 @@ static VkImage place_copy(struct paged_residency *p, struct paged_image *image,
     assert(is_taken(p->pages[word]));
     uint32_t page = page_of(p->pages[word]);
     p->pages[word] |= PAGE_SHOWN;
+    slc_page_share_written(p->pool, p->user, page, p->frame);
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
     copy->imageOffset.x %= (int32_t)desc->tileWidth;
@@ -551,6 +613,11 @@ static const struct slc_residency_interface paged_interface = {
     .destroy_image = destroy_image,
     .image_is_idle = image_is_idle,
     .revive = revive,
+    .set_source = set_source,
+    .share = share,
+    .announce = announce,
+    .withdraw = withdraw,
+    .leave_source = leave_source,
     .page_room = page_room,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
@@ -586,8 +653,8 @@ static SluiceResult create_arrays(struct paged_residency *p,
     if (result != SLUICE_SUCCESS)
         return result;
     p->max_image_count = info->max_image_count;
-    p->upload_reserve = 2 * info->max_changes; /* copied or revived */
-    p->store_capacity = 6 * info->max_changes;
+    p->upload_reserve = 3 * info->max_changes; /* copied, revived or shared */
+    p->store_capacity = 7 * info->max_changes;
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
     p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);

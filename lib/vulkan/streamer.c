@@ -457,7 +457,7 @@ SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVu
 {
     if (!streamer || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    const struct slc_page_views *views = &streamer->pages->views;
+    const struct slc_page_views *views = slc_page_pool_views(streamer->pages, streamer->page_user);
     *pPages = (SluiceVulkanPages){.sampler = views->sampler,
                                   .viewCount = views->count,
                                   .pViews = views->views,

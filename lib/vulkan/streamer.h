@@ -162,6 +162,7 @@ struct SluiceVulkanStreamer {
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
     struct slc_deferred_tiles deferred;
+    struct slc_deferred_tiles awaited; ///< that another front end is about to have
     uint32_t
         pages_left[SLC_PAGE_FORMATS]; ///< for loads that start in this frame; SLC_NONE: unknown
     struct slc_staging staging;       ///< a slot per unit

@@ -245,6 +245,8 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                                  .max_anisotropy = max_anisotropy,
                                  .sampler = sampler,
                                  .address_modes = {modes[0], modes[1]}};
+    for (uint32_t i = 0; i < count && s->residency->interface->set_source; i++)
+        s->residency->interface->set_source(s->residency, first + i, info->source, i);
     for (uint32_t i = 0; i < count && result == SLUICE_SUCCESS; i++)
         result = build(s, &s->textures[first + i]);
     uint32_t added = 0;

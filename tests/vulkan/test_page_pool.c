@@ -142,8 +142,13 @@ static void a_new_image_belongs_to_its_maker_until_it_is_in_its_layout(void **st
     for (uint32_t i = 0; i < LAYERS; i++)
         assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, other >> 16);
     assert_int_equal(record(&r, 0, 3), 1);
+    const struct slc_page_views *views[USERS] = {slc_page_pool_views(&r.pool, r.users[0]),
+                                                 slc_page_pool_views(&r.pool, r.users[1])};
+    assert_ptr_not_equal(views[0]->views[first >> 16], r.pool.views.empty);
+    assert_ptr_equal(views[1]->views[first >> 16], r.pool.views.empty);
     timelines[0] = 3;
     assert_int_equal(record(&r, 1, 3), 0);
+    assert_ptr_equal(views[1]->views[first >> 16], views[0]->views[first >> 16]);
     assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT) >> 16, first >> 16);
     finish(&r);
 }
@@ -164,7 +169,8 @@ static void an_empty_image_goes_when_no_user_can_see_it(void **state)
         record(&r, 0, frame);
     }
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
-    assert_ptr_equal(r.pool.views.views[0], r.pool.views.empty);
+    for (uint32_t i = 0; i < USERS; i++)
+        assert_ptr_equal(slc_page_pool_views(&r.pool, r.users[i])->views[0], r.pool.views.empty);
     timelines[1] = 1;
     record(&r, 0, frame);
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 0);

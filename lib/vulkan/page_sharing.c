@@ -1,0 +1,169 @@
+#include "vulkan/page_sharing.h"
+
+#include <sluice/shared/texture_table.h>
+
+#include <assert.h>
+
+#define STALLED_FRAMES 8u /* of the one that waits, without any of the other: it is not coming */
+
+/* SLC_NONE: read it. Else the entry, and whether its texels are there. */
+static uint32_t find(const struct slc_page_pool *pool, uint32_t user,
+                     const struct slc_tile_key *key, bool *ready)
+{
+    uint32_t index = slc_shared_tiles_find(&pool->shared, key);
+    if (index == SLC_NONE)
+        return SLC_NONE;
+    const struct slc_shared_tile *tile = &pool->shared.entries[index];
+    if (tile->writer == user || tile->users & 1u << user)
+        return SLC_NONE;
+    *ready = tile->written && (tile->writer == SLC_MAX_PAGE_USERS ||
+                               tile->value <= pool->users[tile->writer].completed);
+    return index;
+}
+
+enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
+                                   const struct slc_tile_key *key)
+{
+    bool ready = false;
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t index = find(pool, user, key, &ready);
+    enum slc_share share = index == SLC_NONE ? SLC_SHARE_NONE
+                           : ready           ? SLC_SHARE_READY
+                                             : SLC_SHARE_WAIT;
+    if (share == SLC_SHARE_WAIT &&
+        pool->users[user].still[pool->shared.entries[index].writer] >= STALLED_FRAMES)
+        share = SLC_SHARE_NONE;
+    pthread_mutex_unlock(&pool->mutex);
+    return share;
+}
+
+uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key)
+{
+    bool ready = false;
+    uint32_t page = SLUICE_PAGE_NONE;
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t index = find(pool, user, key, &ready);
+    if (ready) {
+        struct slc_shared_tile *tile = &pool->shared.entries[index];
+        tile->users |= 1u << user;
+        tile->readers |= 1u << user;
+        pool->users[user].held_count++;
+        page = tile->page;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return page;
+}
+
+static uint32_t announce(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key)
+{
+    if (slc_shared_tiles_find(&pool->shared, key) != SLC_NONE)
+        return SLC_NONE;
+    uint32_t index = slc_shared_tiles_add(&pool->shared, pool->cb, key);
+    if (index != SLC_NONE)
+        pool->shared.entries[index].writer = (uint8_t)user;
+    return index;
+}
+
+static void place(struct slc_page_pool *pool, uint32_t user, uint32_t index, uint32_t page)
+{
+    struct slc_shared_tile *tile = &pool->shared.entries[index];
+    tile->page = page;
+    tile->users = tile->readers = 1u << user;
+    slc_page_layer(pool, page)->shared = index + 1;
+}
+
+/* The entry of a tile that the user reads and that has no page. */
+static uint32_t find_own(const struct slc_page_pool *pool, uint32_t user,
+                         const struct slc_tile_key *key)
+{
+    uint32_t index = slc_shared_tiles_find(&pool->shared, key);
+    if (index == SLC_NONE || pool->shared.entries[index].writer != user ||
+        pool->shared.entries[index].page != SLC_NONE)
+        return SLC_NONE;
+    return index;
+}
+
+void slc_page_share_announce(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key)
+{
+    pthread_mutex_lock(&pool->mutex);
+    announce(pool, user, key);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void slc_page_share_withdraw(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t index = find_own(pool, user, key);
+    if (index != SLC_NONE)
+        slc_shared_tiles_remove(&pool->shared, index);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void slc_page_share_place(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
+                          uint32_t page)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t index = find_own(pool, user, key);
+    if (index != SLC_NONE)
+        place(pool, user, index, page);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t page,
+                            uint64_t frame)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t shared = slc_page_layer(pool, page)->shared;
+    if (shared && pool->shared.entries[shared - 1].writer == user) {
+        pool->shared.entries[shared - 1].written = true;
+        pool->shared.entries[shared - 1].value = frame;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
+                          uint32_t page)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t index = announce(pool, user, key);
+    if (index != SLC_NONE) {
+        place(pool, user, index, page);
+        pool->shared.entries[index].writer = SLC_MAX_PAGE_USERS;
+        pool->shared.entries[index].written = true;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+/* A tile without a page is nothing without its name. */
+static void unlist(struct slc_page_pool *pool, uint32_t index)
+{
+    if (pool->shared.entries[index].page == SLC_NONE)
+        slc_shared_tiles_remove(&pool->shared, index);
+    else
+        slc_shared_tiles_unlist(&pool->shared, index);
+}
+
+void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
+                          const SluiceImageSource *source)
+{
+    pthread_mutex_lock(&pool->mutex);
+    for (uint32_t i = 0; i < pool->shared.high; i++) {
+        const struct slc_shared_tile *tile = &pool->shared.entries[i];
+        bool own = tile->page == SLC_NONE ? tile->writer == user : !(tile->users & ~(1u << user));
+        if (tile->listed && tile->key.source == source && own)
+            unlist(pool, i);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source)
+{
+    pthread_mutex_lock(&pool->mutex);
+    for (uint32_t i = 0; i < pool->shared.high; i++)
+        if (pool->shared.entries[i].listed && pool->shared.entries[i].key.source == source)
+            unlist(pool, i);
+    pthread_mutex_unlock(&pool->mutex);
+}

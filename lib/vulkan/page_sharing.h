@@ -1,0 +1,49 @@
+/**
+ * One page for a tile that several users of a pool show. A user that reads a tile announces it.
+ * Others wait for the tile instead of reading it, and hold the same page once its texels are there:
+ * once the frame that copies them is complete. The page is free when nobody holds it and no frame
+ * can read it.
+ */
+#ifndef SLC_VULKAN_PAGE_SHARING_H
+#define SLC_VULKAN_PAGE_SHARING_H
+
+#include "vulkan/page_pool.h"
+
+enum slc_share {
+    SLC_SHARE_NONE,  ///< read it
+    SLC_SHARE_WAIT,  ///< another user reads or copies it: ask again in the next frame
+    SLC_SHARE_READY, ///< its texels are there: take its page
+};
+
+/** Whether another user has the tile. WAIT ends, if that user begins no frames, after a while. */
+enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
+                                   const struct slc_tile_key *key);
+/** Holds the page of a tile that is READY; until slc_page_pool_give. SLUICE_PAGE_NONE if it is not.
+ */
+uint32_t slc_page_share_take(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key);
+
+/** A read of the tile begins. If another user has the tile, this one is the reader's own. */
+void slc_page_share_announce(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key);
+/** The read failed, before it had a page. */
+void slc_page_share_withdraw(struct slc_page_pool *pool, uint32_t user,
+                             const struct slc_tile_key *key);
+/** The tile that the user announced goes to this page, which it has taken. */
+void slc_page_share_place(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
+                          uint32_t page);
+/** `frame` copies the texels to the page. Of a page that is the user's own: ignored. */
+void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t page,
+                            uint64_t frame);
+/** The user has the tile on this page again, with the texels that were there. */
+void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
+                          uint32_t page);
+
+/** A texture of the source goes: its tiles are not found any more, but for those that others hold,
+ *  for whom the source must live on. */
+void slc_page_share_leave(struct slc_page_pool *pool, uint32_t user,
+                          const SluiceImageSource *source);
+/** The texels of the source have changed: none of its tiles are found any more. */
+void slc_page_share_drop(struct slc_page_pool *pool, const SluiceImageSource *source);
+
+#endif /* SLC_VULKAN_PAGE_SHARING_H */

@@ -1,0 +1,108 @@
+#include "vulkan/shared_tiles.h"
+
+#include "base/alloc.h"
+#include "base/checked.h"
+
+#include <assert.h>
+
+void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb)
+{
+    slc_map_finish(&tiles->by_hash, cb);
+    slc_free(cb, tiles->entries, tiles->capacity, sizeof *tiles->entries);
+    *tiles = (struct slc_shared_tiles){.free = SLC_NONE};
+}
+
+static uint64_t hash_of(const struct slc_tile_key *key)
+{
+    const uint64_t parts[] = {(uint64_t)(uintptr_t)key->source,
+                              (uint64_t)key->layer << 32 | key->level,
+                              (uint64_t)key->x << 32 | key->y};
+    uint64_t hash = 0x243F6A8885A308D3u;
+    for (int i = 0; i < 3; i++) {
+        hash = (hash ^ parts[i]) * 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+static bool is_equal(const struct slc_tile_key *a, const struct slc_tile_key *b)
+{
+    return a->source == b->source && a->layer == b->layer && a->level == b->level && a->x == b->x &&
+           a->y == b->y;
+}
+
+uint32_t slc_shared_tiles_find(const struct slc_shared_tiles *tiles, const struct slc_tile_key *key)
+{
+    if (tiles->by_hash.count == 0)
+        return SLC_NONE;
+    uint32_t at = slc_map_get(&tiles->by_hash, hash_of(key));
+    while (at != SLC_NONE && !is_equal(&tiles->entries[at].key, key))
+        at = tiles->entries[at].next;
+    return at;
+}
+
+static bool grow(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb)
+{
+    uint32_t old = tiles->capacity, capacity = slc_max_u32(64, 2 * old);
+    SluiceResult result = old ? slc_map_reserve(&tiles->by_hash, cb, capacity)
+                              : slc_map_init(&tiles->by_hash, cb, capacity);
+    if (result != SLUICE_SUCCESS)
+        return false;
+    struct slc_shared_tile *entries =
+        slc_regrow(cb, tiles->entries, old, capacity, sizeof *entries);
+    if (!entries) {
+        if (old == 0)
+            slc_map_finish(&tiles->by_hash, cb);
+        return false;
+    }
+    tiles->entries = entries;
+    tiles->capacity = capacity;
+    return true;
+}
+
+uint32_t slc_shared_tiles_add(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb,
+                              const struct slc_tile_key *key)
+{
+    uint32_t index = tiles->free;
+    if (index == SLC_NONE && tiles->high == tiles->capacity && !grow(tiles, cb))
+        return SLC_NONE;
+    if (index == SLC_NONE)
+        index = tiles->high++;
+    else
+        tiles->free = tiles->entries[index].next;
+    uint64_t hash = hash_of(key);
+    uint32_t first = slc_map_get(&tiles->by_hash, hash);
+    slc_map_remove(&tiles->by_hash, hash);
+    slc_map_add(&tiles->by_hash, hash, index);
+    tiles->entries[index] =
+        (struct slc_shared_tile){.key = *key, .page = SLC_NONE, .next = first, .listed = true};
+    return index;
+}
+
+void slc_shared_tiles_unlist(struct slc_shared_tiles *tiles, uint32_t index)
+{
+    struct slc_shared_tile *entry = &tiles->entries[index];
+    if (!entry->listed)
+        return;
+    uint64_t hash = hash_of(&entry->key);
+    uint32_t first = slc_map_get(&tiles->by_hash, hash);
+    if (first == index) {
+        slc_map_remove(&tiles->by_hash, hash);
+        if (entry->next != SLC_NONE)
+            slc_map_add(&tiles->by_hash, hash, entry->next);
+    } else {
+        while (tiles->entries[first].next != index)
+            first = tiles->entries[first].next;
+        tiles->entries[first].next = entry->next;
+    }
+    entry->listed = false;
+}
+
+void slc_shared_tiles_remove(struct slc_shared_tiles *tiles, uint32_t index)
+{
+    slc_shared_tiles_unlist(tiles, index);
+    tiles->going_count -= tiles->entries[index].going;
+    tiles->entries[index] =
+        (struct slc_shared_tile){.key = {0}, .page = SLC_NONE, .next = tiles->free};
+    tiles->free = index;
+}

@@ -1,0 +1,52 @@
+/**
+ * Directory of tiles that several users of a page pool may show from one page: which tile of which
+ * source is on which page, who uses it, and since when its texels are there. Knows no device.
+ */
+#ifndef SLC_VULKAN_SHARED_TILES_H
+#define SLC_VULKAN_SHARED_TILES_H
+
+#include "base/map.h"
+#include "base/none.h"
+
+#include <sluice/image.h>
+
+struct slc_tile_key {
+    const SluiceImageSource *source;
+    uint32_t layer, level, x, y; ///< x, y in tiles
+};
+
+struct slc_shared_tile {
+    struct slc_tile_key key;
+    uint32_t page;     ///< SLC_NONE: it is being read
+    uint32_t next;     ///< of equal hash, or of free entries
+    uint64_t value;    ///< `written`: the writer's frame that copies it; `going`: a tick
+    uint32_t users;    ///< bits: hold the page
+    uint32_t readers;  ///< bits: have held it
+    uint8_t writer;    ///< user that reads and copies it; SLC_MAX_PAGE_USERS: its texels are there
+    uint8_t last_user; ///< `going`: that held it last
+    bool listed;       ///< it can be found by its key
+    bool written;      ///< a frame copies its texels
+    bool going;        ///< nobody holds it; frames may still read it
+};
+
+struct slc_shared_tiles {
+    struct slc_shared_tile *entries; ///< owned
+    uint32_t high, capacity, free;   ///< `free`: the first free entry, SLC_NONE for none
+    uint32_t going_count;
+    struct slc_map by_hash; ///< hash of a key -> the first entry
+};
+
+/** A zeroed struct is empty but for `free`: SLC_NONE. */
+void slc_shared_tiles_finish(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb);
+
+/** SLC_NONE if it is not listed. */
+uint32_t slc_shared_tiles_find(const struct slc_shared_tiles *tiles,
+                               const struct slc_tile_key *key);
+/** A new entry, listed; the key is not. SLC_NONE without host memory. */
+uint32_t slc_shared_tiles_add(struct slc_shared_tiles *tiles, const SluiceAllocationCallbacks *cb,
+                              const struct slc_tile_key *key);
+/** The entry stays, but is not found any more. */
+void slc_shared_tiles_unlist(struct slc_shared_tiles *tiles, uint32_t index);
+void slc_shared_tiles_remove(struct slc_shared_tiles *tiles, uint32_t index);
+
+#endif /* SLC_VULKAN_SHARED_TILES_H */
