@@ -15,8 +15,6 @@
 
 struct frame {
     VkCommandBuffer commands;
-    VkDescriptorSet set;            /* 0 of room.frag: buffers and pages of the streamer */
-    uint64_t page_generation;       /* of what the set holds; 0: nothing yet */
     SluiceStreamingFrame streaming; /* what the submission signals */
 };
 
@@ -26,7 +24,7 @@ struct renderer {
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[TEXTURES];
-    struct drawn_texture textures[TEXTURES];
+    uint32_t table_indices[TEXTURES]; /* of the textures, for room.frag */
     struct frame frames[FRAMES_IN_FLIGHT];
 };
 
@@ -73,38 +71,21 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
     const SluiceVulkanStreamerCreateInfo info = {.context = r->context,
                                                  .residencyMode = settings->mode,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
-                                                 .maxPageChunkCount = PAGE_CHUNKS,
+                                                 .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
                                                  .ticksPerSecond = 60, /* one a frame */
                                                  .feedbackTimeoutTicks = 128,
                                                  .mapEverything = settings->everything};
     SLUICE(sluiceCreateVulkanStreamer(&info, &r->streamer));
 }
 
-/* 3. A texture, between frames at any time. A draw needs its view and its place in the table. */
+/* 3. A texture, between frames at any time. Shaders know it by its index in the table. */
 static void add_texture(struct renderer *r, uint32_t i)
 {
     SLUICE(create_source(i, &r->sources[i]));
     const SluiceVulkanTextureCreateInfo info = {.source = r->sources[i]};
     SluiceVulkanTexture added;
     SLUICE(sluiceAddVulkanTexture(r->streamer, &info, &added));
-    r->textures[i] =
-        (struct drawn_texture){allocate_set(&r->gpu, &r->drawing, 1), added.tableIndex};
-    write_images(&r->gpu, r->textures[i].set, 0, 1, &added.imageView, r->drawing.sampler);
-}
-
-/* 4. The set of a frame. Buffers stay the same; pages change seldom, and only as a frame begins. */
-static void update_set(const struct renderer *r, struct frame *frame)
-{
-    SluiceVulkanPages pages;
-    sluiceGetVulkanPages(r->streamer, &pages);
-    if (frame->page_generation == pages.generation)
-        return;
-    SluiceVulkanBuffers own;
-    sluiceGetVulkanBuffers(r->streamer, &own);
-    const VkBuffer buffers[] = {own.textureTable, own.minMip, own.feedback, own.pageTable};
-    write_buffers(&r->gpu, frame->set, 4, buffers);
-    write_images(&r->gpu, frame->set, 4, pages.viewCount, pages.pViews, pages.sampler);
-    frame->page_generation = pages.generation;
+    r->table_indices[i] = added.tableIndex;
 }
 
 /* 5. A frame: begin, draw and end in one command buffer, and a submission that signals. */
@@ -115,8 +96,8 @@ static void draw_frame(struct renderer *r, uint32_t number, float eye_z)
     wait_for(&r->gpu, streaming->semaphore, streaming->signalValue); /* until it may be reused */
     begin_commands(frame->commands);
     SLUICE(sluiceBeginStreamingFrame(r->streamer, frame->commands, number, streaming));
-    update_set(r, frame);
-    draw_corridor(frame->commands, &r->drawing, frame->set, r->textures, number, eye_z);
+    draw_corridor(frame->commands, &r->drawing, streaming->descriptorSet, r->table_indices, number,
+                  eye_z);
     SLUICE(sluiceEndStreamingFrame(r->streamer, frame->commands));
     copy_picture(frame->commands, &r->drawing.picture);
     submit(&r->gpu, frame->commands, streaming->semaphore, streaming->signalValue);
@@ -129,10 +110,12 @@ int main(int argc, char **argv)
     open_device(&r.gpu, can_stream, &settings.mode);
     create_streamer(&r, &settings);
     const SluiceResidencyMode mode = sluiceGetVulkanResidencyMode(r.streamer); /* of AUTO */
-    create_drawing(&r.gpu, settings.size, mode == SLUICE_RESIDENCY_MODE_PAGED, &r.drawing);
+    VkDescriptorSetLayout set_layout; /* 4. Frames come with a set of this layout. */
+    SLUICE(sluiceGetVulkanDescriptorSetLayout(r.streamer, &set_layout));
+    create_drawing(&r.gpu, settings.size, set_layout, mode == SLUICE_RESIDENCY_MODE_PAGED,
+                   &r.drawing);
     for (uint32_t i = 0; i < FRAMES_IN_FLIGHT; i++)
-        r.frames[i] = (struct frame){.commands = allocate_commands(&r.gpu, &r.drawing),
-                                     .set = allocate_set(&r.gpu, &r.drawing, 0)};
+        r.frames[i].commands = allocate_commands(&r.gpu, &r.drawing);
     for (uint32_t i = 0; i < TEXTURES; i++)
         add_texture(&r, i);
 

@@ -12,18 +12,6 @@ struct draw { /* push constants, as in room.vert and room.frag */
     float aspect, eye_z;
 };
 
-static VkDescriptorSetLayout create_set_layout(const struct gpu *gpu, uint32_t binding_count,
-                                               const VkDescriptorSetLayoutBinding *bindings)
-{
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = binding_count,
-                                            .pBindings = bindings};
-    VkDescriptorSetLayout layout;
-    VK(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &layout));
-    return layout;
-}
-
 static VkPipelineShaderStageCreateInfo
 create_stage(const struct gpu *gpu, VkShaderStageFlagBits flags, const uint32_t *words, size_t size)
 {
@@ -87,61 +75,18 @@ static VkPipeline create_pipeline(const struct gpu *gpu, VkPipelineLayout layout
     return pipeline;
 }
 
-static void create_set_layouts(const struct gpu *gpu, VkDescriptorSetLayout layouts[2])
-{
-    VkDescriptorSetLayoutBinding bindings[5]; /* as room.frag has them */
-    for (uint32_t i = 0; i < 4; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                                     VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    bindings[4] = (VkDescriptorSetLayoutBinding){4, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                                 PAGE_CHUNKS, VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    layouts[0] = create_set_layout(gpu, 5, bindings);
-    const VkDescriptorSetLayoutBinding albedo = {0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                                 VK_SHADER_STAGE_FRAGMENT_BIT, NULL};
-    layouts[1] = create_set_layout(gpu, 1, &albedo);
-}
-
-/* What sample.glsl asks of a sampler: no bias of its own, all levels, the texture's address modes.
- */
-static VkSampler create_sampler(const struct gpu *gpu)
-{
-    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                .magFilter = VK_FILTER_LINEAR,
-                                .minFilter = VK_FILTER_LINEAR,
-                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                .maxLod = VK_LOD_CLAMP_NONE};
-    VkSampler sampler;
-    VK(vkCreateSampler(gpu->device, &info, NULL, &sampler));
-    return sampler;
-}
-
-static void create_pools(const struct gpu *gpu, struct drawing *drawing)
-{
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 64},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 64}};
-    VkDescriptorPoolCreateInfo set_pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                           .maxSets = 16,
-                                           .poolSizeCount = 2,
-                                           .pPoolSizes = sizes};
-    VK(vkCreateDescriptorPool(gpu->device, &set_pool, NULL, &drawing->set_pool));
-    VkCommandPoolCreateInfo command_pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                            .flags =
-                                                VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                            .queueFamilyIndex = gpu->family};
-    VK(vkCreateCommandPool(gpu->device, &command_pool, NULL, &drawing->command_pool));
-}
-
-void create_drawing(const struct gpu *gpu, const uint32_t size[2], bool paged,
-                    struct drawing *drawing)
+void create_drawing(const struct gpu *gpu, const uint32_t size[2], VkDescriptorSetLayout set_layout,
+                    bool paged, struct drawing *drawing)
 {
     create_picture(gpu, size[0], size[1], &drawing->picture);
-    create_set_layouts(gpu, drawing->set_layouts);
-    create_pools(gpu, drawing);
-    drawing->sampler = create_sampler(gpu);
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                    .queueFamilyIndex = gpu->family};
+    VK(vkCreateCommandPool(gpu->device, &pool, NULL, &drawing->command_pool));
     const VkPushConstantRange constants = {PUSH_STAGES, 0, sizeof(struct draw)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 2,
-                                         .pSetLayouts = drawing->set_layouts,
+                                         .setLayoutCount = 1,
+                                         .pSetLayouts = &set_layout,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &constants};
     VK(vkCreatePipelineLayout(gpu->device, &layout, NULL, &drawing->layout));
@@ -153,54 +98,7 @@ void destroy_drawing(const struct gpu *gpu, const struct drawing *drawing)
     vkDestroyCommandPool(gpu->device, drawing->command_pool, NULL);
     vkDestroyPipeline(gpu->device, drawing->pipeline, NULL);
     vkDestroyPipelineLayout(gpu->device, drawing->layout, NULL);
-    vkDestroySampler(gpu->device, drawing->sampler, NULL);
-    vkDestroyDescriptorPool(gpu->device, drawing->set_pool, NULL);
-    for (int i = 0; i < 2; i++)
-        vkDestroyDescriptorSetLayout(gpu->device, drawing->set_layouts[i], NULL);
     destroy_picture(gpu, &drawing->picture);
-}
-
-VkDescriptorSet allocate_set(const struct gpu *gpu, const struct drawing *drawing, uint32_t index)
-{
-    VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                        .descriptorPool = drawing->set_pool,
-                                        .descriptorSetCount = 1,
-                                        .pSetLayouts = &drawing->set_layouts[index]};
-    VkDescriptorSet set;
-    VK(vkAllocateDescriptorSets(gpu->device, &info, &set));
-    return set;
-}
-
-void write_buffers(const struct gpu *gpu, VkDescriptorSet set, uint32_t count,
-                   const VkBuffer *buffers)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        const VkDescriptorBufferInfo buffer = {buffers[i], 0, VK_WHOLE_SIZE};
-        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                            .dstSet = set,
-                                            .dstBinding = i,
-                                            .descriptorCount = 1,
-                                            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                            .pBufferInfo = &buffer};
-        vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
-    }
-}
-
-void write_images(const struct gpu *gpu, VkDescriptorSet set, uint32_t binding, uint32_t count,
-                  const VkImageView *views, VkSampler sampler)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        const VkDescriptorImageInfo image = {sampler, views[i], VK_IMAGE_LAYOUT_GENERAL};
-        const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                            .dstSet = set,
-                                            .dstBinding = binding,
-                                            .dstArrayElement = i,
-                                            .descriptorCount = 1,
-                                            .descriptorType =
-                                                VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                            .pImageInfo = &image};
-        vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
-    }
 }
 
 VkCommandBuffer allocate_commands(const struct gpu *gpu, const struct drawing *drawing)
@@ -233,18 +131,16 @@ static void begin_pass(VkCommandBuffer commands, const struct picture *picture)
 }
 
 void draw_corridor(VkCommandBuffer commands, const struct drawing *drawing, VkDescriptorSet set,
-                   const struct drawn_texture *textures, uint32_t frame, float eye_z)
+                   const uint32_t *table_indices, uint32_t frame, float eye_z)
 {
     struct draw draw = {.frame = frame, .eye_z = eye_z};
     draw.aspect = (float)drawing->picture.width / (float)drawing->picture.height;
     begin_pass(commands, &drawing->picture);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing->pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing->layout, 0, 1, &set,
+                            0, NULL);
     for (draw.surface = 0; draw.surface < SURFACES; draw.surface++) {
-        const struct drawn_texture *texture = &textures[texture_of_surface(draw.surface)];
-        const VkDescriptorSet sets[] = {set, texture->set};
-        draw.table_index = texture->table_index;
-        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, drawing->layout, 0, 2,
-                                sets, 0, NULL);
+        draw.table_index = table_indices[texture_of_surface(draw.surface)];
         vkCmdPushConstants(commands, drawing->layout, PUSH_STAGES, 0, sizeof draw, &draw);
         vkCmdDraw(commands, 6, 1, 0, 0);
     }

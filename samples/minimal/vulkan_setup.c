@@ -90,9 +90,6 @@ void open_device(struct gpu *gpu, device_test *test, const void *user)
     check_vulkan(result == VK_INCOMPLETE ? VK_SUCCESS : result, "vkEnumeratePhysicalDevices");
     for (uint32_t i = 0; i < count; i++) {
         struct device_needs needs = {.sparse_family = VK_QUEUE_FAMILY_IGNORED};
-        /* Of room.frag, which is compiled once for all modes and finds pages like this. */
-        needs.features.shaderSampledImageArrayDynamicIndexing = VK_TRUE;
-        needs.vulkan12.shaderSampledImageArrayNonUniformIndexing = VK_TRUE;
         gpu->physical_device = devices[i];
         gpu->family = find_drawing_family(devices[i]);
         if (gpu->family == VK_QUEUE_FAMILY_IGNORED ||

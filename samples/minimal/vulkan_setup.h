@@ -21,7 +21,7 @@ struct gpu {
     VkQueue queue, sparse_queue;    ///< the first draws and computes
 };
 
-/** What a device is opened with; what room.frag needs is set. */
+/** What a device is opened with. */
 struct device_needs {
     VkPhysicalDeviceFeatures features;
     VkPhysicalDeviceVulkan12Features vulkan12;
