@@ -127,6 +127,33 @@ SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateI
  */
 SLUICE_API void sluiceDestroyDemandLoader(SluiceDemandLoader *loader);
 
+/** Settings of a demand loader that can change while it runs, as in the create-info. */
+typedef struct SluiceDemandLoaderSettings {
+    uint32_t structSize;           ///< Required. sizeof(SluiceDemandLoaderSettings).
+    uint32_t maxRequestsPerLaunch; ///< 1 to the create-info's value.
+    uint64_t failureRetryDelayNs;  ///< Nanoseconds. 0: at once. UINT64_MAX: never.
+    bool noEviction;               ///< The LOD bias becomes 0, too.
+    bool noLodBias;                ///< The LOD bias becomes 0 with the next launch.
+} SluiceDemandLoaderSettings;
+
+/**
+ * Gets the settings in use, or those last set. Set structSize first.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetDemandLoaderSettings(const SluiceDemandLoader *loader,
+                                                      SluiceDemandLoaderSettings *pSettings);
+
+/**
+ * Changes all settings. Get them, change fields, and set them. They take effect when the next
+ * launch begins. Recordings of the loader hold the changes.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a value
+ *         out of range or a wrong structSize. Nothing has changed after an error.
+ */
+SLUICE_API SluiceResult sluiceSetDemandLoaderSettings(SluiceDemandLoader *loader,
+                                                      const SluiceDemandLoaderSettings *pSettings);
+
 /** Filter between texels or between mip levels. */
 typedef enum SluiceDemandFilter {
     SLUICE_DEMAND_FILTER_LINEAR = 0,

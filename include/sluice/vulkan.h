@@ -388,6 +388,44 @@ SLUICE_API SluiceResult sluiceCreateVulkanStreamer(
 SLUICE_API void sluiceDestroyVulkanStreamer(SluiceVulkanStreamer *streamer);
 
 /**
+ * Settings of a streamer that can change while it runs. They mean what the fields of the
+ * create-info mean, but zero is a value here, and never selects a default.
+ */
+typedef struct SluiceVulkanStreamerSettings {
+    uint32_t structSize;             ///< Required. sizeof(SluiceVulkanStreamerSettings).
+    uint32_t texturesPerFrame;       ///< 1 to the create-info's value.
+    uint32_t tilesPerFrame;          ///< 1 to 2^14. Changing it allocates host memory.
+    uint32_t numExtraStandbyTiles;   ///< 0: evict unwanted tiles at once.
+    uint32_t maxHeapCount;           ///< 0: as many as fit into memory.
+    uint64_t feedbackTimeoutTicks;   ///< 0: only a texture's newest map counts.
+    uint64_t residencyFadeTicks;     ///< 0 to 2^40.
+    uint64_t retryDelayTicks;        ///< 0: as soon as possible.
+    uint64_t givenUpRetryDelayTicks; ///< 0: 120 times retryDelayTicks. UINT64_MAX: never.
+    bool noEviction; ///< Requests wait for free memory instead of evicting resident tiles.
+    bool noMipBias;  ///< Never request coarser levels because more is wanted than memory holds.
+} SluiceVulkanStreamerSettings;
+
+/**
+ * Gets the settings in use, or those last set. Set structSize first.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanStreamerSettings(const SluiceVulkanStreamer *streamer,
+                                                        SluiceVulkanStreamerSettings *pSettings);
+
+/**
+ * Changes all settings. Get them, change fields, and set them. They take effect when the next frame
+ * begins; the frame that is being recorded keeps its own. Recordings of the manager hold what
+ * changes of its configuration.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for a value
+ *         out of range or a wrong structSize; SLUICE_ERROR_OUT_OF_HOST_MEMORY. Nothing has changed
+ *         after an error.
+ */
+SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
+    SluiceVulkanStreamer *streamer, const SluiceVulkanStreamerSettings *pSettings);
+
+/**
  * Waits until no read is in progress and all submitted bindings are complete. Does not wait for
  * frames.
  *

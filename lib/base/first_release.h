@@ -52,6 +52,8 @@
 #define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
+#define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
+#define SLC_FIRST_SluiceDemandLoaderSettings SLC_UP_TO(SluiceDemandLoaderSettings, noLodBias)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, pipelineCache)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)

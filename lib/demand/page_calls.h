@@ -23,22 +23,23 @@ enum slc_page_call_kind {
     SLC_PAGE_CALL_FORGET,
     SLC_PAGE_CALL_TAKE_CHANGES,
     SLC_PAGE_CALL_TAKE_EVICTED,
+    SLC_PAGE_CALL_SET_SWITCHES,
     SLC_PAGE_CALL_KINDS
 };
 
 /** Fields that the kind does not have are 0. */
 struct slc_page_call {
     enum slc_page_call_kind kind;
-    uint8_t class_index;             ///< SET_CLASS
-    bool flag;                       ///< SET_CLASS: has memory; FAILED: refuse
-    bool answer;                     ///< RETAKE, RETRY
-    uint32_t page;                   ///< of one page; FORGET: the first
-    uint32_t page_kind;              ///< TAKE
-    uint32_t place;                  ///< TAKE, RETAKE, GIVE
-    uint64_t launch;                 ///< BEGIN, PREPARE, ABANDON
-    uint64_t value;                  ///< SET_CLASS: limit; SETTLE: missing; LOADED: value
-    uint64_t count;                  ///< FORGET; TAKE_...: entries
-    uint32_t capacity;               ///< TAKE_...
+    uint8_t class_index; ///< SET_CLASS
+    bool flag;           ///< SET_CLASS: has memory; FAILED: refuse; SET_SWITCHES: no eviction
+    bool answer;         ///< RETAKE, RETRY; SET_SWITCHES: no LOD bias
+    uint32_t page;       ///< of one page; FORGET: the first
+    uint32_t page_kind;  ///< TAKE
+    uint32_t place;      ///< TAKE, RETAKE, GIVE
+    uint64_t launch;     ///< BEGIN, PREPARE, ABANDON
+    uint64_t value;      ///< SET_CLASS: limit; SETTLE: missing; LOADED: value
+    uint64_t count;      ///< FORGET; TAKE_...: entries
+    uint32_t capacity;   ///< TAKE_...
     struct slc_page_request request; ///< REQUEST
     SluiceResult result;             ///< REQUEST
     enum slc_request_answer request_answer;

@@ -60,6 +60,20 @@ SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uin
     return SLUICE_SUCCESS;
 }
 
+void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_eviction,
+                                bool no_lod_bias)
+{
+    struct slc_demand_residency *r = residency;
+    r->no_eviction = no_eviction;
+    r->no_lod_bias = no_lod_bias;
+    if ((no_eviction || no_lod_bias) && r->bias.quarters) {
+        r->bias = (struct slc_demand_bias){0};
+        r->bias_shown = false;
+    }
+    SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_SET_SWITCHES, .flag = no_eviction,
+                   .answer = no_lod_bias);
+}
+
 void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
                               struct slc_residency_counts *counts)
 {

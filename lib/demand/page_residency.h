@@ -95,6 +95,10 @@ void slc_residency_destroy(struct slc_demand_residency *residency);
 SluiceResult slc_residency_set_class(struct slc_demand_residency *residency, uint32_t class_index,
                                      uint64_t limit, const struct slc_page_memory *memory);
 
+/** As at creation. A bias that is switched off is 0 from the next launch that is prepared. */
+void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_eviction,
+                                bool no_lod_bias);
+
 /** `launch` is larger than before. */
 void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch);
 /** Of a page that is not resident any more: ignored. */

@@ -208,6 +208,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     if (loader->launch - loader->processed >= loader->info.launchesInFlight)
         return SLUICE_NOT_READY;
     uint64_t launch = loader->launch + 1;
+    slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
     loader->memory_pressure = slc_memory_client_begin(&loader->memory);
     exhume(loader);
@@ -246,7 +247,7 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
     if (loader->tracked[slot])
         slc_page_directory_record_used(&loader->directory, commandBuffer, slot);
     slc_demand_scan_record(&loader->scan, &loader->vk, commandBuffer, slot,
-                           slc_page_space_end(loader->space), loader->info.maxRequestsPerLaunch);
+                           slc_page_space_end(loader->space), loader->requests_per_launch);
     loader->ended = loader->launch;
     return SLUICE_SUCCESS;
 }

@@ -307,6 +307,12 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
         sluiceDestroyDemandLoader(loader);
         return result;
     }
+    loader->settings =
+        (SluiceDemandLoaderSettings){.structSize = sizeof loader->settings,
+                                     .maxRequestsPerLaunch = info.maxRequestsPerLaunch,
+                                     .failureRetryDelayNs = info.failureRetryDelayNs,
+                                     .noEviction = info.noEviction,
+                                     .noLodBias = info.noLodBias};
     *pLoader = loader;
     return SLUICE_SUCCESS;
 }

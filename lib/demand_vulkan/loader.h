@@ -278,6 +278,8 @@ struct SluiceDemandLoader {
     bool tracked[SLC_MAX_LAUNCHES];    ///< by launch: shaders said what they used
     uint32_t limited_count;            ///< resources with a limit
     struct slc_retries retries;
+    SluiceDemandLoaderSettings settings; ///< from the next launch on
+    uint32_t requests_per_launch;        ///< of the present one
     SluiceDemandStatistics counts;
 };
 
@@ -295,6 +297,10 @@ static inline const char *slc_image_name(const struct slc_demand_image *image)
         return image->origin.pName;
     return image->source && image->info.pName ? image->info.pName : "image";
 }
+
+/* settings.c */
+/** A launch begins. */
+void slc_loader_settings_apply(SluiceDemandLoader *loader);
 
 /* textures.c */
 SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId id,

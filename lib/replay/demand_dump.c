@@ -115,6 +115,10 @@ void slc_dump_page_call(struct slc_dump *dump, const struct slc_page_call *call)
         break;
     case SLC_PAGE_CALL_TAKE_CHANGES: dump_changes(dump, call); break;
     case SLC_PAGE_CALL_TAKE_EVICTED: dump_evicted(dump, call); break;
+    case SLC_PAGE_CALL_SET_SWITCHES:
+        slc_dump_line(dump, "%" PRIu64 " set-switches%s%s", event, call->flag ? " no-eviction" : "",
+                      call->answer ? " no-lod-bias" : "");
+        break;
     case SLC_PAGE_CALL_KINDS: break;
     }
 }

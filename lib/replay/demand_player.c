@@ -221,6 +221,7 @@ static SluiceResult make_call(struct slc_demand_player *player, struct slc_page_
     case SLC_PAGE_CALL_FORGET: slc_residency_forget(r, call->page, call->count); break;
     case SLC_PAGE_CALL_TAKE_CHANGES:
     case SLC_PAGE_CALL_TAKE_EVICTED: return take_list(player, call);
+    case SLC_PAGE_CALL_SET_SWITCHES: slc_residency_set_switches(r, call->flag, call->answer); break;
     case SLC_PAGE_CALL_TAKE:
     case SLC_PAGE_CALL_RETAKE:
     case SLC_PAGE_CALL_GIVE:

@@ -36,6 +36,7 @@ static const uint32_t call_fields[SLC_PAGE_CALL_KINDS] = {
     [SLC_PAGE_CALL_FORGET] = FIELD_PAGE | FIELD_COUNT,
     [SLC_PAGE_CALL_TAKE_CHANGES] = FIELD_CAPACITY | FIELD_COUNT | FIELD_HASH,
     [SLC_PAGE_CALL_TAKE_EVICTED] = FIELD_CAPACITY | FIELD_COUNT | FIELD_HASH,
+    [SLC_PAGE_CALL_SET_SWITCHES] = FIELD_FLAG | FIELD_ANSWER,
 };
 
 bool slc_page_call_is_answer(enum slc_page_call_kind kind)

@@ -206,6 +206,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     s->submittable[s->slot] = false;
     s->slot_turn++;
     s->time_stamp = timeStamp;
+    slc_settings_apply(s);
     slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
     *pFrame = (SluiceStreamingFrame){
         .frameIndex = s->frame, .semaphore = s->semaphore, .signalValue = s->frame};

@@ -13,8 +13,6 @@
 
 #include <string.h>
 
-#define MAX_TILES_PER_FRAME (1u << 14)
-
 static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
 {
     SluiceVulkanStreamer *s = user;
@@ -40,7 +38,7 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
     const struct slc_limit limits[] = {
         {"framesInFlight", info->framesInFlight, 1, SLC_MAX_FRAMES},
         {"maxTextureCount", info->maxTextureCount, 1, 1u << 20},
-        {"tilesPerFrame", info->tilesPerFrame, 1, MAX_TILES_PER_FRAME},
+        {"tilesPerFrame", info->tilesPerFrame, 1, SLC_MAX_TILES_PER_FRAME},
         {"maxLoadsInFlight", info->maxLoadsInFlight, 1, 1u << 16},
         {"heapTileCapacity", info->heapTileCapacity, 1, 1u << 20},
         {"maxRegionCount", info->maxRegionCount, SLC_REGION_ALIGNMENT, 1u << 28},
@@ -61,7 +59,7 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
     set_default(&info->texturesPerFrame, 10);
     set_default(&info->tilesPerFrame, 256);
     set_default(&info->maxLoadsInFlight,
-                slc_max_u32(64, 4 * slc_min_u32(info->tilesPerFrame, MAX_TILES_PER_FRAME)));
+                slc_max_u32(64, 4 * slc_min_u32(info->tilesPerFrame, SLC_MAX_TILES_PER_FRAME)));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
     set_default(&info->maxPageChunkCount, 64);
@@ -168,6 +166,7 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
     s->fade_clock.time_per_level = s->info.residencyFadeTicks;
+    s->most_textures_per_frame = s->next_textures_per_frame = s->info.texturesPerFrame;
     return slc_region_arena_init(&s->regions, cb, s->info.maxRegionCount, textures);
 }
 
@@ -177,7 +176,7 @@ static struct slc_resolve_create_info resolve_info(const SluiceVulkanStreamer *s
                                             .readback = s->readback.buffer.buffer,
                                             .region_capacity = s->regions.size,
                                             .slot_count = s->info.framesInFlight,
-                                            .max_items = s->info.texturesPerFrame,
+                                            .max_items = s->most_textures_per_frame,
                                             .encoding = (uint32_t)s->info.feedbackEncoding};
 }
 

@@ -26,6 +26,7 @@
 #include <sluice/shared/texture_table.h>
 
 #define SLC_MAX_FRAMES 16u
+#define SLC_MAX_TILES_PER_FRAME (1u << 14)
 
 enum slc_texture_state {
     SLC_TEXTURE_FREE = 0,
@@ -134,6 +135,8 @@ struct SluiceVulkanStreamer {
     uint64_t time_stamp; ///< of the last frame begun
     struct slc_time_check time_check;
     uint64_t manager_time;              ///< the last time stamp that the manager got
+    uint32_t most_textures_per_frame;   ///< that the buffers have room for
+    uint32_t next_textures_per_frame;   ///< from the next frame on
     uint64_t in_flight[SLC_MAX_FRAMES]; ///< by slot; framesInFlight of them; 0: none
     bool submittable[SLC_MAX_FRAMES];   ///< by slot; its frame was ended without an error
     uint64_t slot_turn;                 ///< frames begun and not abandoned
@@ -209,6 +212,10 @@ static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 /** Logs what the manager refuses although it should not; returns `result`. */
 SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
                                 const char *what);
+
+/* settings.c */
+/** A frame begins. */
+void slc_settings_apply(SluiceVulkanStreamer *s);
 
 /* frame.c */
 /** The last frame that may be under way on the GPU: ended, and not abandoned. 0: none. */

@@ -29,6 +29,8 @@ sluiceGetVulkanDescriptorSetLayout(f->streamer, &f->out.set_layout)
 sluiceBeginStreamingFrame(f->streamer, f->commands, 2, &f->out.frame) => sluiceAbandonStreamingFrame(f->streamer, &f->out.frame)
 !sluiceEndStreamingFrame(f->streamer, f->commands)
 !sluiceAbandonStreamingFrame(f->streamer, &f->frame)
+sluiceGetVulkanStreamerSettings(f->streamer, &f->settings)
+sluiceSetVulkanStreamerSettings(f->streamer, &f->settings)
 sluiceGetVulkanStreamerStatistics(f->streamer, &f->out.statistics)
 sluiceGetVulkanReadStatistics(f->streamer, ?f->source, &f->out.reads)
 sluiceRetryVulkanSource(f->streamer, ?f->source)
@@ -61,6 +63,8 @@ sluiceWaitDemandTicket(f->loader, 0, 1, ?&f->out.ticket_status)
 sluiceCancelDemandTicket(f->loader, 0)
 !sluiceAbortDemandLoader(f->loader)
 sluiceBeginDemandRecording(f->fresh_loader, &f->recording, &f->out.recorder) => sluiceEndRecording(f->out.recorder)
+sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings)
+sluiceSetDemandLoaderSettings(f->loader, &f->loader_settings)
 sluiceGetDemandStatistics(f->loader, &f->out.demand_statistics)
 */
 /* clang-format on */
@@ -76,6 +80,8 @@ struct fixture {
     SluiceStreamingFrame frame;
     SluiceVulkanTextureCreateInfo texture_info;
     SluiceVulkanTexture texture;
+    SluiceVulkanStreamerSettings settings;
+    SluiceDemandLoaderSettings loader_settings;
     SluiceDemandLoaderCreateInfo loader_info;
     SluiceDemandLoader *loader, *fresh_loader;
     SluiceFileRecordingInfo recording;
@@ -141,6 +147,9 @@ static void init_streamer(struct fixture *f)
         .maxTextureCount = 8, .tilesPerFrame = 4, .maxRegionCount = 64, .loaderThreadCount = 1};
     harness_fill(&h, &f->streamer_info);
     CHECK_OK(sluiceCreateVulkanStreamer(&f->streamer_info, &f->streamer));
+    f->settings.structSize = sizeof f->settings;
+    f->loader_settings.structSize = sizeof f->loader_settings;
+    CHECK_OK(sluiceGetVulkanStreamerSettings(f->streamer, &f->settings));
     f->texture_info.source = f->source;
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
 }
@@ -154,6 +163,7 @@ static void init_loader(struct fixture *f)
                                                     .memoryBudget = 4 << 20,
                                                     .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
+    CHECK_OK(sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings));
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
     f->recording = (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo),
                                              .pPath = "null_arguments_demand.trace"};

@@ -61,6 +61,38 @@ static void random_run_replays_to_the_same_decisions(void **state)
     assert_true(sum.failureCount > 100 && out_of_memory > 10);
 }
 
+static void switches_of_a_running_residency_are_replayed(void **state)
+{
+    (void)state;
+    struct demand_app app;
+    struct trace_buffer trace;
+    SluiceRecorder *recorder;
+    SluiceReplayResult result = {.structSize = sizeof result};
+    const SluiceRecordWriter writer = trace_buffer_writer(&trace);
+    demand_app_init(&app, 3, false);
+    CHECK_OK(slc_begin_demand_recording(app.residency, &writer, NULL, &recorder));
+    uint32_t without = 0;
+    for (uint32_t i = 0; i < 64; i++) {
+        struct slc_residency_counts before, after;
+        slc_residency_set_switches(app.residency, i % 2, i % 4 >= 2);
+        slc_residency_get_counts(app.residency, 0, &before);
+        demand_app_run(&app, 40);
+        slc_residency_get_counts(app.residency, 0, &after);
+        without += after.evicted == before.evicted;
+        if (i % 4)
+            assert_true(slc_residency_lod_bias(app.residency) == 0);
+    }
+    assert_in_range(without, 1, 60); /* in some there are evictions */
+    CHECK_OK(sluiceEndRecording(recorder));
+
+    const SluiceReplayInfo info = replay_info(&trace);
+    CHECK_OK(sluiceReplay(&info, &result));
+    assert_int_equal(result.divergedEvent, 0);
+    assert_true(result.decisionHash == result.recordedHash);
+    demand_app_finish(&app);
+    trace_buffer_free(&trace);
+}
+
 static void read_back(const char *path, struct trace_buffer *buffer)
 {
     FILE *file = fopen(path, "rb");
@@ -361,6 +393,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_run_replays_to_the_same_decisions),
+        cmocka_unit_test(switches_of_a_running_residency_are_replayed),
         cmocka_unit_test(replay_recorded_again_is_the_same_trace),
         cmocka_unit_test(decision_hash_is_as_documented),
         cmocka_unit_test(a_residency_that_was_used_says_so),

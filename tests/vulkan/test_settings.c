@@ -1,0 +1,381 @@
+/* What a running application changes takes effect with the next frame or launch, or not at all. */
+#include "vulkan/fake_vulkan.h"
+
+#include "support/failing_allocator.h"
+#include "support/test.h"
+
+#include <sluice/demand.h>
+
+#include <string.h>
+
+enum { TEXTURES = 4 };
+
+struct stage {
+    struct fake_vulkan fake;
+    struct failing_allocator memory;
+    SluiceVulkanContext *context;
+    SluiceVulkanStreamer *streamer;
+    SluiceDemandLoader *loader;
+    SluiceImageSource *source;
+    uint64_t time;
+    bool looks;
+    char last[256]; ///< message
+};
+
+static uint8_t want(void *user, uint32_t region)
+{
+    (void)region;
+    return ((struct stage *)user)->looks ? 0 : SLUICE_MIP_UNTOUCHED;
+}
+
+static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
+{
+    (void)user, (void)level, (void)x, (void)y, (void)width, (void)height;
+    rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
+}
+
+static void keep_message(void *user, SluiceLogSeverity severity, const char *message)
+{
+    (void)severity;
+    strncpy(((struct stage *)user)->last, message, sizeof((struct stage *)user)->last - 1);
+}
+
+static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
+{
+    static struct stage s; /* large */
+    s = (struct stage){.fake = {.tail_page_count = 1, .want = want, .user = &s}, .looks = true};
+    failing_allocator_init(&s.memory, UINT64_MAX);
+    s.fake.log = (SluiceLogCallback){&s, keep_message};
+    s.fake.pAllocator = &s.memory.callbacks;
+    SluiceProceduralImage image = {NULL, texel};
+    SluiceImageInfo grey = {.structSize = sizeof grey,
+                            .width = 1024,
+                            .height = 1024,
+                            .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
+                            .pName = "grey"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+    SluiceVulkanStreamerCreateInfo info = *settings;
+    info.maxTextureCount = TEXTURES;
+    info.maxRegionCount = 1 << 10;
+    info.loaderThreadCount = 1;
+    fake_vulkan_fill(&info);
+    CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
+    SluiceVulkanTextureCreateInfo create = {.source = s.source};
+    SluiceVulkanTexture texture;
+    for (int i = 0; i < TEXTURES; i++)
+        CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
+    return &s;
+}
+
+static void stage_finish(struct stage *s)
+{
+    fake_vulkan_destroy(s->streamer);
+    sluiceDestroyImageSource(s->source);
+    assert_true(s->fake.live_objects == 0 && s->memory.live_bytes == 0);
+}
+
+static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
+{
+    SluiceVulkanStreamerStatistics stats;
+    CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
+    return stats;
+}
+
+static void frame(struct stage *s)
+{
+    struct fake_vulkan *fake = &s->fake;
+    SluiceStreamingFrame frame;
+    fake->published = false;
+    fake->copy_count = fake->bind_count = 0;
+    fake->bind_value = fake->submitted_bind_value;
+    CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
+    CHECK_OK(sluiceBeginStreamingFrame(s->streamer, fake_vulkan_commands(fake), ++s->time, &frame));
+    CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(fake)));
+    fake->frame_semaphore = frame.semaphore;
+    fake->frame_value = frame.signalValue;
+}
+
+static SluiceVulkanStreamerSettings get(const struct stage *s)
+{
+    SluiceVulkanStreamerSettings settings = {.structSize = sizeof settings};
+    CHECK_OK(sluiceGetVulkanStreamerSettings(s->streamer, &settings));
+    return settings;
+}
+
+static bool are_same(const SluiceVulkanStreamerSettings *a, const SluiceVulkanStreamerSettings *b)
+{
+    return a->structSize == b->structSize && a->texturesPerFrame == b->texturesPerFrame &&
+           a->tilesPerFrame == b->tilesPerFrame &&
+           a->numExtraStandbyTiles == b->numExtraStandbyTiles &&
+           a->maxHeapCount == b->maxHeapCount &&
+           a->feedbackTimeoutTicks == b->feedbackTimeoutTicks &&
+           a->residencyFadeTicks == b->residencyFadeTicks &&
+           a->retryDelayTicks == b->retryDelayTicks &&
+           a->givenUpRetryDelayTicks == b->givenUpRetryDelayTicks &&
+           a->noEviction == b->noEviction && a->noMipBias == b->noMipBias;
+}
+
+static void settings_begin_as_the_create_info_says(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 3,
+                                                                   .tilesPerFrame = 17,
+                                                                   .numExtraStandbyTiles = 5,
+                                                                   .maxHeapCount = 7,
+                                                                   .feedbackTimeoutTicks = 9,
+                                                                   .residencyFadeTicks = 11,
+                                                                   .retryDelayTicks = 13,
+                                                                   .givenUpRetryDelayTicks = 15});
+    SluiceVulkanStreamerSettings settings = get(s);
+    assert_int_equal(settings.texturesPerFrame, 3);
+    assert_int_equal(settings.tilesPerFrame, 17);
+    assert_int_equal(settings.numExtraStandbyTiles, 5);
+    assert_int_equal(settings.maxHeapCount, 7);
+    assert_int_equal(settings.feedbackTimeoutTicks, 9);
+    assert_int_equal(settings.residencyFadeTicks, 11);
+    assert_int_equal(settings.retryDelayTicks, 13);
+    assert_int_equal(settings.givenUpRetryDelayTicks, 15);
+    assert_false(settings.noEviction || settings.noMipBias);
+    settings = (SluiceVulkanStreamerSettings){.structSize = sizeof settings,
+                                              .texturesPerFrame = 1,
+                                              .tilesPerFrame = 40,
+                                              .numExtraStandbyTiles = 50,
+                                              .maxHeapCount = 70,
+                                              .feedbackTimeoutTicks = 90,
+                                              .residencyFadeTicks = 110,
+                                              .retryDelayTicks = 130,
+                                              .givenUpRetryDelayTicks = 150,
+                                              .noEviction = true,
+                                              .noMipBias = true};
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    SluiceVulkanStreamerSettings set = get(s);
+    assert_true(are_same(&set, &settings));
+    stage_finish(s);
+}
+
+static void wrong_settings_change_nothing_and_are_named(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 3});
+    SluiceVulkanStreamerSettings before = get(s);
+    for (int i = 0; i < 6; i++) {
+        SluiceVulkanStreamerSettings wrong = before;
+        const char *names[] = {"texturesPerFrame", "texturesPerFrame",   "tilesPerFrame",
+                               "tilesPerFrame",    "residencyFadeTicks", "structSize"};
+        wrong.numExtraStandbyTiles = 99;
+        wrong.feedbackTimeoutTicks = 98;
+        wrong.texturesPerFrame = i == 0 ? 0 : i == 1 ? 4 : 3;
+        wrong.tilesPerFrame = i == 2 ? 0 : i == 3 ? (1 << 14) + 1 : 256;
+        wrong.residencyFadeTicks = i == 4 ? ((uint64_t)1 << 40) + 1 : 0;
+        wrong.structSize -= i == 5 ? 32 : 0;
+        CHECK_RESULT(sluiceSetVulkanStreamerSettings(s->streamer, &wrong),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
+        if (!strstr(s->last, names[i]))
+            fail_msg("\"%s\" does not name %s", s->last, names[i]);
+        SluiceVulkanStreamerSettings after = get(s);
+        assert_true(are_same(&after, &before));
+    }
+    SluiceVulkanStreamerSettings unset = {.structSize = 0};
+    CHECK_RESULT(sluiceGetVulkanStreamerSettings(s->streamer, &unset),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    stage_finish(s);
+}
+
+static void tiles_per_frame_limit_the_next_frame(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.tilesPerFrame = 4, .feedbackTimeoutTicks = 1000});
+    for (int i = 0; i < 10; i++)
+        frame(s);
+    const uint32_t counts[] = {2, 64, 1, 16384};
+    for (int i = 0; i < 4; i++) {
+        SluiceVulkanStreamerSettings settings = get(s);
+        settings.tilesPerFrame = counts[i];
+        CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+        uint64_t before = statistics(s).tilesMapped;
+        for (int f = 0; f < 4; f++)
+            frame(s);
+        uint64_t mapped = statistics(s).tilesMapped - before;
+        assert_true(mapped > 0 && mapped <= 4 * (uint64_t)counts[i]);
+        assert_true(counts[i] < 64 || mapped > 16);
+    }
+    stage_finish(s);
+}
+
+static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 4, .feedbackTimeoutTicks = 1000});
+    frame(s);
+    frame(s);
+    uint64_t before = statistics(s).feedbackMaps;
+    frame(s);
+    assert_int_equal(statistics(s).feedbackMaps - before, 4);
+    SluiceVulkanStreamerSettings settings = get(s);
+    settings.texturesPerFrame = 1;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    frame(s); /* reads the last frame's */
+    before = statistics(s).feedbackMaps;
+    for (int i = 0; i < 5; i++)
+        frame(s);
+    assert_int_equal(statistics(s).feedbackMaps - before, 5);
+    settings.texturesPerFrame = 4;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    frame(s);
+    before = statistics(s).feedbackMaps;
+    frame(s);
+    assert_int_equal(statistics(s).feedbackMaps - before, 4);
+    stage_finish(s);
+}
+
+static void timeout_and_standby_follow_the_settings(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .feedbackTimeoutTicks = 1000000, .numExtraStandbyTiles = 10000, .tilesPerFrame = 1000});
+    for (int i = 0; i < 12; i++)
+        frame(s);
+    uint32_t mapped = (uint32_t)statistics(s).manager.mappedTileCount;
+    assert_true(mapped > 4 * 64);
+    s->looks = false;
+    for (int i = 0; i < 30; i++)
+        frame(s);
+    assert_int_equal(statistics(s).manager.mappedTileCount, mapped); /* the timeout is long */
+    SluiceVulkanStreamerSettings settings = get(s);
+    settings.feedbackTimeoutTicks = 0;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    for (int i = 0; i < 60; i++)
+        frame(s);
+    uint32_t standby = (uint32_t)statistics(s).manager.standbyTileCount;
+    assert_true(standby > 4 * 64);
+    settings.numExtraStandbyTiles = 3;
+    CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
+    for (int i = 0; i < 4; i++)
+        frame(s);
+    assert_int_equal(statistics(s).manager.standbyTileCount, 3);
+    stage_finish(s);
+}
+
+static void configuration_of_the_manager_and_settings_are_one(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
+                                                 .numExtraStandbyTiles = 21,
+                                                 .missesToExpire = 2,
+                                                 .prefetchLevels = 1};
+    CHECK_OK(sluiceSetConfig(sluiceGetVulkanStreamerManager(s->streamer), &config));
+    SluiceVulkanStreamerSettings settings = get(s);
+    assert_int_equal(settings.numExtraStandbyTiles, 21);
+    stage_finish(s);
+}
+
+static void settings_survive_every_refused_allocation(void **state)
+{
+    (void)state;
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.tilesPerFrame = 8});
+    SluiceVulkanStreamerSettings before = get(s), settings = before;
+    settings.tilesPerFrame = 9;
+    settings.feedbackTimeoutTicks = 77;
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    uint64_t n = 0;
+    for (; result != SLUICE_SUCCESS; n++) {
+        s->memory.refuse_from = s->memory.calls + n;
+        result = sluiceSetVulkanStreamerSettings(s->streamer, &settings);
+        if (result == SLUICE_SUCCESS)
+            break;
+        CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
+        SluiceVulkanStreamerSettings after = get(s);
+        assert_true(are_same(&after, &before));
+    }
+    s->memory.refuse_from = UINT64_MAX;
+    assert_int_equal(n, 4);
+    for (int i = 0; i < 10; i++)
+        frame(s);
+    stage_finish(s);
+}
+
+static SluiceDemandLoaderSettings get_of_loader(const struct stage *s)
+{
+    SluiceDemandLoaderSettings settings = {.structSize = sizeof settings};
+    CHECK_OK(sluiceGetDemandLoaderSettings(s->loader, &settings));
+    return settings;
+}
+
+static struct stage *stage_of_loader(void)
+{
+    static struct stage s; /* large */
+    s = (struct stage){.fake = {.no_resolve = true}};
+    failing_allocator_init(&s.memory, UINT64_MAX);
+    s.fake.log = (SluiceLogCallback){&s, keep_message};
+    s.fake.pAllocator = &s.memory.callbacks;
+    const SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&s.fake);
+    CHECK_OK(sluiceCreateVulkanContext(&context, &s.context));
+    SluiceDemandLoaderCreateInfo info = {.context = s.context,
+                                         .maxTextureCount = 64,
+                                         .pageCapacity = 1 << 16,
+                                         .maxRequestsPerLaunch = 100,
+                                         .failureRetryDelayNs = 5,
+                                         .loaderThreadCount = 1};
+    CHECK_OK(sluiceCreateDemandLoader(&info, &s.loader));
+    return &s;
+}
+
+static void settings_of_a_loader_take_no_memory(void **state)
+{
+    (void)state;
+    struct stage *s = stage_of_loader();
+    SluiceDemandLoaderSettings settings = get_of_loader(s), wrong = settings;
+    assert_int_equal(settings.maxRequestsPerLaunch, 100);
+    assert_int_equal(settings.failureRetryDelayNs, 5);
+    assert_false(settings.noEviction || settings.noLodBias);
+    wrong.maxRequestsPerLaunch = 101;
+    CHECK_RESULT(sluiceSetDemandLoaderSettings(s->loader, &wrong), SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(s->last, "maxRequestsPerLaunch"));
+    settings = (SluiceDemandLoaderSettings){.structSize = sizeof settings,
+                                            .maxRequestsPerLaunch = 1,
+                                            .failureRetryDelayNs = UINT64_MAX,
+                                            .noEviction = true,
+                                            .noLodBias = true};
+    uint64_t calls = s->memory.calls;
+    s->memory.refuse_from = 0;
+    CHECK_OK(sluiceSetDemandLoaderSettings(s->loader, &settings));
+    SluiceDemandLoaderSettings set = get_of_loader(s);
+    assert_true(set.maxRequestsPerLaunch == 1 && set.failureRetryDelayNs == UINT64_MAX);
+    assert_true(set.noEviction && set.noLodBias);
+    assert_int_equal(s->memory.calls, calls);
+    s->memory.refuse_from = UINT64_MAX;
+    for (int i = 0; i < 2; i++) {
+        SluiceDemandLaunch launch;
+        SluiceDemandRequests requests;
+        VkCommandBuffer commands = fake_vulkan_commands(&s->fake);
+        CHECK_OK(sluiceBeginDemandLaunch(s->loader, commands, &launch));
+        CHECK_OK(sluiceEndDemandLaunch(s->loader, commands));
+        s->fake.frame_semaphore = launch.semaphore;
+        s->fake.frame_value = launch.signalValue;
+        CHECK_OK(sluiceProcessDemandRequests(s->loader, &launch, 0, &requests, NULL));
+        settings.noEviction = settings.noLodBias = false;
+        CHECK_OK(sluiceSetDemandLoaderSettings(s->loader, &settings));
+    }
+    sluiceDestroyDemandLoader(s->loader);
+    sluiceDestroyVulkanContext(s->context);
+    assert_true(s->fake.live_objects == 0 && s->memory.live_bytes == 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(settings_begin_as_the_create_info_says),
+        cmocka_unit_test(wrong_settings_change_nothing_and_are_named),
+        cmocka_unit_test(tiles_per_frame_limit_the_next_frame),
+        cmocka_unit_test(textures_per_frame_are_those_of_the_frame_that_began),
+        cmocka_unit_test(timeout_and_standby_follow_the_settings),
+        cmocka_unit_test(configuration_of_the_manager_and_settings_are_one),
+        cmocka_unit_test(settings_survive_every_refused_allocation),
+        cmocka_unit_test(settings_of_a_loader_take_no_memory),
+    };
+    return RUN_TESTS(tests);
+}
