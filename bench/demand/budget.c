@@ -8,8 +8,8 @@
 static bool working_set(const struct bench *bench, uint64_t *size)
 {
     struct rig rig;
-    SluiceDemandLoaderCreateInfo info = {0};
-    SluiceDemandStatistics s;
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info};
+    SluiceDemandStatistics s = {.structSize = sizeof s};
     bool done = rig_create(&rig, bench, &info, false) && rig_load(&rig, 1000) > 0 &&
                 check(sluiceGetDemandStatistics(rig.loader, &s), "sluiceGetDemandStatistics");
     *size = done ? s.residentTileCount * 65536 : 0;
@@ -19,7 +19,8 @@ static bool working_set(const struct bench *bench, uint64_t *size)
 
 static bool later(struct rig *rig, uint64_t *uploaded)
 {
-    SluiceDemandStatistics before, after;
+    SluiceDemandStatistics before = {.structSize = sizeof before},
+                           after = {.structSize = sizeof after};
     struct rig_outcome outcome;
     if (!check(sluiceGetDemandStatistics(rig->loader, &before), "sluiceGetDemandStatistics"))
         return false;
@@ -40,9 +41,10 @@ bool measure_budget(const struct bench *bench)
     if (!working_set(bench, &wanted))
         return false;
     struct rig rig;
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = (uint64_t)((double)wanted * SHARE)};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = (uint64_t)((double)wanted * SHARE)};
     struct rig_outcome outcome = {0};
-    SluiceDemandStatistics s;
+    SluiceDemandStatistics s = {.structSize = sizeof s};
     bool done = rig_create(&rig, bench, &info, false);
     uint32_t launches = done ? rig_load(&rig, MAX_LAUNCHES) : 0;
     rig.params.counting = 1;

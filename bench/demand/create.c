@@ -17,7 +17,8 @@ static SluiceResult count_open(void *user, SluiceImageSource **source)
 static bool create_many(struct rig *rig, uint32_t count, double *seconds, uint32_t *opened)
 {
     struct counted_image image = {0};
-    SluiceDemandTextureCreateInfo info = {.image = {.pUserData = &image, .pfnOpen = count_open}};
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                          .image = {.pUserData = &image, .pfnOpen = count_open}};
     struct rig_outcome outcome;
     double start = clock_seconds();
     for (uint32_t i = 0; i < count; i++) {
@@ -40,12 +41,13 @@ bool measure_create(const struct bench *bench)
     struct bench small = *bench;
     small.edge = 8;
     struct rig rig;
-    SluiceDemandLoaderCreateInfo info = {.pageCapacity = UINT64_C(1) << 26,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .pageCapacity = UINT64_C(1) << 26,
                                          .memoryBudget = UINT64_C(1) << 28};
     bool done =
         rig_create(&rig, &small, &info, false) && create_many(&rig, count, &seconds, &opened);
     if (done) {
-        SluiceDemandStatistics s;
+        SluiceDemandStatistics s = {.structSize = sizeof s};
         done = check(sluiceGetDemandStatistics(rig.loader, &s), "sluiceGetDemandStatistics");
         figure("create.seconds", NULL, seconds, "s");
         figure("create.textures", NULL, count, "textures");

@@ -82,8 +82,8 @@ static bool create_sampler(struct rig *rig)
 /* Without plain images their places show pages: no shader that is run looks at them. */
 static void write_set(struct rig *rig)
 {
-    SluiceDemandBuffers b;
-    SluiceVulkanPages pages;
+    SluiceDemandBuffers b = {.structSize = sizeof b};
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetDemandBuffers(rig->loader, &b);
     sluiceGetDemandPages(rig->loader, &pages);
     const VkBuffer buffers[BUFFER_COUNT] = {
@@ -133,7 +133,7 @@ void rig_destroy_descriptors(struct rig *rig)
 /* The launch that used this set is over. */
 void rig_write_pages(struct rig *rig, struct rig_slot *slot)
 {
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetDemandPages(rig->loader, &pages);
     if (slot->generation == pages.generation)
         return;

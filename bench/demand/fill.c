@@ -90,7 +90,7 @@ static void report(const char *name, const struct fill_times *times, double rate
 static bool fill_with(const struct bench *bench, const SluiceDemandLoaderCreateInfo *info,
                       const char *name, struct fill_rates *rates)
 {
-    SluiceDemandStatistics s;
+    SluiceDemandStatistics s = {.structSize = sizeof s};
     struct fill_times times = {.seconds = INFINITY}, both[2];
     for (uint32_t i = 0; i < (options.quick ? 1u : 3u); i++) {
         if (!fill_twice(bench, info, both, &s))
@@ -109,14 +109,14 @@ bool measure_fill(const struct bench *bench)
 {
     struct fill_rates rates = {0}, growing = {0};
     for (uint32_t tiles = 512; tiles <= (options.quick ? 512u : 8192u); tiles *= 2) {
-        const SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = tiles,
-                                                   .minStagingSize = UINT64_MAX};
+        const SluiceDemandLoaderCreateInfo info = {
+            .structSize = sizeof info, .maxTilesInFlight = tiles, .minStagingSize = UINT64_MAX};
         char name[64];
         snprintf(name, sizeof name, "fill.%u_in_flight", tiles);
         if (!fill_with(bench, &info, name, &rates))
             return false;
     }
-    const SluiceDemandLoaderCreateInfo defaults = {0};
+    const SluiceDemandLoaderCreateInfo defaults = {.structSize = sizeof defaults};
     if (!fill_with(bench, &defaults, "fill.defaults", &growing))
         return false;
     double best = rates.cold, best_again = rates.again;

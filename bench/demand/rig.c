@@ -46,7 +46,8 @@ static bool create_textures(struct rig *rig)
 {
     const struct bench *bench = rig->bench;
     free_source_init(&rig->source, SLUICE_FORMAT_R8G8B8A8_UNORM, bench->texture_size);
-    SluiceDemandTextureCreateInfo info = {.image.source = &rig->source.base};
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                          .image.source = &rig->source.base};
     uint32_t count = bench->columns * bench->columns;
     for (; rig->texture_count < count; rig->texture_count++) {
         SluiceDemandTextureId *id = &rig->ids[rig->texture_count];
@@ -191,6 +192,7 @@ static bool record(struct rig *rig, struct rig_slot *slot)
     if (rig->timed)
         vkCmdResetQueryPool(slot->commands, rig->queries, first_query(rig, slot), QUERIES);
     stamp(rig, slot, 0);
+    slot->launch.structSize = sizeof slot->launch;
     if (!check(sluiceBeginDemandLaunch(rig->loader, slot->commands, &slot->launch),
                "sluiceBeginDemandLaunch"))
         return false;
@@ -229,6 +231,7 @@ bool rig_end(struct rig *rig, struct rig_outcome *outcome)
     if (!gpu_check(vkWaitSemaphores(rig->bench->gpu.device, &wait, UINT64_MAX), "vkWaitSemaphores"))
         return false;
     double waited = clock_seconds();
+    outcome->requests.structSize = sizeof outcome->requests;
     if (!check(sluiceProcessDemandRequests(rig->loader, &slot->launch, 0, &outcome->requests,
                                            &outcome->ticket),
                "sluiceProcessDemandRequests"))
@@ -256,7 +259,8 @@ bool rig_launch(struct rig *rig, uint32_t kind, struct rig_outcome *outcome)
 bool rig_warm_up(struct rig *rig)
 {
     struct DemandBenchParams params = rig->params;
-    SluiceDemandTextureCreateInfo info = {.image.source = &rig->source.base};
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                          .image.source = &rig->source.base};
     SluiceDemandTextureId id;
     if (!check(sluiceAddDemandTexture(rig->loader, &info, &id), "sluiceAddDemandTexture"))
         return false;

@@ -18,7 +18,7 @@ static bool add_times(struct rig *rig, uint32_t kind, struct samples *samples)
 
 static bool measure(const struct bench *bench, bool tracking, double *plain, double *sampled)
 {
-    SluiceDemandLoaderCreateInfo info = {.noEviction = !tracking};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .noEviction = !tracking};
     struct rig rig;
     struct samples times[2];
     samples_init(&times[0], LAUNCHES * TURNS);

@@ -93,7 +93,8 @@ static bool measure(const struct bench *bench, uint32_t capacity, uint64_t budge
     struct rig rig;
     struct samples times;
     samples_init(&times, TRIPS);
-    SluiceDemandLoaderCreateInfo info = {.maxRequestsPerLaunch = capacity, .memoryBudget = budget};
+    SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .maxRequestsPerLaunch = capacity, .memoryBudget = budget};
     bool done = rig_create(&rig, bench, &info, false) && rig_load(&rig, 1000) > 0 &&
                 trips(&rig, &times) && report_parts(&rig, name);
     if (done)
@@ -108,7 +109,7 @@ static bool measure_floor(const struct bench *bench)
     struct rig rig;
     struct samples times;
     samples_init(&times, TRIPS);
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = TIGHT};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = TIGHT};
     bool done = rig_create(&rig, bench, &info, false) && empty_submissions(&rig, &times);
     if (done)
         figure("trip.floor", NULL, samples_quantile(&times, 0.5) * 1e-3, "us");

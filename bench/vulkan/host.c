@@ -159,8 +159,8 @@ static bool walk(const struct bench *bench, uint32_t share, float probability, c
     bool done = walk_create(w, bench, share, probability) && walk_frames(w, true, name) &&
                 walk_frames(w, false, name);
     if (done)
-        report(bench, (double)rig_statistics(&w->rig).manager.mappedTileCount, "tiles",
-               "%s.tiles_in_view", name);
+        report(bench, (double)rig_statistics(&w->rig).mappedTileCount, "tiles", "%s.tiles_in_view",
+               name);
     rig_destroy(&w->rig);
     free(w);
     return done;

@@ -39,6 +39,7 @@ static bool create_context(struct rig *rig, const struct rig_info *info)
 static bool create_streamer(struct rig *rig, const struct rig_info *info)
 {
     SluiceVulkanStreamerCreateInfo create = info->streamer;
+    create.structSize = sizeof create;
     create.context = rig->context;
     if (create.residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
         create.residencyMode = rig->bench->mode;
@@ -56,8 +57,8 @@ static bool add_textures(struct rig *rig, const struct rig_info *info)
     rig->textures = calloc(info->texture_count, sizeof *rig->textures);
     if (!rig->textures)
         return false;
-    SluiceVulkanTextureCreateInfo create = {.source = &rig->source.base,
-                                            .primaryId = SLUICE_NO_TEXTURE};
+    SluiceVulkanTextureCreateInfo create = {
+        .structSize = sizeof create, .source = &rig->source.base, .primaryId = SLUICE_NO_TEXTURE};
     for (; rig->texture_count < info->texture_count; rig->texture_count++)
         if (!check(
                 sluiceAddVulkanTexture(rig->streamer, &create, &rig->textures[rig->texture_count]),
@@ -288,7 +289,7 @@ static bool submit_timed(struct rig *rig, struct rig_slot *slot)
 bool rig_frame(struct rig *rig, const struct rig_work *work)
 {
     struct rig_slot *slot = &rig->slots[(rig->frame + 1) % RIG_FRAMES];
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     if (!reap(rig, slot) || !record_begin(rig, slot, work, &frame) || !record_rest(rig, slot, work))
         return false;
     slot->samples = work->samples;
@@ -313,7 +314,7 @@ bool rig_settle(struct rig *rig)
 
 SluiceVulkanStreamerStatistics rig_statistics(const struct rig *rig)
 {
-    SluiceVulkanStreamerStatistics statistics;
+    SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
     sluiceGetVulkanStreamerStatistics(rig->streamer, &statistics);
     return statistics;
 }

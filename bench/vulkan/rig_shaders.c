@@ -90,7 +90,7 @@ static bool create_sampler(struct rig *rig, float anisotropy)
 
 static void write_set(struct rig *rig, VkImageView plain)
 {
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(rig->streamer, &buffers);
     const VkBuffer used[BUFFER_COUNT] = {buffers.textureTable, buffers.minMip,
                                          buffers.feedback,     rig->outputs.buffer,
@@ -143,7 +143,7 @@ void rig_destroy_descriptors(struct rig *rig)
 /* The frame that used this set is over. */
 void rig_write_pages(struct rig *rig, struct rig_slot *slot)
 {
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(rig->streamer, &pages);
     if (slot->page_generation == pages.generation)
         return;

@@ -61,7 +61,9 @@ void scene_destroy(struct scene *scene)
 
 VkPipeline scene_pipeline(struct scene *scene, const struct scene_constants *constants)
 {
-    bool paged = sluiceGetVulkanResidencyMode(scene->rig.streamer) == SLUICE_RESIDENCY_MODE_PAGED;
+    SluiceResidencyMode mode = SLUICE_RESIDENCY_MODE_AUTO;
+    sluiceGetVulkanResidencyMode(scene->rig.streamer, &mode);
+    bool paged = mode == SLUICE_RESIDENCY_MODE_PAGED;
     struct rig_constants values = {{
         [BENCH_CONSTANT_STREAMED] = constants->streamed,
         [BENCH_CONSTANT_SCENE] = constants->scene,

@@ -54,7 +54,7 @@ static bool first_sight(const struct bench *bench, bool on_demand, uint32_t *fra
     done = done && wants.pipeline;
     struct rig_work work = {.record = rig_record_wants, .user = &wants};
     *frames = 0;
-    while (done && rig_statistics(&rig).manager.mappedTileCount == 0 && *frames < MAX_FRAMES) {
+    while (done && rig_statistics(&rig).mappedTileCount == 0 && *frames < MAX_FRAMES) {
         done = rig_frame(&rig, &work) && rig_finish(&rig);
         ++*frames;
     }

@@ -147,11 +147,14 @@ static void create_loader(struct app *app)
                                                    .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
                                                    .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &app->context));
-    const SluiceDemandLoaderCreateInfo info = {.context = app->context, .memoryBudget = 64u << 20};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .context = app->context, .memoryBudget = 64u << 20};
     SLUICE(sluiceCreateDemandLoader(&info, &app->loader));
     const SluiceDemandTextureCreateInfo texture = {
+        .structSize = sizeof texture,
         .image = {.pfnOpen = open_image}, /* closed by sluiceDestroyImageSource */
-        .sampler = {.maxAnisotropy = 8},
+        .pSampler =
+            &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler), .maxAnisotropy = 8},
         .failureColor = {1, 0, 1, 1}};
     for (uint32_t i = 0; i < TEXTURE_COUNT; i++)
         SLUICE(sluiceAddDemandTexture(app->loader, &texture, &app->textures[i]));
@@ -271,7 +274,7 @@ static void submit(const struct app *app, const SluiceDemandLaunch *launch)
 static uint32_t trace(struct app *app, SluiceDemandRequests *requests)
 {
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     SluiceDemandTicket ticket;
     app->answer->missing = 0;
     VK(vkBeginCommandBuffer(app->commands, &begin));
@@ -316,7 +319,7 @@ static void destroy(struct app *app)
 int main(void)
 {
     struct app app = {0};
-    SluiceDemandRequests requests;
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     create_device(&app);
     create_loader(&app);
     create_answer(&app);
@@ -331,7 +334,7 @@ int main(void)
         printf("launch %u: %u samples miss %u pages\n", ++launches, missing, requests.missingCount);
     } while (requests.missingCount > 0 && launches < 20);
 
-    SluiceDemandStatistics statistics;
+    SluiceDemandStatistics statistics = {.structSize = sizeof statistics};
     SLUICE(sluiceGetDemandStatistics(app.loader, &statistics));
     printf("%u of %u textures opened, %u tiles, %.1f MB\n", (unsigned)statistics.texturesOpened,
            TEXTURE_COUNT, (unsigned)statistics.residentTileCount,

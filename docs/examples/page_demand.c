@@ -33,7 +33,8 @@ SluiceDemandLoader *page_create_loader(VkInstance instance, VkPhysicalDevice phy
     SluiceVulkanContext *context;
     sluiceCreateVulkanContext(&contextInfo, &context); /* one per device; streamers share it */
 
-    SluiceDemandLoaderCreateInfo info = {.context = context, .memoryBudget = 4ull << 30};
+    SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .context = context, .memoryBudget = 4ull << 30};
     SluiceDemandLoader *loader;
     sluiceCreateDemandLoader(&info, &loader);
     return loader;
@@ -50,9 +51,12 @@ SluiceDemandTextureId page_create_texture(SluiceDemandLoader *loader, char *path
 SluiceDemandTextureId page_create_texture(SluiceDemandLoader *loader, char *path)
 {
     SluiceDemandTextureId id = 0;
-    SluiceDemandTextureCreateInfo texture = {.image = {.pUserData = path, .pfnOpen = open_texture},
-                                             .sampler.maxAnisotropy = 16,
-                                             .failureColor = {1, 0, 1, 1}};
+    SluiceDemandTextureCreateInfo texture = {
+        .structSize = sizeof texture,
+        .image = {.pUserData = path, .pfnOpen = open_texture},
+        .pSampler =
+            &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler), .maxAnisotropy = 16},
+        .failureColor = {1, 0, 1, 1}};
     sluiceAddDemandTexture(loader, &texture, &id); /* shaders get (uint32_t)id */
     return id;
 }
@@ -60,8 +64,8 @@ SluiceDemandTextureId page_create_texture(SluiceDemandLoader *loader, char *path
 void page_launch_until_complete(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer);
 void page_launch_until_complete(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer)
 {
-    SluiceDemandLaunch launch;
-    SluiceDemandRequests requests;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     SluiceDemandTicket ticket;
     do {
         begin(commandBuffer);
@@ -79,8 +83,9 @@ void page_launch_interactively(SluiceDemandLoader *loader, VkCommandBuffer comma
 void page_launch_interactively(SluiceDemandLoader *loader, VkCommandBuffer commandBuffer,
                                bool running)
 {
-    SluiceDemandLaunch oldest = {0}, launch;
-    SluiceDemandRequests requests;
+    SluiceDemandLaunch oldest = {.structSize = sizeof oldest},
+                       launch = {.structSize = sizeof launch};
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     while (running) {
         if (sluiceBeginDemandLaunch(loader, commandBuffer, &launch) == SLUICE_NOT_READY) {
             sluiceProcessDemandRequests(loader, &oldest, UINT64_MAX, &requests, NULL);

@@ -127,12 +127,13 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
                                              .sparseQueueFamilyIndex = app->family,
                                              .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &app->context));
-    SluiceVulkanStreamerCreateInfo info = {.context = app->context,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .context = app->context,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .ticksPerSecond = 60, /* frames: see draw_frame */
                                            .feedbackTimeoutTicks = 20};
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
-    SluiceVulkanTextureCreateInfo texture = {.source = source};
+    SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture, .source = source};
     SLUICE(sluiceAddVulkanTexture(app->streamer, &texture, &app->texture));
 }
 
@@ -196,7 +197,7 @@ static void create_set(struct app *app)
     VK(vkAllocateDescriptorSets(app->device, &set, &app->set));
 
     /* The buffers stay the same, also when textures are added. The image stays in GENERAL. */
-    SluiceVulkanBuffers own;
+    SluiceVulkanBuffers own = {.structSize = sizeof own};
     sluiceGetVulkanBuffers(app->streamer, &own);
     const VkDescriptorBufferInfo buffers[] = {{own.textureTable, 0, VK_WHOLE_SIZE},
                                               {own.minMip, 0, VK_WHOLE_SIZE},
@@ -297,7 +298,7 @@ static void draw_frame(struct app *app, uint64_t time_stamp)
 {
     *app->answer = (struct answer){0};
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     VK(vkBeginCommandBuffer(app->commands, &begin));
     SLUICE(sluiceBeginStreamingFrame(app->streamer, app->commands, time_stamp, &frame));
 
@@ -370,11 +371,10 @@ int main(void)
     create_commands(&app);
     for (uint64_t frame = 0; frame < FRAME_COUNT; frame++) {
         draw_frame(&app, frame);
-        SluiceVulkanStreamerStatistics now;
+        SluiceVulkanStreamerStatistics now = {.structSize = sizeof now};
         sluiceGetVulkanStreamerStatistics(app.streamer, &now);
         printf("frame %u: %u levels missing, %u of %u tiles mapped\n", (unsigned)frame,
-               app.answer->missing_levels, now.manager.mappedTileCount,
-               (unsigned)now.manager.tileCount);
+               app.answer->missing_levels, now.mappedTileCount, (unsigned)now.tileCount);
     }
     const float *color = app.answer->color;
     printf("colour %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);

@@ -44,6 +44,7 @@ typedef uint64_t SluiceDemandTicket;
 
 /** Settings of a demand loader. A field of zero selects its default. */
 typedef struct SluiceDemandLoaderCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceDemandLoaderCreateInfo).
     /** Required. Must outlive the loader. Its device needs the features that
      *  sluiceRequireVulkanFeatures enables for SLUICE_RESIDENCY_MODE_PAGED. */
     SluiceVulkanContext *context;
@@ -162,6 +163,7 @@ typedef enum SluiceDemandFilter {
 
 /** How a texture is sampled. All zero: trilinear, with the source's address modes. */
 typedef struct SluiceDemandSampler {
+    uint32_t structSize; ///< sizeof(SluiceDemandSampler).
     /**
      * Default (0, VK_SAMPLER_ADDRESS_MODE_REPEAT): the modes that the source records, or REPEAT.
      * Modes that differ from the source's are used, and logged once per loader.
@@ -174,7 +176,8 @@ typedef struct SluiceDemandSampler {
     bool explicitAddressModes; ///< Use the address modes above even if they are 0.
 } SluiceDemandSampler;
 
-/** Image of a texture: an existing source, or functions that open one when it is first sampled. */
+/** Image of a texture: an existing source, or functions that open one when it is first sampled.
+ * Never grows. */
 typedef struct SluiceDemandImage {
     /**
      * Existing source; never closed. Its info is queried when it is first sampled. Must outlive the
@@ -208,8 +211,9 @@ typedef struct SluiceDemandImage {
 
 /** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceDemandTextureCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceDemandTextureCreateInfo).
     SluiceDemandImage image;
-    SluiceDemandSampler sampler;
+    const SluiceDemandSampler *pSampler; ///< Default: trilinear, with the source's address modes.
     /**
      * Color of samples if the texture cannot be opened or a tile cannot be read. Opaque magenta
      * makes errors visible.
@@ -328,8 +332,9 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
  * materials.
  */
 typedef struct SluiceDemandResourceCreateInfo {
-    uint32_t pageCount; ///< At least 1.
-    uint32_t rank;      ///< Priority, 0 to 15. Lower ranks are served first.
+    uint32_t structSize; ///< sizeof(SluiceDemandResourceCreateInfo).
+    uint32_t pageCount;  ///< At least 1.
+    uint32_t rank;       ///< Priority, 0 to 15. Lower ranks are served first.
     /** Most resident pages. The least recently used ones are evicted. Default: all pages. */
     uint32_t maxResidentPageCount;
     void *pUserData;
@@ -380,13 +385,14 @@ SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
 
 /** Storage buffers for shaders. The handles never change during the loader's life. */
 typedef struct SluiceDemandBuffers {
-    VkBuffer textures;  ///< SluiceDemandTexture[], read.
-    VkBuffer levels;    ///< uint[], read.
-    VkBuffer directory; ///< uint[], read.
-    VkBuffer blocks;    ///< uint[], read.
-    VkBuffer masks;     ///< SluiceDemandBlockMasks[], read and written.
-    VkBuffer requests;  ///< uint[], read and written.
-    VkBuffer sections;  ///< uint[], read and written.
+    uint32_t structSize; ///< sizeof(SluiceDemandBuffers).
+    VkBuffer textures;   ///< SluiceDemandTexture[], read.
+    VkBuffer levels;     ///< uint[], read.
+    VkBuffer directory;  ///< uint[], read.
+    VkBuffer blocks;     ///< uint[], read.
+    VkBuffer masks;      ///< SluiceDemandBlockMasks[], read and written.
+    VkBuffer requests;   ///< uint[], read and written.
+    VkBuffer sections;   ///< uint[], read and written.
 } SluiceDemandBuffers;
 
 /**
@@ -424,6 +430,7 @@ SLUICE_API SluiceResult sluiceGetDemandDescriptorSetLayout(const SluiceDemandLoa
 
 /** Launch that was prepared. */
 typedef struct SluiceDemandLaunch {
+    uint32_t structSize;   ///< sizeof(SluiceDemandLaunch).
     uint64_t launchIndex;  ///< Counts from 1.
     VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
     uint64_t signalValue;  ///< Value to signal.
@@ -484,6 +491,7 @@ SLUICE_API SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
 
 /** Requests of a launch, in pages. A page counts once, however many samples missed it. */
 typedef struct SluiceDemandRequests {
+    uint32_t structSize; ///< sizeof(SluiceDemandRequests).
     /**
      * All requested pages, listed or not, except refused pages of resources. 0: every sample was
      * resident, or is as sharp as memory allows.
@@ -517,6 +525,7 @@ SLUICE_API SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
 
 /** State of a ticket, in tasks: all, not yet ended, failed. */
 typedef struct SluiceDemandTicketStatus {
+    uint32_t structSize; ///< sizeof(SluiceDemandTicketStatus).
     uint32_t taskCount, remainingCount, failedCount;
 } SluiceDemandTicketStatus;
 
@@ -559,6 +568,7 @@ SLUICE_API SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader);
  * state.
  */
 typedef struct SluiceDemandStatistics {
+    uint32_t structSize; ///< sizeof(SluiceDemandStatistics).
     uint64_t launchCount;
     uint64_t requestCount, pendingCount, servedCount, restoredCount, refusedCount, postponedCount;
     uint64_t evictedCount, failedCount, cancelledCount;

@@ -73,6 +73,7 @@ typedef enum SluiceTextureArray {
 
 /** Capabilities of a device, and its known quirks. */
 typedef struct SluiceVulkanDeviceCapabilities {
+    uint32_t structSize;             ///< sizeof(SluiceVulkanDeviceCapabilities).
     bool sparse;                     ///< Sparse residency 2D images, and a queue that binds them.
     bool shaderResourceResidency;    ///< Residency codes exist.
     bool shaderResourceMinLod;       ///< Samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl.
@@ -127,25 +128,27 @@ sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDevice physical
                                   SluiceVulkanDeviceCapabilities *pCapabilities);
 
 /**
- * Returns the mode that AUTO resolves to for a streamer of `maxTextureCount` textures (0: 1024).
- * Returns other modes unchanged, and AUTO if `pCapabilities` is NULL.
+ * Gets the mode that AUTO resolves to for a streamer of `maxTextureCount` textures (0: 1024). Other
+ * modes are returned unchanged.
  *
  * AUTO is sparse mode if the device supports it, else paged mode. Exception: software devices limit
  * the number of tiles (maxTouchedTiles), and a texture uses 8 of them before anything is sampled.
  * There AUTO is paged mode if maxTextureCount is above maxTouchedTiles / 16: above 3071 with the
  * Linux default of 65530 memory maps.
  *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
-SLUICE_API SluiceResidencyMode
-sluiceChooseVulkanResidencyMode(const SluiceVulkanDeviceCapabilities *pCapabilities,
-                                SluiceResidencyMode mode, uint32_t maxTextureCount);
+SLUICE_API SluiceResult sluiceChooseVulkanResidencyMode(
+    const SluiceVulkanDeviceCapabilities *pCapabilities, SluiceResidencyMode mode,
+    uint32_t maxTextureCount, SluiceResidencyMode *pMode);
 
 /** Support of a device for one format, as a 2D image that is sampled and copied to. */
 typedef struct SluiceVulkanFormatCapabilities {
-    bool sampled;      ///< Can be sampled.
-    bool linearFilter; ///< Can be sampled with linear filters.
-    bool sparse;       ///< Supports sparse residency images of 64 KiB tiles.
+    uint32_t structSize; ///< sizeof(SluiceVulkanFormatCapabilities).
+    bool sampled;        ///< Can be sampled.
+    bool linearFilter;   ///< Can be sampled with linear filters.
+    bool sparse;         ///< Supports sparse residency images of 64 KiB tiles.
     /** Sparse granularity as reported by the driver. 0 without sparse support. */
     uint32_t granularityWidth, granularityHeight;
     uint32_t tileWidth, tileHeight; ///< Texels of a tile. Corrected if the driver reports blocks.
@@ -168,6 +171,7 @@ SLUICE_API SluiceResult sluiceGetVulkanFormatCapabilities(
 
 /** Layout of a sparse image on a device. Determined by creating the image. */
 typedef struct SluiceVulkanSparseImageLayout {
+    uint32_t structSize; ///< sizeof(SluiceVulkanSparseImageLayout).
     uint32_t mipLevelCount;
     uint32_t tileWidth, tileHeight; ///< Texels.
     uint32_t regularMipCount;       ///< Levels whose tiles are bound one by one.
@@ -226,6 +230,7 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
 
 /** Settings of a streamer. A field of zero selects its default. */
 typedef struct SluiceVulkanStreamerCreateInfo {
+    uint32_t structSize;               ///< sizeof(SluiceVulkanStreamerCreateInfo).
     SluiceVulkanContext *context;      ///< Required. Must outlive the streamer.
     SluiceResidencyMode residencyMode; ///< Default: AUTO.
     uint32_t framesInFlight;           ///< 1 to 16. Default: 3.
@@ -439,6 +444,7 @@ SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *strea
 
 /** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceVulkanTextureCreateInfo {
+    uint32_t structSize; ///< sizeof(SluiceVulkanTextureCreateInfo).
     /**
      * Required. Must outlive the texture, and reads that are in progress when the texture is
      * removed. sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer end those reads.
@@ -460,7 +466,7 @@ typedef struct SluiceVulkanTextureCreateInfo {
     float maxAnisotropy;
 } SluiceVulkanTextureCreateInfo;
 
-/** Texture as the application draws with it. */
+/** Texture as the application draws with it. Never grows. */
 typedef struct SluiceVulkanTexture {
     SluiceTextureId textureId;
     /**
@@ -540,6 +546,7 @@ SLUICE_API SluiceResult sluiceGetVulkanSampler(SluiceVulkanStreamer *streamer,
  * sluiceEndStreamingFrame writes feedback in compute shaders.
  */
 typedef struct SluiceVulkanBuffers {
+    uint32_t structSize;    ///< sizeof(SluiceVulkanBuffers).
     VkBuffer textureTable;  ///< SluiceTextureEntry[maxTextureCount], read.
     VkBuffer feedback;      ///< uint[], read and written.
     VkBuffer minMip;        ///< uint[], two texels each, read.
@@ -568,6 +575,7 @@ SLUICE_API SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *strea
  * lives until all frames begun before are complete.
  */
 typedef struct SluiceVulkanPages {
+    uint32_t structSize;       ///< sizeof(SluiceVulkanPages).
     VkSampler sampler;         ///< Never changes.
     uint32_t viewCount;        ///< maxPageChunkCount. Never changes.
     const VkImageView *pViews; ///< 2D arrays, VK_IMAGE_LAYOUT_GENERAL. Valid until the next begin.
@@ -601,6 +609,7 @@ SLUICE_API SluiceResult sluiceGetVulkanDescriptorSetLayout(const SluiceVulkanStr
 
 /** Frame that was begun. */
 typedef struct SluiceStreamingFrame {
+    uint32_t structSize;   ///< sizeof(SluiceStreamingFrame).
     uint64_t frameIndex;   ///< Counts from 1.
     VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
     uint64_t signalValue;  ///< Value to signal.
@@ -671,7 +680,14 @@ SLUICE_API SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *stream
  * Statistics of a streamer. Counts are totals since creation, unless they describe a present state.
  */
 typedef struct SluiceVulkanStreamerStatistics {
-    SluiceStreamedTextureStatistics manager;
+    uint32_t structSize; ///< sizeof(SluiceVulkanStreamerStatistics).
+    /** Present counts of the manager. sluiceGetStatistics has the rest. */
+    uint32_t textureCount;
+    uint64_t tileCount; ///< All tiles of all textures, resident or not.
+    uint32_t requestedTileCount, allocatedTileCount, mappedTileCount, standbyTileCount;
+    uint32_t cancelledTileCount, failedTileCount, givenUpTileCount;
+    uint32_t retiringSlotCount, heapCount;
+    uint32_t globalMipBias; ///< Sixteenths of a level.
     uint64_t bytesRead;     ///< Bytes of texels read from sources.
     uint64_t bytesUploaded; ///< Bytes of texels copied to images.
     uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
@@ -739,8 +755,13 @@ SLUICE_API SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *stre
 SLUICE_API SluiceResult sluiceRetryVulkanSource(SluiceVulkanStreamer *streamer,
                                                 const SluiceImageSource *source);
 
-/** Returns the mode in use: AUTO is resolved. Returns AUTO if `streamer` is NULL. */
-SLUICE_API SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer);
+/**
+ * Gets the mode in use: AUTO is resolved.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
+ */
+SLUICE_API SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer,
+                                                     SluiceResidencyMode *pMode);
 
 /**
  * Returns the streamer's manager, or NULL if `streamer` is NULL. The manager is destroyed with the

@@ -52,11 +52,37 @@
 #define SLC_FIRST_SluiceBakerCreateInfo SLC_UP_TO(SluiceBakerCreateInfo, log)
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
-#define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
+#define SLC_FIRST_SluiceDemandLoaderCreateInfo                                                     \
+    SLC_UP_TO(SluiceDemandLoaderCreateInfo, minStagingSize)
 #define SLC_FIRST_SluiceDemandLoaderSettings SLC_UP_TO(SluiceDemandLoaderSettings, noLodBias)
+#define SLC_FIRST_SluiceDemandSampler SLC_UP_TO(SluiceDemandSampler, explicitAddressModes)
+#define SLC_FIRST_SluiceDemandTextureCreateInfo                                                    \
+    SLC_UP_TO(SluiceDemandTextureCreateInfo, failureColor)
+#define SLC_FIRST_SluiceDemandResourceCreateInfo SLC_UP_TO(SluiceDemandResourceCreateInfo, pfnEvict)
+#define SLC_FIRST_SluiceDemandBuffers SLC_UP_TO(SluiceDemandBuffers, sections)
+#define SLC_FIRST_SluiceDemandLaunch SLC_UP_TO(SluiceDemandLaunch, descriptorSet)
+#define SLC_FIRST_SluiceDemandRequests SLC_UP_TO(SluiceDemandRequests, lodBias)
+#define SLC_FIRST_SluiceDemandTicketStatus SLC_UP_TO(SluiceDemandTicketStatus, failedCount)
+#define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, sharedCount)
+#define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
+    SLC_UP_TO(SluiceVulkanDeviceCapabilities, deviceLocalMemorySize)
+#define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \
+    SLC_UP_TO(SluiceVulkanFormatCapabilities, maxImageSize)
+#define SLC_FIRST_SluiceVulkanSparseImageLayout                                                    \
+    SLC_UP_TO(SluiceVulkanSparseImageLayout, memoryTypeBits)
+#define SLC_FIRST_SluiceVulkanStreamerCreateInfo                                                   \
+    SLC_UP_TO(SluiceVulkanStreamerCreateInfo, textureArray)
+#define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
+#define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \
+    SLC_UP_TO(SluiceVulkanTextureCreateInfo, maxAnisotropy)
+#define SLC_FIRST_SluiceVulkanBuffers SLC_UP_TO(SluiceVulkanBuffers, pageTable)
+#define SLC_FIRST_SluiceVulkanPages SLC_UP_TO(SluiceVulkanPages, generation)
+#define SLC_FIRST_SluiceStreamingFrame SLC_UP_TO(SluiceStreamingFrame, descriptorSet)
+#define SLC_FIRST_SluiceVulkanStreamerStatistics                                                   \
+    SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesShared)
+#define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, pipelineCache)
-#define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, refusedBlockCount)
 

@@ -4,6 +4,7 @@
  */
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
 #include "image/half.h"
@@ -197,6 +198,10 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
 {
     if (!loader || !commandBuffer || !pLaunch)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &loader->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     if (loader->launch > loader->ended) {
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "launch %llu was neither ended nor abandoned: no other one can be prepared",
@@ -222,13 +227,15 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     }
     loader->launch = launch;
     loader->tracked[slot_of(loader, launch)] = tracking;
-    *pLaunch = (SluiceDemandLaunch){.launchIndex = launch,
-                                    .semaphore = loader->semaphore,
-                                    .signalValue = launch,
-                                    .tileCount = record_transfers(loader, commandBuffer)};
-    pLaunch->descriptorSet =
+    SluiceDemandLaunch begun = {.structSize = sizeof begun,
+                                .launchIndex = launch,
+                                .semaphore = loader->semaphore,
+                                .signalValue = launch,
+                                .tileCount = record_transfers(loader, commandBuffer)};
+    begun.descriptorSet =
         slc_descriptors_update(&loader->descriptors, &loader->vk, slot_of(loader, launch),
                                loader->pages, loader->page_user, NULL);
+    slc_struct_write(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &begun);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;
 }
@@ -305,8 +312,13 @@ SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
 {
     if (!loader || !pLaunch)
         return SLUICE_ERROR_NULL_POINTER;
-    uint64_t launch = pLaunch->launchIndex;
-    SluiceResult result = check_abandoned(loader, launch);
+    SluiceDemandLaunch given = {.structSize = sizeof given};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceDemandLaunch), &given, pLaunch, &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint64_t launch = given.launchIndex;
+    result = check_abandoned(loader, launch);
     if (result == SLUICE_SUCCESS)
         result = put_back(loader, launch);
     if (result != SLUICE_SUCCESS)
@@ -339,23 +351,32 @@ SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
     SluiceDemandTicket ticket;
     if (!loader || !pLaunch || !pRequests)
         return SLUICE_ERROR_NULL_POINTER;
-    if (pLaunch->launchIndex <= loader->processed || pLaunch->launchIndex > loader->ended)
+    SluiceDemandLaunch given = {.structSize = sizeof given};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceDemandLaunch), &given, pLaunch, &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    result = slc_struct_check(SLC_STRUCT(SluiceDemandRequests), pRequests, &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (given.launchIndex <= loader->processed || given.launchIndex > loader->ended)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELLED;
-    SluiceResult result = wait_for(loader, pLaunch->launchIndex, timeoutNs);
+    result = wait_for(loader, given.launchIndex, timeoutNs);
     if (result != SLUICE_SUCCESS)
         return result;
     result = slc_ticket_open(&loader->tickets, &ticket);
     if (result != SLUICE_SUCCESS)
         return result;
-    *pRequests = (SluiceDemandRequests){0};
-    while (loader->processed < pLaunch->launchIndex) {
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
+    while (loader->processed < given.launchIndex) {
         loader->processed++;
         exhume(loader);
-        slc_requests_process(loader, loader->processed, ticket, pRequests);
+        slc_requests_process(loader, loader->processed, ticket, &requests);
     }
-    pRequests->lodBias = slc_residency_lod_bias(loader->residency);
+    requests.lodBias = slc_residency_lod_bias(loader->residency);
+    slc_struct_write(SLC_STRUCT(SluiceDemandRequests), pRequests, &requests);
     ticket = slc_ticket_close(&loader->tickets, ticket);
     if (pTicket)
         *pTicket = ticket;
@@ -367,7 +388,15 @@ SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader, SluiceDeman
 {
     if (!loader || !pStatus)
         return SLUICE_ERROR_NULL_POINTER;
-    return slc_ticket_get_status(&loader->tickets, ticket, pStatus);
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &loader->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    SluiceResult result = slc_ticket_get_status(&loader->tickets, ticket, &status);
+    if (result == SLUICE_SUCCESS)
+        slc_struct_write(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &status);
+    return result;
 }
 
 SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTicket ticket,
@@ -375,5 +404,15 @@ SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader, SluiceDemandTick
 {
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    return slc_ticket_wait(&loader->tickets, ticket, timeoutNs, pStatus);
+    if (pStatus) {
+        SluiceResult checked =
+            slc_struct_check(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &loader->vk.log);
+        if (checked != SLUICE_SUCCESS)
+            return checked;
+    }
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    SluiceResult result = slc_ticket_wait(&loader->tickets, ticket, timeoutNs, &status);
+    if (pStatus && result != SLUICE_ERROR_INVALID_ARGUMENT)
+        slc_struct_write(SLC_STRUCT(SluiceDemandTicketStatus), pStatus, &status);
+    return result;
 }

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "vulkan/create_checks.h"
 #include "vulkan/format_caps.h"
 #include "vulkan/region_arena.h"
@@ -86,7 +87,7 @@ static SluiceResult check_device(SluiceDemandLoader *loader)
         return SLUICE_ERROR_UNSUPPORTED;
     }
     for (uint32_t i = 1; i < SLUICE_FORMAT_COUNT; i++) {
-        SluiceVulkanFormatCapabilities format;
+        SluiceVulkanFormatCapabilities format = {.structSize = sizeof format};
         slc_format_caps_init(&format, &loader->vk, (SluiceFormat)i);
         loader->usable[i] = format.sampled && format.linearFilter;
     }
@@ -222,7 +223,8 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
 
 static void fill_buffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *buffers)
 {
-    *buffers = (SluiceDemandBuffers){.textures = loader->table_buffer.buffer,
+    *buffers = (SluiceDemandBuffers){.structSize = sizeof(SluiceDemandBuffers),
+                                     .textures = loader->table_buffer.buffer,
                                      .levels = loader->levels_buffer.buffer,
                                      .directory = loader->directory.directory.buffer,
                                      .blocks = loader->directory.blocks.buffer,
@@ -236,7 +238,7 @@ static SluiceResult create_descriptors(SluiceDemandLoader *loader)
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_DEMAND_BINDING_BUFFER_COUNT,
                                                .page_count = loader->pages->views.count,
                                                .set_count = loader->info.launchesInFlight};
-    SluiceDemandBuffers buffers;
+    SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
     fill_buffers(loader, &buffers);
     info.buffers[SLUICE_DEMAND_BINDING_TEXTURES] = buffers.textures;
     info.buffers[SLUICE_DEMAND_BINDING_LEVELS] = buffers.levels;
@@ -295,8 +297,11 @@ SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateInfo *pCreat
     *pLoader = NULL;
     if (!pCreateInfo || !pCreateInfo->context)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceDemandLoaderCreateInfo info = *pCreateInfo;
-    SluiceResult result = fill_in(&info);
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandLoaderCreateInfo), &info,
+                                          pCreateInfo, &pCreateInfo->context->vk.log);
+    if (result == SLUICE_SUCCESS)
+        result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceDemandLoader *loader = allocate(&info);
@@ -374,7 +379,13 @@ SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader, SluiceDema
 {
     if (!loader || !pBuffers)
         return SLUICE_ERROR_NULL_POINTER;
-    fill_buffers(loader, pBuffers);
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceDemandBuffers), pBuffers, &loader->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
+    SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
+    fill_buffers(loader, &buffers);
+    slc_struct_write(SLC_STRUCT(SluiceDemandBuffers), pBuffers, &buffers);
     return SLUICE_SUCCESS;
 }
 
@@ -390,11 +401,16 @@ SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkan
 {
     if (!loader || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked = slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &loader->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     const struct slc_page_views *views = slc_page_pool_views(loader->pages, loader->page_user);
-    *pPages = (SluiceVulkanPages){.sampler = views->sampler,
-                                  .viewCount = views->count,
-                                  .pViews = views->views,
-                                  .generation = views->generation};
+    const SluiceVulkanPages pages = {.structSize = sizeof pages,
+                                     .sampler = views->sampler,
+                                     .viewCount = views->count,
+                                     .pViews = views->views,
+                                     .generation = views->generation};
+    slc_struct_write(SLC_STRUCT(SluiceVulkanPages), pPages, &pages);
     return SLUICE_SUCCESS;
 }
 
@@ -403,24 +419,29 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
 {
     if (!loader || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceDemandStatistics), pStatistics, &loader->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     struct slc_residency_counts tiles;
     slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &tiles);
-    *pStatistics = loader->counts;
-    pStatistics->evictedCount = tiles.evicted + loader->counts.evictedCount;
-    pStatistics->virtualPageCount = slc_page_space_used(loader->space);
-    pStatistics->residentTileCount = tiles.resident;
-    pStatistics->residentResourcePageCount = loader->held_count;
+    SluiceDemandStatistics statistics = loader->counts;
+    statistics.evictedCount = tiles.evicted + loader->counts.evictedCount;
+    statistics.virtualPageCount = slc_page_space_used(loader->space);
+    statistics.residentTileCount = tiles.resident;
+    statistics.residentResourcePageCount = loader->held_count;
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);
-    slc_memory_client_get(&loader->memory, &pStatistics->deviceMemorySize,
-                          &pStatistics->hostVisibleMemorySize);
-    pStatistics->tileMemorySize = pool.tile_memory_size;
-    pStatistics->deviceMemorySize += pool.device_memory_size;
-    pStatistics->pageChunkCount = pool.chunk_count;
-    pStatistics->pageChunkShortages = pool.shortages;
-    pStatistics->lodBias = slc_residency_lod_bias(loader->residency);
+    slc_memory_client_get(&loader->memory, &statistics.deviceMemorySize,
+                          &statistics.hostVisibleMemorySize);
+    statistics.tileMemorySize = pool.tile_memory_size;
+    statistics.deviceMemorySize += pool.device_memory_size;
+    statistics.pageChunkCount = pool.chunk_count;
+    statistics.pageChunkShortages = pool.shortages;
+    statistics.lodBias = slc_residency_lod_bias(loader->residency);
     pthread_mutex_lock(&loader->tickets.mutex);
-    memcpy(pStatistics->latencyHistogram, loader->tickets.latency,
-           sizeof pStatistics->latencyHistogram);
+    memcpy(statistics.latencyHistogram, loader->tickets.latency,
+           sizeof statistics.latencyHistogram);
     pthread_mutex_unlock(&loader->tickets.mutex);
+    slc_struct_write(SLC_STRUCT(SluiceDemandStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }

@@ -13,7 +13,7 @@ SluiceResult sluiceBeginDemandRecording(SluiceDemandLoader *loader,
         *pRecorder = NULL;
     if (!loader || !pInfo || !pInfo->pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceFileRecordingInfo info;
+    SluiceFileRecordingInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceFileRecordingInfo), &info, pInfo, &pInfo->log);
     if (result != SLUICE_SUCCESS)

@@ -67,7 +67,8 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     uint32_t slot = (uint32_t)(launch % loader->info.launchesInFlight);
     const uint32_t *pages;
     struct SluiceDemandScanResult scan = slc_demand_scan_result(&loader->scan, slot, &pages);
-    SluiceDemandRequests now = {.missingCount = scan.requestCount,
+    SluiceDemandRequests now = {.structSize = sizeof now,
+                                .missingCount = scan.requestCount,
                                 .postponedCount = scan.postponedCount};
     slc_residency_set_class(loader->residency, SLC_CLASS_TILES,
                             slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);

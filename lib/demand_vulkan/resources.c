@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
 
@@ -136,11 +137,16 @@ SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
     struct slc_demand_resource *resource;
     if (!loader || !pCreateInfo || !pCreateInfo->pfnFill || !pResourceId || !pFirstPage)
         return SLUICE_ERROR_NULL_POINTER;
-    if (pCreateInfo->pageCount == 0 || pCreateInfo->rank >= SLUICE_DEMAND_RANKS)
+    SluiceDemandResourceCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandResourceCreateInfo), &info,
+                                          pCreateInfo, &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (info.pageCount == 0 || info.rank >= SLUICE_DEMAND_RANKS)
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (pCreateInfo->pageCount > loader->info.pageCapacity)
+    if (info.pageCount > loader->info.pageCapacity)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
-    SluiceResult result = create(loader, pCreateInfo, &resource);
+    result = create(loader, &info, &resource);
     if (result != SLUICE_SUCCESS)
         return result;
     *pResourceId = resource_id(resource);

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
 #include "vulkan/address_mode.h"
@@ -121,17 +122,26 @@ SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
     if (!loader || !pCreateInfo || !pTextureId ||
         (!pCreateInfo->image.source && !pCreateInfo->image.pfnOpen))
         return SLUICE_ERROR_NULL_POINTER;
-    if (!sampler_is_valid(&pCreateInfo->sampler))
+    SluiceDemandTextureCreateInfo info = {.structSize = sizeof info};
+    SluiceDemandSampler sampler = {.structSize = sizeof sampler};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandTextureCreateInfo), &info,
+                                          pCreateInfo, &loader->vk.log);
+    if (result == SLUICE_SUCCESS && info.pSampler)
+        result = slc_struct_read(SLC_STRUCT(SluiceDemandSampler), &sampler, info.pSampler,
+                                 &loader->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!sampler_is_valid(&sampler))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     uint32_t index;
-    SluiceResult result = slc_texture_take(loader, &index);
+    result = slc_texture_take(loader, &index);
     if (result != SLUICE_SUCCESS)
         return result;
     struct slc_demand_texture *texture = &loader->textures[index];
     texture->kind = SLC_TEXTURE_IMAGE;
-    texture->source = pCreateInfo->image;
-    memcpy(texture->failure_color, pCreateInfo->failureColor, sizeof texture->failure_color);
-    write_sampler(loader, index, &pCreateInfo->sampler);
+    texture->source = info.image;
+    memcpy(texture->failure_color, info.failureColor, sizeof texture->failure_color);
+    write_sampler(loader, index, &sampler);
     *pTextureId = slc_texture_id(loader, index);
     return SLUICE_SUCCESS;
 }
@@ -220,10 +230,15 @@ SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader, SluiceDem
     uint32_t base, index;
     if (!loader || !pSampler || !pTextureId)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = slc_texture_find(loader, baseId, &base);
+    SluiceDemandSampler sampler = {.structSize = sizeof sampler};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceDemandSampler), &sampler, pSampler, &loader->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (loader->textures[base].kind == SLC_TEXTURE_GRID || !sampler_is_valid(pSampler))
+    result = slc_texture_find(loader, baseId, &base);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (loader->textures[base].kind == SLC_TEXTURE_GRID || !sampler_is_valid(&sampler))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (loader->textures[base].kind == SLC_TEXTURE_VARIANT)
         base = loader->textures[base].base;
@@ -235,7 +250,7 @@ SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader, SluiceDem
     texture->base = base;
     texture->next = of->next;
     of->next = index;
-    write_sampler(loader, index, pSampler);
+    write_sampler(loader, index, &sampler);
     if (of->failed)
         show_failed(loader, index, of->failure_color);
     else if (of->image != SLC_NONE && loader->images[of->image]->state == SLC_IMAGE_OPEN)

@@ -219,9 +219,12 @@ static void write_status(const struct slc_ticket *ticket, SluiceDemandTicketStat
 {
     if (!status)
         return;
-    *status = (SluiceDemandTicketStatus){0};
+    *status = (SluiceDemandTicketStatus){.structSize = sizeof(SluiceDemandTicketStatus)};
     if (ticket)
-        *status = (SluiceDemandTicketStatus){ticket->task_count, ticket->remaining, ticket->failed};
+        *status = (SluiceDemandTicketStatus){.structSize = sizeof(SluiceDemandTicketStatus),
+                                             .taskCount = ticket->task_count,
+                                             .remainingCount = ticket->remaining,
+                                             .failedCount = ticket->failed};
 }
 
 SluiceResult slc_ticket_get_status(struct slc_tickets *tickets, SluiceDemandTicket ticket,

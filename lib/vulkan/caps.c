@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -152,24 +153,36 @@ uint64_t slc_device_memory_size(const struct slc_caps *caps)
     return size;
 }
 
-SluiceResidencyMode
-sluiceChooseVulkanResidencyMode(const SluiceVulkanDeviceCapabilities *pCapabilities,
-                                SluiceResidencyMode mode, uint32_t maxTextureCount)
+static SluiceResidencyMode resolve_mode(const SluiceVulkanDeviceCapabilities *capabilities,
+                                        SluiceResidencyMode mode, uint32_t max_texture_count)
 {
-    if (mode != SLUICE_RESIDENCY_MODE_AUTO || !pCapabilities)
+    if (mode != SLUICE_RESIDENCY_MODE_AUTO)
         return mode;
-    uint32_t count = maxTextureCount ? maxTextureCount : SLC_DEFAULT_TEXTURE_COUNT;
-    uint32_t bearable = pCapabilities->maxTouchedTiles / (2 * USUAL_PACKED_TILES);
-    bool crowded = pCapabilities->maxTouchedTiles > 0 && count > bearable;
-    return pCapabilities->sparse && !crowded ? SLUICE_RESIDENCY_MODE_SPARSE
-                                             : SLUICE_RESIDENCY_MODE_PAGED;
+    uint32_t count = max_texture_count ? max_texture_count : SLC_DEFAULT_TEXTURE_COUNT;
+    uint32_t bearable = capabilities->maxTouchedTiles / (2 * USUAL_PACKED_TILES);
+    bool crowded = capabilities->maxTouchedTiles > 0 && count > bearable;
+    return capabilities->sparse && !crowded ? SLUICE_RESIDENCY_MODE_SPARSE
+                                            : SLUICE_RESIDENCY_MODE_PAGED;
+}
+
+SluiceResult sluiceChooseVulkanResidencyMode(const SluiceVulkanDeviceCapabilities *pCapabilities,
+                                             SluiceResidencyMode mode, uint32_t maxTextureCount,
+                                             SluiceResidencyMode *pMode)
+{
+    if (!pCapabilities || !pMode)
+        return SLUICE_ERROR_NULL_POINTER;
+    SluiceVulkanDeviceCapabilities capabilities = {.structSize = sizeof capabilities};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceVulkanDeviceCapabilities), &capabilities,
+                                          pCapabilities, NULL);
+    if (result == SLUICE_SUCCESS)
+        *pMode = resolve_mode(&capabilities, mode, maxTextureCount);
+    return result;
 }
 
 SluiceResidencyMode slc_choose_mode(const struct slc_caps *caps, SluiceResidencyMode mode,
                                     uint32_t max_texture_count)
 {
-    SluiceResidencyMode chosen =
-        sluiceChooseVulkanResidencyMode(&caps->public, mode, max_texture_count);
+    SluiceResidencyMode chosen = resolve_mode(&caps->public, mode, max_texture_count);
     bool sparse = chosen != mode && caps->public.sparse && !caps->array_dynamic_indexing;
     return sparse ? SLUICE_RESIDENCY_MODE_SPARSE : chosen;
 }
@@ -191,6 +204,10 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
 {
     if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pCapabilities)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceVulkanDeviceCapabilities), pCapabilities, NULL);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     struct slc_vk vk;
     SluiceResult result =
         slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, NULL);
@@ -198,7 +215,7 @@ SluiceResult sluiceGetVulkanDeviceCapabilities(VkInstance instance, VkPhysicalDe
         return result;
     struct slc_caps caps;
     slc_caps_init(&caps, &vk);
-    *pCapabilities = caps.public;
+    slc_struct_write(SLC_STRUCT(SluiceVulkanDeviceCapabilities), pCapabilities, &caps.public);
     return SLUICE_SUCCESS;
 }
 

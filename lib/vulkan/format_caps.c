@@ -1,5 +1,6 @@
 #include "vulkan/format_caps.h"
 
+#include "base/struct_size.h"
 #include "vulkan/caps.h"
 #include "vulkan/format.h"
 #include "vulkan/sparse_layout.h"
@@ -41,7 +42,7 @@ static bool get_granularity(const struct slc_vk *vk, VkFormat format, VkExtent3D
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format)
 {
-    *caps = (SluiceVulkanFormatCapabilities){0};
+    *caps = (SluiceVulkanFormatCapabilities){.structSize = sizeof(SluiceVulkanFormatCapabilities)};
     VkFormat vk_format = slc_vk_format(format);
     SluiceFormatInfo info = {.structSize = sizeof info};
     VkExtent3D granularity;
@@ -71,6 +72,10 @@ SluiceResult sluiceGetVulkanFormatCapabilities(VkInstance instance, VkPhysicalDe
 {
     if (!instance || !physicalDevice || !pfnGetInstanceProcAddr || !pCapabilities)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceVulkanFormatCapabilities), pCapabilities, NULL);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     struct slc_vk vk;
     SluiceResult result =
         slc_vk_init_instance(&vk, instance, physicalDevice, pfnGetInstanceProcAddr, NULL);
@@ -80,7 +85,9 @@ SluiceResult sluiceGetVulkanFormatCapabilities(VkInstance instance, VkPhysicalDe
         return SLUICE_ERROR_UNSUPPORTED;
     struct slc_caps device;
     slc_caps_init(&device, &vk);
-    slc_format_caps_init(pCapabilities, &vk, format);
-    pCapabilities->sparse = pCapabilities->sparse && device.public.sparse;
+    SluiceVulkanFormatCapabilities capabilities = {.structSize = sizeof capabilities};
+    slc_format_caps_init(&capabilities, &vk, format);
+    capabilities.sparse = capabilities.sparse && device.public.sparse;
+    slc_struct_write(SLC_STRUCT(SluiceVulkanFormatCapabilities), pCapabilities, &capabilities);
     return SLUICE_SUCCESS;
 }

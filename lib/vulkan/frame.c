@@ -1,4 +1,5 @@
 /* The frame loop. The order of the steps is explained in docs/frame-loop.md. */
+#include "base/struct_size.h"
 #include "vulkan/streamer.h"
 
 #include "base/log.h"
@@ -184,6 +185,9 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     SluiceVulkanStreamer *s = streamer;
     if (!s || !commandBuffer || !pFrame)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked = slc_struct_check(SLC_STRUCT(SluiceStreamingFrame), pFrame, &s->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     if (s->frame && timeStamp - s->time_stamp > UINT64_MAX / 2) {
         slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "timeStamp is %llu; it must not be below the last frame's, %llu",
@@ -208,8 +212,10 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
     s->time_stamp = timeStamp;
     slc_settings_apply(s);
     slc_time_check_frame(&s->time_check, &s->vk.log, timeStamp);
-    *pFrame = (SluiceStreamingFrame){
-        .frameIndex = s->frame, .semaphore = s->semaphore, .signalValue = s->frame};
+    SluiceStreamingFrame frame = {.structSize = sizeof frame,
+                                  .frameIndex = s->frame,
+                                  .semaphore = s->semaphore,
+                                  .signalValue = s->frame};
     s->memory_pressure = slc_memory_client_begin(&s->memory);
     s->manager_locked = false;
     result = decide(s);
@@ -220,8 +226,9 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         s->ended_frame = s->frame;
         return result;
     }
-    pFrame->descriptorSet = slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages,
-                                                   s->page_user, &s->texture_array);
+    frame.descriptorSet = slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages,
+                                                 s->page_user, &s->texture_array);
+    slc_struct_write(SLC_STRUCT(SluiceStreamingFrame), pFrame, &frame);
     return SLUICE_SUCCESS;
 }
 
@@ -269,10 +276,15 @@ SluiceResult sluiceAbandonStreamingFrame(SluiceVulkanStreamer *streamer,
     SluiceVulkanStreamer *s = streamer;
     if (!s || !pFrame)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = poll_frames(s);
+    SluiceStreamingFrame given = {.structSize = sizeof given};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceStreamingFrame), &given, pFrame, &s->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint64_t frame = pFrame->frameIndex;
+    result = poll_frames(s);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    uint64_t frame = given.frameIndex;
     if (!is_in_flight(s, frame)) {
         slc_log(&s->vk.log, SLUICE_LOG_ERROR,
                 "frame %llu cannot be abandoned: it is over, was abandoned or never begun",

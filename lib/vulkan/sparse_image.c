@@ -66,7 +66,7 @@ static uint64_t texel_bytes(const SluiceImageInfo *info)
 static const char *check_format(const struct slc_vk *vk, const struct slc_caps *caps,
                                 const SluiceImageInfo *image)
 {
-    SluiceVulkanFormatCapabilities format;
+    SluiceVulkanFormatCapabilities format = {.structSize = sizeof format};
     if (slc_vk_format(image->format) == VK_FORMAT_UNDEFINED)
         return "has no Vulkan format";
     slc_format_caps_init(&format, vk, image->format);
@@ -190,6 +190,7 @@ static void describe(SluiceVulkanSparseImageLayout *out, const struct slc_vk *vk
     VkMemoryRequirements memory;
     vk->GetImageMemoryRequirements(vk->device, image->image, &memory);
     *out = (SluiceVulkanSparseImageLayout){
+        .structSize = sizeof(SluiceVulkanSparseImageLayout),
         .mipLevelCount = layout->desc.mipLevelCount,
         .tileWidth = layout->desc.tileWidth,
         .tileHeight = layout->desc.tileHeight,
@@ -213,6 +214,10 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
 {
     if (!instance || !physicalDevice || !device || !pfnGetInstanceProcAddr || !pImage || !pLayout)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceVulkanSparseImageLayout), pLayout, pLog);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     if (pImage->width == 0 || pImage->height == 0)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     struct slc_vk vk;
@@ -241,7 +246,9 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
         result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    describe(pLayout, &vk, &image);
+    SluiceVulkanSparseImageLayout layout = {.structSize = sizeof layout};
+    describe(&layout, &vk, &image);
+    slc_struct_write(SLC_STRUCT(SluiceVulkanSparseImageLayout), pLayout, &layout);
     slc_sparse_image_destroy(&image, &vk);
     return SLUICE_SUCCESS;
 }

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "vulkan/around.h"
 #include "vulkan/create_checks.h"
 #include "vulkan/shared_parts.h"
@@ -246,7 +247,8 @@ static void fill_buffers(const SluiceVulkanStreamer *s, SluiceVulkanBuffers *buf
 {
     const struct slc_residency *residency = s->residency;
     VkBuffer table = s->texture_table.buffer;
-    *buffers = (SluiceVulkanBuffers){.textureTable = table,
+    *buffers = (SluiceVulkanBuffers){.structSize = sizeof(SluiceVulkanBuffers),
+                                     .textureTable = table,
                                      .feedback = s->feedback.buffer,
                                      .minMip = s->min_mip.buffer,
                                      .feedbackTurns = s->feedback_turns.buffer,
@@ -264,7 +266,7 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
                                                .page_count = paged ? s->pages->views.count : 1,
                                                .textures = &s->texture_array,
                                                .set_count = s->info.framesInFlight};
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     fill_buffers(s, &buffers);
     info.buffers[SLUICE_BINDING_TEXTURE_TABLE] = buffers.textureTable;
     info.buffers[SLUICE_BINDING_MIN_MIP] = buffers.minMip;
@@ -322,8 +324,11 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     if (!pCreateInfo || !pCreateInfo->context)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceVulkanContext *context = pCreateInfo->context;
-    SluiceVulkanStreamerCreateInfo info = *pCreateInfo;
-    SluiceResult result = fill_in(&info);
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceVulkanStreamerCreateInfo), &info,
+                                          pCreateInfo, &context->vk.log);
+    if (result == SLUICE_SUCCESS)
+        result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceVulkanStreamer *s = slc_calloc(&context->cb, 1, sizeof *s);
@@ -439,7 +444,13 @@ SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *streamer,
 {
     if (!streamer || !pBuffers)
         return SLUICE_ERROR_NULL_POINTER;
-    fill_buffers(streamer, pBuffers);
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceVulkanBuffers), pBuffers, &streamer->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
+    fill_buffers(streamer, &buffers);
+    slc_struct_write(SLC_STRUCT(SluiceVulkanBuffers), pBuffers, &buffers);
     return SLUICE_SUCCESS;
 }
 
@@ -456,12 +467,37 @@ SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVu
 {
     if (!streamer || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
+    SluiceResult checked =
+        slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &streamer->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
     const struct slc_page_views *views = slc_page_pool_views(streamer->pages, streamer->page_user);
-    *pPages = (SluiceVulkanPages){.sampler = views->sampler,
-                                  .viewCount = views->count,
-                                  .pViews = views->views,
-                                  .generation = views->generation};
+    const SluiceVulkanPages pages = {.structSize = sizeof pages,
+                                     .sampler = views->sampler,
+                                     .viewCount = views->count,
+                                     .pViews = views->views,
+                                     .generation = views->generation};
+    slc_struct_write(SLC_STRUCT(SluiceVulkanPages), pPages, &pages);
     return SLUICE_SUCCESS;
+}
+
+static void take_manager_counts(const SluiceStreamedTextureManager *manager,
+                                SluiceVulkanStreamerStatistics *out)
+{
+    SluiceStreamedTextureStatistics s = {.structSize = sizeof s};
+    sluiceGetStatistics(manager, &s);
+    out->textureCount = s.textureCount;
+    out->tileCount = s.tileCount;
+    out->requestedTileCount = s.requestedTileCount;
+    out->allocatedTileCount = s.allocatedTileCount;
+    out->mappedTileCount = s.mappedTileCount;
+    out->standbyTileCount = s.standbyTileCount;
+    out->cancelledTileCount = s.cancelledTileCount;
+    out->failedTileCount = s.failedTileCount;
+    out->givenUpTileCount = s.givenUpTileCount;
+    out->retiringSlotCount = s.retiringSlotCount;
+    out->heapCount = s.heapCount;
+    out->globalMipBias = s.globalMipBias;
 }
 
 SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *streamer,
@@ -469,27 +505,31 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
 {
     if (!streamer || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
-    *pStatistics = streamer->counts;
-    pStatistics->manager.structSize = sizeof pStatistics->manager;
-    sluiceGetStatistics(streamer->manager, &pStatistics->manager);
+    SluiceResult checked = slc_struct_check(SLC_STRUCT(SluiceVulkanStreamerStatistics), pStatistics,
+                                            &streamer->vk.log);
+    if (checked != SLUICE_SUCCESS)
+        return checked;
+    SluiceVulkanStreamerStatistics statistics = streamer->counts;
+    take_manager_counts(streamer->manager, &statistics);
     const struct slc_residency_counters *counters = &streamer->residency->counters;
-    pStatistics->bindCalls = counters->bind_calls;
-    pStatistics->bindRuns = counters->bind_runs;
-    pStatistics->unbinds = counters->unbinds;
-    pStatistics->unbindsSaved = counters->unbinds_saved;
-    pStatistics->tileMemorySize = counters->device_memory_size;
-    slc_memory_client_get(streamer->vk.memory_client, &pStatistics->deviceMemorySize,
-                          &pStatistics->hostVisibleMemorySize);
-    pStatistics->deviceMemorySize += slc_page_pool_get_counts(streamer->pages).device_memory_size;
-    pStatistics->pageChunkCount = counters->page_chunks;
-    pStatistics->pageChunkShortages = counters->page_chunk_shortages;
-    pStatistics->fadingTextures = streamer->fade_count;
+    statistics.bindCalls = counters->bind_calls;
+    statistics.bindRuns = counters->bind_runs;
+    statistics.unbinds = counters->unbinds;
+    statistics.unbindsSaved = counters->unbinds_saved;
+    statistics.tileMemorySize = counters->device_memory_size;
+    slc_memory_client_get(streamer->vk.memory_client, &statistics.deviceMemorySize,
+                          &statistics.hostVisibleMemorySize);
+    statistics.deviceMemorySize += slc_page_pool_get_counts(streamer->pages).device_memory_size;
+    statistics.pageChunkCount = counters->page_chunks;
+    statistics.pageChunkShortages = counters->page_chunk_shortages;
+    statistics.fadingTextures = streamer->fade_count;
     uint32_t uploaded = 0;
     for (uint32_t unit = streamer->uploaded.first; unit != SLC_NONE;
          unit = streamer->units[unit].next)
         uploaded++;
-    pStatistics->loadsInFlight =
+    statistics.loadsInFlight =
         streamer->info.maxLoadsInFlight - streamer->free_unit_count - uploaded;
+    slc_struct_write(SLC_STRUCT(SluiceVulkanStreamerStatistics), pStatistics, &statistics);
     return SLUICE_SUCCESS;
 }
 
@@ -501,9 +541,13 @@ SluiceResult sluiceGetVulkanReadStatistics(SluiceVulkanStreamer *streamer,
                     : SLUICE_ERROR_NULL_POINTER;
 }
 
-SluiceResidencyMode sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer)
+SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer,
+                                          SluiceResidencyMode *pMode)
 {
-    return streamer ? streamer->info.residencyMode : SLUICE_RESIDENCY_MODE_AUTO;
+    if (!streamer || !pMode)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pMode = streamer->info.residencyMode;
+    return SLUICE_SUCCESS;
 }
 
 SluiceStreamedTextureManager *sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer)

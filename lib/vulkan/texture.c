@@ -1,4 +1,5 @@
 /* Streamed textures of a streamer: adding, removing, and what their first frame records. */
+#include "base/struct_size.h"
 #include "vulkan/streamer.h"
 #include "vulkan/texture_entry.h"
 
@@ -303,9 +304,13 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (!s || !pCreateInfo || !pLayers || !pCreateInfo->source)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceImageInfo image = {.structSize = sizeof image};
-    SluiceResult result = check_create_info(s, pCreateInfo);
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceVulkanTextureCreateInfo), &info, pCreateInfo, &s->vk.log);
     if (result == SLUICE_SUCCESS)
-        result = sluiceGetImageInfo(pCreateInfo->source, &image);
+        result = check_create_info(s, &info);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceGetImageInfo(info.source, &image);
     if (result == SLUICE_SUCCESS)
         result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
@@ -316,7 +321,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     s->manager_locked = false;
-    result = build_all(s, first, pCreateInfo, &image, layerCount);
+    result = build_all(s, first, &info, &image, layerCount);
     s->manager_locked = true;
     if (result != SLUICE_SUCCESS)
         return result;

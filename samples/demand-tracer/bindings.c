@@ -99,7 +99,7 @@ static void write_scene(const struct gpu *gpu, VkDescriptorSet set,
 void bindings_follow_pages(const struct gpu *gpu, const SluiceDemandLoader *loader,
                            struct bindings *b)
 {
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetDemandPages(loader, &pages);
     if (pages.generation == b->page_generation)
         return;
@@ -123,7 +123,7 @@ bool bindings_create(const struct gpu *gpu, const struct bindings_request *reque
     *b = (struct bindings){.stages = has_scene ? RAY_STAGES : VK_SHADER_STAGE_COMPUTE_BIT};
     if (!create_layouts(gpu, has_scene, b) || !allocate_sets(gpu, has_scene, b))
         return false;
-    SluiceDemandBuffers buffers;
+    SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetDemandBuffers(request->loader, &buffers);
     const VkBuffer demand[TRACER_DEMAND_BUFFERS] = {
         buffers.textures, buffers.levels,   buffers.directory, buffers.blocks,

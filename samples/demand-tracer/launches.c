@@ -37,7 +37,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
 {
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     if (!gpu_check(vkBeginCommandBuffer(l->commands, &begin), "vkBeginCommandBuffer") ||
         !check(sluiceBeginDemandLaunch(l->loader, l->commands, &launch),
                "a launch cannot be prepared"))
@@ -50,6 +50,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
         sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */
         return false;
     }
+    requests->structSize = sizeof *requests;
     return check(sluiceProcessDemandRequests(l->loader, &launch, UINT64_MAX, requests, ticket),
                  "requests cannot be served");
 }
@@ -110,8 +111,8 @@ bool launches_run(struct launches *l)
 /* Opened textures are gone on with, and texels copied, by launches: they go on, tracing nothing. */
 static bool finish_ticket(struct launches *l, SluiceDemandTicket ticket)
 {
-    SluiceDemandRequests requests;
-    SluiceDemandTicketStatus status;
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     do {
         SluiceResult result = sluiceWaitDemandTicket(l->loader, ticket, PATIENCE, &status);
         if (result != SLUICE_NOT_READY && !check(result, "a texture cannot be loaded"))

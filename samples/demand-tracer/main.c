@@ -54,6 +54,7 @@ static bool create_loader(struct tracer *t)
         .log = {.pfnLog = log_say},
     };
     SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info,
         .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
         .memoryBudget = o->budget,
@@ -164,7 +165,7 @@ static bool remember(struct tracer *t, const struct launch_record *record,
 static bool after_launch(void *user_data, const struct launch_record *record)
 {
     struct tracer *t = user_data;
-    SluiceDemandStatistics statistics;
+    SluiceDemandStatistics statistics = {.structSize = sizeof statistics};
     if (sluiceGetDemandStatistics(t->loader, &statistics) != SLUICE_SUCCESS)
         return false;
     show_progress(t, record, &statistics);
@@ -204,7 +205,8 @@ static bool count_needs(struct tracer *t, double *tiles)
 static bool print_summary(struct tracer *t, double seconds)
 {
     const struct tracer_options *o = &t->options;
-    struct summary summary = {.launches = &t->launches,
+    struct summary summary = {.statistics = {.structSize = sizeof summary.statistics},
+                              .launches = &t->launches,
                               .seconds = seconds,
                               .difference = {NAN, NAN, NAN},
                               .needed_tiles = NAN,

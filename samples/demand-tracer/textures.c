@@ -94,11 +94,13 @@ static bool create_texture(const struct tracer_options *options, SluiceDemandLoa
     VkSamplerAddressMode mode =
         leaf ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE : VK_SAMPLER_ADDRESS_MODE_REPEAT;
     SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info,
         .image = {.pUserData = texture, .pfnOpen = open_texture, .pName = texture->path},
-        .sampler = {.addressModeU = mode,
-                    .addressModeV = mode,
-                    .maxAnisotropy = (float)options->anisotropy,
-                    .explicitAddressModes = !texture->path},
+        .pSampler = &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler),
+                                           .addressModeU = mode,
+                                           .addressModeV = mode,
+                                           .maxAnisotropy = (float)options->anisotropy,
+                                           .explicitAddressModes = !texture->path},
         .failureColor = {1.0f, 0.0f, 1.0f, 1.0f},
     };
     SluiceResult result = sluiceAddDemandTexture(loader, &info, &texture->id);

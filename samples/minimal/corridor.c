@@ -85,14 +85,16 @@ SluiceResult create_source(uint32_t texture, SluiceImageSource **source)
 void print_statistics(const SluiceVulkanStreamer *streamer, uint32_t frames)
 {
     static const char *const modes[] = {"auto", "sparse", "paged", "dense"};
-    SluiceVulkanStreamerStatistics now;
+    SluiceVulkanStreamerStatistics now = {.structSize = sizeof now};
+    SluiceResidencyMode mode = SLUICE_RESIDENCY_MODE_AUTO;
+    sluiceGetVulkanResidencyMode(streamer, &mode);
     sluiceGetVulkanStreamerStatistics(streamer, &now);
     printf(
         "%s, frame %u: %u of %u tiles mapped, %u loaded so far, %.1f MB of texels read, %.1f MB of "
         "device memory\n",
-        modes[sluiceGetVulkanResidencyMode(streamer)], frames, now.manager.mappedTileCount,
-        (unsigned)now.manager.tileCount, (unsigned)now.manager.mappedTotal,
-        (double)now.bytesRead * 1e-6, (double)now.deviceMemorySize * 1e-6);
+        modes[mode], frames, now.mappedTileCount, (unsigned)now.tileCount,
+        (unsigned)now.tilesMapped, (double)now.bytesRead * 1e-6,
+        (double)now.deviceMemorySize * 1e-6);
     fflush(stdout);
 }
 

@@ -46,7 +46,7 @@ static const SluiceLogCallback log_callback = {NULL, print_message};
 static bool can_stream(VkInstance instance, VkPhysicalDevice device, const void *mode,
                        struct device_needs *needs)
 {
-    SluiceVulkanDeviceCapabilities caps;
+    SluiceVulkanDeviceCapabilities caps = {.structSize = sizeof caps};
     SLUICE(sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr, &caps));
     if (caps.sparse)
         needs->sparse_family = caps.sparseQueueFamilyIndex;
@@ -68,7 +68,8 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                    .sparseQueueFamilyIndex = r->gpu.sparse_family,
                                                    .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &r->context));
-    const SluiceVulkanStreamerCreateInfo info = {.context = r->context,
+    const SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                                 .context = r->context,
                                                  .residencyMode = settings->mode,
                                                  .framesInFlight = FRAMES_IN_FLIGHT,
                                                  .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
@@ -82,7 +83,7 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
 static void add_texture(struct renderer *r, uint32_t i)
 {
     SLUICE(create_source(i, &r->sources[i]));
-    const SluiceVulkanTextureCreateInfo info = {.source = r->sources[i]};
+    const SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = r->sources[i]};
     SluiceVulkanTexture added;
     SLUICE(sluiceAddVulkanTexture(r->streamer, &info, &added));
     r->table_indices[i] = added.tableIndex;
@@ -95,6 +96,7 @@ static void draw_frame(struct renderer *r, uint32_t number, float eye_z)
     SluiceStreamingFrame *streaming = &frame->streaming;
     wait_for(&r->gpu, streaming->semaphore, streaming->signalValue); /* until it may be reused */
     begin_commands(frame->commands);
+    streaming->structSize = sizeof *streaming;
     SLUICE(sluiceBeginStreamingFrame(r->streamer, frame->commands, number, streaming));
     draw_corridor(frame->commands, &r->drawing, streaming->descriptorSet, r->table_indices, number,
                   eye_z);
@@ -109,7 +111,8 @@ int main(int argc, char **argv)
     struct renderer r = {0};
     open_device(&r.gpu, can_stream, &settings.mode);
     create_streamer(&r, &settings);
-    const SluiceResidencyMode mode = sluiceGetVulkanResidencyMode(r.streamer); /* of AUTO */
+    SluiceResidencyMode mode; /* of AUTO */
+    SLUICE(sluiceGetVulkanResidencyMode(r.streamer, &mode));
     VkDescriptorSetLayout set_layout; /* 4. Frames come with a set of this layout. */
     SLUICE(sluiceGetVulkanDescriptorSetLayout(r.streamer, &set_layout));
     create_drawing(&r.gpu, settings.size, set_layout, mode == SLUICE_RESIDENCY_MODE_PAGED,

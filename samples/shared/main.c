@@ -91,15 +91,18 @@ static bool create_front_ends(struct app *app)
     app->contexts[1] = app->contexts[0];
     if (app->settings.apart && !create_context(app, &app->contexts[1]))
         return false;
-    const SluiceVulkanStreamerCreateInfo streamer = {.context = app->contexts[0],
+    const SluiceVulkanStreamerCreateInfo streamer = {.structSize = sizeof streamer,
+                                                     .context = app->contexts[0],
                                                      .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                                      .framesInFlight = 1,
                                                      .heapTileCapacity = HEAP_TILES,
                                                      .maxHeapCount = BUDGET / 65536 / HEAP_TILES,
                                                      .ticksPerSecond = 60,
                                                      .feedbackTimeoutTicks = 1000};
-    const SluiceDemandLoaderCreateInfo loader = {
-        .context = app->contexts[1], .launchesInFlight = 1, .memoryBudget = BUDGET};
+    const SluiceDemandLoaderCreateInfo loader = {.structSize = sizeof loader,
+                                                 .context = app->contexts[1],
+                                                 .launchesInFlight = 1,
+                                                 .memoryBudget = BUDGET};
     return sluice(sluiceCreateVulkanStreamer(&streamer, &app->streamer), "streamer") &&
            sluice(sluiceCreateDemandLoader(&loader, &app->loader), "demand loader");
 }
@@ -116,8 +119,10 @@ static bool add_texture(struct app *app, uint32_t i)
                                   .pName = "room"};
     if (!sluice(sluiceCreateProceduralImageSource(&image, &info, NULL, &app->sources[i]), "image"))
         return false;
-    const SluiceVulkanTextureCreateInfo streamed = {.source = app->sources[i]};
-    const SluiceDemandTextureCreateInfo traced = {.image = {.source = app->sources[i]}};
+    const SluiceVulkanTextureCreateInfo streamed = {.structSize = sizeof streamed,
+                                                    .source = app->sources[i]};
+    const SluiceDemandTextureCreateInfo traced = {.structSize = sizeof traced,
+                                                  .image = {.source = app->sources[i]}};
     SluiceVulkanTexture texture;
     SluiceDemandTextureId id;
     if (!sluice(sluiceAddVulkanTexture(app->streamer, &streamed, &texture), "texture") ||
@@ -168,6 +173,7 @@ static bool submit(const struct app *app, VkCommandBuffer commands, VkSemaphore 
 
 static bool draw_frame(struct app *app, uint32_t number)
 {
+    app->frame.structSize = sizeof app->frame;
     VkCommandBuffer commands = app->passes.commands[0];
     if (!begin(commands) ||
         !sluice(sluiceBeginStreamingFrame(app->streamer, commands, number, &app->frame), "frame"))
@@ -189,8 +195,8 @@ static bool draw_frame(struct app *app, uint32_t number)
 static bool trace(struct app *app, uint32_t *missing)
 {
     VkCommandBuffer commands = app->passes.commands[1];
-    SluiceDemandLaunch launch;
-    SluiceDemandRequests requests;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     SluiceDemandTicket ticket;
     if (!begin(commands) ||
         !sluice(sluiceBeginDemandLaunch(app->loader, commands, &launch), "launch"))
@@ -222,8 +228,8 @@ static bool write_picture(const struct app *app)
 
 static bool print_counts(const struct app *app, uint32_t missing)
 {
-    SluiceVulkanStreamerStatistics streamed = {0};
-    SluiceDemandStatistics traced = {0};
+    SluiceVulkanStreamerStatistics streamed = {.structSize = sizeof streamed};
+    SluiceDemandStatistics traced = {.structSize = sizeof traced};
     if (!sluice(sluiceGetVulkanStreamerStatistics(app->streamer, &streamed), "statistics") ||
         !sluice(sluiceGetDemandStatistics(app->loader, &traced), "statistics"))
         return false;

@@ -64,21 +64,20 @@ bool gallery_fill(struct view *view, const struct room *room)
         if (!view_wait(view, view->frame_index % VIEW_FRAMES_IN_FLIGHT) ||
             !view_draw(view, &camera, 0, &frame) || !view_settle(view))
             return false;
-        progress_update(&progress, frame.statistics.manager.mappedTileCount);
-        if (frame.statistics.manager.givenUpTileCount > 0) {
-            fprintf(stderr, "%u tiles cannot be loaded\n",
-                    frame.statistics.manager.givenUpTileCount);
+        progress_update(&progress, frame.statistics.mappedTileCount);
+        if (frame.statistics.givenUpTileCount > 0) {
+            fprintf(stderr, "%u tiles cannot be loaded\n", frame.statistics.givenUpTileCount);
             return false;
         }
         /* Tiles without memory are not given up: they wait, for as long as there is none. */
-        in_vain = frame.statistics.manager.mappedTileCount > count ? 0 : in_vain + 1;
-        count = frame.statistics.manager.mappedTileCount;
+        in_vain = frame.statistics.mappedTileCount > count ? 0 : in_vain + 1;
+        count = frame.statistics.mappedTileCount;
         if (in_vain > FRAMES_IN_VAIN) {
             fprintf(stderr, "the device has no memory for more than %u of %" PRIu64 " tiles\n",
                     count, tile_count);
             return false;
         }
-    } while (frame.statistics.manager.mappedTileCount < tile_count);
+    } while (frame.statistics.mappedTileCount < tile_count);
     progress_end(&progress);
     return true;
 }

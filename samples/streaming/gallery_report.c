@@ -30,8 +30,8 @@ static double resident_value(const struct frame_record *now, const struct frame_
 static double wanted_value(const struct frame_record *now, const struct frame_record *before)
 {
     (void)before;
-    return now->statistics.manager.mappedTileCount + now->statistics.manager.requestedTileCount +
-           now->statistics.manager.allocatedTileCount;
+    return now->statistics.mappedTileCount + now->statistics.requestedTileCount +
+           now->statistics.allocatedTileCount;
 }
 
 static double mapped_value(const struct frame_record *now, const struct frame_record *before)

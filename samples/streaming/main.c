@@ -262,7 +262,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     measure.picture_count = gallery->pictures.count;
     measure.refused_count = gallery->pictures.refused;
     if (gallery->settings.compare) {
-        SluiceVulkanStreamerStatistics truth;
+        SluiceVulkanStreamerStatistics truth = {.structSize = sizeof truth};
         sluiceGetVulkanStreamerStatistics(gallery->truth.streamer, &truth);
         measure.truth_bytes = truth.tileMemorySize;
     } else if (gallery->settings.reference) {

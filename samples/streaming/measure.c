@@ -26,7 +26,7 @@ void measure_finish(struct measure *measure)
 
 uint32_t measure_resident_tiles(const struct frame_record *record)
 {
-    return record->statistics.manager.mappedTileCount + record->statistics.manager.standbyTileCount;
+    return record->statistics.mappedTileCount + record->statistics.standbyTileCount;
 }
 
 /** Frames after the camera stopped until the picture is sharp for good; NaN if it never is. */
@@ -280,8 +280,8 @@ static void write_csv_line(FILE *file, const struct measure *measure, uint32_t i
             1e3 * record->frame_seconds, 1e3 * record->host_seconds, 1e3 * record->gpu_seconds);
     if (!isnan(record->psnr))
         fprintf(file, "%.3f", finite_psnr(record->psnr));
-    fprintf(file, ",%u,%u,%u,%u,%u,", measure_resident_tiles(record), now->manager.mappedTileCount,
-            now->manager.standbyTileCount, now->manager.requestedTileCount, now->loadsInFlight);
+    fprintf(file, ",%u,%u,%u,%u,%u,", measure_resident_tiles(record), now->mappedTileCount,
+            now->standbyTileCount, now->requestedTileCount, now->loadsInFlight);
     fprintf(file, "%llu,%llu,%llu,%llu,%llu,",
             (unsigned long long)(now->tilesMapped - then->tilesMapped),
             (unsigned long long)(now->tilesUnmapped - then->tilesUnmapped),

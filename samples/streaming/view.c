@@ -49,6 +49,7 @@ static bool create_streamer(struct view *view)
 {
     const struct settings *settings = view->request.settings;
     SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info,
         .context = view->context,
         .residencyMode = view->request.mode,
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
@@ -89,7 +90,8 @@ static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
 {
     VkSamplerAddressMode mode =
         repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    SluiceVulkanTextureCreateInfo info = {.source = slowness_wrap(&view->slowness, source),
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
+                                          .source = slowness_wrap(&view->slowness, source),
                                           .primaryId = primary,
                                           .addressModeU = mode,
                                           .addressModeV = mode,
@@ -257,7 +259,7 @@ static bool create_slot(struct view *view, struct view_slot *slot)
         !view_allocate_sets(view, view->request.renderer->frame_layout, 1, &slot->frame_set))
         return false;
     memset(slot->counts.mapped, 0, sizeof(struct GalleryCounts));
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(view->streamer, &buffers);
     renderer_write_frame_set(view->request.renderer, slot->frame_set, slot->frame.buffer,
                              slot->counts.buffer, &buffers);
@@ -282,7 +284,7 @@ static bool create_prediction(struct view *view)
     const struct view_request *request = &view->request;
     if (request->settings->predict <= 0.0 || request->everything)
         return true;
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(view->streamer, &buffers);
     return predict_create(request->renderer, request->target, &buffers, &view->predict);
 }
@@ -418,7 +420,7 @@ static bool record_frame(struct view *view, struct view_slot *slot, double *need
     VkCommandBuffer commands = slot->commands;
 
     /* Images that hold pages come and go in there; this slot's set is in no frame under way. */
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(view->streamer, &pages);
     if (slot->page_generation != pages.generation)
         renderer_write_pages(request->renderer, slot->frame_set, &pages);
@@ -485,7 +487,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
 
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     if (!gpu_check(vkBeginCommandBuffer(slot->commands, &begin), "vkBeginCommandBuffer") ||
         !begin_frame(view, slot, time_stamp, &frame))
         return false;
@@ -496,6 +498,7 @@ bool view_draw(struct view *view, const struct camera *camera, uint64_t time_sta
         return false;
     }
     out->host_seconds = clock_seconds() - start - needs_seconds;
+    out->statistics.structSize = sizeof out->statistics;
     sluiceGetVulkanStreamerStatistics(view->streamer, &out->statistics);
     view->frame_index++;
     return true;
@@ -544,7 +547,7 @@ bool view_settle(struct view *view)
 
 uint64_t view_tile_count(const struct view *view)
 {
-    SluiceVulkanStreamerStatistics statistics;
+    SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
     sluiceGetVulkanStreamerStatistics(view->streamer, &statistics);
-    return statistics.manager.tileCount;
+    return statistics.tileCount;
 }

@@ -3,7 +3,7 @@
 bool view_needs_create(struct view *view)
 {
     const struct view_request *request = &view->request;
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(view->streamer, &buffers);
     if (!request->needs)
         return true;

@@ -44,10 +44,12 @@ bool array_scene_add(struct scene *scene, SluiceImageSource *source, uint32_t la
                      SluiceVulkanTexture *textures)
 {
     struct harness *h = scene->h;
-    SluiceVulkanTextureCreateInfo create = {.source = source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = source};
     SluiceImageInfo info = {.structSize = sizeof info};
     CHECK_OK(sluiceGetImageInfo(source, &info));
-    bool sparse = sluiceGetVulkanResidencyMode(scene->streamer) == SLUICE_RESIDENCY_MODE_SPARSE;
+    SluiceResidencyMode mode;
+    CHECK_OK(sluiceGetVulkanResidencyMode(scene->streamer, &mode));
+    bool sparse = mode == SLUICE_RESIDENCY_MODE_SPARSE;
     bool shared = sparse && layers_share_tail(h, &info, layer_count);
     h->quiet = shared;
     SluiceResult result =

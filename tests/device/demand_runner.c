@@ -11,7 +11,8 @@
 
 #define BUFFERS 9u
 
-const SluiceDemandSampler runner_nearest = {.filter = SLUICE_DEMAND_FILTER_NEAREST,
+const SluiceDemandSampler runner_nearest = {.structSize = sizeof runner_nearest,
+                                            .filter = SLUICE_DEMAND_FILTER_NEAREST,
                                             .mipmapFilter = SLUICE_DEMAND_FILTER_NEAREST};
 
 static void create_layouts(struct runner *r)
@@ -63,7 +64,7 @@ static void create_pipeline(struct runner *r)
 
 static void write_buffers(struct runner *r, VkDescriptorSet set)
 {
-    SluiceDemandBuffers b;
+    SluiceDemandBuffers b = {.structSize = sizeof b};
     sluiceGetDemandBuffers(r->loader, &b);
     const VkBuffer buffers[BUFFERS] = {b.textures, b.levels,         b.directory,
                                        b.blocks,   b.masks,          b.requests,
@@ -108,7 +109,10 @@ void runner_fill(struct harness *h, SluiceDemandLoaderCreateInfo *info)
 
 void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *loader)
 {
-    *r = (struct runner){.h = h, .loader = loader};
+    *r = (struct runner){.h = h,
+                         .loader = loader,
+                         .launch = {.structSize = sizeof r->launch},
+                         .requests = {.structSize = sizeof r->requests}};
     harness_buffer_init(h, &r->inputs, RUNNER_SAMPLES * sizeof(struct RunnerInput),
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     harness_buffer_init(h, &r->outputs, RUNNER_SAMPLES * sizeof(struct RunnerOutput),
@@ -120,7 +124,7 @@ void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *l
 
 void runner_init(struct runner *r, struct harness *h, const SluiceDemandLoaderCreateInfo *info)
 {
-    SluiceDemandLoaderCreateInfo create = {0};
+    SluiceDemandLoaderCreateInfo create = {.structSize = sizeof create};
     SluiceDemandLoader *loader;
     if (info)
         create = *info;
@@ -183,7 +187,7 @@ void runner_add_page(struct runner *r, uint32_t page)
 
 static void write_pages(struct runner *r, uint32_t at)
 {
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetDemandPages(r->loader, &pages);
     if (r->generations[at] == pages.generation)
         return;
@@ -227,7 +231,7 @@ static bool abandon_launch(struct runner *r, VkCommandBuffer commands, uint32_t 
     struct harness *h = r->h;
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     uint32_t length = h->abandoned_count % 3;
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     if (sluiceBeginDemandLaunch(r->loader, commands, &launch) != SLUICE_SUCCESS)
         return false;
     if (length > 0)
@@ -248,7 +252,7 @@ SluiceResult runner_submit(struct runner *r)
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
     assert_int_equal(h->BeginCommandBuffer(commands, &begin), VK_SUCCESS);
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     while (harness_abandons(h))
         if (!abandon_launch(r, commands, at))
             break;
@@ -307,7 +311,7 @@ bool runner_all_resident(const struct runner *r)
 
 SluiceDemandStatistics runner_statistics(const struct runner *r)
 {
-    SluiceDemandStatistics statistics;
+    SluiceDemandStatistics statistics = {.structSize = sizeof statistics};
     CHECK_OK(sluiceGetDemandStatistics(r->loader, &statistics));
     return statistics;
 }
@@ -380,8 +384,10 @@ SluiceDemandImage runner_image_desc(struct runner_image *image)
 SluiceDemandTextureId runner_add_texture(struct runner *r, struct runner_image *image)
 {
     SluiceDemandTextureId id;
-    const SluiceDemandTextureCreateInfo info = {
-        .image = runner_image_desc(image), .sampler = runner_nearest, .failureColor = {1, 0, 1, 1}};
+    const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                .image = runner_image_desc(image),
+                                                .pSampler = &runner_nearest,
+                                                .failureColor = {1, 0, 1, 1}};
     CHECK_OK(sluiceAddDemandTexture(r->loader, &info, &id));
     return id;
 }

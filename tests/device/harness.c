@@ -136,7 +136,7 @@ static bool pick_device(struct harness *h)
     for (uint32_t i = 0; i < count; i++) {
         char number[16];
         snprintf(number, sizeof number, "%u", i);
-        SluiceVulkanDeviceCapabilities caps;
+        SluiceVulkanDeviceCapabilities caps = {.structSize = sizeof caps};
         if (sluiceGetVulkanDeviceCapabilities(h->instance, devices[i], h->get, &caps) !=
             SLUICE_SUCCESS)
             continue;
@@ -350,6 +350,7 @@ static void fill_times(SluiceVulkanStreamerCreateInfo *info)
 
 void harness_fill(struct harness *h, SluiceVulkanStreamerCreateInfo *info)
 {
+    info->structSize = sizeof *info;
     info->context = h->context;
     if (info->residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
         info->residencyMode = h->mode;
@@ -424,7 +425,7 @@ static void abandon_frame(struct harness *h, SluiceVulkanStreamer *streamer,
                           VkCommandBuffer commands,
                           void (*record)(void *user, VkCommandBuffer commands), void *user)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     uint32_t length = h->abandoned_count % 3;
     CHECK_OK(sluiceBeginStreamingFrame(streamer, commands, h->time, &frame));
     h->set = frame.descriptorSet;
@@ -445,7 +446,7 @@ void harness_frame(struct harness *h, SluiceVulkanStreamer *streamer, bool wait,
     if (h->last[at].semaphore)
         wait_for(h, h->last[at].semaphore, h->last[at].signalValue);
     begin_commands(h, commands);
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     h->time++;
     while (harness_abandons(h))
         abandon_frame(h, streamer, commands, record, user);
@@ -475,7 +476,7 @@ void harness_destroy(struct harness *h, SluiceVulkanStreamer *streamer)
 {
     sluiceDestroyVulkanStreamer(streamer);
     for (uint32_t i = 0; i < HARNESS_FRAMES; i++)
-        h->last[i] = (SluiceStreamingFrame){0};
+        h->last[i] = (SluiceStreamingFrame){.structSize = sizeof(SluiceStreamingFrame)};
 }
 
 void harness_settle(struct harness *h, SluiceVulkanStreamer *streamer, uint32_t frame_count,

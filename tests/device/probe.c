@@ -62,7 +62,7 @@ static void create_layouts(struct prober *p)
 static void create_page_sets(struct prober *p)
 {
     struct harness *h = p->h;
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(p->streamer, &buffers);
     for (uint32_t i = 0; i < HARNESS_FRAMES; i++) {
         VkDescriptorSetAllocateInfo allocate = {.sType =
@@ -86,7 +86,7 @@ void prober_bind_pages(struct prober *p, VkCommandBuffer commands, VkPipelineBin
 {
     struct harness *h = p->h;
     uint32_t at = (h->frame_count + HARNESS_FRAMES - 1) % HARNESS_FRAMES; /* of this frame */
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(p->streamer, &pages);
     assert_in_range(pages.viewCount, 1, PROBE_PAGE_CHUNKS);
     if (p->pages[at].generation != pages.generation) {
@@ -164,7 +164,8 @@ static VkPipeline shared_pipeline(const struct prober *p)
 
 void prober_init(struct prober *p, struct harness *h, SluiceVulkanStreamer *streamer)
 {
-    SluiceResidencyMode mode = sluiceGetVulkanResidencyMode(streamer);
+    SluiceResidencyMode mode;
+    CHECK_OK(sluiceGetVulkanResidencyMode(streamer, &mode));
     *p = (struct prober){.h = h,
                          .streamer = streamer,
                          .paged = mode == SLUICE_RESIDENCY_MODE_PAGED,
@@ -236,7 +237,7 @@ static struct probe_texture create_set(struct prober *p, uint32_t table_index,
                                             .descriptorSetCount = 1,
                                             .pSetLayouts = &p->set_layout};
     assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &result.set), VK_SUCCESS);
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(p->streamer, &buffers);
     VkDescriptorBufferInfo infos[BUFFERS] = {{buffers.textureTable, 0, VK_WHOLE_SIZE},
                                              {buffers.minMip, 0, VK_WHOLE_SIZE},

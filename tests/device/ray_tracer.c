@@ -267,7 +267,7 @@ static void create_set(struct ray_tracer *r)
                                             .descriptorSetCount = 1,
                                             .pSetLayouts = &r->set_layout};
     assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &r->set), VK_SUCCESS);
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(r->writer->streamer, &buffers);
     VkDescriptorBufferInfo infos[BUFFERS] = {{buffers.textureTable, 0, VK_WHOLE_SIZE},
                                              {buffers.feedback, 0, VK_WHOLE_SIZE},

@@ -44,8 +44,11 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
         .used = true, .source = source, .owns = true, .u = u, .v = v, .anisotropy = anisotropy};
     texture->info.structSize = sizeof texture->info;
     CHECK_OK(sluiceGetImageInfo(source, &texture->info));
-    SluiceVulkanTextureCreateInfo info = {
-        .source = source, .primaryId = primary, .addressModeU = u, .addressModeV = v};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
+                                          .source = source,
+                                          .primaryId = primary,
+                                          .addressModeU = u,
+                                          .addressModeV = v};
     CHECK_OK(sluiceAddVulkanTexture(scene->streamer, &info, &texture->texture));
     texture->probe = prober_texture(&scene->prober, &texture->texture, u, v, anisotropy);
     return index;

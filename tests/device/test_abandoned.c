@@ -56,11 +56,14 @@ static void aim(struct scene *scene, uint32_t leg)
 static void take_walk(struct harness *h, struct walk *walk, uint32_t abandon_one_in)
 {
     struct scene scene;
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     h->abandon_one_in = abandon_one_in;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeoutTicks = 6, .tilesPerFrame = 16, .texturesPerFrame = 3});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 6,
+                                         .tilesPerFrame = 16,
+                                         .texturesPerFrame = 3});
     for (uint32_t leg = 0; leg < LEGS; leg++) {
         uint32_t gone = leg % TEXTURES;
         if (leg > 0)
@@ -116,12 +119,15 @@ static void any_number_of_frames_in_a_row_can_be_given_up(void **state)
     struct scene scene;
     const struct scene_aim fine = {0, 0, 1, 1, 0.1, 0.2, 0, 0};
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000});
     for (uint32_t round = 0; round < 2; round++) {
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
         scene_aim(&scene, round, SAMPLES, &fine);
         for (uint32_t i = 0; i < 40; i++) {
-            SluiceStreamingFrame frame;
+            SluiceStreamingFrame frame = {.structSize = sizeof frame};
             VkCommandBuffer commands = h->commands[i % HARNESS_FRAMES];
             assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
             assert_int_equal(h->ResetCommandBuffer(commands, 0), VK_SUCCESS);
@@ -149,8 +155,10 @@ static void a_frame_is_given_up_once_and_not_after_it_was_submitted(void **state
 {
     struct harness *h = *state;
     struct scene scene;
-    SluiceStreamingFrame none = {0};
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){0});
+    SluiceStreamingFrame none = {.structSize = sizeof none};
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
     harness_frame(h, scene.streamer, true, NULL, NULL);
     h->quiet = true;
     SluiceStreamingFrame submitted = h->last[(h->frame_count - 1) % HARNESS_FRAMES];

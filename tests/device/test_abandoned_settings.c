@@ -70,7 +70,7 @@ static uint32_t dice(void)
 
 static void bunch(struct harness *h, struct scene *scene, uint32_t step, bool *acted)
 {
-    SluiceStreamingFrame first, frame;
+    SluiceStreamingFrame first = {.structSize = sizeof first}, frame = {.structSize = sizeof frame};
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     uint32_t count = 1 + dice() % 3;
     assert_int_equal(h->DeviceWaitIdle(h->device), VK_SUCCESS);
@@ -137,9 +137,16 @@ static void take(struct harness *h, const SluiceVulkanStreamerCreateInfo *info, 
 static void a_walk_with_frames_abandoned_ends_as_one_without(void **state)
 {
     const SluiceVulkanStreamerCreateInfo infos[] = {
-        {.feedbackTimeoutTicks = 2, .packedLevelsOnDemand = true, .tilesPerFrame = 16},
-        {.feedbackTimeoutTicks = 12, .feedbackInTurns = true, .texturesPerFrame = 1},
-        {.feedbackTimeoutTicks = 3,
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+         .feedbackTimeoutTicks = 2,
+         .packedLevelsOnDemand = true,
+         .tilesPerFrame = 16},
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+         .feedbackTimeoutTicks = 12,
+         .feedbackInTurns = true,
+         .texturesPerFrame = 1},
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+         .feedbackTimeoutTicks = 3,
          .residencyFadeTicks = 4,
          .packedLevelsOnDemand = true,
          .feedbackReadbackSize = 160,

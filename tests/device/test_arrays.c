@@ -53,15 +53,15 @@ static void layers_of_an_array_hold_their_own_texels(void **state)
     roll_seed(8);
     for (uint32_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         struct array_scene a;
-        SluiceVulkanStreamerCreateInfo info = {.mapEverything = true};
+        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .mapEverything = true};
         if (!array_scene_init(&a, *state, info, true, sizes[s], rgba8)) {
             array_scene_finish(&a);
             continue;
         }
         scene_settle(&a.scene, 12);
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(a.scene.streamer, &stats);
-        assert_int_equal(stats.manager.mappedTileCount, stats.manager.tileCount);
+        assert_int_equal(stats.mappedTileCount, stats.tileCount);
         for (uint32_t layer = 0; layer < ARRAY_LAYERS; layer++)
             check_texels(&a, layer);
         array_scene_finish(&a);
@@ -89,9 +89,11 @@ static void layers_of_an_array_are_streamed_apart_and_removed_together(void **st
     static const uint32_t size[2] = {2048, 1024};
     struct array_scene a;
     roll_seed(9);
-    assert_true(array_scene_init(&a, *state,
-                                 (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100},
-                                 false, size, rgba8));
+    assert_true(array_scene_init(
+        &a, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 100},
+        false, size, rgba8));
     scene_aim(&a.scene, 1, 64, &fine);
     scene_settle(&a.scene, 14);
     scene_check_levels(&a.scene);
@@ -121,9 +123,11 @@ static void arrays_that_come_and_go_leave_no_memory_behind(void **state)
 {
     static const uint32_t size[2] = {600, 400};
     struct array_scene a;
-    SluiceVulkanStreamerStatistics first, last;
+    SluiceVulkanStreamerStatistics first = {.structSize = sizeof first},
+                                   last = {.structSize = sizeof last};
     roll_seed(10);
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 100, .maxTextureCount = 8};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .feedbackTimeoutTicks = 100, .maxTextureCount = 8};
     if (!array_scene_init(&a, *state, info, false, size, rgba8)) {
         array_scene_finish(&a);
         SKIP_TEST("the device binds the tails of all layers as one");
@@ -153,11 +157,14 @@ static void arrays_that_come_and_go_leave_no_memory_behind(void **state)
 static void arrays_need_the_right_call(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 100});
     SluiceImageSource *layer = pattern_source(PATTERN_LEVEL, 64, 64, rgba8), *array;
     SluiceImageSource *layers[] = {layer, layer};
     CHECK_OK(sluiceCreateArrayImageSource(layers, 2, NULL, &array));
-    SluiceVulkanTextureCreateInfo info = {.source = array};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = array};
     SluiceVulkanTexture textures[2];
     CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &info, textures),
                  SLUICE_ERROR_INVALID_ARGUMENT);
@@ -175,7 +182,9 @@ static void arrays_beyond_the_device_are_refused(void **state)
     struct harness *h = *state;
     uint32_t count = h->caps.maxImageArrayLayers + 1;
     struct scene scene;
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.maxTextureCount = count});
+    scene_init(&scene, h,
+               (SluiceVulkanStreamerCreateInfo){
+                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .maxTextureCount = count});
     SluiceImageSource *layer = pattern_source(PATTERN_LEVEL, 256, 256, rgba8), *array;
     SluiceImageSource **layers = calloc(count, sizeof *layers);
     SluiceVulkanTexture *textures = calloc(count, sizeof *textures);
@@ -183,7 +192,7 @@ static void arrays_beyond_the_device_are_refused(void **state)
     for (uint32_t i = 0; i < count; i++)
         layers[i] = layer;
     CHECK_OK(sluiceCreateArrayImageSource(layers, count, NULL, &array));
-    SluiceVulkanTextureCreateInfo info = {.source = array};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = array};
     h->quiet = true;
     CHECK_RESULT(sluiceAddVulkanTextureArray(scene.streamer, &info, count, textures),
                  SLUICE_ERROR_UNSUPPORTED);
@@ -205,7 +214,8 @@ static bool draw_layers(struct harness *h, SluiceResidencyMode mode, bool array,
                         struct ProbeOutput out[ARRAY_LAYERS][SAMPLES])
 {
     struct array_scene a = {0};
-    SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode, .feedbackTimeoutTicks = 100};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .residencyMode = mode, .feedbackTimeoutTicks = 100};
     bool drawn = true;
     if (array)
         drawn = array_scene_init(&a, h, info, true, size, rgba8);

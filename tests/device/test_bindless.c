@@ -69,7 +69,8 @@ static void add_texture(struct picture *p, uint32_t i, uint32_t number)
                                   .height = sizes[number % 8][1],
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &p->sources[i]));
-    const SluiceVulkanTextureCreateInfo create = {.source = p->sources[i],
+    const SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .source = p->sources[i],
                                                   .addressModeU = modes[number % 3],
                                                   .addressModeV = modes[number / 3 % 3],
                                                   .maxAnisotropy =
@@ -251,7 +252,9 @@ static void create_pipelines(struct picture *p)
                                                .pPushConstantRanges = &range};
     assert_int_equal(h->CreatePipelineLayout(h->device, &layout, NULL, &p->pipeline_layout),
                      VK_SUCCESS);
-    const VkBool32 paged = sluiceGetVulkanResidencyMode(p->streamer) == SLUICE_RESIDENCY_MODE_PAGED;
+    SluiceResidencyMode resolved;
+    CHECK_OK(sluiceGetVulkanResidencyMode(p->streamer, &resolved));
+    const VkBool32 paged = resolved == SLUICE_RESIDENCY_MODE_PAGED;
     const VkSpecializationMapEntry entry = {0, 0, sizeof paged};
     const VkSpecializationInfo constants = {1, &entry, sizeof paged, &paged};
     for (uint32_t kind = 0; kind < KINDS; kind++) {
@@ -270,7 +273,8 @@ static void picture_init(struct picture *p, struct harness *h, SluiceTextureArra
                          bool anisotropic)
 {
     *p = (struct picture){.h = h, .array = array, .draws = draws, .anisotropic = anisotropic};
-    SluiceVulkanStreamerCreateInfo info = {.textureArray = array,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .textureArray = array,
                                            .maxTextureCount = 4 * TEXTURES,
                                            .maxRegionCount = 1 << 12,
                                            .maxPageChunkCount = 8,
@@ -416,9 +420,9 @@ static void check_all(struct harness *h, SluiceTextureArray array, bool draws, b
     for (uint32_t frame = 0; frame < FRAMES; frame++)
         missing = check_frame(p, frame);
     assert_int_equal(missing, 0);
-    SluiceVulkanStreamerStatistics statistics;
+    SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(p->streamer, &statistics));
-    assert_in_range(statistics.manager.mappedTileCount, 1, statistics.manager.tileCount - 1);
+    assert_in_range(statistics.mappedTileCount, 1, statistics.tileCount - 1);
     picture_finish(p);
 }
 
@@ -474,12 +478,13 @@ static void textures_of_a_kind_share_a_sampler(void **state)
     h->quiet = true;
     const float wrong[] = {-1.0f, 16.5f, NAN};
     for (uint32_t i = 0; i < 3; i++)
-        CHECK_RESULT(
-            sluiceAddVulkanTexture(picture.streamer,
-                                   &(SluiceVulkanTextureCreateInfo){.source = picture.sources[0],
-                                                                    .maxAnisotropy = wrong[i]},
-                                   &none),
-            SLUICE_ERROR_INVALID_ARGUMENT);
+        CHECK_RESULT(sluiceAddVulkanTexture(picture.streamer,
+                                            &(SluiceVulkanTextureCreateInfo){
+                                                .structSize = sizeof(SluiceVulkanTextureCreateInfo),
+                                                .source = picture.sources[0],
+                                                .maxAnisotropy = wrong[i]},
+                                            &none),
+                     SLUICE_ERROR_INVALID_ARGUMENT);
     h->quiet = false;
     picture_finish(&picture);
 }

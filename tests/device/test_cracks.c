@@ -182,7 +182,8 @@ static void aim_at_islands(struct scene *scene, bool no_feedback)
 static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyMode mode,
                         bool whole)
 {
-    SluiceVulkanStreamerCreateInfo info = {.residencyMode = mode,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyMode = mode,
                                            .feedbackTimeoutTicks = 6,
                                            .retryDelayTicks = 1u << 30,
                                            .texturesPerFrame = TEXTURES,
@@ -313,7 +314,7 @@ static void destroy_sources(void)
 /* Enough of the samples must be clamped, and enough must not. */
 static void compare(struct harness *h, aim_function *aim)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     struct scene scene;
     uint32_t clamped = 0;
     float worst = 0;
@@ -330,7 +331,7 @@ static void compare(struct harness *h, aim_function *aim)
     do {
         harness_settle(h, scene.streamer, 4, NULL, NULL);
         sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
-    } while (stats.manager.mappedTileCount < stats.manager.tileCount);
+    } while (stats.mappedTileCount < stats.tileCount);
     for (uint32_t round = 0; round < ROUNDS; round++)
         check_round(&scene, round, h->mode, &worst);
     scene_finish(&scene);

@@ -67,7 +67,7 @@ static void begin_commands(VkCommandBuffer commands)
 /* Prepares as many as may be in flight, and gives all of them up with the first. */
 static void give_up_all(struct runner *r, VkCommandBuffer commands)
 {
-    SluiceDemandLaunch first, launch;
+    SluiceDemandLaunch first = {.structSize = sizeof first}, launch = {.structSize = sizeof launch};
     begin_commands(commands);
     CHECK_OK(sluiceBeginDemandLaunch(r->loader, commands, &first));
     CHECK_RESULT(sluiceBeginDemandLaunch(r->loader, commands, &launch),
@@ -78,7 +78,7 @@ static void give_up_all(struct runner *r, VkCommandBuffer commands)
     CHECK_OK(sluiceAbandonDemandLaunch(r->loader, &first));
     CHECK_RESULT(sluiceAbandonDemandLaunch(r->loader, &first), SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_RESULT(sluiceEndDemandLaunch(r->loader, commands), SLUICE_ERROR_INVALID_ARGUMENT);
-    SluiceDemandRequests requests;
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     CHECK_RESULT(sluiceProcessDemandRequests(r->loader, &first, 0, &requests, NULL),
                  SLUICE_ERROR_INVALID_ARGUMENT);
 }

@@ -23,7 +23,9 @@ static void note_failure(void *user, const SluiceTileReadFailure *failure)
 
 static SluiceDemandLoaderCreateInfo quick_retries(struct told *told)
 {
-    return (SluiceDemandLoaderCreateInfo){.readRetry = {3, 1, 1}, .failure = {told, note_failure}};
+    return (SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
+                                          .readRetry = {3, 1, 1},
+                                          .failure = {told, note_failure}};
 }
 
 static void check_failed(const struct runner *r, uint32_t sample)
@@ -84,7 +86,8 @@ static void a_failure_names_the_image_that_was_never_open(void **state)
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
     image.open_result = SLUICE_ERROR_UNSUPPORTED;
-    SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
+    SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                            .image = runner_image_desc(&image)};
     create.image.pName = "bricks.store";
     SluiceDemandTextureId id;
     CHECK_OK(sluiceAddDemandTexture(r.loader, &create, &id));
@@ -146,7 +149,8 @@ static void images_that_no_shader_could_sample_are_refused(void **state)
     h.quiet = true;
     for (uint32_t i = 0; i < COUNT; i++) {
         liars[i].base.pInterface = &interface;
-        const SluiceDemandTextureCreateInfo info = {.image.source = &liars[i].base,
+        const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                    .image.source = &liars[i].base,
                                                     .failureColor = {1, 0, 1, 1}};
         CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
         runner_add_texel(&r, id, 16, 16, 0, 3, 3);
@@ -177,7 +181,7 @@ static void a_tile_that_cannot_be_read_is_shown_by_coarser_ones(void **state)
     runner_launch(&r); /* opens it */
     CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, NULL));
     runner_launch(&r); /* misses the tile */
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     CHECK_OK(sluiceWaitDemandTicket(r.loader, r.ticket, UINT64_MAX, &status));
     assert_int_equal(status.taskCount, 1);
     assert_int_equal(status.remainingCount, 0);
@@ -245,7 +249,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     (void)state;
     struct runner r;
     struct runner_image slow, other;
-    const SluiceDemandLoaderCreateInfo info = {.loaderThreadCount = 3};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .loaderThreadCount = 3};
     runner_init(&r, &h, &info);
     runner_image_init(&slow, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
     runner_image_init(&other, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 2);
@@ -258,7 +262,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     runner_launch(&r);
     assert_int_equal(r.requests.servedCount, 8);
     fault_source_await(&slow.source, 2);
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     CHECK_RESULT(sluiceWaitDemandTicket(r.loader, r.ticket, 1000, &status), SLUICE_NOT_READY);
     assert_int_equal(status.remainingCount, 8);
     SluiceDemandTicket ticket = r.ticket;
@@ -290,8 +294,9 @@ static void a_source_may_go_as_soon_as_its_texture_is_destroyed(void **state)
     for (uint32_t i = 0; i < 10; i++) {
         runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, i);
         image.source.delay_us = 200;
-        const SluiceDemandTextureCreateInfo info = {.image.source = &image.source.base,
-                                                    .sampler = runner_nearest};
+        const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                    .image.source = &image.source.base,
+                                                    .pSampler = &runner_nearest};
         CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
         runner_clear(&r);
         for (uint32_t x = 0; x < 64; x++)

@@ -14,7 +14,7 @@ enum { WIDTH = 1337, HEIGHT = 611, LEVELS = 11 };
 
 static bool is_usable(SluiceFormat format)
 {
-    SluiceVulkanFormatCapabilities caps;
+    SluiceVulkanFormatCapabilities caps = {.structSize = sizeof caps};
     CHECK_OK(
         sluiceGetVulkanFormatCapabilities(h.instance, h.physical_device, h.get, format, &caps));
     return caps.sampled && caps.linearFilter;
@@ -104,7 +104,8 @@ static void check_format(SluiceFormat format)
     SluiceDemandTextureId id;
     SluiceImageSource *source = create_source(format);
     runner_init(&r, &h, NULL);
-    const SluiceDemandTextureCreateInfo info = {.image.source = source, .sampler = runner_nearest};
+    const SluiceDemandTextureCreateInfo info = {
+        .structSize = sizeof info, .image.source = source, .pSampler = &runner_nearest};
     CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
     for (uint32_t l = 0; l < LEVELS; l++)
         for (uint32_t i = 0, x, y; i < 9; i++) {
@@ -196,8 +197,9 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
                 blocks[i].block[b] = (uint8_t)((seed = seed * 1664525u + 1013904223u) >> 24);
             if (f >= SLUICE_FORMAT_BC7_UNORM_BLOCK) /* all modes */
                 blocks[i].block[0] = (uint8_t)((blocks[i].block[0] | 1) << i % 8);
-            const SluiceDemandTextureCreateInfo info = {.image.source = &blocks[i].base,
-                                                        .sampler = runner_nearest};
+            const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                        .image.source = &blocks[i].base,
+                                                        .pSampler = &runner_nearest};
             CHECK_OK(sluiceAddDemandTexture(r.loader, &info, &id));
             runner_add_texel(&r, id, 2, 2, 0, 0, 0);
             runner_add_texel(&r, id, 2, 2, 1, 0, 0);

@@ -166,14 +166,16 @@ static void run(const SluiceDemandLoaderCreateInfo *info)
 static void pictures_stay_right_with_memory_for_all(void **state)
 {
     (void)state;
-    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = 3 * SLOTS};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .maxTextureCount = 3 * SLOTS};
     run(&info);
 }
 
 static void pictures_stay_right_with_little_memory_and_few_reads(void **state)
 {
     (void)state;
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 24u << 20,
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 24u << 20,
                                                .maxTilesInFlight = 7,
                                                .maxRequestsPerLaunch = 5,
                                                .maxTextureCount = 3 * SLOTS};
@@ -184,11 +186,11 @@ static void pictures_stay_right_with_little_memory_and_few_reads(void **state)
 static void a_preload_ends_with_the_image_that_it_was_asked_for(void **state)
 {
     (void)state;
-    const SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = 4};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTilesInFlight = 4};
     struct runner r;
     struct runner_image images[2];
     SluiceDemandTicket preload;
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     runner_init(&r, &h, &info);
     runner_image_init(&images[0], SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, 1);
     runner_image_init(&images[1], SLUICE_FORMAT_R8G8B8A8_UNORM, 8, 8, 2);

@@ -31,7 +31,9 @@ static void a_new_loader_takes_little_staging_memory_and_more_when_it_reads(void
     (void)state;
     struct runner r;
     struct runner_image image;
-    runner_init(&r, &h, &(SluiceDemandLoaderCreateInfo){.memoryBudget = 40u << 20});
+    runner_init(&r, &h,
+                &(SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
+                                                .memoryBudget = 40u << 20});
     uint64_t little = runner_statistics(&r).hostVisibleMemorySize;
     assert_true(little < 12u << 20); /* 1024 tiles in flight would take 64 MiB */
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 0);
@@ -57,7 +59,8 @@ static void a_loader_makes_the_staging_memory_that_it_is_asked_for(void **state)
     uint64_t sizes[2];
     for (int i = 0; i < 2; i++) {
         struct runner r;
-        const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 40u << 20,
+        const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                                   .memoryBudget = 40u << 20,
                                                    .minStagingSize = i ? UINT64_MAX : 0};
         runner_init(&r, &h, &info);
         sizes[i] = runner_statistics(&r).hostVisibleMemorySize;
@@ -74,7 +77,8 @@ static void a_working_set_beyond_the_budget_ends_complete_and_blurrier(void **st
     struct runner_image images[COUNT];
     SluiceDemandTextureId ids[COUNT];
     /* 2048 tiles of level 0 in memory for 640: those of level 1 fit. */
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 40u << 20, .maxTilesInFlight = 256};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 40u << 20, .maxTilesInFlight = 256};
     runner_init(&r, &h, &info);
     for (uint32_t i = 0; i < COUNT; i++) {
         runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, i);
@@ -110,8 +114,10 @@ static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there
     (void)state;
     struct runner r;
     struct runner_image image;
-    const SluiceDemandLoaderCreateInfo info = {
-        .memoryBudget = 8u << 20, .maxTilesInFlight = 64, .noLodBias = true};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 8u << 20,
+                                               .maxTilesInFlight = 64,
+                                               .noLodBias = true};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     add_tiles(&r, runner_add_texture(&r, &image), 0, TILES);
@@ -138,7 +144,8 @@ static void tiles_that_nobody_uses_make_room_and_come_back_unread(void **state)
     (void)state;
     struct runner r;
     struct runner_image image;
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
     runner_init(&r, &h, &info); /* 256 tiles: 8 rows */
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
@@ -163,7 +170,8 @@ static void views_that_walk_to_and_fro_never_show_other_texels(void **state)
     (void)state;
     struct runner r;
     struct runner_image image;
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
@@ -186,7 +194,8 @@ static void tiles_that_were_evicted_and_not_overwritten_need_no_read(void **stat
     (void)state;
     struct runner r;
     struct runner_image image, other;
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     runner_image_init(&other, SLUICE_FORMAT_R32G32B32A32_SFLOAT, SIZE, SIZE, 2);
@@ -217,8 +226,10 @@ static void without_eviction_what_is_there_stays(void **state)
     (void)state;
     struct runner r;
     struct runner_image image;
-    const SluiceDemandLoaderCreateInfo info = {
-        .memoryBudget = 8u << 20, .maxTilesInFlight = 64, .noEviction = true};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 8u << 20,
+                                               .maxTilesInFlight = 64,
+                                               .noEviction = true};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
@@ -244,7 +255,8 @@ static void formats_share_a_budget(void **state)
     struct runner r;
     struct runner_image images[2];
     SluiceDemandTextureId ids[2];
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 16u << 20, .maxTilesInFlight = 64};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 16u << 20, .maxTilesInFlight = 64};
     runner_init(&r, &h, &info);
     for (uint32_t i = 0; i < 2; i++) {
         runner_image_init(&images[i],
@@ -273,7 +285,8 @@ static void formats_share_few_images_of_pages(void **state)
     (void)state;
     struct runner r;
     struct runner_image images[2];
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 512u << 20, .maxPageChunkCount = 2};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 512u << 20, .maxPageChunkCount = 2};
     h.quiet = true;
     runner_init(&r, &h, &info);
     assert_non_null(strstr(h.last_message, "at most 8 MiB of the memoryBudget"));
@@ -305,8 +318,8 @@ static void preloaded_levels_are_there_before_they_are_sampled(void **state)
     struct runner r;
     struct runner_image image;
     SluiceDemandTicket ticket;
-    SluiceDemandTicketStatus status;
-    const SluiceDemandLoaderCreateInfo info = {.maxTilesInFlight = 32};
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTilesInFlight = 32};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 2048, 2048, 1);
     SluiceDemandTextureId id = runner_add_texture(&r, &image);
@@ -344,8 +357,9 @@ static void what_finds_no_memory_is_left_out_of_a_preload(void **state)
     struct runner r;
     struct runner_image image;
     SluiceDemandTicket ticket;
-    SluiceDemandTicketStatus status = {0};
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 4u << 20, .maxTilesInFlight = 32};
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = 4u << 20, .maxTilesInFlight = 32};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     CHECK_OK(sluicePreloadDemandTexture(r.loader, runner_add_texture(&r, &image), 0, &ticket));
@@ -410,7 +424,8 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
     struct runner r;
     struct runner_image image;
     SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 128u << 20,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = 128u << 20,
                                          .maxTilesInFlight = 32,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16};
@@ -443,8 +458,10 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
     struct runner r;
     struct runner_image image;
     SluiceDemandLoader *loader;
-    SluiceDemandLoaderCreateInfo info = {
-        .memoryBudget = 16u << 20, .maxTextureCount = 64, .pageCapacity = 1u << 16};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = 16u << 20,
+                                         .maxTextureCount = 64,
+                                         .pageCapacity = 1u << 16};
     poor.left = UINT64_MAX;
     CHECK_OK(harness_set_context(&h, NULL, get_of_instance));
     runner_fill(&h, &info);
@@ -483,8 +500,10 @@ static void page_tables_of_64_mi_pages_cost_at_most_64_megabytes(void **state)
 {
     (void)state;
     struct runner r;
-    const SluiceDemandLoaderCreateInfo info = {
-        .pageCapacity = 1u << 26, .maxTextureCount = 1u << 17, .memoryBudget = 256u << 20};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .pageCapacity = 1u << 26,
+                                               .maxTextureCount = 1u << 17,
+                                               .memoryBudget = 256u << 20};
     runner_init(&r, &h, &info);
     uint64_t size = runner_statistics(&r).deviceMemorySize;
     print_message("# deviceMemory.pages %llu bytes\n", (unsigned long long)size);
@@ -495,7 +514,8 @@ static void page_tables_of_64_mi_pages_cost_at_most_64_megabytes(void **state)
 /* A loader's life, on one thread but for the workers: OUT_OF_HOST_MEMORY, or how it should be. */
 static bool live(struct failing_allocator *allocator, struct runner_image *image)
 {
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = 8u << 20,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
                                          .maxTilesInFlight = 16,
@@ -512,8 +532,9 @@ static bool live(struct failing_allocator *allocator, struct runner_image *image
         assert_null(loader);
         return false;
     }
-    const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(image),
-                                                  .sampler = runner_nearest};
+    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .image = runner_image_desc(image),
+                                                  .pSampler = &runner_nearest};
     result = sluiceAddDemandTexture(loader, &create, &id);
     if (result != SLUICE_SUCCESS) {
         CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);

@@ -15,7 +15,9 @@ static const uint64_t soon = 1, never = UINT64_MAX;
 
 static SluiceDemandLoaderCreateInfo quick_retries(uint64_t delay)
 {
-    return (SluiceDemandLoaderCreateInfo){.readRetry = {2, 1, 1}, .failureRetryDelayNs = delay};
+    return (SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
+                                          .readRetry = {2, 1, 1},
+                                          .failureRetryDelayNs = delay};
 }
 
 /* Level 0 cannot be read while it is out. */
@@ -66,8 +68,8 @@ static void begin_outage(struct scene *s, uint64_t delay)
     runner_image_init(&s->image, SLUICE_FORMAT_R8G8B8A8_UNORM, SIZE, SIZE, 1);
     s->outage = (struct outage){
         .base.pInterface = &outage_interface, .inner = s->image.inner, .is_out = true};
-    const SluiceDemandTextureCreateInfo texture = {.image.source = &s->outage.base,
-                                                   .sampler = runner_nearest};
+    const SluiceDemandTextureCreateInfo texture = {
+        .structSize = sizeof texture, .image.source = &s->outage.base, .pSampler = &runner_nearest};
     CHECK_OK(sluiceAddDemandTexture(s->r.loader, &texture, &s->id));
     for (uint32_t i = 0; i < TILES * TILES; i++)
         runner_add_texel(&s->r, s->id, SIZE, SIZE, 0, i % TILES * TILE, i / TILES * TILE);
@@ -214,7 +216,7 @@ static void values_that_could_not_be_found_are_found_later(void **state)
     uint32_t first;
     const SluiceDemandLoaderCreateInfo info = quick_retries(soon);
     const SluiceDemandResourceCreateInfo resource = {
-        .pageCount = PAGES, .pUserData = &fills, .pfnFill = fill};
+        .structSize = sizeof resource, .pageCount = PAGES, .pUserData = &fills, .pfnFill = fill};
     h.quiet = true;
     runner_init(&r, &h, &info);
     CHECK_OK(sluiceAddDemandResource(r.loader, &resource, &id, &first));

@@ -55,7 +55,8 @@ static void a_recorded_run_replays_to_the_same_decisions(void **state)
     struct runner_image images[IMAGES];
     SluiceRecorder *recorder;
     SluiceReplayResult replayed = {.structSize = sizeof replayed};
-    const SluiceDemandLoaderCreateInfo small = {.memoryBudget = 4 << 20};
+    const SluiceDemandLoaderCreateInfo small = {.structSize = sizeof small,
+                                                .memoryBudget = 4 << 20};
     const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
     h.abandon_one_in = 5;
     runner_init(&r, &h, &small);

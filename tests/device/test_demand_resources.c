@@ -66,7 +66,8 @@ static void evict(void *user, uint32_t page, uint64_t value)
 
 static SluiceDemandResourceCreateInfo describe(struct store *store, uint32_t limit)
 {
-    return (SluiceDemandResourceCreateInfo){.pageCount = PAGES,
+    return (SluiceDemandResourceCreateInfo){.structSize = sizeof(SluiceDemandResourceCreateInfo),
+                                            .pageCount = PAGES,
                                             .rank = 3,
                                             .maxResidentPageCount = limit,
                                             .pUserData = store,
@@ -189,7 +190,8 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     store_init(&store);
     store.later = 7;
     store.failing_page = 11;
-    const SluiceDemandLoaderCreateInfo create = {.readRetry = {2, 1, 1}};
+    const SluiceDemandLoaderCreateInfo create = {.structSize = sizeof create,
+                                                 .readRetry = {2, 1, 1}};
     runner_init(&r, &h, &create);
     const SluiceDemandResourceCreateInfo info = describe(&store, 0);
     CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
@@ -214,7 +216,8 @@ static void resources_are_served_by_rank_and_before_finer_tiles(void **state)
     struct store stores[2];
     SluiceDemandResourceId id;
     uint32_t first[2];
-    const SluiceDemandLoaderCreateInfo create = {.maxRequestsPerLaunch = 10};
+    const SluiceDemandLoaderCreateInfo create = {.structSize = sizeof create,
+                                                 .maxRequestsPerLaunch = 10};
     runner_init(&r, &h, &create);
     for (uint32_t i = 0; i < 2; i++) {
         store_init(&stores[i]);

@@ -187,9 +187,12 @@ static void address_modes_are_those_of_the_image_unless_they_are_explicit(void *
     runner_image_init(&plain, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 6);
     ids[0] = runner_add_texture(&r, &clamped);
     ids[1] = runner_add_texture(&r, &plain);
-    SluiceDemandTextureCreateInfo repeats = {.image = runner_image_desc(&clamped),
-                                             .sampler = runner_nearest};
-    repeats.sampler.explicitAddressModes = true;
+    SluiceDemandTextureCreateInfo repeats = {.structSize = sizeof repeats,
+                                             .image = runner_image_desc(&clamped),
+                                             .pSampler = &runner_nearest};
+    SluiceDemandSampler sampler = runner_nearest;
+    sampler.explicitAddressModes = true;
+    repeats.pSampler = &sampler;
     CHECK_OK(sluiceAddDemandTexture(r.loader, &repeats, &ids[2]));
     uint32_t told = h.log_count[SLUICE_LOG_WARNING];
     for (uint32_t i = 0; i < 3; i++)
@@ -328,14 +331,15 @@ static void ids_of_destroyed_textures_are_refused_and_their_places_used_again(vo
     struct runner r;
     struct runner_image images[2];
     SluiceDemandTextureId ids[2], last;
-    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = 2};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTextureCount = 2};
     runner_init(&r, &h, &info);
     for (uint32_t i = 0; i < 2; i++) {
         runner_image_init(&images[i], SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, i);
         ids[i] = runner_add_texture(&r, &images[i]);
         runner_add_texel(&r, ids[i], 300, 300, 0, 9, 9);
     }
-    const SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&images[0])};
+    const SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                                  .image = runner_image_desc(&images[0])};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &last), SLUICE_ERROR_LIMIT_EXCEEDED);
     CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, ids[1] + 1), SLUICE_ERROR_UNKNOWN_TEXTURE);
     CHECK_RESULT(sluiceRemoveDemandTexture(r.loader, 0), SLUICE_ERROR_UNKNOWN_TEXTURE);
@@ -367,7 +371,7 @@ static void textures_by_the_hundred_thousand_cost_nothing_before_they_are_sample
     struct runner r;
     struct runner_image image;
     static SluiceDemandTextureId ids[COUNT];
-    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = COUNT};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTextureCount = COUNT};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
     uint64_t memory = runner_statistics(&r).deviceMemorySize;
@@ -396,21 +400,25 @@ static void wrong_arguments_are_refused(void **state)
     SluiceDemandTextureId id;
     runner_init(&r, &h, NULL);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 64, 64, 1);
-    SluiceDemandTextureCreateInfo create = {.image = runner_image_desc(&image)};
+    SluiceDemandTextureCreateInfo create = {.structSize = sizeof create,
+                                            .image = runner_image_desc(&image)};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, NULL), SLUICE_ERROR_NULL_POINTER);
-    create.sampler.maxAnisotropy = 65;
+    create.pSampler =
+        &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler), .maxAnisotropy = 65};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
-    create.sampler = (SluiceDemandSampler){.lodBias = -17};
+    create.pSampler =
+        &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler), .lodBias = -17};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
-    create.sampler = (SluiceDemandSampler){.filter = (SluiceDemandFilter)2};
+    create.pSampler = &(SluiceDemandSampler){.structSize = sizeof(SluiceDemandSampler),
+                                             .filter = (SluiceDemandFilter)2};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_INVALID_ARGUMENT);
     create.image = (SluiceDemandImage){0};
     CHECK_RESULT(sluiceAddDemandTexture(r.loader, &create, &id), SLUICE_ERROR_NULL_POINTER);
-    SluiceDemandLaunch none = {.launchIndex = 1};
+    SluiceDemandLaunch none = {.structSize = sizeof none, .launchIndex = 1};
     CHECK_RESULT(sluiceProcessDemandRequests(r.loader, &none, 0, &r.requests, NULL),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_RESULT(sluiceEndDemandLaunch(r.loader, h.commands[0]), SLUICE_ERROR_INVALID_ARGUMENT);
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 1000};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = 1000};
     SluiceDemandLoader *loader;
     runner_fill(&h, &info);
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);

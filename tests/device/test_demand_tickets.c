@@ -16,7 +16,7 @@ struct held {
 
 static void setup(struct held *held)
 {
-    const SluiceDemandLoaderCreateInfo info = {.loaderThreadCount = 3};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .loaderThreadCount = 3};
     runner_init(&held->r, &h, &info);
     runner_image_init(&held->image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
     held->id = runner_add_texture(&held->r, &held->image);
@@ -40,7 +40,7 @@ static void teardown(struct held *held)
 static void check_status(const struct held *held, SluiceDemandTicket ticket, uint32_t tasks,
                          uint32_t remaining, uint32_t failed)
 {
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     CHECK_OK(sluiceGetDemandTicketStatus(held->r.loader, ticket, &status));
     assert_int_equal(status.taskCount, tasks);
     assert_int_equal(status.remainingCount, remaining);
@@ -72,7 +72,7 @@ static void a_wait_ends_when_its_time_is_over(void **state)
 {
     (void)state;
     struct held held;
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     setup(&held);
     CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, held.r.ticket, 1000000, &status),
                  SLUICE_NOT_READY);
@@ -93,7 +93,7 @@ static void tickets_that_were_never_given_are_refused(void **state)
 {
     (void)state;
     struct held held;
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     setup(&held);
     const SluiceDemandTicket wrong[] = {1, held.r.ticket + 7, held.r.ticket + (1ull << 32),
                                         UINT64_MAX};
@@ -197,8 +197,8 @@ static void many_tickets_end_and_the_last_ones_are_remembered(void **state)
     struct runner r;
     struct runner_image image;
     static SluiceDemandTicket tickets[COUNT];
-    SluiceDemandTicketStatus status;
-    const SluiceDemandLoaderCreateInfo info = {.maxTextureCount = COUNT};
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .maxTextureCount = COUNT};
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 4, 4, 1);
     for (uint32_t i = 0; i < COUNT; i++)

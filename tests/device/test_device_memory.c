@@ -157,9 +157,12 @@ static uint32_t stream(SluiceResidencyMode mode, uint32_t limit)
 {
     struct scene scene;
     uint32_t frames = 0;
-    scene_init(&scene, &h,
-               (SluiceVulkanStreamerCreateInfo){
-                   .residencyMode = mode, .feedbackTimeoutTicks = 1000, .heapTileCapacity = 32});
+    scene_init(
+        &scene, &h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .residencyMode = mode,
+                                         .feedbackTimeoutTicks = 1000,
+                                         .heapTileCapacity = 32});
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t t = scene_add(
             &scene, pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM));
@@ -208,10 +211,12 @@ static void refusals_cost_time_and_nothing_else(void **state)
             continue;
         context_with(0, 0);
         struct scene scene;
-        scene_init(&scene, &h,
-                   (SluiceVulkanStreamerCreateInfo){.residencyMode = modes[i].mode,
-                                                    .feedbackTimeoutTicks = 1000,
-                                                    .heapTileCapacity = 8});
+        scene_init(
+            &scene, &h,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .residencyMode = modes[i].mode,
+                                             .feedbackTimeoutTicks = 1000,
+                                             .heapTileCapacity = 8});
         uint32_t t = scene_add(
             &scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
         scene_aim(&scene, t, 200, &fine);
@@ -268,10 +273,12 @@ static void budgets_hold_for_both_front_ends_together(void **state)
         struct runner r;
         struct runner_image image;
         h.quiet = true;
-        scene_init(&scene, &h,
-                   (SluiceVulkanStreamerCreateInfo){.residencyMode = modes[i].mode,
-                                                    .feedbackTimeoutTicks = 1000,
-                                                    .heapTileCapacity = 16});
+        scene_init(
+            &scene, &h,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .residencyMode = modes[i].mode,
+                                             .feedbackTimeoutTicks = 1000,
+                                             .heapTileCapacity = 16});
         uint32_t t = scene_add(
             &scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
         scene_aim(&scene, t, 200, &fine);

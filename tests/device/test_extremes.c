@@ -25,10 +25,12 @@ static struct ProbeOutput expected[TEXTURES][SCENE_SAMPLES];
 
 static void begin(struct scene *scene, struct harness *h)
 {
-    scene_init(scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1u << 20,
-                                                .texturesPerFrame = TEXTURES,
-                                                .residencyFadeTicks = 1u << 30});
+    scene_init(
+        scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1u << 20,
+                                         .texturesPerFrame = TEXTURES,
+                                         .residencyFadeTicks = 1u << 30});
     for (uint32_t t = 0; t < TEXTURES; t++) {
         VkSamplerAddressMode mode = (VkSamplerAddressMode)(t % 5);
         if (mode == VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE && !h->mirror_clamp)

@@ -39,11 +39,13 @@ static struct ProbeOutput settled[TEXTURES][SCENE_SAMPLES], shown[TEXTURES][SCEN
 /* Textures are added once the streamer runs, so that all are loaded from nothing. */
 static void begin(struct scene *scene, struct harness *h, uint64_t fade_time)
 {
-    scene_init(scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
-                                                .texturesPerFrame = TEXTURES,
-                                                .tilesPerFrame = 64,
-                                                .residencyFadeTicks = fade_time});
+    scene_init(
+        scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .texturesPerFrame = TEXTURES,
+                                         .tilesPerFrame = 64,
+                                         .residencyFadeTicks = fade_time});
     const struct scene_aim aim = {-0.5, -0.5, 2, 2, -1, 3, 0, 0};
     roll_seed(51);
     for (uint32_t t = 0; t < TEXTURES; t++) {
@@ -64,7 +66,7 @@ static void take_picture(struct scene *scene, struct ProbeOutput picture[][SCENE
 
 static uint32_t fading(const struct scene *scene)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene->streamer, &stats);
     return stats.fadingTextures;
 }
@@ -203,13 +205,15 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
 {
     struct harness *h = *state;
     struct scene scene;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4,
-                                                .tilesPerFrame = 32,
-                                                .heapTileCapacity = 64,
-                                                .maxHeapCount = 4,
-                                                .texturesPerFrame = TEXTURES,
-                                                .residencyFadeTicks = 6});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 4,
+                                         .tilesPerFrame = 32,
+                                         .heapTileCapacity = 64,
+                                         .maxHeapCount = 4,
+                                         .texturesPerFrame = TEXTURES,
+                                         .residencyFadeTicks = 6});
     roll_seed(52);
     for (uint32_t t = 0; t < TEXTURES; t++)
         scene_add_as(
@@ -233,7 +237,7 @@ static void tiles_that_come_and_go_while_fading_are_not_missed(void **state)
     }
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_check_levels(&scene);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_true(stats.tilesUnmapped > 100);
     assert_true(faded > 100);
@@ -270,7 +274,8 @@ static void a_fade_that_would_not_end_is_refused(void **state)
 {
     struct harness *h = *state;
     SluiceVulkanStreamer *streamer;
-    SluiceVulkanStreamerCreateInfo info = {.residencyFadeTicks = (1ull << 40) + 1};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyFadeTicks = (1ull << 40) + 1};
     harness_fill(h, &info);
     CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_INVALID_ARGUMENT);
 }

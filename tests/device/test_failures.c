@@ -49,13 +49,15 @@ static void failing_tiles_leave_the_coarse_picture_until_the_source_recovers(voi
     struct faulty f;
     faulty_init(
         &f, *state,
-        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .retryDelayTicks = 2});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .retryDelayTicks = 2});
     scene_settle(&f.scene, 6); /* the packed levels */
     f.fault.fail_at = atomic_load(&f.fault.read_count) + 1;
     f.fault.fails_on = true;
     scene_aim(&f.scene, f.texture, 200, &fine);
     scene_settle(&f.scene, 8);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.scene.streamer, &stats);
     assert_true(stats.tilesFailed > 0);
     assert_true(f.scene.h->log_count[SLUICE_LOG_WARNING] > 0);
@@ -76,7 +78,9 @@ static void failing_packed_levels_show_the_fallback_until_the_source_recovers(vo
     struct faulty f;
     faulty_init(
         &f, *state,
-        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .retryDelayTicks = 2});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .retryDelayTicks = 2});
     f.fault.fail_at = 1;
     f.fault.fails_on = true;
     scene_aim(&f.scene, f.texture, 100, &fine);
@@ -92,13 +96,16 @@ static void failing_packed_levels_show_the_fallback_until_the_source_recovers(vo
 static void source_that_is_not_ready_is_asked_again(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    faulty_init(
+        &f, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000});
     f.fault.postponed = 40;
     scene_aim(&f.scene, f.texture, 100, &fine);
     for (int i = 0; i < 200 && (i < 20 || scene_missing(&f.scene)); i++)
         scene_settle(&f.scene, 1);
     assert_int_equal(scene_missing(&f.scene), 0);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.scene.streamer, &stats);
     assert_int_equal(stats.tilesFailed, 0);
     faulty_finish(&f);
@@ -107,7 +114,10 @@ static void source_that_is_not_ready_is_asked_again(void **state)
 static void texture_removed_while_it_loads_leaves_the_others_alone(void **state)
 {
     struct faulty f;
-    faulty_init(&f, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    faulty_init(
+        &f, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000});
     uint32_t other = scene_add(
         &f.scene, pattern_source(PATTERN_LEVEL, 1000, 500, SLUICE_FORMAT_R16G16B16A16_SFLOAT));
     scene_aim(&f.scene, f.texture, 100, &fine);
@@ -121,9 +131,9 @@ static void texture_removed_while_it_loads_leaves_the_others_alone(void **state)
     fault_source_release(&f.fault);
     scene_settle(&f.scene, 14);
     assert_int_equal(scene_missing(&f.scene), 0);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.scene.streamer, &stats);
-    assert_int_equal(stats.manager.textureCount, 1);
+    assert_int_equal(stats.textureCount, 1);
     assert_int_equal(stats.loadsInFlight, 0);
     assert_int_equal(scene_non_resident(&f.scene), 0);
     faulty_finish(&f);
@@ -134,7 +144,9 @@ static void texture_can_be_removed_after_any_number_of_frames(void **state)
     struct scene scene;
     scene_init(
         &scene, *state,
-        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .maxTextureCount = 3});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .maxTextureCount = 3});
     for (int frames = 0; frames < 9; frames++)
         for (int waits = 0; waits < 2; waits++) {
             uint32_t t = scene_add(
@@ -149,10 +161,10 @@ static void texture_can_be_removed_after_any_number_of_frames(void **state)
             /* its place in the table is free again when nothing uses it any more */
             scene_settle(&scene, 3);
         }
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
-    assert_int_equal(stats.manager.textureCount, 0);
-    assert_int_equal(stats.manager.retiringSlotCount, 0);
+    assert_int_equal(stats.textureCount, 0);
+    assert_int_equal(stats.retiringSlotCount, 0);
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);
 }
@@ -162,7 +174,9 @@ static void loads_nobody_wants_any_more_are_cancelled(void **state)
     struct faulty f;
     faulty_init(
         &f, *state,
-        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 2, .loaderThreadCount = 1});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 2,
+                                         .loaderThreadCount = 1});
     const struct scene_aim left = {0.02, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     const struct scene_aim right = {0.7, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     scene_settle(&f.scene, 6);
@@ -176,10 +190,10 @@ static void loads_nobody_wants_any_more_are_cancelled(void **state)
         harness_frame(f.scene.h, f.scene.streamer, true, scene_record, &f.scene);
     fault_source_release(&f.fault);
     scene_settle(&f.scene, 14);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.scene.streamer, &stats);
     assert_true(stats.tilesCancelled > 0);
-    assert_int_equal(stats.manager.cancelledTileCount, 0);
+    assert_int_equal(stats.cancelledTileCount, 0);
     assert_int_equal(scene_missing(&f.scene), 0);
     assert_int_equal(scene_non_resident(&f.scene), 0);
     faulty_finish(&f);
@@ -188,9 +202,12 @@ static void loads_nobody_wants_any_more_are_cancelled(void **state)
 static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeoutTicks = 1000, .heapTileCapacity = 48, .maxHeapCount = 1});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .heapTileCapacity = 48,
+                                         .maxHeapCount = 1});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, t, SCENE_SAMPLES, &fine);
@@ -198,13 +215,13 @@ static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
         scene_settle(&scene, 1);
         scene_check_levels(&scene);
     }
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
-    assert_int_equal(stats.manager.heapCount, 1);
+    assert_int_equal(stats.heapCount, 1);
     if (scene.h->mode == SLUICE_RESIDENCY_MODE_SPARSE)
         assert_int_equal(stats.tileMemorySize, 48 * 65536);
     assert_true(scene_missing(&scene) > 0);
-    assert_true(stats.manager.mappedTileCount > 20);
+    assert_true(stats.mappedTileCount > 20);
     for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
         assert_true(scene_outputs(&scene, t)[i].level <= 4);
     assert_int_equal(scene_non_resident(&scene), 0);
@@ -222,7 +239,10 @@ static void heap_that_the_device_cannot_have_is_an_empty_budget(void **state)
     if (largest >= (uint64_t)capacity * 65536)
         SKIP_TEST("the device has memory for the largest heap that can be asked for");
     struct scene scene;
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.heapTileCapacity = capacity});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .heapTileCapacity = capacity});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, t, 100, &fine);
@@ -237,7 +257,8 @@ static void creation_survives_every_allocation_failure(void **state)
     for (uint64_t n = 0;; n++) {
         struct failing_allocator a;
         failing_allocator_init(&a, n);
-        SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16, .mapEverything = true};
+        SluiceVulkanStreamerCreateInfo info = {
+            .structSize = sizeof info, .tilesPerFrame = 16, .mapEverything = true};
         SluiceVulkanStreamer *streamer = NULL;
         SluiceResult result = harness_set_context(h, &a.callbacks, NULL);
         harness_fill(h, &info);
@@ -261,13 +282,14 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     failing_allocator_init(&a, UINT64_MAX);
     SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 1000};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 1000};
     CHECK_OK(harness_set_context(h, &a.callbacks, NULL));
     harness_fill(h, &info);
     h->quiet = true;
     SluiceVulkanStreamer *streamer;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
-    SluiceVulkanTextureCreateInfo texture_info = {.source = source};
+    SluiceVulkanTextureCreateInfo texture_info = {.structSize = sizeof texture_info,
+                                                  .source = source};
     SluiceVulkanTexture texture;
     for (uint64_t n = 0;; n++) {
         a.refuse_from = a.calls + n;
@@ -276,9 +298,9 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
         if (result == SLUICE_SUCCESS)
             break;
         CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(streamer, &stats);
-        assert_int_equal(stats.manager.textureCount, 0);
+        assert_int_equal(stats.textureCount, 0);
     }
     struct prober prober;
     prober_init(&prober, h, streamer);
@@ -309,7 +331,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
 static void wrong_arguments_are_refused_and_change_nothing(void **state)
 {
     struct harness *h = *state;
-    SluiceVulkanStreamerCreateInfo info = {0};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info};
     SluiceVulkanStreamer *streamer;
     CHECK_RESULT(sluiceCreateVulkanStreamer(NULL, &streamer), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_NULL_POINTER);
@@ -331,7 +353,7 @@ static void wrong_arguments_are_refused_and_change_nothing(void **state)
         pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM);
     SluiceImageSource *wide =
         pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanTextureCreateInfo texture = {0};
+    SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture};
     SluiceVulkanTexture first, second;
     CHECK_RESULT(sluiceAddVulkanTexture(streamer, &texture, &first), SLUICE_ERROR_NULL_POINTER);
     texture.source = wide; /* 256 regions */
@@ -364,7 +386,8 @@ static void storage_buffers_beyond_the_device_limit_are_refused(void **state)
     h->GetPhysicalDeviceProperties(h->physical_device, &properties);
     if (properties.limits.maxStorageBufferRange >= 1u << 30)
         SKIP_TEST("the device has room for the largest buffer that can be asked for");
-    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount =
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxRegionCount =
                                                properties.limits.maxStorageBufferRange / 4 + 4};
     harness_fill(h, &info);
     SluiceVulkanStreamer *streamer;
@@ -386,13 +409,13 @@ static void image_beyond_the_sparse_address_space_is_refused(void **state)
         SKIP_TEST("only sparse images have an address space");
     if (h->caps.sparseAddressSpaceSize >= size)
         SKIP_TEST("the device has room for the largest image that there is");
-    SluiceVulkanStreamerCreateInfo info = {0};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info};
     harness_fill(h, &info);
     SluiceVulkanStreamer *streamer;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
     SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 16384, 16384, SLUICE_FORMAT_R32G32B32A32_SFLOAT);
-    SluiceVulkanTextureCreateInfo texture = {.source = source};
+    SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture, .source = source};
     SluiceVulkanTexture added;
     h->quiet = true;
     CHECK_RESULT(sluiceAddVulkanTexture(streamer, &texture, &added), SLUICE_ERROR_UNSUPPORTED);
@@ -406,9 +429,11 @@ static void begin_refuses_time_that_goes_back_and_too_many_frames(void **state)
 {
     struct harness *h = *state;
     struct scene scene;
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){0});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo)});
     harness_frame(h, scene.streamer, true, NULL, NULL);
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     VkCommandBuffer commands = h->commands[1];
     CHECK_RESULT(sluiceBeginStreamingFrame(scene.streamer, commands, h->time - 1, &frame),
                  SLUICE_ERROR_TIME_BACKWARDS);

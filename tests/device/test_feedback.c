@@ -126,7 +126,9 @@ static void check_finite_twin(const struct SluiceTextureEntry *e, const struct P
 static void glsl_and_c_twins_agree(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
+    scene_init(&scene, *state,
+               (SluiceVulkanStreamerCreateInfo){
+                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
     const uint32_t sizes[][2] = {{1024, 1024}, {1000, 700}, {1, 3000}, {4096, 1}, {129, 65}};
     roll_seed(31);
     for (uint32_t i = 0; i < 5; i++)
@@ -162,7 +164,9 @@ static void glsl_and_c_twins_agree(void **state)
 static void extremes_stay_inside_the_map(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
+    scene_init(&scene, *state,
+               (SluiceVulkanStreamerCreateInfo){
+                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
     roll_seed(32);
     for (uint32_t mode = 0; mode < 4; mode++)
         scene_add_as(&scene, pattern_source(PATTERN_LEVEL, 1000, 700, SLUICE_FORMAT_R8G8B8A8_UNORM),
@@ -322,7 +326,10 @@ static void marked_is_between_required_and_allowed(void **state)
     roll_seed(33);
     for (uint32_t round = 0; round < 12; round++) {
         struct scene scene;
-        scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 32});
+        scene_init(
+            &scene, *state,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .texturesPerFrame = 32});
         for (uint32_t i = 0; i < 7; i++)
             scene_add_as(&scene,
                          pattern_source(PATTERN_LEVEL, sizes[i][0], sizes[i][1],
@@ -345,7 +352,9 @@ static void resolve_hands_over_and_clears_only_the_maps_of_its_turn(void **state
     struct scene scene;
     scene_init(
         &scene, *state,
-        (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 1, .feedbackTimeoutTicks = 1000});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .texturesPerFrame = 1,
+                                         .feedbackTimeoutTicks = 1000});
     for (uint32_t i = 0; i < 3; i++)
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     harness_frame(scene.h, scene.streamer, true, NULL, NULL); /* the turn of the first */
@@ -363,7 +372,7 @@ static void resolve_hands_over_and_clears_only_the_maps_of_its_turn(void **state
                                  i == 10 && !cleared ? 0 : SLUICE_MIP_UNTOUCHED);
         }
     }
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     harness_frame(scene.h, scene.streamer, true, NULL, NULL);
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_int_equal(stats.feedbackMaps, 4);

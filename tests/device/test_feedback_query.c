@@ -22,9 +22,11 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
                  float bias, struct result *result)
 {
     struct scene scene;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
-                                                .mapEverything = way == EVERYTHING});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .mapEverything = way == EVERYTHING});
     uint32_t t = scene_add_as(
         &scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, anisotropy,
@@ -40,7 +42,7 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
     harness_settle(h, scene.streamer, 72, painter_record, &painter);
     for (uint32_t i = 0; i < PIXELS; i++)
         result->level[i] = pattern_level(prober_outputs(&scene.prober)[i].color);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     result->tiles = stats.tilesMapped;
     painter_finish(&painter);

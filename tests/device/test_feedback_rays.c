@@ -24,11 +24,11 @@ struct stage {
 static void stage_init(struct stage *stage, struct harness *h)
 {
     *stage = (struct stage){.h = h};
-    SluiceVulkanStreamerCreateInfo info = {.feedbackTimeoutTicks = 1000};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 1000};
     harness_fill(h, &info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &stage->streamer));
     stage->source = pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanTextureCreateInfo texture = {.source = stage->source};
+    SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture, .source = stage->source};
     CHECK_OK(sluiceAddVulkanTexture(stage->streamer, &texture, &stage->texture));
     writer_init(&stage->writer, h, stage->streamer, WRITER_LEVELS);
     ray_tracer_init(&stage->tracer, h, &stage->writer);

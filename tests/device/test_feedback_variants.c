@@ -47,7 +47,8 @@ static void stage_init(struct stage *stage, struct harness *h, SluiceVulkanStrea
                                   &stage->recorder));
     for (uint32_t i = 0; i < TEXTURES; i++) {
         stage->sources[i] = pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
-        SluiceVulkanTextureCreateInfo texture = {.source = stage->sources[i]};
+        SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture,
+                                                 .source = stage->sources[i]};
         CHECK_OK(sluiceAddVulkanTexture(stage->streamer, &texture, &stage->textures[i]));
     }
     writer_init(&stage->writer, h, stage->streamer, kind);
@@ -95,17 +96,18 @@ static void level_bits_lead_to_the_same_recording_as_levels(void **state)
     for (int kind = 0; kind < 2; kind++) {
         struct stage *stage = kind ? &masks : &levels;
         stage_init(stage, *state,
-                   (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 4,
-                                                    .feedbackEncoding =
-                                                        kind ? SLUICE_FEEDBACK_ENCODING_MASKS
-                                                             : SLUICE_FEEDBACK_ENCODING_LEVELS},
+                   (SluiceVulkanStreamerCreateInfo){
+                       .structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                       .texturesPerFrame = 4,
+                       .feedbackEncoding =
+                           kind ? SLUICE_FEEDBACK_ENCODING_MASKS : SLUICE_FEEDBACK_ENCODING_LEVELS},
                    kind ? WRITER_MASKS : WRITER_LEVELS);
         roll_seed(71);
         for (uint32_t frame = 0; frame < 40; frame++) {
             random_samples(stage, (uint32_t)roll() % 200, 9);
             harness_settle(stage->h, stage->streamer, 1, writer_record, &stage->writer);
         }
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(stage->streamer, &stats);
         assert_true(stats.tilesMapped > 100 && stats.feedbackWords > 100);
         stage_finish(stage);
@@ -130,7 +132,9 @@ static void only_those_whose_turn_it_is_write(void **state)
         static struct stage stage;
         stage_init(
             &stage, *state,
-            (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 2, .feedbackInTurns = in_turns},
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .texturesPerFrame = 2,
+                                             .feedbackInTurns = in_turns},
             WRITER_IN_TURNS);
         roll_seed(72);
         for (uint32_t frame = 1; frame <= 12; frame++) {
@@ -140,7 +144,7 @@ static void only_those_whose_turn_it_is_write(void **state)
             uint32_t marked = marked_words(&stage);
             assert_true(in_turns ? marked == 0 : marked > 4 * REGIONS / 2);
         }
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(stage.streamer, &stats);
         assert_int_equal(stats.feedbackMaps, 22); /* of 11 frames, the last is on its way */
         stage_finish(&stage);
@@ -154,7 +158,9 @@ static void turns_delay_but_settle_to_the_same(void **state)
         static struct stage stage;
         stage_init(
             &stage, *state,
-            (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 1, .feedbackInTurns = in_turns},
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .texturesPerFrame = 1,
+                                             .feedbackInTurns = in_turns},
             WRITER_IN_TURNS);
         roll_seed(73);
         random_samples(&stage, 50, 3);
@@ -176,7 +182,8 @@ static void record_and_replace(void *user, VkCommandBuffer commands)
     writer_record(&stage->writer, commands);
     uint32_t i = (uint32_t)roll() % TEXTURES;
     CHECK_OK(sluiceRemoveVulkanTexture(stage->streamer, stage->textures[i].textureId));
-    SluiceVulkanTextureCreateInfo texture = {.source = stage->sources[i]};
+    SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture,
+                                             .source = stage->sources[i]};
     CHECK_OK(sluiceAddVulkanTexture(stage->streamer, &texture, &stage->textures[i]));
 }
 
@@ -185,9 +192,12 @@ static void textures_that_come_and_go_inside_a_frame_keep_the_turns(void **state
     static uint8_t maps[2][TEXTURES][REGIONS];
     for (int replaced = 0; replaced < 2; replaced++) {
         static struct stage stage;
-        stage_init(&stage, *state,
-                   (SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 2, .feedbackInTurns = true},
-                   WRITER_IN_TURNS);
+        stage_init(
+            &stage, *state,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .texturesPerFrame = 2,
+                                             .feedbackInTurns = true},
+            WRITER_IN_TURNS);
         roll_seed(74);
         for (uint32_t frame = 0; frame < 30 && replaced; frame++) {
             random_samples(&stage, 300, 4);

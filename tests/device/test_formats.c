@@ -107,16 +107,19 @@ static void check_formats(struct harness *h, const uint32_t (*even)[2], const ui
 {
     for (uint32_t first = 1; first < SLUICE_FORMAT_COUNT; first += SCENE_TEXTURES / size_count) {
         struct scene scene;
-        scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
+        scene_init(
+            &scene, h,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .mapEverything = true});
         uint32_t f = first, count = 0;
         for (; f < SLUICE_FORMAT_COUNT && count + size_count <= SCENE_TEXTURES; f++) {
             add_format(&scene, (SluiceFormat)f, f % 2 ? odd : even, size_count);
             count += size_count;
         }
         scene_settle(&scene, 48);
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
-        assert_int_equal(stats.manager.mappedTileCount, stats.manager.tileCount);
+        assert_int_equal(stats.mappedTileCount, stats.tileCount);
         for (uint32_t i = 0; i < count; i++)
             fetch_some(&scene, i, per_level);
         scene_finish(&scene);
@@ -145,7 +148,10 @@ static void texels_of_every_elongated_format_are_as_in_the_source(void **state)
 static void compressed_textures_are_streamed_by_feedback(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 100});
     roll_seed(4);
     const SluiceFormat formats[] = {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK,
                                     SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC5_UNORM_BLOCK};
@@ -157,9 +163,9 @@ static void compressed_textures_are_streamed_by_feedback(void **state)
     scene_settle(&scene, 14);
     assert_int_equal(scene_missing(&scene), 0);
     assert_int_equal(scene_non_resident(&scene), 0);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
-    assert_true(stats.manager.mappedTileCount < stats.manager.tileCount / 2);
+    assert_true(stats.mappedTileCount < stats.tileCount / 2);
     scene_finish(&scene);
 }
 

@@ -19,9 +19,12 @@ struct picture {
 static void picture_init(struct picture *p, struct harness *h, bool everything, uint32_t width,
                          uint32_t height, float anisotropy)
 {
-    scene_init(&p->scene, h,
-               (SluiceVulkanStreamerCreateInfo){
-                   .feedbackTimeoutTicks = 1000, .mapEverything = everything, .tilesPerFrame = 64});
+    scene_init(
+        &p->scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .mapEverything = everything,
+                                         .tilesPerFrame = 64});
     p->texture = scene_add_as(
         &p->scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, anisotropy,

@@ -80,7 +80,9 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
     struct session s = {.feedback_count = feedback_count};
     scene_init(
         &s.scene, h,
-        (SluiceVulkanStreamerCreateInfo){.residencyMode = mode, .feedbackTimeoutTicks = 1000});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .residencyMode = mode,
+                                         .feedbackTimeoutTicks = 1000});
     s.texture = scene_add_as(&s.scene, pattern_source(kind, c->width, c->height, c->format), c->u,
                              c->v, c->anisotropy, SLUICE_NO_TEXTURE);
     for (uint32_t l = 0; l < look_count; l++) {

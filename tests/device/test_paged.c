@@ -11,14 +11,14 @@ static const struct scene_aim everything_fine = {0.01, 0.01, 0.98, 0.98, 0.2, 0.
 
 static uint64_t device_memory(const struct scene *scene)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(scene->streamer, &stats);
     return stats.tileMemorySize;
 }
 
 static uint64_t generation(const struct scene *scene)
 {
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(scene->streamer, &pages);
     return pages.generation;
 }
@@ -27,7 +27,10 @@ static uint64_t generation(const struct scene *scene)
 static void memory_comes_back_when_no_tile_needs_it(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000});
     uint32_t stays =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 512, 512, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, stays, 200, &everything_fine);
@@ -59,12 +62,14 @@ static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(
     struct harness *h = *state;
     struct scene scene;
     h->quiet = true;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000,
-                                                .maxPageChunkCount = 1,
-                                                .tilesPerFrame = 16,
-                                                .maxLoadsInFlight = 64,
-                                                .retryDelayTicks = 3});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .maxPageChunkCount = 1,
+                                         .tilesPerFrame = 16,
+                                         .maxLoadsInFlight = 64,
+                                         .retryDelayTicks = 3});
     uint32_t first =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     scene_aim(&scene, first, SCENE_SAMPLES, &everything_fine);
@@ -96,7 +101,10 @@ static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
     for (int loop = 0; loop < 2; loop++) {
         h->page_loop = loop;
         struct scene scene;
-        scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000});
+        scene_init(
+            &scene, h,
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .feedbackTimeoutTicks = 1000});
         roll_seed(41);
         for (uint32_t i = 0; i < 4; i++) {
             const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8_UNORM,
@@ -120,12 +128,14 @@ static void standby_tiles_make_room_for_those_of_another_format(void **state)
     struct harness *h = *state;
     struct scene scene;
     const struct scene_aim fine = {0, 0, 0.6, 0.6, 0.1, 0.2, 0, 0};
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     h->quiet = true; /* that pages are short */
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 4,
-                                                .maxPageChunkCount = 2,
-                                                .numExtraStandbyTiles = 1024});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 4,
+                                         .maxPageChunkCount = 2,
+                                         .numExtraStandbyTiles = 1024});
     uint32_t first =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
     uint32_t second = scene_add(

@@ -100,6 +100,7 @@ static void play(struct harness *h, struct run *run, SluiceVulkanStreamerCreateI
     scene_settle(&scene, rest);
     assert_int_equal(scene_non_resident(&scene), 0);
     read_maps(&scene, run);
+    run->stats.structSize = sizeof run->stats;
     sluiceGetVulkanStreamerStatistics(scene.streamer, &run->stats);
     CHECK_OK(sluiceEndRecording(recorder));
     SluiceReplayInfo replay = {
@@ -116,8 +117,10 @@ static void changes_and_whole_maps_decide_the_same(void **state)
     static struct run changes, whole;
     const uint32_t shares[] = {3, TEXTURES};
     for (size_t i = 0; i < 2; i++) {
-        SluiceVulkanStreamerCreateInfo info = {
-            .texturesPerFrame = shares[i], .feedbackTimeoutTicks = 5, .maxHeapCount = 2};
+        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                               .texturesPerFrame = shares[i],
+                                               .feedbackTimeoutTicks = 5,
+                                               .maxHeapCount = 2};
         play(*state, &changes, info, 0);
         info.wholeFeedbackMaps = true;
         play(*state, &whole, info, 0);
@@ -137,8 +140,8 @@ static void changes_and_whole_maps_decide_the_same(void **state)
 static void little_room_delays_but_loses_nothing(void **state)
 {
     static struct run wide, narrow;
-    SluiceVulkanStreamerCreateInfo info = {.texturesPerFrame = TEXTURES,
-                                           .feedbackTimeoutTicks = 40};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .texturesPerFrame = TEXTURES, .feedbackTimeoutTicks = 40};
     play(*state, &wide, info, 100);
     info.feedbackReadbackSize = 1024; /* the map of the largest one */
     play(*state, &narrow, info, 100);
@@ -152,10 +155,13 @@ static void little_room_delays_but_loses_nothing(void **state)
 static void a_texture_that_no_slot_could_hold_is_refused(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state, (SluiceVulkanStreamerCreateInfo){.feedbackReadbackSize = 60});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackReadbackSize = 60});
     struct SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
-    SluiceVulkanTextureCreateInfo info = {.source = source};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = source};
     SluiceVulkanTexture texture;
     scene.h->quiet = true;
     CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer, &info, &texture),

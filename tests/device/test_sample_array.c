@@ -56,13 +56,16 @@ static void probe_init(struct array_probe *p, struct harness *h, const uint32_t 
                        float anisotropy)
 {
     *p = (struct array_probe){0};
-    scene_init(&p->a.scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .tilesPerFrame = 64});
+    scene_init(
+        &p->a.scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .tilesPerFrame = 64});
     for (uint32_t i = 0; i < ARRAY_LAYERS; i++)
         p->a.layers[i] = pattern_source(array_scene_kind(i), size[0], size[1], format);
     CHECK_OK(sluiceCreateArrayImageSource(p->a.layers, ARRAY_LAYERS, NULL, &p->a.source));
     SluiceVulkanTextureCreateInfo create = {
-        .source = p->a.source, .addressModeU = u, .addressModeV = v};
+        .structSize = sizeof create, .source = p->a.source, .addressModeU = u, .addressModeV = v};
     SluiceVulkanTexture textures[ARRAY_LAYERS];
     CHECK_OK(sluiceAddVulkanTextureArray(p->a.scene.streamer, &create, ARRAY_LAYERS, textures));
     for (uint32_t i = 0; i < ARRAY_LAYERS; i++)

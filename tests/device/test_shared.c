@@ -97,7 +97,9 @@ static void stream(struct stage *s)
 static void add_to_loader(struct stage *s)
 {
     const SluiceDemandTextureCreateInfo info = {
-        .image = {.source = &s->counter.base, .pName = "shared"}, .sampler = runner_nearest};
+        .structSize = sizeof info,
+        .image = {.source = &s->counter.base, .pName = "shared"},
+        .pSampler = &runner_nearest};
     CHECK_OK(sluiceAddDemandTexture(s->runner.loader, &info, &s->demand));
     runner_clear(&s->runner);
     for (uint32_t level = 0; level < LEVELS; level++)
@@ -109,12 +111,14 @@ static void add_to_loader(struct stage *s)
 
 static void init_with(struct stage *s, uint64_t budget, uint64_t timeout)
 {
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = budget,
-                                               .readRetry = {.maxAttempts = 1}};
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = budget, .readRetry = {.maxAttempts = 1}};
     counter_init(&s->counter);
-    scene_init(&s->scene, &h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = timeout,
-                                                .readRetry = {.maxAttempts = 1}});
+    scene_init(
+        &s->scene, &h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = timeout,
+                                         .readRetry = {.maxAttempts = 1}});
     runner_init(&s->runner, &h, &info);
     stream(s);
     add_to_loader(s);
@@ -144,7 +148,7 @@ static uint64_t shared_count(const struct stage *s)
 
 static SluiceVulkanStreamerStatistics streamer_statistics(const struct stage *s)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(s->scene.streamer, &stats));
     return stats;
 }

@@ -25,8 +25,11 @@ static void check_sizes(struct harness *h, const uint32_t (*sizes)[2], uint32_t 
                         SluiceFormat format)
 {
     struct scene scene;
-    scene_init(&scene, h,
-               (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100, .tilesPerFrame = 64});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 100,
+                                         .tilesPerFrame = 64});
     roll_seed(5);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t t =
@@ -52,7 +55,7 @@ static void smallest_and_odd_sizes_are_streamed(void **state)
 
 static SluiceVulkanFormatCapabilities r8_limits(struct harness *h)
 {
-    SluiceVulkanFormatCapabilities format;
+    SluiceVulkanFormatCapabilities format = {.structSize = sizeof format};
     CHECK_OK(sluiceGetVulkanFormatCapabilities(h->instance, h->physical_device, h->get,
                                                SLUICE_FORMAT_R8_UNORM, &format));
     return format;
@@ -80,16 +83,21 @@ static void images_beyond_the_limit_are_refused(void **state)
     SluiceVulkanFormatCapabilities format = r8_limits(h);
     uint32_t width = format.maxWidth, height = format.maxHeight;
     struct scene scene;
-    scene_init(&scene, h, (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 100});
+    scene_init(
+        &scene, h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 100});
     h->quiet = true;
     const uint32_t beyond[][2] = {{width + 1, 1}, {1, height + 1}, {2 * width, 2 * height}};
     for (uint32_t i = 0; i < 3; i++) {
         SluiceImageSource *source =
             pattern_source(PATTERN_LEVEL, beyond[i][0], beyond[i][1], SLUICE_FORMAT_R8_UNORM);
         SluiceVulkanTexture texture;
-        CHECK_RESULT(sluiceAddVulkanTexture(scene.streamer,
-                                            &(SluiceVulkanTextureCreateInfo){.source = source},
-                                            &texture),
+        CHECK_RESULT(sluiceAddVulkanTexture(
+                         scene.streamer,
+                         &(SluiceVulkanTextureCreateInfo){
+                             .structSize = sizeof(SluiceVulkanTextureCreateInfo), .source = source},
+                         &texture),
                      SLUICE_ERROR_UNSUPPORTED);
         sluiceDestroyImageSource(source);
     }

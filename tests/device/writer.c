@@ -74,7 +74,7 @@ static void create_set(struct writer *w)
                                             .descriptorSetCount = 1,
                                             .pSetLayouts = &w->set_layout};
     assert_int_equal(h->AllocateDescriptorSets(h->device, &allocate, &w->set), VK_SUCCESS);
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(w->streamer, &buffers);
     VkDescriptorBufferInfo infos[BINDINGS] = {{buffers.textureTable, 0, VK_WHOLE_SIZE},
                                               {buffers.feedback, 0, VK_WHOLE_SIZE},

@@ -64,7 +64,8 @@ void gallery_finish(struct gallery *g)
 
 SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
 {
-    SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .tilesPerFrame = 16,
                                            .maxTextureCount = 5,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
@@ -78,7 +79,7 @@ SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
 
 SluiceResult gallery_add(struct gallery *g, uint32_t texture)
 {
-    SluiceVulkanTextureCreateInfo info = {.source = &g->source};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = &g->source};
     if (texture == GALLERY_TEXTURES - 1)
         info.primaryId = g->textures[0].textureId;
     return sluiceAddVulkanTexture(g->streamer, &info, &g->textures[texture]);
@@ -86,14 +87,14 @@ SluiceResult gallery_add(struct gallery *g, uint32_t texture)
 
 SluiceResult gallery_add_array(struct gallery *g)
 {
-    SluiceVulkanTextureCreateInfo info = {.source = g->array};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = g->array};
     return sluiceAddVulkanTextureArray(g->streamer, &info, 2, g->layers);
 }
 
 SluiceResult gallery_frame(struct gallery *g)
 {
     struct fake_vulkan *fake = &g->fake;
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     fake->bind_count = fake->copy_count = fake->destroyed_count = fake->freed_count = 0;
     fake->published = false;
     fake->bind_value = fake->submitted_bind_value;
@@ -111,7 +112,7 @@ SluiceResult gallery_frame(struct gallery *g)
 
 SluiceVulkanStreamerStatistics gallery_statistics(const struct gallery *g)
 {
-    SluiceVulkanStreamerStatistics statistics;
+    SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
     sluiceGetVulkanStreamerStatistics(g->streamer, &statistics);
     return statistics;
 }

@@ -62,7 +62,8 @@ static void a_resource_of_the_last_generation_is_the_last_of_its_index(void **st
 {
     (void)state;
     struct runner r;
-    const SluiceDemandResourceCreateInfo info = {.pageCount = 10, .pfnFill = fill};
+    const SluiceDemandResourceCreateInfo info = {
+        .structSize = sizeof info, .pageCount = 10, .pfnFill = fill};
     SluiceDemandResourceId ids[ROUNDS];
     uint32_t first, repeated = 0;
     runner_init(&r, &h, NULL);

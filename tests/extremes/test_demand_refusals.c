@@ -24,14 +24,15 @@ static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
 
 static SluiceResult create_texture(struct life *l)
 {
-    const SluiceDemandTextureCreateInfo info = {.image = runner_image_desc(&l->image),
-                                                .sampler = runner_nearest};
+    const SluiceDemandTextureCreateInfo info = {.structSize = sizeof info,
+                                                .image = runner_image_desc(&l->image),
+                                                .pSampler = &runner_nearest};
     return sluiceAddDemandTexture(l->r.loader, &info, &l->texture);
 }
 
 static SluiceResult create_variant(struct life *l)
 {
-    const SluiceDemandSampler sampler = {.maxAnisotropy = 8};
+    const SluiceDemandSampler sampler = {.structSize = sizeof sampler, .maxAnisotropy = 8};
     return sluiceAddDemandTextureVariant(l->r.loader, l->texture, &sampler, &l->variant);
 }
 
@@ -47,7 +48,7 @@ static SluiceResult create_grid(struct life *l)
 static SluiceResult create_resource(struct life *l)
 {
     const SluiceDemandResourceCreateInfo info = {
-        .pageCount = 3000, .maxResidentPageCount = 100, .pfnFill = fill};
+        .structSize = sizeof info, .pageCount = 3000, .maxResidentPageCount = 100, .pfnFill = fill};
     return sluiceAddDemandResource(l->r.loader, &info, &l->resource, &l->first_page);
 }
 
@@ -107,7 +108,8 @@ static void open_life(struct life *l)
     failing_allocator_init(&l->memory, UINT64_MAX);
     runner_image_init(&l->image, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 1);
     runner_image_init(&l->other, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 2);
-    const SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 8u << 20,
                                                .maxTextureCount = 64,
                                                .pageCapacity = 1u << 16,
                                                .maxTilesInFlight = 16,
@@ -195,17 +197,17 @@ static void questions_take_no_memory(void **state)
     for (uint32_t step = 0; step < 6; step++)
         CHECK_OK(calls[step](&l));
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     assert_int_equal(h.DeviceWaitIdle(h.device), VK_SUCCESS);
     assert_int_equal(h.BeginCommandBuffer(h.commands[0], &begin), VK_SUCCESS);
     CHECK_OK(sluiceBeginDemandLaunch(l.r.loader, h.commands[0], &launch));
     uint64_t calls_before = l.memory.calls;
     l.memory.refuse_from = 0;
     CHECK_OK(sluiceAbandonDemandLaunch(l.r.loader, &launch));
-    SluiceDemandBuffers buffers;
-    SluiceVulkanPages pages;
+    SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     VkDescriptorSetLayout layout;
-    SluiceDemandTicketStatus status;
+    SluiceDemandTicketStatus status = {.structSize = sizeof status};
     sluiceGetDemandBuffers(l.r.loader, &buffers);
     sluiceGetDemandPages(l.r.loader, &pages);
     CHECK_OK(sluiceGetDemandDescriptorSetLayout(l.r.loader, &layout));

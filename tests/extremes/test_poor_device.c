@@ -14,7 +14,9 @@ static uint32_t stream_with(struct harness *h, uint64_t memory, uint32_t *frames
     struct scene scene;
     scene_init(
         &scene, h,
-        (SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 1000, .heapTileCapacity = 32});
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 1000,
+                                         .heapTileCapacity = 32});
     uint32_t t =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM));
     failing_layer.memory_left = memory;
@@ -24,9 +26,9 @@ static uint32_t stream_with(struct harness *h, uint64_t memory, uint32_t *frames
         scene_check_levels(&scene); /* every texel is of the level that it says */
     }
     uint32_t missing = scene_missing(&scene);
-    SluiceVulkanStreamerStatistics s;
+    SluiceVulkanStreamerStatistics s = {.structSize = sizeof s};
     sluiceGetVulkanStreamerStatistics(scene.streamer, &s);
-    assert_int_equal(s.manager.givenUpTileCount + s.manager.failedTileCount, 0);
+    assert_int_equal(s.givenUpTileCount + s.failedTileCount, 0);
     failing_layer.memory_left = UINT64_MAX;
     for (*frames = 0; *frames < RECOVERY && scene_missing(&scene) > 0; ++*frames)
         scene_settle(&scene, 1);

@@ -13,7 +13,8 @@ enum { FRAMES = 5, LAUNCHES = 6 };
 
 static SluiceResult create_streamer(SluiceVulkanStreamer **streamer)
 {
-    SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .tilesPerFrame = 16,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
@@ -51,7 +52,7 @@ static void submit(VkCommandBuffer commands, VkSemaphore semaphore, uint64_t val
 static SluiceResult frame(SluiceVulkanStreamer *streamer)
 {
     VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     VkCommandBuffer commands = h.commands[0];
     SluiceResult result = sluiceWaitVulkanStreamerIdle(streamer);
     if (result != SLUICE_SUCCESS)
@@ -74,7 +75,7 @@ static SluiceResult live_streaming(SluiceImageSource *source)
 {
     SluiceVulkanStreamer *streamer;
     SluiceVulkanTexture texture;
-    SluiceVulkanTextureCreateInfo info = {.source = source};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = source};
     SluiceResult result = create_streamer(&streamer);
     if (result == SLUICE_SUCCESS)
         result = sluiceAddVulkanTexture(streamer, &info, &texture);
@@ -83,7 +84,7 @@ static SluiceResult live_streaming(SluiceImageSource *source)
     if (streamer) { /* and what a program does that shuts down: it returns */
         SluiceResult idle = sluiceWaitVulkanStreamerIdle(streamer);
         assert_true(idle == SLUICE_SUCCESS || idle == SLUICE_ERROR_DEVICE_LOST);
-        SluiceVulkanStreamerStatistics statistics;
+        SluiceVulkanStreamerStatistics statistics = {.structSize = sizeof statistics};
         sluiceGetVulkanStreamerStatistics(streamer, &statistics);
         sluiceDestroyVulkanStreamer(streamer);
     }
@@ -118,7 +119,8 @@ static void a_streamer_on_a_device_that_is_lost_can_be_destroyed(void **state)
 
 static SluiceResult create_loader(SluiceDemandLoader **loader)
 {
-    SluiceDemandLoaderCreateInfo info = {.memoryBudget = 8u << 20,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .memoryBudget = 8u << 20,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
                                          .maxTilesInFlight = 16,

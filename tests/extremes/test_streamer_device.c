@@ -52,8 +52,8 @@ static uint32_t starve(SluiceResidencyMode mode, uint32_t heaps, bool *is_coarse
     CHECK_OK(run_frames(FRAMES));
     assert_true(g.fake.live_memory <= limit);
     SluiceVulkanStreamerStatistics s = gallery_statistics(&g);
-    assert_int_equal(s.manager.failedTileCount + s.manager.givenUpTileCount + s.tilesFailed, 0);
-    *is_coarse = s.manager.mappedTileCount < GALLERY_TEXTURES * GALLERY_TILES;
+    assert_int_equal(s.failedTileCount + s.givenUpTileCount + s.tilesFailed, 0);
+    *is_coarse = s.mappedTileCount < GALLERY_TEXTURES * GALLERY_TILES;
     if (heaps > 1) /* every texture shows something */
         assert_true(coarsest() <= 3);
     assert_true(!*is_coarse || coarsest() > 0);
@@ -61,7 +61,7 @@ static uint32_t starve(SluiceResidencyMode mode, uint32_t heaps, bool *is_coarse
     uint32_t frames = 0;
     while (coarsest() > 0 && ++frames < RECOVERY)
         CHECK_OK(gallery_frame(&g));
-    assert_true(gallery_statistics(&g).manager.mappedTileCount >= GALLERY_TEXTURES * GALLERY_TILES);
+    assert_true(gallery_statistics(&g).mappedTileCount >= GALLERY_TEXTURES * GALLERY_TILES);
     gallery_finish(&g);
     return frames;
 }
@@ -91,7 +91,7 @@ static void what_waits_for_memory_ends_with_the_wish_for_it(void **state)
         g.fake.memory_limit = g.fake.live_memory + HEAP;
         CHECK_OK(run_frames(10));
         SluiceVulkanStreamerStatistics s = gallery_statistics(&g);
-        assert_true(s.manager.requestedTileCount + s.manager.allocatedTileCount > 0);
+        assert_true(s.requestedTileCount + s.allocatedTileCount > 0);
         if (i % 2) {
             g.is_looked_at = false;
             CHECK_OK(run_frames(40));
@@ -101,8 +101,8 @@ static void what_waits_for_memory_ends_with_the_wish_for_it(void **state)
             CHECK_OK(run_frames(10));
         }
         s = gallery_statistics(&g);
-        assert_int_equal(s.manager.requestedTileCount + s.manager.allocatedTileCount +
-                             s.manager.cancelledTileCount + s.loadsInFlight,
+        assert_int_equal(s.requestedTileCount + s.allocatedTileCount + s.cancelledTileCount +
+                             s.loadsInFlight,
                          0);
         g.fake.memory_limit = 0;
         g.is_looked_at = true;

@@ -27,7 +27,7 @@ static bool was_refused(void)
 static uint64_t press(SluiceResult (*call)(struct gallery *), bool lasting)
 {
     for (uint64_t n = 0;; n++) {
-        uint32_t textures = g.streamer ? gallery_statistics(&g).manager.textureCount : 0;
+        uint32_t textures = g.streamer ? gallery_statistics(&g).textureCount : 0;
         uint64_t objects = g.fake.live_objects, device = g.fake.live_memory;
         refuse(n, lasting);
         SluiceResult result = call(&g);
@@ -41,7 +41,7 @@ static uint64_t press(SluiceResult (*call)(struct gallery *), bool lasting)
         assert_int_equal(g.fake.live_objects, objects);
         assert_int_equal(g.fake.live_memory, device);
         if (g.streamer)
-            assert_int_equal(gallery_statistics(&g).manager.textureCount, textures);
+            assert_int_equal(gallery_statistics(&g).textureCount, textures);
         else
             gallery_check_nothing_left(&g);
         assert_true(n < 1000);
@@ -88,7 +88,7 @@ static void creating_and_adding_survive_every_refused_allocation(void **state)
         refusals += created + added + array;
         for (uint32_t frame = 0; frame < FRAMES; frame++) /* nothing is missing after all that */
             CHECK_OK(gallery_frame(&g));
-        assert_true(gallery_statistics(&g).manager.mappedTileCount >= 4 * GALLERY_TILES);
+        assert_true(gallery_statistics(&g).mappedTileCount >= 4 * GALLERY_TILES);
         gallery_finish(&g);
     }
     note("streamer: refused allocations of create and add", refusals, 0, 0);
@@ -133,9 +133,8 @@ static bool survive_frames(uint64_t n, bool lasting, bool is_poor)
         g.is_looked_at = true;
         for (uint32_t frame = 0; frame < FRAMES + (is_poor ? RECOVERY : 0); frame++)
             CHECK_OK(gallery_frame(&g));
-        assert_true(gallery_statistics(&g).manager.mappedTileCount >=
-                    GALLERY_TEXTURES * GALLERY_TILES);
-        assert_int_equal(gallery_statistics(&g).manager.requestedTileCount, 0);
+        assert_true(gallery_statistics(&g).mappedTileCount >= GALLERY_TEXTURES * GALLERY_TILES);
+        assert_int_equal(gallery_statistics(&g).requestedTileCount, 0);
     }
     gallery_finish(&g);
     return refused;
@@ -166,25 +165,28 @@ static void questions_take_no_memory(void **state)
         CHECK_OK(gallery_add(&g, 0));
         for (uint32_t frame = 0; frame < 5; frame++)
             CHECK_OK(gallery_frame(&g));
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         CHECK_OK(
             sluiceBeginStreamingFrame(g.streamer, fake_vulkan_commands(&g.fake), ++g.time, &frame));
         uint64_t calls = g.memory.calls;
         g.memory.refuse_from = 0;
-        SluiceVulkanBuffers buffers;
-        SluiceVulkanPages pages;
+        SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
+        SluiceVulkanPages pages = {.structSize = sizeof pages};
         VkDescriptorSetLayout layout;
         SluiceTileLoaderStatistics reads = {.structSize = sizeof reads};
         sluiceGetVulkanBuffers(g.streamer, &buffers);
         sluiceGetVulkanPages(g.streamer, &pages);
         CHECK_OK(sluiceGetVulkanDescriptorSetLayout(g.streamer, &layout));
-        assert_int_equal(sluiceGetVulkanResidencyMode(g.streamer), modes[i]);
-        const SluiceVulkanDeviceCapabilities caps = {.sparse = true};
-        assert_int_equal(sluiceChooseVulkanResidencyMode(&caps, modes[i], 0), modes[i]);
+        SluiceResidencyMode resolved;
+        CHECK_OK(sluiceGetVulkanResidencyMode(g.streamer, &resolved));
+        assert_int_equal(resolved, modes[i]);
+        const SluiceVulkanDeviceCapabilities caps = {.structSize = sizeof caps, .sparse = true};
+        CHECK_OK(sluiceChooseVulkanResidencyMode(&caps, modes[i], 0, &resolved));
+        assert_int_equal(resolved, modes[i]);
         assert_non_null(sluiceGetVulkanStreamerManager(g.streamer));
         CHECK_OK(sluiceGetVulkanReadStatistics(g.streamer, NULL, &reads));
         CHECK_OK(sluiceRetryVulkanSource(g.streamer, NULL));
-        assert_true(gallery_statistics(&g).manager.textureCount == 1);
+        assert_true(gallery_statistics(&g).textureCount == 1);
         CHECK_OK(sluiceAbandonStreamingFrame(g.streamer, &frame));
         CHECK_OK(sluiceWaitVulkanStreamerIdle(g.streamer));
         CHECK_OK(sluiceRemoveVulkanTexture(g.streamer, g.textures[0].textureId));

@@ -269,7 +269,9 @@ static void values_reach_shaders_and_metrics(void **state)
 {
     (void)state;
     struct scene scene;
-    scene_init(&scene, fixture.h, (SluiceVulkanStreamerCreateInfo){.mapEverything = true});
+    scene_init(&scene, fixture.h,
+               (SluiceVulkanStreamerCreateInfo){
+                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
     uint32_t textures[FORM_COUNT];
     for (int form = 0; form < FORM_COUNT; form++)
         textures[form] = scene_add(&scene, open_form((enum form)form));

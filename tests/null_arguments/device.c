@@ -34,8 +34,8 @@ sluiceSetVulkanStreamerSettings(f->streamer, &f->settings)
 sluiceGetVulkanStreamerStatistics(f->streamer, &f->out.statistics)
 sluiceGetVulkanReadStatistics(f->streamer, ?f->source, &f->out.reads)
 sluiceRetryVulkanSource(f->streamer, ?f->source)
-sluiceGetVulkanResidencyMode(f->streamer)
-sluiceChooseVulkanResidencyMode(&f->out.caps, f->h->mode, 1)
+sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
+sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
 sluiceGetVulkanStreamerManager(f->streamer)
 
 sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemandLoader(f->out.loader)
@@ -93,6 +93,7 @@ struct fixture {
     SluiceDemandResourceId resource;
     SluiceDemandLaunch launch;
     struct {
+        SluiceResidencyMode mode;
         SluiceVulkanDeviceCapabilities caps;
         SluiceVulkanFormatCapabilities format;
         SluiceVulkanSparseImageLayout sparse;
@@ -143,33 +144,45 @@ static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
 
 static void init_streamer(struct fixture *f)
 {
-    f->streamer_info = (SluiceVulkanStreamerCreateInfo){
-        .maxTextureCount = 8, .tilesPerFrame = 4, .maxRegionCount = 64, .loaderThreadCount = 1};
+    f->streamer_info =
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .maxTextureCount = 8,
+                                         .tilesPerFrame = 4,
+                                         .maxRegionCount = 64,
+                                         .loaderThreadCount = 1};
     harness_fill(&h, &f->streamer_info);
     CHECK_OK(sluiceCreateVulkanStreamer(&f->streamer_info, &f->streamer));
     f->settings.structSize = sizeof f->settings;
     f->loader_settings.structSize = sizeof f->loader_settings;
     CHECK_OK(sluiceGetVulkanStreamerSettings(f->streamer, &f->settings));
-    f->texture_info.source = f->source;
+    f->texture_info = (SluiceVulkanTextureCreateInfo){
+        .structSize = sizeof(SluiceVulkanTextureCreateInfo), .source = f->source};
     CHECK_OK(sluiceAddVulkanTexture(f->streamer, &f->texture_info, &f->texture));
 }
 
 static void init_loader(struct fixture *f)
 {
-    f->loader_info = (SluiceDemandLoaderCreateInfo){.context = h.context,
-                                                    .maxTextureCount = 64,
-                                                    .pageCapacity = 4096,
-                                                    .maxTilesInFlight = 4,
-                                                    .memoryBudget = 4 << 20,
-                                                    .loaderThreadCount = 1};
+    f->loader_info =
+        (SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
+                                       .context = h.context,
+                                       .maxTextureCount = 64,
+                                       .pageCapacity = 4096,
+                                       .maxTilesInFlight = 4,
+                                       .memoryBudget = 4 << 20,
+                                       .loaderThreadCount = 1};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
     CHECK_OK(sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings));
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
     f->recording = (SluiceFileRecordingInfo){.structSize = sizeof(SluiceFileRecordingInfo),
                                              .pPath = "null_arguments_demand.trace"};
-    f->demand_info.image.source = f->source;
+    f->demand_info = (SluiceDemandTextureCreateInfo){
+        .structSize = sizeof(SluiceDemandTextureCreateInfo), .image = {.source = f->source}};
+    f->sampler.structSize = sizeof f->sampler;
+    f->frame.structSize = sizeof f->frame;
+    f->launch.structSize = sizeof f->launch;
     CHECK_OK(sluiceAddDemandTexture(f->loader, &f->demand_info, &f->id));
-    f->resource_info = (SluiceDemandResourceCreateInfo){.pageCount = 4, .pfnFill = fill};
+    f->resource_info = (SluiceDemandResourceCreateInfo){
+        .structSize = sizeof(SluiceDemandResourceCreateInfo), .pageCount = 4, .pfnFill = fill};
     uint32_t first;
     CHECK_OK(sluiceAddDemandResource(f->loader, &f->resource_info, &f->resource, &first));
 }

@@ -169,9 +169,11 @@ def write_other_sizes(out, name, function, call, growing):
             out.append(f"                    {name}({', '.join(given)}));")
             if refused:
                 out.append("        assert_memory_equal(before, &f->out, sizeof before);")
+            if after and refused:
+                out.append(f"        {after};")
+            elif after:  # what was written stands in `sized`
+                out.append(f"        {after.replace(arguments[i], given[i])};")
             out.append("    }")
-            if after:
-                out.append(f"    {after};")
     out += ["    calls_finish(f);", "}", ""]
     return True
 

@@ -886,6 +886,7 @@ void fake_vulkan_destroy(SluiceVulkanStreamer *streamer)
 
 void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info)
 {
+    info->structSize = sizeof *info;
     if (info->ticksPerSecond)
         return;
     info->ticksPerSecond = 60;

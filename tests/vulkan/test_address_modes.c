@@ -54,8 +54,10 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
     fake = (struct fake_vulkan){.tail_page_count = 1, .log = {&warnings, count_warnings}};
-    SluiceVulkanStreamerCreateInfo info = {
-        .maxTextureCount = 8, .maxRegionCount = 256, .loaderThreadCount = 1};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = 8,
+                                           .maxRegionCount = 256,
+                                           .loaderThreadCount = 1};
     fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[sizeof cases / sizeof cases[0]];
@@ -70,7 +72,8 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
                                 .addressModeU = c->recorded[0],
                                 .addressModeV = c->recorded[1]};
         CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &sources[i]));
-        SluiceVulkanTextureCreateInfo create = {.source = sources[i],
+        SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
+                                                .source = sources[i],
                                                 .addressModeU = c->given[0],
                                                 .addressModeV = c->given[1],
                                                 .explicitAddressModes = c->is_explicit};

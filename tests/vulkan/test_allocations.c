@@ -61,7 +61,7 @@ static uint8_t want(void *user, uint32_t region)
 
 static void frame(struct walk *w)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     w->step++;
     w->fake.published = false;
     w->fake.copy_count = w->fake.bind_count = w->fake.destroyed_count = w->fake.freed_count = 0;
@@ -87,7 +87,8 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                                 .pName = "grey"};
         CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &w->sources[i]));
     }
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = TEXTURES,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = TEXTURES,
                                            .maxRegionCount = 16384,
                                            .texturesPerFrame = share,
                                            .loaderThreadCount = 1,
@@ -98,7 +99,8 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&w->fake, &info, &w->streamer));
     for (uint32_t i = 0; i < TEXTURES; i++) {
-        SluiceVulkanTextureCreateInfo create = {.source = w->sources[i % SHAPES]};
+        SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
+                                                .source = w->sources[i % SHAPES]};
         SluiceVulkanTexture texture;
         CHECK_OK(sluiceAddVulkanTexture(w->streamer, &create, &texture));
         assert_int_equal(texture.tableIndex, i);
@@ -111,7 +113,8 @@ static void check_walk(SluiceResidencyMode mode, uint32_t share)
     walk_init(&walk, mode, share);
     for (uint32_t i = 0; i < 2 * ROUND; i++)
         frame(&walk);
-    SluiceVulkanStreamerStatistics before, after;
+    SluiceVulkanStreamerStatistics before = {.structSize = sizeof before},
+                                   after = {.structSize = sizeof after};
     sluiceGetVulkanStreamerStatistics(walk.streamer, &before);
     uint32_t warm = atomic_load(&walk.allocations.count);
     assert_true(warm > 0);

@@ -152,8 +152,10 @@ static void contexts_outlive_their_children(void **state)
     SluiceDemandLoader *loader;
     const SluiceVulkanContextCreateInfo create = start();
     CHECK_OK(sluiceCreateVulkanContext(&create, &context));
-    SluiceVulkanStreamerCreateInfo info = {.context = context, .maxRegionCount = 256};
-    const SluiceDemandLoaderCreateInfo demand = {.context = context, .pageCapacity = 1u << 18};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .context = context, .maxRegionCount = 256};
+    const SluiceDemandLoaderCreateInfo demand = {
+        .structSize = sizeof demand, .context = context, .pageCapacity = 1u << 18};
     fake_vulkan_fill(&info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
     CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
@@ -294,7 +296,7 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
 static void run_frames(SluiceVulkanStreamer *streamer, uint64_t *time, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         VkCommandBuffer commands = fake_vulkan_commands(&fake);
         fake.published = false;
         fake.copy_count = fake.bind_count = fake.destroyed_count = fake.freed_count = 0;
@@ -324,8 +326,10 @@ static void objects_go_without_names_if_the_instance_has_no_debug_utils(void **s
     for (int i = 0; i < 2; i++) {
         fake.missing = i ? NULL : "vkSetDebugUtilsObjectNameEXT";
         CHECK_OK(sluiceCreateVulkanContext(&create, &context));
-        SluiceVulkanStreamerCreateInfo info = {.context = context, .maxRegionCount = 256};
-        const SluiceDemandLoaderCreateInfo demand = {.context = context, .pageCapacity = 1u << 18};
+        SluiceVulkanStreamerCreateInfo info = {
+            .structSize = sizeof info, .context = context, .maxRegionCount = 256};
+        const SluiceDemandLoaderCreateInfo demand = {
+            .structSize = sizeof demand, .context = context, .pageCapacity = 1u << 18};
         fake_vulkan_fill(&info);
         CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
         CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
@@ -380,14 +384,15 @@ static void two_streamers_stay_within_one_budget(void **state)
         create.memoryBudget = budget;
         CHECK_OK(sluiceCreateVulkanContext(&create, &context));
         for (int i = 0; i < 2; i++) {
-            SluiceVulkanStreamerCreateInfo info = {.context = context,
+            SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                                   .context = context,
                                                    .residencyMode = modes[i ? m / 2 : m % 2],
                                                    .maxTextureCount = 4,
                                                    .maxRegionCount = 1 << 12,
                                                    .feedbackTimeoutTicks = 100,
                                                    .heapTileCapacity = 64,
                                                    .loaderThreadCount = 1};
-            const SluiceVulkanTextureCreateInfo add = {.source = source};
+            const SluiceVulkanTextureCreateInfo add = {.structSize = sizeof add, .source = source};
             SluiceVulkanTexture texture;
             fake_vulkan_fill(&info);
             CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamers[i]));
@@ -449,8 +454,10 @@ static void creation_that_fails_leaves_no_child(void **state)
     failing_allocator_init(&memory, UINT64_MAX);
     create.pAllocator = &memory.callbacks;
     CHECK_OK(sluiceCreateVulkanContext(&create, &context));
-    SluiceVulkanStreamerCreateInfo info = {.context = context, .maxRegionCount = 256};
-    const SluiceDemandLoaderCreateInfo demand = {.context = context, .pageCapacity = 1u << 18};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .context = context, .maxRegionCount = 256};
+    const SluiceDemandLoaderCreateInfo demand = {
+        .structSize = sizeof demand, .context = context, .pageCapacity = 1u << 18};
     fake_vulkan_fill(&info);
     for (uint64_t n = 0; n < 20; n++) {
         SluiceVulkanStreamer *streamer;

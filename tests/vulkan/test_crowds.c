@@ -28,7 +28,7 @@ static uint8_t want_nothing(void *user, uint32_t region)
 
 static void frame(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer, uint64_t time)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     fake->published = false;
     fake->copy_count = fake->bind_count = 0;
     fake->bind_value = fake->submitted_bind_value;
@@ -45,7 +45,8 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     static struct fake_vulkan fake; /* large */
     uint32_t errors = 0;
     fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_nothing};
-    SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .maxTextureCount = 8,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
@@ -60,7 +61,7 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
                             .height = 64,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
-    SluiceVulkanTextureCreateInfo create = {0};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < BEARABLE; i++)
@@ -69,9 +70,9 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     assert_int_equal(errors, 1);
     for (uint64_t time = 1; time < 8; time++)
         frame(&fake, streamer, time);
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(streamer, &stats);
-    assert_int_equal(stats.manager.mappedTileCount, BEARABLE);
+    assert_int_equal(stats.mappedTileCount, BEARABLE);
     fake_vulkan_destroy(streamer);
     sluiceDestroyImageSource(create.source);
     assert_int_equal(fake.live_objects, 0);
@@ -95,7 +96,8 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
     fake = (struct fake_vulkan){.want = want_all};
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = 8,
                                            .maxRegionCount = 1024,
                                            .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 1000,
@@ -111,11 +113,11 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
                             .height = 2048,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
-    SluiceVulkanTextureCreateInfo create = {0};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
     assert_int_equal(stats.pageChunkCount, 0);
     for (uint64_t time = 1; time < 200; time++)
@@ -142,7 +144,8 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     static struct fake_vulkan fake; /* large */
     uint32_t seen = 0;
     fake = (struct fake_vulkan){.want = want_one, .user = &seen};
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 8,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = 8,
                                            .maxRegionCount = 1024,
                                            .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 2,
@@ -162,11 +165,11 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < 2; i++) {
         CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &sources[i]));
-        SluiceVulkanTextureCreateInfo create = {.source = sources[i]};
+        SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = sources[i]};
         CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
         grey.width = grey.height = 1024;
     }
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     for (uint64_t time = 1; time < 60; time++)
         frame(&fake, streamer, time);
     seen = 1; /* 85 tiles, where 128 have pages */
@@ -182,7 +185,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
         CHECK_OK(sluiceGetTileState(manager, texture.textureId, i, &tile_state, NULL));
         assert_int_equal(tile_state, SLUICE_TILE_STATE_MAPPED);
     }
-    assert_in_range(stats.manager.standbyTileCount, 30, 128); /* no more went than had to */
+    assert_in_range(stats.standbyTileCount, 30, 128); /* no more went than had to */
     fake_vulkan_destroy(streamer);
     for (uint32_t i = 0; i < 2; i++)
         sluiceDestroyImageSource(sources[i]);

@@ -51,12 +51,13 @@ static struct stage *stage_of_streamer(SluiceResidencyMode mode)
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
-    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .maxRegionCount = 1 << 10, .maxTextureCount = 4};
     s.fake.log = (SluiceLogCallback){&s, count_warnings};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
-    SluiceVulkanTextureCreateInfo create = {.source = s.source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
     s.fake.waits_time_out = true;
@@ -65,7 +66,7 @@ static struct stage *stage_of_streamer(SluiceResidencyMode mode)
 
 static SluiceStreamingFrame begin(struct stage *s)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     s->fake.published = false;
     s->fake.bind_count = s->fake.copy_count = 0;
     CHECK_OK(
@@ -158,7 +159,8 @@ static void streamer_does_not_wait_for_frames_that_cannot_be_under_way(void **st
         s->fake.frame_value = whole_frame(s).signalValue;
         begin(s);
         CHECK_OK(sluiceEndStreamingFrame(s->streamer, fake_vulkan_commands(&s->fake)));
-        SluiceStreamingFrame abandoned = {s->fake.frame_value + 1, s->fake.frame_semaphore, 0};
+        SluiceStreamingFrame abandoned = {sizeof abandoned, s->fake.frame_value + 1,
+                                          s->fake.frame_semaphore, 0};
         CHECK_OK(sluiceAbandonStreamingFrame(s->streamer, &abandoned));
         destroy(s);
         assert_int_equal(frame_waits(s), 0);
@@ -173,7 +175,8 @@ static void frame_that_could_not_be_begun_is_not_waited_for(void **state)
     s->fake.frame_value = whole_frame(s).signalValue;
     s->fake.frame_value = whole_frame(s).signalValue;
     CHECK_OK(sluiceWaitVulkanStreamerIdle(s->streamer));
-    SluiceStreamingFrame frame = {.frameIndex = s->fake.frame_value + 1};
+    SluiceStreamingFrame frame = {.structSize = sizeof frame,
+                                  .frameIndex = s->fake.frame_value + 1};
     s->fake.published = false;
     s->fake.fails_on = true;
     s->fake.failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
@@ -224,7 +227,8 @@ static struct stage *stage_of_loader(void)
     s.fake.log = (SluiceLogCallback){&s, count_warnings};
     const SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&s.fake);
     CHECK_OK(sluiceCreateVulkanContext(&context, &s.context));
-    SluiceDemandLoaderCreateInfo info = {.context = s.context,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .context = s.context,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1 << 16,
                                          .launchesInFlight = 3,
@@ -236,7 +240,7 @@ static struct stage *stage_of_loader(void)
 
 static SluiceDemandLaunch prepare(struct stage *s)
 {
-    SluiceDemandLaunch launch;
+    SluiceDemandLaunch launch = {.structSize = sizeof launch};
     s->fake.published = false;
     CHECK_OK(sluiceBeginDemandLaunch(s->loader, fake_vulkan_commands(&s->fake), &launch));
     s->fake.frame_semaphore = launch.semaphore;
@@ -284,7 +288,7 @@ static void loader_does_not_wait_for_launches_that_cannot_be_under_way(void **st
 
     s = stage_of_loader();
     SluiceDemandLaunch launch = whole_launch(s);
-    SluiceDemandRequests requests;
+    SluiceDemandRequests requests = {.structSize = sizeof requests};
     s->fake.frame_value = launch.signalValue;
     CHECK_OK(sluiceProcessDemandRequests(s->loader, &launch, 0, &requests, NULL));
     launch = whole_launch(s);

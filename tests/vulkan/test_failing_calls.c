@@ -47,7 +47,8 @@ static SluiceResidencyMode mode; /* that is tested */
 
 static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **streamer)
 {
-    SluiceVulkanStreamerCreateInfo info = {.tilesPerFrame = 16,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .tilesPerFrame = 16,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
@@ -89,7 +90,7 @@ static void adding_survives(uint64_t objects_per_texture)
     fake = (struct fake_vulkan){.tail_page_count = 1};
     SluiceVulkanStreamer *streamer;
     CHECK_OK(create(&fake, &streamer));
-    SluiceVulkanTextureCreateInfo info = {.source = grey_source()};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = grey_source()};
     SluiceVulkanTexture texture;
     uint64_t objects = fake.live_objects;
     for (size_t f = 0; f < FAILURES; f++)
@@ -118,7 +119,7 @@ static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
     SluiceImageSource *layer = grey_source(), *array;
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
-    SluiceVulkanTextureCreateInfo info = {.source = array};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = array};
     for (size_t f = 0; f < FAILURES; f++) {
         fake = (struct fake_vulkan){.tail_page_count = 1, .metadata_size = metadata ? 65536 : 0};
         SluiceVulkanStreamer *streamer;
@@ -171,7 +172,7 @@ static SluiceResult stream(struct fake_vulkan *fake, SluiceVulkanStreamer *strea
         fake->bind_count = fake->copy_count = 0;
         fake->published = false;
         fake->bind_value = fake->submitted_bind_value;
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         SluiceResult result = sluiceWaitVulkanStreamerIdle(streamer);
         if (result == SLUICE_SUCCESS)
             result = sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(fake), i, &frame);
@@ -197,7 +198,8 @@ static void frames_survive(uint32_t packed_count, uint32_t harmless_calls)
             fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_all};
             SluiceVulkanStreamer *streamer;
             CHECK_OK(create(&fake, &streamer));
-            SluiceVulkanTextureCreateInfo info = {.source = grey_source()};
+            SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
+                                                  .source = grey_source()};
             SluiceVulkanTexture texture;
             CHECK_OK(sluiceAddVulkanTexture(streamer, &info, &texture));
             fake.calls = 0;
@@ -205,7 +207,7 @@ static void frames_survive(uint32_t packed_count, uint32_t harmless_calls)
             fake.failure = failures[f].from;
             SluiceResult result = stream(&fake, streamer);
             bool failed = fake.calls >= n;
-            SluiceVulkanStreamerStatistics stats;
+            SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
             sluiceGetVulkanStreamerStatistics(streamer, &stats);
             if (result == SLUICE_SUCCESS) {
                 harmless += failed;

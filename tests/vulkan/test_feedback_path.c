@@ -37,7 +37,7 @@ static void count_warnings(void *user, SluiceLogSeverity severity, const char *m
 
 static void frame(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer, uint64_t time)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     fake->published = false;
     fake->copy_count = fake->bind_count = 0;
     fake->bind_value = fake->submitted_bind_value;
@@ -50,7 +50,7 @@ static void frame(struct fake_vulkan *fake, SluiceVulkanStreamer *streamer, uint
 
 static uint64_t maps_given(SluiceVulkanStreamer *streamer)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(streamer, &stats);
     return stats.feedbackMaps;
 }
@@ -61,7 +61,8 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
     fake = (struct fake_vulkan){.tail_page_count = 1, .want = want_all};
-    SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = 4,
                                            .maxRegionCount = 256,
                                            .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 100};
@@ -69,7 +70,8 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceVulkanTextureCreateInfo texture_info = {.source = grey_source()};
+    SluiceVulkanTextureCreateInfo texture_info = {.structSize = sizeof texture_info,
+                                                  .source = grey_source()};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &texture_info, &texture));
     for (uint64_t time = 1; time <= 5; time++) /* the first map comes with frame 2 */

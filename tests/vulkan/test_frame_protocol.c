@@ -82,7 +82,7 @@ static void model_add(struct model *m)
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
-    SluiceVulkanTextureCreateInfo create = {.source = t->source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
     t->layout.structSize = sizeof t->layout;
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
@@ -313,7 +313,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
 /* One to three frames that are begun, most of them ended, and given up together. */
 static void abandoned_frames(struct model *m, uint64_t time)
 {
-    SluiceStreamingFrame first, frame;
+    SluiceStreamingFrame first = {.structSize = sizeof first}, frame = {.structSize = sizeof frame};
     fake_vulkan_mark(&m->fake);
     m->submitted = m->frame;
     if (begin(m, time, &first) != SLUICE_SUCCESS) {
@@ -332,7 +332,7 @@ static void abandoned_frames(struct model *m, uint64_t time)
 
 static uint32_t model_frame(struct model *m, uint64_t time)
 {
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     while (m->abandon_one_in && m->frame + 4 - m->fake.frame_value < HISTORY &&
            roll() % m->abandon_one_in == 0)
         abandoned_frames(m, time);
@@ -382,7 +382,8 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
                                  .user = m},
                         .submitted = UINT64_MAX,
                         .abandon_one_in = abandon_one_in};
-    SluiceVulkanStreamerCreateInfo info = {.framesInFlight = FRAMES_IN_FLIGHT,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
                                            .texturesPerFrame = 3,
@@ -407,7 +408,7 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
             release_heaps(m);
         shown += model_frame(m, step);
     }
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
     assert_true(shown > 10000);
     assert_true(stats.tilesUnmapped > 50);
@@ -486,11 +487,12 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
     static struct model model; /* large */
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = 1, .want = want, .user = m}};
-    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .feedbackTimeoutTicks = 2};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .maxRegionCount = 1 << 10, .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     for (uint64_t i = 1; i <= 3; i++) {
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         VkCommandBuffer commands = fake_vulkan_commands(&m->fake);
         CHECK_OK(sluiceBeginStreamingFrame(m->streamer, commands, i, &frame));
         if (i == 1)
@@ -498,7 +500,7 @@ static void texture_added_inside_a_frame_has_no_feedback_in_it(void **state)
         CHECK_OK(sluiceEndStreamingFrame(m->streamer, commands));
         m->fake.frame_semaphore = frame.semaphore;
         m->fake.frame_value = frame.signalValue;
-        SluiceVulkanStreamerStatistics stats;
+        SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
         sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
         assert_int_equal(stats.feedbackMaps,
                          i == 3); /* of the second frame, heard of in the third */
@@ -522,16 +524,17 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &layer));
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
-    SluiceVulkanStreamerCreateInfo info = {.maxRegionCount = 1 << 10, .maxTextureCount = 4};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .maxRegionCount = 1 << 10, .maxTextureCount = 4};
     fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceVulkanTextureCreateInfo create = {.source = array};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = array};
     SluiceVulkanTexture textures[3];
     CHECK_OK(sluiceAddVulkanTextureArray(streamer, &create, 3, textures));
     uint32_t seen[3] = {0}, stride = (uint32_t)(FAKE_TAIL_STRIDE / 65536);
     for (uint64_t i = 1; i <= 6; i++) {
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         fake.bind_count = fake.copy_count = 0;
         fake.published = false;
         CHECK_OK(sluiceWaitVulkanStreamerIdle(streamer));

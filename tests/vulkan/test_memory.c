@@ -37,7 +37,7 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
 
 static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
     assert_true(stats.deviceMemorySize + stats.hostVisibleMemorySize == s->fake.live_memory);
     assert_true(stats.tileMemorySize <= stats.deviceMemorySize);
@@ -55,8 +55,10 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
-    SluiceVulkanStreamerCreateInfo info = {
-        .feedbackTimeoutTicks = 2, .loaderThreadCount = 1, .minStagingSize = min_staging_size};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .feedbackTimeoutTicks = 2,
+                                           .loaderThreadCount = 1,
+                                           .minStagingSize = min_staging_size};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
@@ -70,7 +72,7 @@ static struct stage *stage_init(SluiceResidencyMode mode)
 
 static void add_textures(struct stage *s)
 {
-    SluiceVulkanTextureCreateInfo create = {.source = s->source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s->source};
     for (int i = 0; i < TEXTURES; i++)
         CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[i]));
 }
@@ -85,7 +87,7 @@ static void stage_finish(struct stage *s)
 static void frame(struct stage *s)
 {
     struct fake_vulkan *fake = &s->fake;
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     fake->published = false;
     fake->copy_count = fake->bind_count = fake->destroyed_count = fake->freed_count = 0;
     fake->bind_value = fake->submitted_bind_value;
@@ -124,7 +126,7 @@ static void staging_grows_with_the_loads_and_shrinks_when_idle(void **state)
             uint64_t size = statistics(s).hostVisibleMemorySize;
             most = size > most ? size : most;
         }
-        assert_true(statistics(s).manager.mappedTileCount > TEXTURES * 256);
+        assert_true(statistics(s).mappedTileCount > TEXTURES * 256);
         assert_true(most >= little + 16 * MIB); /* 256 tiles a frame */
         s->looks = false;
         for (int f = 0; f < 140; f++)
@@ -161,12 +163,12 @@ static void without_memory_for_more_staging_loads_are_slower_and_all_arrive(void
         add_textures(s);
         s->looks = true;
         s->fake.refused_size = 64 * 65536; /* a block of staging memory; other things are larger */
-        uint32_t frames = 0, all = (uint32_t)statistics(s).manager.tileCount;
-        for (; frames < 100 && statistics(s).manager.mappedTileCount < all; frames++)
+        uint32_t frames = 0, all = (uint32_t)statistics(s).tileCount;
+        for (; frames < 100 && statistics(s).mappedTileCount < all; frames++)
             frame(s);
         assert_true(statistics(s).hostVisibleMemorySize < little + MIB);
         assert_in_range(frames, 12, 99);
-        assert_int_equal(statistics(s).manager.failedTileCount, 0);
+        assert_int_equal(statistics(s).failedTileCount, 0);
         stage_finish(s);
     }
 }
@@ -186,7 +188,7 @@ static void turn_slots(SluiceVulkanStreamer *s)
 static void play(SluiceResidencyMode mode, bool turned, struct order *order)
 {
     struct stage *s = stage_init(mode);
-    SluiceVulkanTextureCreateInfo create = {.source = s->source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s->source};
     CHECK_OK(sluiceAddVulkanTexture(s->streamer, &create, &s->textures[0]));
     if (turned)
         turn_slots(s->streamer);

@@ -105,7 +105,7 @@ static void model_add(struct model *m)
                             .height = size[1],
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
-    SluiceVulkanTextureCreateInfo create = {.source = t->source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
     t->layout.structSize = sizeof t->layout;
     CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
@@ -134,7 +134,7 @@ static void take_views(struct model *m, const SluiceStreamingFrame *frame)
     const struct fake_set *set = (const struct fake_set *)frame->descriptorSet;
     m->sets[m->frame % HISTORY].set = set;
     m->sets[m->frame % HISTORY].write_count = set->write_count;
-    SluiceVulkanPages pages;
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanPages(m->streamer, &pages);
     assert_int_equal(pages.viewCount, CHUNKS);
     for (uint32_t c = 0; c < CHUNKS; c++) {
@@ -241,7 +241,7 @@ static SluiceResult begin(struct model *m, uint64_t time, SluiceStreamingFrame *
 /* One to three frames that are begun, most of them ended, and given up together. */
 static void abandoned_frames(struct model *m, uint64_t time)
 {
-    SluiceStreamingFrame first, frame;
+    SluiceStreamingFrame first = {.structSize = sizeof first}, frame = {.structSize = sizeof frame};
     fake_vulkan_mark(&m->fake);
     m->submitted = m->frame;
     if (begin(m, time, &first) != SLUICE_SUCCESS) {
@@ -266,7 +266,7 @@ static void abandoned_frames(struct model *m, uint64_t time)
 static uint32_t model_frame(struct model *m, uint64_t time)
 {
     struct fake_vulkan *fake = &m->fake;
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     while (m->abandon_one_in && m->frame + 4 - fake->frame_value < HISTORY &&
            roll() % m->abandon_one_in == 0)
         abandoned_frames(m, time);
@@ -312,7 +312,8 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     *m = (struct model){.fake = {.want = want, .user = m},
                         .submitted = UINT64_MAX,
                         .abandon_one_in = abandon_one_in};
-    SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                            .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
@@ -324,7 +325,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
                                            .maxPageChunkCount = CHUNKS};
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
-    SluiceVulkanBuffers buffers;
+    SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(m->streamer, &buffers);
     m->fake.watches[0].buffer = buffers.pageTable;
     m->fake.watches[1].buffer = buffers.textureTable;
@@ -334,8 +335,8 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
         model_step(m, step);
         shown += model_frame(m, step);
     }
-    SluiceVulkanStreamerStatistics stats;
-    SluiceVulkanPages pages;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
     sluiceGetVulkanStreamerStatistics(m->streamer, &stats);
     sluiceGetVulkanPages(m->streamer, &pages);
     generation = pages.generation;
@@ -361,7 +362,8 @@ static void devices_with_few_samplers_have_no_sets(void **state)
     static struct fake_vulkan fake;
     for (uint32_t samplers = CHUNKS - 1; samplers <= CHUNKS; samplers++) {
         fake = (struct fake_vulkan){.max_samplers = samplers};
-        SluiceVulkanStreamerCreateInfo info = {.residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
+        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                               .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                                .maxRegionCount = 1 << 10,
                                                .maxPageChunkCount = CHUNKS};
         SluiceVulkanStreamer *streamer;
@@ -370,7 +372,7 @@ static void devices_with_few_samplers_have_no_sets(void **state)
         const bool enough = samplers >= CHUNKS;
         CHECK_RESULT(sluiceGetVulkanDescriptorSetLayout(streamer, &layout),
                      enough ? SLUICE_SUCCESS : SLUICE_ERROR_UNSUPPORTED);
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(&fake), 1, &frame));
         assert_int_equal(frame.descriptorSet != VK_NULL_HANDLE, enough);
         assert_int_equal(layout != VK_NULL_HANDLE, enough);

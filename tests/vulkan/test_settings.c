@@ -61,7 +61,7 @@ static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     info.loaderThreadCount = 1;
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
-    SluiceVulkanTextureCreateInfo create = {.source = s.source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
     SluiceVulkanTexture texture;
     for (int i = 0; i < TEXTURES; i++)
         CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
@@ -77,7 +77,7 @@ static void stage_finish(struct stage *s)
 
 static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
 {
-    SluiceVulkanStreamerStatistics stats;
+    SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     CHECK_OK(sluiceGetVulkanStreamerStatistics(s->streamer, &stats));
     return stats;
 }
@@ -85,7 +85,7 @@ static SluiceVulkanStreamerStatistics statistics(const struct stage *s)
 static void frame(struct stage *s)
 {
     struct fake_vulkan *fake = &s->fake;
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     fake->published = false;
     fake->copy_count = fake->bind_count = 0;
     fake->bind_value = fake->submitted_bind_value;
@@ -119,14 +119,16 @@ static bool are_same(const SluiceVulkanStreamerSettings *a, const SluiceVulkanSt
 static void settings_begin_as_the_create_info_says(void **state)
 {
     (void)state;
-    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 3,
-                                                                   .tilesPerFrame = 17,
-                                                                   .numExtraStandbyTiles = 5,
-                                                                   .maxHeapCount = 7,
-                                                                   .feedbackTimeoutTicks = 9,
-                                                                   .residencyFadeTicks = 11,
-                                                                   .retryDelayTicks = 13,
-                                                                   .givenUpRetryDelayTicks = 15});
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .texturesPerFrame = 3,
+                                          .tilesPerFrame = 17,
+                                          .numExtraStandbyTiles = 5,
+                                          .maxHeapCount = 7,
+                                          .feedbackTimeoutTicks = 9,
+                                          .residencyFadeTicks = 11,
+                                          .retryDelayTicks = 13,
+                                          .givenUpRetryDelayTicks = 15});
     SluiceVulkanStreamerSettings settings = get(s);
     assert_int_equal(settings.texturesPerFrame, 3);
     assert_int_equal(settings.tilesPerFrame, 17);
@@ -157,7 +159,8 @@ static void settings_begin_as_the_create_info_says(void **state)
 static void wrong_settings_change_nothing_and_are_named(void **state)
 {
     (void)state;
-    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 3});
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .texturesPerFrame = 3});
     SluiceVulkanStreamerSettings before = get(s);
     for (int i = 0; i < 6; i++) {
         SluiceVulkanStreamerSettings wrong = before;
@@ -186,7 +189,9 @@ static void tiles_per_frame_limit_the_next_frame(void **state)
 {
     (void)state;
     struct stage *s = stage_init(
-        &(SluiceVulkanStreamerCreateInfo){.tilesPerFrame = 4, .feedbackTimeoutTicks = 1000});
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .tilesPerFrame = 4,
+                                          .feedbackTimeoutTicks = 1000});
     for (int i = 0; i < 10; i++)
         frame(s);
     const uint32_t counts[] = {2, 64, 1, 16384};
@@ -208,7 +213,9 @@ static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
 {
     (void)state;
     struct stage *s = stage_init(
-        &(SluiceVulkanStreamerCreateInfo){.texturesPerFrame = 4, .feedbackTimeoutTicks = 1000});
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .texturesPerFrame = 4,
+                                          .feedbackTimeoutTicks = 1000});
     frame(s);
     frame(s);
     uint64_t before = statistics(s).feedbackMaps;
@@ -234,35 +241,39 @@ static void textures_per_frame_are_those_of_the_frame_that_began(void **state)
 static void timeout_and_standby_follow_the_settings(void **state)
 {
     (void)state;
-    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
-        .feedbackTimeoutTicks = 1000000, .numExtraStandbyTiles = 10000, .tilesPerFrame = 1000});
+    struct stage *s = stage_init(
+        &(SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                          .feedbackTimeoutTicks = 1000000,
+                                          .numExtraStandbyTiles = 10000,
+                                          .tilesPerFrame = 1000});
     for (int i = 0; i < 12; i++)
         frame(s);
-    uint32_t mapped = (uint32_t)statistics(s).manager.mappedTileCount;
+    uint32_t mapped = statistics(s).mappedTileCount;
     assert_true(mapped > 4 * 64);
     s->looks = false;
     for (int i = 0; i < 30; i++)
         frame(s);
-    assert_int_equal(statistics(s).manager.mappedTileCount, mapped); /* the timeout is long */
+    assert_int_equal(statistics(s).mappedTileCount, mapped); /* the timeout is long */
     SluiceVulkanStreamerSettings settings = get(s);
     settings.feedbackTimeoutTicks = 0;
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
     for (int i = 0; i < 60; i++)
         frame(s);
-    uint32_t standby = (uint32_t)statistics(s).manager.standbyTileCount;
+    uint32_t standby = statistics(s).standbyTileCount;
     assert_true(standby > 4 * 64);
     settings.numExtraStandbyTiles = 3;
     CHECK_OK(sluiceSetVulkanStreamerSettings(s->streamer, &settings));
     for (int i = 0; i < 4; i++)
         frame(s);
-    assert_int_equal(statistics(s).manager.standbyTileCount, 3);
+    assert_int_equal(statistics(s).standbyTileCount, 3);
     stage_finish(s);
 }
 
 static void configuration_of_the_manager_and_settings_are_one(void **state)
 {
     (void)state;
-    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.feedbackTimeoutTicks = 5});
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .feedbackTimeoutTicks = 5});
     SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config,
                                                  .numExtraStandbyTiles = 21,
                                                  .missesToExpire = 2,
@@ -276,7 +287,8 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
 static void settings_survive_every_refused_allocation(void **state)
 {
     (void)state;
-    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){.tilesPerFrame = 8});
+    struct stage *s = stage_init(&(SluiceVulkanStreamerCreateInfo){
+        .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .tilesPerFrame = 8});
     SluiceVulkanStreamerSettings before = get(s), settings = before;
     settings.tilesPerFrame = 9;
     settings.feedbackTimeoutTicks = 77;
@@ -314,7 +326,8 @@ static struct stage *stage_of_loader(void)
     s.fake.pAllocator = &s.memory.callbacks;
     const SluiceVulkanContextCreateInfo context = fake_vulkan_context_info(&s.fake);
     CHECK_OK(sluiceCreateVulkanContext(&context, &s.context));
-    SluiceDemandLoaderCreateInfo info = {.context = s.context,
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                         .context = s.context,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1 << 16,
                                          .maxRequestsPerLaunch = 100,
@@ -349,8 +362,8 @@ static void settings_of_a_loader_take_no_memory(void **state)
     assert_int_equal(s->memory.calls, calls);
     s->memory.refuse_from = UINT64_MAX;
     for (int i = 0; i < 2; i++) {
-        SluiceDemandLaunch launch;
-        SluiceDemandRequests requests;
+        SluiceDemandLaunch launch = {.structSize = sizeof launch};
+        SluiceDemandRequests requests = {.structSize = sizeof requests};
         VkCommandBuffer commands = fake_vulkan_commands(&s->fake);
         CHECK_OK(sluiceBeginDemandLaunch(s->loader, commands, &launch));
         CHECK_OK(sluiceEndDemandLaunch(s->loader, commands));

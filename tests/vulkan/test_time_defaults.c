@@ -64,7 +64,7 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
     info.loaderThreadCount = 1;
     s.fake.log = (SluiceLogCallback){&s, count_warnings};
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
-    SluiceVulkanTextureCreateInfo create = {.source = s.source};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(s.streamer, &create, &texture));
     return &s;
@@ -81,7 +81,7 @@ static void frames(struct stage *s, uint32_t count)
 {
     struct fake_vulkan *fake = &s->fake;
     for (uint32_t i = 0; i < count; i++) {
-        SluiceStreamingFrame frame;
+        SluiceStreamingFrame frame = {.structSize = sizeof frame};
         fake->published = false;
         fake->copy_count = fake->bind_count = 0;
         fake->bind_value = fake->submitted_bind_value;
@@ -96,9 +96,9 @@ static void frames(struct stage *s, uint32_t count)
 
 static SluiceStreamedTextureStatistics statistics(const struct stage *s)
 {
-    SluiceVulkanStreamerStatistics stats;
-    sluiceGetVulkanStreamerStatistics(s->streamer, &stats);
-    return stats.manager;
+    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
+    sluiceGetStatistics(sluiceGetVulkanStreamerManager(s->streamer), &stats);
+    return stats;
 }
 
 static void what_a_few_maps_miss_stays_by_default(void **state)
@@ -107,8 +107,10 @@ static void what_a_few_maps_miss_stays_by_default(void **state)
     const uint64_t steps[] = {16666667, 16667, 1}; /* frames in ns, us, and counted */
     const uint64_t units[] = {0, 1000000, 60};
     for (int i = 0; i < 3; i++) {
-        struct stage *s =
-            stage_init((SluiceVulkanStreamerCreateInfo){.ticksPerSecond = units[i]}, steps[i]);
+        struct stage *s = stage_init(
+            (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                             .ticksPerSecond = units[i]},
+            steps[i]);
         s->looks = true;
         frames(s, 12);
         uint32_t mapped = statistics(s).mappedTileCount;
@@ -128,7 +130,9 @@ static void the_newest_map_alone_counts_where_it_is_asked_for(void **state)
 {
     (void)state;
     struct stage *s = stage_init(
-        (SluiceVulkanStreamerCreateInfo){.newestFeedbackMapOnly = true, .noStandbyTiles = true},
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .newestFeedbackMapOnly = true,
+                                         .noStandbyTiles = true},
         16666667);
     s->looks = true;
     frames(s, 12);
@@ -143,17 +147,26 @@ static void the_newest_map_alone_counts_where_it_is_asked_for(void **state)
 static void frames_taken_for_nanoseconds_are_warned_of_once(void **state)
 {
     (void)state;
-    struct stage *s = stage_init((SluiceVulkanStreamerCreateInfo){.maxTextureCount = 4}, 1);
+    struct stage *s = stage_init(
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .maxTextureCount = 4},
+        1);
     frames(s, 256);
     assert_int_equal(s->warnings, 0);
     frames(s, 300);
     assert_int_equal(s->warnings, 1);
     stage_finish(s);
-    s = stage_init((SluiceVulkanStreamerCreateInfo){.ticksPerSecond = 60}, 1);
+    s = stage_init(
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .ticksPerSecond = 60},
+        1);
     frames(s, 300);
     assert_int_equal(s->warnings, 0);
     stage_finish(s);
-    s = stage_init((SluiceVulkanStreamerCreateInfo){.maxTextureCount = 4}, 100000);
+    s = stage_init(
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .maxTextureCount = 4},
+        100000);
     frames(s, 300);
     assert_int_equal(s->warnings, 0);
     stage_finish(s);
@@ -170,15 +183,18 @@ static void defaults_are_seconds_in_any_unit(void **state)
                  {1, 1, 1},
                  {1000000000000, 1000000000000, 250000000000}};
     for (int i = 0; i < 5; i++) {
-        SluiceVulkanStreamerCreateInfo info = {.ticksPerSecond = cases[i].unit};
+        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                               .ticksPerSecond = cases[i].unit};
         CHECK_OK(slc_fill_in_times(&info, NULL));
         assert_true(info.feedbackTimeoutTicks == cases[i].timeout);
         assert_true(info.retryDelayTicks == cases[i].retry);
         assert_int_equal(info.numExtraStandbyTiles, 1024);
         assert_int_equal(info.residencyFadeTicks, 0);
     }
-    SluiceVulkanStreamerCreateInfo info = {
-        .feedbackTimeoutTicks = UINT64_MAX, .retryDelayTicks = 1, .numExtraStandbyTiles = 1};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .feedbackTimeoutTicks = UINT64_MAX,
+                                           .retryDelayTicks = 1,
+                                           .numExtraStandbyTiles = 1};
     CHECK_OK(slc_fill_in_times(&info, NULL));
     assert_true(info.feedbackTimeoutTicks == UINT64_MAX && info.retryDelayTicks == 1);
     assert_int_equal(info.numExtraStandbyTiles, 1);
@@ -188,9 +204,13 @@ static void contradictions_are_refused(void **state)
 {
     (void)state;
     SluiceVulkanStreamerCreateInfo cases[] = {
-        {.ticksPerSecond = 1000000000001},
-        {.newestFeedbackMapOnly = true, .feedbackTimeoutTicks = 1},
-        {.noStandbyTiles = true, .numExtraStandbyTiles = 1},
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo), .ticksPerSecond = 1000000000001},
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+         .newestFeedbackMapOnly = true,
+         .feedbackTimeoutTicks = 1},
+        {.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+         .noStandbyTiles = true,
+         .numExtraStandbyTiles = 1},
     };
     for (int i = 0; i < 3; i++)
         CHECK_RESULT(slc_fill_in_times(&cases[i], NULL), SLUICE_ERROR_INVALID_ARGUMENT);

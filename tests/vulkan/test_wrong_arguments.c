@@ -38,8 +38,11 @@ static void check_line(struct lines *lines, const char *part)
 static SluiceVulkanStreamerCreateInfo small(struct fake_vulkan *fake, struct lines *lines)
 {
     *fake = (struct fake_vulkan){.tail_page_count = 1, .log = {lines, keep_line}};
-    SluiceVulkanStreamerCreateInfo info = {
-        .maxTextureCount = 4, .maxRegionCount = 256, .tilesPerFrame = 16, .loaderThreadCount = 1};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .maxTextureCount = 4,
+                                           .maxRegionCount = 256,
+                                           .tilesPerFrame = 16,
+                                           .loaderThreadCount = 1};
     fake_vulkan_fill(&info);
     return info;
 }
@@ -111,7 +114,8 @@ static void infos_that_no_image_has_are_refused_in_every_mode(void **state)
         uint64_t objects = fake.live_objects;
         for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
             struct liar liar = {{&interface}, cases[i].info};
-            SluiceVulkanTextureCreateInfo create = {.source = &liar.base};
+            SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
+                                                    .source = &liar.base};
             SluiceVulkanTexture textures[4];
             CHECK_RESULT(sluiceAddVulkanTextureArray(streamer, &create, cases[i].layers, textures),
                          SLUICE_ERROR_INVALID_ARGUMENT);
@@ -199,7 +203,7 @@ static void streamers_take_every_limit_of_the_header_and_nothing_beyond(void **s
     SluiceVulkanContext *context = context_without_memory(&fake, &lines);
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         for (uint64_t beyond = 0; beyond < 2; beyond++) {
-            SluiceVulkanStreamerCreateInfo info = {.context = context};
+            SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .context = context};
             fake_vulkan_fill(&info);
             set_field(&info, &fields[i], fields[i].most + beyond);
             CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer),
@@ -227,14 +231,14 @@ static void demand_loaders_take_every_limit_of_the_header_and_nothing_beyond(voi
     SluiceVulkanContext *context = context_without_memory(&fake, &lines);
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         for (uint64_t beyond = 0; beyond < 2; beyond++) {
-            SluiceDemandLoaderCreateInfo info = {.context = context};
+            SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .context = context};
             set_field(&info, &fields[i], fields[i].most + beyond);
             CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader),
                          beyond ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_ERROR_OUT_OF_HOST_MEMORY);
             if (beyond)
                 check_line(&lines, fields[i].name);
         }
-    SluiceDemandLoaderCreateInfo info = {.context = context};
+    SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .context = context};
     set_field(&info, &budget, UINT64_C(4) << 20);
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     set_field(&info, &budget, (UINT64_C(4) << 20) - 1);
@@ -271,8 +275,8 @@ static void without_a_context_nothing_is_created(void **state)
     (void)state;
     SluiceVulkanStreamer *streamer;
     SluiceDemandLoader *loader;
-    const SluiceVulkanStreamerCreateInfo info = {.maxTextureCount = 4};
-    const SluiceDemandLoaderCreateInfo demand = {.maxTextureCount = 4};
+    const SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .maxTextureCount = 4};
+    const SluiceDemandLoaderCreateInfo demand = {.structSize = sizeof demand, .maxTextureCount = 4};
     CHECK_RESULT(sluiceCreateVulkanStreamer(&info, &streamer), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceCreateDemandLoader(&demand, &loader), SLUICE_ERROR_NULL_POINTER);
     assert_null(streamer);
@@ -285,7 +289,7 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     static struct fake_vulkan fake; /* large */
     struct lines lines = {0};
     SluiceVulkanStreamer *streamer;
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
     info.ticksPerSecond = 60;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
@@ -300,7 +304,8 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     fake_vulkan_destroy(streamer);
 
     SluiceDemandLoader *loader;
-    const SluiceDemandLoaderCreateInfo demand = {.context = create_context(&fake, &lines)};
+    const SluiceDemandLoaderCreateInfo demand = {.structSize = sizeof demand,
+                                                 .context = create_context(&fake, &lines)};
     CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
     CHECK_RESULT(sluiceEndDemandLaunch(loader, fake_vulkan_commands(&fake)),
                  SLUICE_ERROR_INVALID_ARGUMENT);
@@ -323,7 +328,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
-    SluiceVulkanTextureCreateInfo create = {.source = &source.base};
+    SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = &source.base};
     SluiceVulkanTexture texture;
     SluiceStreamedTextureDesc desc = {512, 512, 10, 2, 1, 128, 128};
     SluiceTextureId id;
@@ -361,7 +366,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
     CHECK_OK(sluiceRetryFailedTiles(manager, id));
     CHECK_OK(sluiceGetGivenUpTiles(manager, &count, tiles));
-    SluiceStreamingFrame frame;
+    SluiceStreamingFrame frame = {.structSize = sizeof frame};
     CHECK_OK(sluiceBeginStreamingFrame(streamer, fake_vulkan_commands(&fake), 1, &frame));
     CHECK_RESULT(sluiceRemoveStreamedTexture(manager, id, 1), refused);
     CHECK_OK(sluiceRemoveVulkanTexture(streamer, id));

@@ -130,6 +130,13 @@ static const char *device_type_string(VkPhysicalDeviceType type)
     }
 }
 
+static SluiceResidencyMode choose_mode(const SluiceVulkanDeviceCapabilities *capabilities,
+                                       SluiceResidencyMode mode, uint32_t texture_count)
+{
+    sluiceChooseVulkanResidencyMode(capabilities, mode, texture_count, &mode);
+    return mode;
+}
+
 /** The shaders of samples find pages by non-uniform indices. */
 static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResidencyMode mode,
                        SluiceVulkanDeviceCapabilities *capabilities)
@@ -139,7 +146,7 @@ static bool can_stream(VkInstance instance, VkPhysicalDevice device, SluiceResid
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     return sluiceGetVulkanDeviceCapabilities(instance, device, vkGetInstanceProcAddr,
                                              capabilities) == SLUICE_SUCCESS &&
-           (sluiceChooseVulkanResidencyMode(capabilities, mode, 0) != SLUICE_RESIDENCY_MODE_PAGED ||
+           (choose_mode(capabilities, mode, 0) != SLUICE_RESIDENCY_MODE_PAGED ||
             capabilities->nonUniformIndexing) &&
            sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr, mode, NULL,
                                        &features, &vulkan12) == SLUICE_SUCCESS;
@@ -156,7 +163,7 @@ uint32_t gpu_list_devices(void)
     for (uint32_t i = 0; i < count; i++) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(devices[i], &properties);
-        SluiceVulkanDeviceCapabilities capabilities;
+        SluiceVulkanDeviceCapabilities capabilities = {.structSize = sizeof capabilities};
         printf("%u  %s (%s, Vulkan %u.%u): %s\n", i, properties.deviceName,
                device_type_string(properties.deviceType),
                VK_API_VERSION_MAJOR(properties.apiVersion),
@@ -229,7 +236,7 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         vkGetPhysicalDeviceProperties(devices[i], &properties);
         if (by_index ? i != wanted_index : wanted && !is_called(&properties, wanted))
             continue;
-        SluiceVulkanDeviceCapabilities capabilities;
+        SluiceVulkanDeviceCapabilities capabilities = {.structSize = sizeof capabilities};
         if (!can_stream(gpu->instance, devices[i], gpu->modes[0], &capabilities) ||
             !can_stream(gpu->instance, devices[i], gpu->modes[1], &capabilities))
             continue;
@@ -241,7 +248,7 @@ static bool choose_device(const char *wanted, struct gpu *gpu)
         gpu->capabilities = capabilities;
     }
     gpu->is_auto = gpu->modes[0] == SLUICE_RESIDENCY_MODE_AUTO;
-    gpu->modes[0] = sluiceChooseVulkanResidencyMode(&gpu->capabilities, gpu->modes[0], 0);
+    gpu->modes[0] = choose_mode(&gpu->capabilities, gpu->modes[0], 0);
     if (gpu->modes[1] == SLUICE_RESIDENCY_MODE_AUTO)
         gpu->modes[1] = gpu->modes[0] == SLUICE_RESIDENCY_MODE_SPARSE ? SLUICE_RESIDENCY_MODE_SPARSE
                                                                       : SLUICE_RESIDENCY_MODE_DENSE;
@@ -337,8 +344,7 @@ bool gpu_create(const struct gpu_request *request, struct gpu *gpu, bool *unsupp
 void gpu_choose_mode(struct gpu *gpu, uint32_t texture_count)
 {
     if (gpu->is_auto && gpu->capabilities.nonUniformIndexing)
-        gpu->modes[0] = sluiceChooseVulkanResidencyMode(&gpu->capabilities,
-                                                        SLUICE_RESIDENCY_MODE_AUTO, texture_count);
+        gpu->modes[0] = choose_mode(&gpu->capabilities, SLUICE_RESIDENCY_MODE_AUTO, texture_count);
 }
 
 void gpu_destroy(struct gpu *gpu)

@@ -107,6 +107,8 @@ static void ask_format(const struct devices *d, VkDevice device, SluiceFormat fo
 {
     VkPhysicalDevice physical = d->devices[report->index];
     struct format_report *f = &report->formats[format];
+    f->capabilities.structSize = sizeof f->capabilities;
+    f->layout.structSize = sizeof f->layout;
     if (sluiceGetVulkanFormatCapabilities(d->instance, physical, d->get, format,
                                           &f->capabilities) != SLUICE_SUCCESS)
         return;
@@ -120,6 +122,7 @@ bool ask_device(const struct devices *d, uint32_t index, uint32_t width, uint32_
                 struct device_report *report)
 {
     *report = (struct device_report){.index = index, .width = width, .height = height};
+    report->capabilities.structSize = sizeof report->capabilities;
     SluiceResult result = sluiceGetVulkanDeviceCapabilities(d->instance, d->devices[index], d->get,
                                                             &report->capabilities);
     if (result != SLUICE_SUCCESS) {

@@ -18,7 +18,7 @@ static bool is_wanted(const struct options *options, const struct device_report 
 static void print_names(const struct devices *devices, FILE *out)
 {
     for (uint32_t i = 0; i < devices->count; i++) {
-        SluiceVulkanDeviceCapabilities caps;
+        SluiceVulkanDeviceCapabilities caps = {.structSize = sizeof caps};
         if (sluiceGetVulkanDeviceCapabilities(devices->instance, devices->devices[i], devices->get,
                                               &caps) == SLUICE_SUCCESS)
             fprintf(out, "%u: %s\n", i, caps.deviceName);
