@@ -2,7 +2,7 @@
 
 #include "bake/block_squish.h"
 #include "base/checked.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 #include <assert.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "image/format.h"
+#include "image/format_size.h"
 #include "image/info.h"
 
 /* Rows that are read at once: a row of tiles of the files that are meant for this. */

@@ -3,7 +3,7 @@
 #include "bake/blocks.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "base/alloc.h"
 #include "container/level_cache.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,4 +1,4 @@
-#include "exr/memory_budget.h"
+#include "exr/exr_memory_budget.h"
 
 #include "base/alloc.h"
 

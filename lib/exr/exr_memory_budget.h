@@ -1,6 +1,6 @@
 /** Memory that several sources share for the levels that they build. */
-#ifndef SLC_EXR_MEMORY_BUDGET_H
-#define SLC_EXR_MEMORY_BUDGET_H
+#ifndef SLC_EXR_EXR_MEMORY_BUDGET_H
+#define SLC_EXR_EXR_MEMORY_BUDGET_H
 
 #include <sluice/exr.h>
 
@@ -18,4 +18,4 @@ bool slc_memory_budget_take(SluiceExrMemoryBudget *budget, uint64_t size);
 /** Gives back what was taken. Any thread. */
 void slc_memory_budget_give_back(SluiceExrMemoryBudget *budget, uint64_t size);
 
-#endif /* SLC_EXR_MEMORY_BUDGET_H */
+#endif /* SLC_EXR_EXR_MEMORY_BUDGET_H */

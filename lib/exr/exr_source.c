@@ -7,8 +7,8 @@
 #include "base/checked.h"
 #include "base/struct_size.h"
 #include "exr/decode.h"
-#include "exr/memory_budget.h"
-#include "image/format.h"
+#include "exr/exr_memory_budget.h"
+#include "image/format_size.h"
 #include "image/mip.h"
 
 #include <pthread.h>

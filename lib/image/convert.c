@@ -1,6 +1,6 @@
 #include "image/convert.h"
 
-#include "image/format.h"
+#include "image/format_size.h"
 #include "image/half.h"
 #include "image/small_float.h"
 #include "image/srgb.h"

@@ -1,4 +1,4 @@
-#include "image/format.h"
+#include "image/format_size.h"
 #include "base/struct_size.h"
 
 struct format {

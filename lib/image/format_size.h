@@ -1,6 +1,6 @@
 /** Sizes of rows and rectangles in any format, also compressed ones. */
-#ifndef SLC_IMAGE_FORMAT_H
-#define SLC_IMAGE_FORMAT_H
+#ifndef SLC_IMAGE_FORMAT_SIZE_H
+#define SLC_IMAGE_FORMAT_SIZE_H
 
 #include <sluice/image.h>
 
@@ -31,4 +31,4 @@ static inline bool slc_format_is_packed(SluiceFormat format)
            format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
 
-#endif /* SLC_IMAGE_FORMAT_H */
+#endif /* SLC_IMAGE_FORMAT_SIZE_H */

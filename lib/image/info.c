@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 #include <string.h>
 

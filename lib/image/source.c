@@ -1,7 +1,7 @@
 #include <sluice/image.h>
 
 #include "base/struct_size.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 SluiceResult sluiceGetImageInfo(SluiceImageSource *source, SluiceImageInfo *pInfo)
 {

@@ -1,4 +1,4 @@
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #include "base/alloc.h"
 #include "base/checked.h"

@@ -1,7 +1,7 @@
 /** Little-endian bytes, the same on every host: a growing buffer to write, a bounded cursor to
  * read. */
-#ifndef SLC_REPLAY_BYTES_H
-#define SLC_REPLAY_BYTES_H
+#ifndef SLC_REPLAY_BYTE_BUFFER_H
+#define SLC_REPLAY_BYTE_BUFFER_H
 
 #include <sluice/base.h>
 
@@ -51,4 +51,4 @@ int64_t slc_get_signed(struct slc_cursor *cursor);
 /** A signed one that must fit 32 bits. */
 int32_t slc_get_signed32(struct slc_cursor *cursor);
 
-#endif /* SLC_REPLAY_BYTES_H */
+#endif /* SLC_REPLAY_BYTE_BUFFER_H */

@@ -3,7 +3,7 @@
 #define SLC_REPLAY_DEMAND_RECORD_H
 
 #include "demand/page_calls.h"
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #define SLC_DEMAND_TRACE_MAGIC "SLUICEDR"
 #define SLC_DEMAND_TRACE_VERSION 1u

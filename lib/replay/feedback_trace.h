@@ -3,7 +3,7 @@
 #ifndef SLC_REPLAY_FEEDBACK_TRACE_H
 #define SLC_REPLAY_FEEDBACK_TRACE_H
 
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #include <sluice/manager.h>
 

@@ -3,7 +3,7 @@
 #define SLC_REPLAY_RECORD_H
 
 #include "core/observer.h"
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #define SLC_TRACE_MAGIC "SLUICERT"
 #define SLC_TRACE_VERSION 1u

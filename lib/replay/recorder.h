@@ -4,7 +4,7 @@
 #define SLC_REPLAY_RECORDER_H
 
 #include "base/part_file.h"
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #include <sluice/replay.h>
 

@@ -2,7 +2,7 @@
 #ifndef SLC_REPLAY_REPLAY_H
 #define SLC_REPLAY_REPLAY_H
 
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 #include "replay/demand_player.h"
 #include "replay/player.h"
 

@@ -2,7 +2,7 @@
 #ifndef SLC_REPLAY_RUNS_H
 #define SLC_REPLAY_RUNS_H
 
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 /**
  * Appends `size` bytes of `map` as runs and literals: a varint c, and then for even c one byte that

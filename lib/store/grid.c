@@ -1,7 +1,7 @@
 #include "store/grid.h"
 
 #include "base/checked.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 static uint64_t align(uint64_t size)
 {

@@ -1,7 +1,7 @@
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/struct_size.h"
-#include "image/format.h"
+#include "image/format_size.h"
 #include "store/reader.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "base/alloc.h"
 #include "base/checked.h"
-#include "image/format.h"
+#include "image/format_size.h"
 #include "store/store_writer.h"
 
 #include <string.h>

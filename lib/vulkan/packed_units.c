@@ -1,7 +1,7 @@
 #include "vulkan/packed_units.h"
 
 #include "base/alloc.h"
-#include "image/format.h"
+#include "image/format_size.h"
 
 /* Walks over all rectangles in order; with NULL arrays it only counts. */
 struct cutter {

@@ -1,6 +1,6 @@
 #include "vulkan/sparse_layout.h"
 
-#include "image/format.h"
+#include "image/format_size.h"
 
 /* The first level that fits into one tile; from there on pages would be mostly empty. */
 static uint32_t own_packed_level(const SluiceImageInfo *info, VkExtent3D tile)

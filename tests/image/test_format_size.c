@@ -1,5 +1,5 @@
 #include "image/convert.h"
-#include "image/format.h"
+#include "image/format_size.h"
 #include "support/test.h"
 
 #include <string.h>

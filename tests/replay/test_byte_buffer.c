@@ -1,4 +1,4 @@
-#include "replay/bytes.h"
+#include "replay/byte_buffer.h"
 
 #include "support/failing_allocator.h"
 #include "support/test.h"

@@ -1,7 +1,7 @@
 #include "vulkan/packed_units.h"
 
 #include "base/alloc.h"
-#include "image/format.h"
+#include "image/format_size.h"
 #include "support/failing_allocator.h"
 #include "support/test.h"
 
