@@ -68,15 +68,12 @@ layout(std430, set = SLUICE_SET, binding = SLUICE_BINDING_PAGE_TABLE) readonly b
 };
 #define SLUICE_PAGE_TABLE_WORD(i) sluicePageTableWords[i]
 
-/* One array serves streaming and demand loading: their pages are the same images. */
-#ifndef SLUICE_PAGE_TEXTURE
 #ifdef SLUICE_PAGE_LOOP
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[SLUICE_PAGE_LOOP];
 #define SLUICE_PAGE_TEXTURE(i) sluicePages[i]
 #else
 layout(set = SLUICE_SET, binding = SLUICE_BINDING_PAGES) uniform sampler2DArray sluicePages[];
 #define SLUICE_PAGE_TEXTURE(i) sluicePages[nonuniformEXT(i)]
-#endif
 #endif
 #endif
 

@@ -28,7 +28,10 @@
  * Macros to define before you include it, in addition to those of demand_pages.glsl:
  *
  *     #define SLUICE_DEMAND_TEXTURE(i) textures.entries[i]     // SluiceDemandTexture, read
- *     #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]   // sampler2DArray: sluiceGetDemandPages
+ *     #define SLUICE_DEMAND_PAGE_TEXTURE(i) pages[nonuniformEXT(i)] // sampler2DArray: sluiceGetDemandPages
+ *
+ * SLUICE_DEMAND_PAGE_TEXTURE defaults to SLUICE_PAGE_TEXTURE. A shader that also samples streamed
+ * textures must define both: a new page image is in the two arrays at different times.
  *
  * Define SLUICE_PAGE_LOOP if arrays cannot be indexed like that (buffers.glsl). With
  *

@@ -66,15 +66,16 @@ layout(std430, set = SLUICE_DEMAND_SET, binding = SLUICE_DEMAND_BINDING_SECTIONS
 };
 #define SLUICE_DEMAND_SECTION_WORD(i) sluiceDemandSectionWords[i]
 
-/* One array serves streaming and demand loading: their pages are the same images. */
-#ifndef SLUICE_PAGE_TEXTURE
+/*
+ * Demand loading has its own array of pages, also in shaders that include bindings.glsl. A new page
+ * image is in the two arrays at different times.
+ */
 #ifdef SLUICE_PAGE_LOOP
 layout(set = SLUICE_DEMAND_SET, binding = SLUICE_DEMAND_BINDING_PAGES) uniform sampler2DArray sluiceDemandPages[SLUICE_PAGE_LOOP];
-#define SLUICE_PAGE_TEXTURE(i) sluiceDemandPages[i]
+#define SLUICE_DEMAND_PAGE_TEXTURE(i) sluiceDemandPages[i]
 #else
 layout(set = SLUICE_DEMAND_SET, binding = SLUICE_DEMAND_BINDING_PAGES) uniform sampler2DArray sluiceDemandPages[];
-#define SLUICE_PAGE_TEXTURE(i) sluiceDemandPages[nonuniformEXT(i)]
-#endif
+#define SLUICE_DEMAND_PAGE_TEXTURE(i) sluiceDemandPages[nonuniformEXT(i)]
 #endif
 
 #endif

@@ -11,6 +11,11 @@
 #include "demand_pages.glsl"
 #include "page_filter.glsl"
 
+/* Shaders that only load on demand may define SLUICE_PAGE_TEXTURE alone. */
+#ifndef SLUICE_DEMAND_PAGE_TEXTURE
+#define SLUICE_DEMAND_PAGE_TEXTURE(i) SLUICE_PAGE_TEXTURE(i)
+#endif
+
 #ifndef SLUICE_DEMAND_PREVIEW
 #define SLUICE_DEMAND_PREVIEW false
 #endif
@@ -150,7 +155,7 @@ vec4 sluiceGatherDemand(inout SluiceDemandState s, SluiceDemandLevel l, bool las
             worst = max(worst, word);
             ivec3 at = ivec3(texel - (tile << shift) + l.origin, word & 0xFFFFu);
             if (word < SLUICE_DEMAND_PAGE_REFUSED)
-                SLUICE_WITH_PAGE(word, color = texelFetch(SLUICE_PAGE_TEXTURE(chunk), at, 0))
+                SLUICE_WITH_PAGE(word, color = texelFetch(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0))
         }
         sum += weight * color;
     }
@@ -191,7 +196,7 @@ vec4 sluiceDemandBilinear(inout SluiceDemandState s, uint level, vec2 uv, bool a
     vec3 at = vec3(local * scale, float(worst & 0xFFFFu));
     vec4 color = vec4(0.0);
     if (worst < SLUICE_DEMAND_PAGE_REFUSED)
-        SLUICE_WITH_PAGE(worst, color = textureLod(SLUICE_PAGE_TEXTURE(chunk), at, 0.0))
+        SLUICE_WITH_PAGE(worst, color = textureLod(SLUICE_DEMAND_PAGE_TEXTURE(chunk), at, 0.0))
     return color;
 }
 
