@@ -256,6 +256,7 @@ static bool run_walk(struct gallery *gallery, int argc, char *const *argv)
     if (!done)
         fprintf(stderr, "out of memory\n");
     done = done && comparison_begin(gallery, &measure, &walk.comparison);
+    measure.start.structSize = sizeof measure.start;
     sluiceGetVulkanStreamerStatistics(gallery->streamed.streamer, &measure.start);
     measure.counting = gallery->streamed.request.counting;
     measure.tile_count = view_tile_count(&gallery->streamed);
