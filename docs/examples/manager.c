@@ -43,7 +43,7 @@ int main(void)
     if (sluiceAddStreamedTexture(manager, &desc, &texture) != SLUICE_SUCCESS)
         return 1;
 
-    /* What shaders would report: level 0 was sampled in the top left corner, nothing elsewhere. */
+    /* Feedback as shaders write it: level 0 in the top left corner, nothing elsewhere. */
     static uint8_t map[32 * 32];
     memset(map, SLUICE_MIP_UNTOUCHED, sizeof map);
     map[0] = 0;
@@ -63,7 +63,7 @@ int main(void)
         }
     }
 
-    /* What shaders clamp to: level 0 in that corner, level 5 in the farthest one. */
+    /* Shaders clamp to level 0 in that corner, to level 5 in the farthest one. */
     sluiceWriteMinMipData(manager, texture, 32, sizeof map, map);
     printf("finest levels: %u and %u\n", map[0], map[32 * 32 - 1]);
     sluiceDestroyStreamedTextureManager(manager);

@@ -28,7 +28,7 @@ extern "C" {
 
 typedef struct SluiceVulkanContext SluiceVulkanContext;
 
-/** What a block of device memory is for. */
+/** Purpose of a block of device memory. */
 typedef enum SluiceDeviceMemoryPurpose {
     /** Images whose memory is resident as a whole: dense mode, packed levels, metadata. */
     SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE = 0,
