@@ -661,7 +661,7 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
             pool->has_freed = true;
         }
     }
-    self->recorded = frame;
+    self->recorded = self->frames[self->frame_count++ % SLC_PAGE_FRAMES] = frame;
     for (uint32_t i = 0; i < pool->views.count; i++)
         if (pool->chunks[i].state == SLC_CHUNK_LIVE && pool->chunks[i].fresh)
             record_layout(pool, &pool->chunks[i], user, commands);
@@ -685,11 +685,31 @@ void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint6
     pthread_mutex_unlock(&pool->mutex);
 }
 
+/* They will never be complete: nothing may wait for them. */
+static void forget_frames(struct slc_page_pool *pool, uint32_t index, uint64_t frame)
+{
+    struct slc_page_user *user = &pool->users[index];
+    while (user->frame_count && user->frames[(user->frame_count - 1) % SLC_PAGE_FRAMES] >= frame)
+        user->frame_count--;
+    uint64_t last = user->frame_count ? user->frames[(user->frame_count - 1) % SLC_PAGE_FRAMES] : 0;
+    user->recorded = last;
+    user->mark_frame = 0;
+    for (uint32_t i = 0; i < pool->views.count; i++) {
+        struct slc_page_chunk *chunk = &pool->chunks[i];
+        if (chunk->retire_values[index] > last)
+            chunk->retire_values[index] = last;
+        for (uint32_t j = 0; j < chunk->layer_count; j++)
+            if (chunk->layers[j].user == index && chunk->layers[j].value > last)
+                chunk->layers[j].value = last;
+    }
+}
+
 void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t frame)
 {
     pthread_mutex_lock(&pool->mutex);
     if (pool->users[user].empty_frame >= frame)
         pool->users[user].empty_frame = 0;
+    forget_frames(pool, user, frame);
     for (uint32_t i = 0; i < pool->views.count; i++) {
         struct slc_page_chunk *chunk = &pool->chunks[i];
         if (chunk->state != SLC_CHUNK_LIVE || chunk->maker != user || chunk->layout_frame < frame)
@@ -699,7 +719,11 @@ void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t f
     }
     for (uint32_t i = 0; i < pool->shared.high; i++) {
         struct slc_shared_tile *tile = &pool->shared.entries[i];
-        if (tile->writer == user && !tile->going && tile->value >= frame)
+        if (tile->writer != user || tile->going || tile->value < frame)
+            continue;
+        if (tile->adopted)
+            tile->value = pool->users[user].recorded;
+        else
             tile->written = false; /* copied again, or given back */
     }
     pthread_mutex_unlock(&pool->mutex);

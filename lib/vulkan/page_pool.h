@@ -25,6 +25,7 @@
 #define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
 #define SLC_MAX_PAGE_CHUNKS (1u << 10)
 #define SLC_MAX_PAGE_USERS 16u
+#define SLC_PAGE_FRAMES 16u /* at least what a user may have in flight */
 #define SLC_NO_OWNER UINT32_MAX
 
 enum slc_page_chunk_state {
@@ -60,7 +61,9 @@ struct slc_page_chunk {
 struct slc_page_user {
     VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
-    uint64_t recorded;                ///< the last frame that was recorded
+    uint64_t recorded;                ///< the last frame that was recorded, and not abandoned
+    uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last that were recorded
+    uint64_t frame_count;             ///< that went through it, but for abandoned ones
     uint64_t completed;
     /** What its shaders get; owns the array of views alone. A new image is in its maker's array as
      *  soon as a frame of the maker puts it into its layout, and in others when that is complete.

@@ -119,6 +119,7 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
     uint32_t shared = slc_page_layer(pool, page)->shared;
     if (shared && pool->shared.entries[shared - 1].writer == user) {
         pool->shared.entries[shared - 1].written = true;
+        pool->shared.entries[shared - 1].adopted = false;
         pool->shared.entries[shared - 1].value = frame;
     }
     pthread_mutex_unlock(&pool->mutex);
@@ -131,8 +132,9 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
     uint32_t index = announce(pool, user, key);
     if (index != SLC_NONE) {
         place(pool, user, index, page);
-        pool->shared.entries[index].writer = SLC_MAX_PAGE_USERS;
-        pool->shared.entries[index].written = true;
+        pool->shared.entries[index].written = pool->shared.entries[index].adopted = true;
+        /* that of its copy at most: only texels that a frame had copied were given back */
+        pool->shared.entries[index].value = slc_page_layer(pool, page)->value;
     }
     pthread_mutex_unlock(&pool->mutex);
 }

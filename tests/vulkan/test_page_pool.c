@@ -3,6 +3,7 @@
 
 #include "vulkan/context.h"
 #include "vulkan/fake_vulkan.h"
+#include "vulkan/page_sharing.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -208,6 +209,53 @@ static void pages_that_others_hold_are_no_capacity(void **state)
     finish(&r);
 }
 
+/* Frames that never run hold nothing back, even if no other frame of the user follows. */
+static void an_abandoned_frame_is_not_waited_for(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, 0);
+    take_all(&r, 0, pages);
+    for (uint64_t frame = 2; frame < 4; frame++) {
+        record(&r, 0, frame);
+        slc_page_pool_give(&r.pool, r.users[0], pages[frame], SLC_NO_OWNER);
+        slc_page_pool_abandon(&r.pool, r.users[0], frame);
+    }
+    record(&r, 1, 1);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), pages[2]);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), pages[3]);
+    finish(&r);
+}
+
+/* The copy may still be under way when the tile comes back to its page. */
+static void a_page_that_came_back_is_shared_when_its_copy_is_complete(void **state)
+{
+    (void)state;
+    struct rig r;
+    static int source;
+    const struct slc_tile_key key = {(const SluiceImageSource *)(const void *)&source, 0, 1, 2, 3};
+    init(&r, 0);
+    uint32_t page = slc_page_pool_take(&r.pool, r.users[0], FORMAT);
+    slc_page_share_announce(&r.pool, r.users[0], &key);
+    slc_page_share_place(&r.pool, r.users[0], &key, page);
+    record(&r, 0, 1);
+    slc_page_share_written(&r.pool, r.users[0], page, 1);
+    slc_page_pool_give(&r.pool, r.users[0], page, 7);
+    record(&r, 0, 2);
+    assert_true(slc_page_pool_retake(&r.pool, r.users[0], page, 7));
+    slc_page_share_adopt(&r.pool, r.users[0], &key, page);
+    slc_page_pool_abandon(&r.pool, r.users[0], 2);
+    record(&r, 1, 1);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &key), SLC_SHARE_WAIT);
+    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), SLUICE_PAGE_NONE);
+    timelines[0] = 1;
+    record(&r, 1, 2);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &key), SLC_SHARE_READY);
+    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), page);
+    finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +265,8 @@ int main(void)
         cmocka_unit_test(an_empty_image_goes_when_no_user_can_see_it),
         cmocka_unit_test(a_user_that_goes_gives_its_pages_back),
         cmocka_unit_test(pages_that_others_hold_are_no_capacity),
+        cmocka_unit_test(an_abandoned_frame_is_not_waited_for),
+        cmocka_unit_test(a_page_that_came_back_is_shared_when_its_copy_is_complete),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
