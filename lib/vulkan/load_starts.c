@@ -64,18 +64,22 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     return result == SLUICE_SUCCESS ? result : slc_tile_back(s, unit, result);
 }
 
-/* Those for which there is a page now, coarse ones first. */
+/* Those for which there is a page now, coarse ones first. Shared tiles take no unit: they are
+ * counted. */
 static SluiceResult start_deferred(SluiceVulkanStreamer *s)
 {
     SluiceResult result = SLUICE_SUCCESS;
+    uint32_t left = s->info.maxLoadsInFlight;
     for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->deferred.count > 0 && level-- > 0;)
-        for (uint32_t i = 0; i < s->deferred.count && slc_units_are_ready(s, 1) && result >= 0;) {
+        for (uint32_t i = 0;
+             i < s->deferred.count && left > 0 && slc_units_are_ready(s, 1) && result >= 0;) {
             struct slc_deferred_tile deferred = s->deferred.tiles[i];
             if (deferred.tile.mipLevel != level || slc_pages_left(s, deferred.texture) == 0) {
                 i++;
                 continue;
             }
             slc_deferred_tiles_remove_at(&s->deferred, i);
+            left--;
             result = start_tile(s, deferred.texture, &deferred.tile);
         }
     return result;

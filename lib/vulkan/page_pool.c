@@ -118,6 +118,8 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
         pool->users[at].semaphore = semaphore;
         pool->users[at].max_size = max_size;
         pool->users[at].client = client;
+        for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) /* of the last one in this place */
+            pool->users[i].seen[at] = pool->users[i].still[at] = 0;
         slc_memory_client_set_source(client, &pool->client);
         pool->user_count++;
         show_chunks(pool, at);

@@ -369,7 +369,8 @@ static enum slc_share share(struct slc_residency *residency, uint32_t index, con
 static uint32_t room_to_unmap(const struct slc_residency *residency)
 {
     const struct paged_residency *p = (const struct paged_residency *)residency;
-    return p->store_capacity - p->upload_reserve - p->store_count;
+    uint32_t taken = p->upload_reserve + p->store_count;
+    return taken < p->store_capacity ? p->store_capacity - taken : 0;
 }
 
 static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
@@ -478,6 +479,7 @@ static void record_begin(struct slc_residency *residency, uint64_t frame, VkComm
 static void abandon(struct slc_residency *residency, uint64_t frame)
 {
     struct paged_residency *p = paged(residency);
+    p->store_count = 0; /* of a begin that failed: lost images are written again */
     for (uint32_t i = 0; i < p->max_image_count; i++) {
         struct paged_image *image = &p->images[i];
         if (image->recorded_frame >= frame) {
@@ -653,8 +655,8 @@ static SluiceResult create_arrays(struct paged_residency *p,
     if (result != SLUICE_SUCCESS)
         return result;
     p->max_image_count = info->max_image_count;
-    p->upload_reserve = 3 * info->max_changes; /* copied, revived or shared */
-    p->store_capacity = 7 * info->max_changes;
+    p->upload_reserve = 4 * info->max_changes; /* copied, revived, shared, deferred */
+    p->store_capacity = 8 * info->max_changes;
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
     p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);
