@@ -11,8 +11,8 @@
  *   version is accepted if the fields that this version does not have are 0; otherwise the call
  *   returns SLUICE_ERROR_UNSUPPORTED.
  * - Written: at most structSize bytes. Fields that this version does not have become 0.
- * - The call returns SLUICE_ERROR_INVALID_ARGUMENT if structSize is 0 or less than the first
- *   release had. Nothing has changed then. The log, if there is one, names the struct.
+ * - The call returns SLUICE_ERROR_INVALID_ARGUMENT if structSize is 0, less than the first release
+ *   had, or above 2^16. Nothing has changed then. The log, if there is one, names the struct.
  *
  * All other structs never grow.
  */

@@ -128,7 +128,10 @@ SLUICE_API SluiceResult sluiceCreateDemandLoader(const SluiceDemandLoaderCreateI
  */
 SLUICE_API void sluiceDestroyDemandLoader(SluiceDemandLoader *loader);
 
-/** Settings of a demand loader that can change while it runs, as in the create-info. */
+/**
+ * Settings of a demand loader that can change while it runs. They mean what the fields of the
+ * create-info mean, but zero is a value here, and never selects a default.
+ */
 typedef struct SluiceDemandLoaderSettings {
     uint32_t structSize;           ///< Required. sizeof(SluiceDemandLoaderSettings).
     uint32_t maxRequestsPerLaunch; ///< 1 to the create-info's value.
@@ -269,7 +272,7 @@ SLUICE_API SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
  * Destroys a texture and its variants.
  *
  * Shaders that still use it get its failureColor; in grids, the grid's missingColor. Its pages and
- * index are reused after the launches prepared so far are processed.
+ * index are reused after the launches begun so far are processed.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
  */
@@ -365,7 +368,7 @@ SLUICE_API SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
 /**
  * Destroys a resource. Waits for its fills in progress.
  *
- * Its values are evicted when the launches prepared so far are processed, at the latest when the
+ * Its values are evicted when the launches begun so far are processed, at the latest when the
  * loader is destroyed. Keep pUserData until then.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
@@ -428,7 +431,7 @@ SLUICE_API SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader,
 SLUICE_API SluiceResult sluiceGetDemandDescriptorSetLayout(const SluiceDemandLoader *loader,
                                                            VkDescriptorSetLayout *pLayout);
 
-/** Launch that was prepared. */
+/** Launch that was begun. */
 typedef struct SluiceDemandLaunch {
     uint32_t structSize;   ///< sizeof(SluiceDemandLaunch).
     uint64_t launchIndex;  ///< Counts from 1.
@@ -466,13 +469,13 @@ SLUICE_API SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader,
  * Ends a launch: records the scan of the requests. Binds a compute pipeline and its descriptor set
  * 0.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if no launch was prepared.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT if no launch was begun.
  */
 SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
                                               VkCommandBuffer commandBuffer);
 
 /**
- * Abandons a launch that will never be submitted, and all launches prepared after it. Allowed after
+ * Abandons a launch that will never be submitted, and all launches begun after it. Allowed after
  * sluiceBeginDemandLaunch and after sluiceEndDemandLaunch.
  *
  * Do not submit the command buffers. Do not process the launches. Do not wait for their signalValue
@@ -483,7 +486,7 @@ SLUICE_API SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader,
  * Nothing is lost, and nothing is read from disk again. After an error the launch is not abandoned.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the
- *         launch is complete, was abandoned or never prepared; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         launch is complete, was abandoned or never begun; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST.
  */
 SLUICE_API SluiceResult sluiceAbandonDemandLaunch(SluiceDemandLoader *loader,
@@ -594,7 +597,7 @@ typedef struct SluiceDemandStatistics {
     uint32_t pageChunkCount;     ///< As in SluiceVulkanStreamerStatistics.
     uint64_t pageChunkShortages; ///< As in SluiceVulkanStreamerStatistics.
     uint64_t
-        sharedCount; ///< Tiles that a front end of the same context had: resident without a read.
+        sharedCount; ///< Tiles that another front end of the context had: resident without a read.
 } SluiceDemandStatistics;
 
 /**
@@ -610,7 +613,7 @@ SLUICE_API SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
  * the format: which pages launches used and requested, when reads ended, and which pages got
  * memory. Neither texels nor shaders nor file names are in it.
  *
- * Call it before the first launch is prepared and before anything is preloaded. Textures and
+ * Call it before the first launch is begun and before anything is preloaded. Textures and
  * resources may exist. End the recording with sluiceEndRecording, before you destroy the loader.
  * The file is written as by sluiceBeginFileRecording.
  *

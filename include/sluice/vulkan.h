@@ -718,7 +718,7 @@ typedef struct SluiceVulkanStreamerStatistics {
      * counted at most once in 60 frames. The first is logged. Such tiles show coarser levels.
      */
     uint64_t pageChunkShortages;
-    /** Paged: tiles mapped without a read, because a front end of the same context had them. */
+    /** Paged: tiles mapped without a read, because another front end of the context had them. */
     uint64_t tilesShared;
 } SluiceVulkanStreamerStatistics;
 

@@ -6,14 +6,15 @@
  * application keeps ownership of instance, device and queues. Destroy streamers and demand loaders
  * first, then the context, then the device.
  *
- * Front ends of a context share loader threads, staging memory and the images of pages. The first
- * one makes them with its loaderThreadCount, maxReadsPerSource and maxPageChunkCount; they go with
- * the last one. A streamer in paged mode and a demand loader that have the same SluiceImageSource
- * read each tile once and keep it on one page.
+ * Streamers and demand loaders are the front ends of a context. They share loader threads, staging
+ * memory and the images of pages. The first front end makes them with its loaderThreadCount,
+ * maxReadsPerSource and maxPageChunkCount. The last front end destroys them. A streamer in paged
+ * mode and a demand loader that have the same SluiceImageSource read each tile once and keep it on
+ * one page.
  *
- * Frames and launches of a context go to queues of one family. The functions that begin, end,
- * abandon, prepare or process them must not run at the same time for two front ends of one context.
- * Use a context per thread otherwise.
+ * Submit frames and launches of a context to queues of one family. The functions that begin, end,
+ * abandon or process them must not run at the same time for two front ends of one context. If they
+ * must, create a context per thread.
  */
 #ifndef SLUICE_VULKAN_CONTEXT_H
 #define SLUICE_VULKAN_CONTEXT_H
@@ -103,10 +104,10 @@ typedef struct SluiceVulkanContextCreateInfo {
     /** Allocates every block of device memory. Copied. Default: vkAllocateMemory. */
     const SluiceDeviceMemoryCallbacks *pDeviceMemory;
     /**
-     * Bytes of device memory for the tiles of all streamers and demand loaders together: purposes
-     * IMAGE, HEAP and PAGES. Hard limit, at least 4 MiB. Beyond it, allocations fail as on a device
-     * without memory. Default: no limit but those of the streamers and demand loaders
-     * (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
+     * Bytes of device memory for the tiles of all streamers and demand loaders together: the
+     * purposes IMAGE, HEAP and PAGES of SluiceDeviceMemoryPurpose. Hard limit, at least 4 MiB.
+     * Allocations that exceed it fail as on a device without memory. Default: no limit but those of
+     * the streamers and demand loaders (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
      */
     uint64_t memoryBudget;
     /** Cache for the compute pipelines of the library, so that the application can store it. Must
@@ -142,8 +143,9 @@ SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
 /**
  * Sets the memory budget (SluiceVulkanContextCreateInfo.memoryBudget), in bytes. 0: no limit.
  *
- * If more is in use, nothing is freed by this call. Nothing more is allocated, and streamers and
- * demand loaders release what they do not need when their next frames and launches begin.
+ * If more is in use, nothing is freed by this call. No memory for tiles is allocated until less is
+ * in use than the budget. Page images that have run empty are freed in later frames and launches.
+ * Heaps of streamers in sparse mode stay.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
  *         4 MiB.
@@ -156,7 +158,7 @@ SLUICE_API SluiceResult sluiceSetVulkanMemoryBudget(SluiceVulkanContext *context
 typedef struct SluiceVulkanContextStatistics {
     uint32_t structSize;         ///< Set it to sizeof(SluiceVulkanContextStatistics).
     uint32_t memoryBlockCount;   ///< Blocks allocated at present.
-    uint64_t memoryBudget;       ///< Limit of tileMemorySize. UINT64_MAX: none.
+    uint64_t memoryBudget;       ///< Limit of tileMemorySize, in bytes. UINT64_MAX: none.
     uint64_t tileMemorySize;     ///< Sum of the next three.
     uint64_t imageMemorySize;    ///< SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE
     uint64_t heapMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_HEAP

@@ -130,7 +130,7 @@ int main(int argc, char **argv)
             print_statistics(r.streamer, number + 1);
     }
 
-    sluiceDestroyVulkanStreamer(r.streamer); /* waits for the device, and for reads of sources */
+    sluiceDestroyVulkanStreamer(r.streamer); /* waits for its frames, and for reads of sources */
     sluiceDestroyVulkanContext(r.context);
     for (uint32_t i = 0; i < TEXTURES; i++)
         sluiceDestroyImageSource(r.sources[i]);
