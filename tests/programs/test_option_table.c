@@ -73,11 +73,13 @@ static enum option_outcome parse_with(const struct option_table *t, const char *
 {
     static char words[4096];
     static char program[] = "program";
-    char *argv[MOST_WORDS + 1] = {program};
+    static char *argv[MOST_WORDS + 1]; /* lists of words point into it */
     int argc = 1;
+    argv[0] = program;
     snprintf(words, sizeof words, "%s", line);
     for (char *word = strtok(words, " "); word && argc < MOST_WORDS; word = strtok(NULL, " "))
         argv[argc++] = word;
+    argv[argc] = NULL;
     v = (struct values){0};
     captured_stderr_begin();
     enum option_outcome outcome = options_parse(t, argc, argv);
