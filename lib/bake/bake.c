@@ -219,7 +219,7 @@ static SluiceResult copy_levels(struct bake *bake, const SluiceStoreLayout *layo
     return result;
 }
 
-/* What a broken picture leaves is no use to the next bake. Another writer may have it by now. */
+/* Removes the half file of a broken picture, unless another writer has it by now. */
 static void remove_part_file(struct bake *bake)
 {
     static const SluiceLogCallback silent;

@@ -20,7 +20,7 @@ void slc_columns_finish(struct slc_columns *columns, const SluiceAllocationCallb
 /** `row` is [axis.size][4], `below` [axis.below][4]; they do not overlap. */
 void slc_columns_apply(struct slc_columns *columns, const float *row, float *below);
 
-/** The same with sums in double, which saturate at +-FLT_MAX. Slow. */
+/** Like slc_columns_apply, but sums in double and saturates at +-FLT_MAX. Slow. */
 void slc_columns_apply_wide(struct slc_columns *columns, const float *row, float *below);
 
 /** Whether none of `count` texels has a NaN or an infinity. */

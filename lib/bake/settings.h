@@ -7,7 +7,7 @@
 /** Part of every hash; raised when the same settings give other texels. */
 #define SLC_BAKE_REVISION 2
 
-/** Of all settings that determine the texels. */
+/** Hash of all settings that determine the texels. */
 uint64_t slc_hash_settings(const SluiceBakeSettings *settings);
 
 #endif /* SLC_BAKE_SETTINGS_H */

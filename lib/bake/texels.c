@@ -83,7 +83,7 @@ static void expand_srgb8(const uint8_t *samples, uint32_t channels, float *rgba,
     }
 }
 
-/* What is not to be kept. True if one of the channels was changed. */
+/* Replaces NaN, infinities and values beyond the limit. True if a channel was changed. */
 static bool replace_texel(const struct slc_rules *rules, float rgba[4],
                           struct slc_replaced *replaced)
 {
