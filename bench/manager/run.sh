@@ -110,7 +110,7 @@ build_programs() {
     compile replay -I"$harness" "$harness/replay.c" "$here/backend_sluice.c"
     compile generate -I"$harness" "$harness/sltrace_gen.c"
     compile clairvoyant -I"$root"/lib -I"$root"/tools/{clairvoyant,feedback-trace} "$here/clairvoyant.c" \
-        "$root"/tools/{clairvoyant,feedback-trace}/*.c "$root"/tools/common/{input,output_file,text}.c -lm
+        "$root"/tools/{clairvoyant,feedback-trace}/*.c "$root"/tools/common/{input,output_file,output_names,text}.c -lm
 }
 
 find_harness() {
