@@ -7,7 +7,8 @@
 void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
                           uint64_t budget)
 {
-    uint64_t most = slc_page_chunks_capacity(pool->views.count, pool->caps->max_image_array_layers);
+    uint64_t most =
+        slc_page_chunks_capacity(pool->chunks.count, pool->chunks.caps->max_image_array_layers);
     uint64_t limit = budget / SLC_TILE_SIZE;
     *memory =
         (struct slc_tile_memory){.pool = pool, .user = user, .limit = limit < most ? limit : most};

@@ -14,67 +14,21 @@
 #ifndef SLC_VULKAN_PAGE_POOL_H
 #define SLC_VULKAN_PAGE_POOL_H
 
-#include "vulkan/memory.h"
 #include "vulkan/memory_budget.h"
+#include "vulkan/page_chunks.h"
+#include "vulkan/page_timelines.h"
 #include "vulkan/page_views.h"
 #include "vulkan/shared_tiles.h"
 
 #include <pthread.h>
 
-#define SLC_PAGE_FORMATS 64u
-#define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
-#define SLC_MAX_PAGE_CHUNKS (1u << 10)
-#define SLC_MAX_PAGE_USERS 16u
-#define SLC_PAGE_FRAMES 16u /* at least what a user may have in flight */
-#define SLC_NO_OWNER UINT32_MAX
-
-enum slc_page_chunk_state {
-    SLC_CHUNK_FREE = 0,
-    SLC_CHUNK_LIVE,
-    SLC_CHUNK_RETIRING, ///< no shader of new frames sees it; waits for the others
-};
-
-struct slc_page_layer {
-    uint16_t previous, next; ///< free: in the ring
-    uint32_t owner;          ///< free: whose texels it has, SLC_NO_OWNER for nobody's
-    uint64_t value;          ///< free: the last frame of `user` that could read it; 0: none could
-    uint8_t user;            ///< that holds it, or gave it back
-    bool held;
-    uint32_t shared; ///< held: 1 + the index of its entry in the directory; 0: it has none
-};
-
-struct slc_page_chunk {
-    enum slc_page_chunk_state state;
-    SluiceFormat format;
-    struct slc_plain_image image;
-    VkImageView view;
-    struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
-    uint32_t free_count, layer_count;
-    bool fresh;            ///< not yet in the layout in which it stays
-    uint8_t maker;         ///< user that puts it there; SLC_MAX_PAGE_USERS: whoever records next
-    uint64_t layout_frame; ///< of the maker, that did; 0: none yet
-    uint64_t tick;         ///< LIVE: the last in which it was not empty
-    uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: each user's last frame that sees it
-};
-
-/** One timeline. */
 struct slc_page_user {
-    VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
-    uint64_t recorded;                ///< the last frame that was recorded, and not abandoned
-    uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last that were recorded
-    uint64_t frame_count;             ///< that went through it, but for abandoned ones
-    uint64_t completed;
     /** What its shaders get; owns the array of views alone. A new image is in its maker's array as
      *  soon as a frame of the maker puts it into its layout, and in others when that is complete.
      */
     struct slc_page_views shown;
-    uint32_t held_count;            ///< pages
-    uint64_t safe_tick;             ///< frames that were recorded up to this tick are complete
-    uint64_t mark_frame, mark_tick; ///< what comes next there; 0: nothing
-    /** By user: its progress as this one saw it last, and for how many frames it stood still. */
-    uint64_t seen[SLC_MAX_PAGE_USERS];
-    uint32_t still[SLC_MAX_PAGE_USERS];
+    uint32_t held_count;  ///< pages
     uint64_t max_size;    ///< bytes; 0: no limit of its own
     uint64_t empty_frame; ///< that put the image of empty places into its layout; 0: none did
 };
@@ -82,28 +36,17 @@ struct slc_page_user {
 struct slc_page_pool {
     struct slc_vk vk; ///< the context's, but for memory_client
     struct slc_memory_client client;
-    const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     pthread_mutex_t mutex; ///< around everything below; users may be on different threads
     bool has_mutex;
-    struct slc_page_views views;   ///< what the users' arrays are made of
-    struct slc_page_chunk *chunks; ///< owned; views.count
-    struct slc_image_memory memory;
+    struct slc_page_views views; ///< what the users' arrays are made of
+    struct slc_page_chunks chunks;
+    struct slc_page_timelines timelines;
     struct slc_page_user users[SLC_MAX_PAGE_USERS];
-    uint32_t user_count;
-    struct slc_shared_tiles shared;        ///< see page_sharing.h
-    uint32_t last_chunk[SLC_PAGE_FORMATS]; ///< that a page was taken from
-    uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
-    uint32_t held_count;                   ///< pages, each once
-    bool empty_is_ready;                   ///< the image of empty places is in its layout
-    uint64_t tick;                         ///< frames recorded, of all users
-    uint64_t refused_tick; ///< the last in which the device had no memory; 0: it had some then
-    bool has_freed;        ///< a chunk has gone since then: one may be made at once
-    uint32_t max_layer_count;
-    uint64_t max_size;    ///< bytes of device memory, a hard limit; 0: none
-    uint32_t chunk_count; ///< that have an image
-    uint64_t shortages;   ///< pages that were not there because all chunks were in use
-    bool hurry;           ///< chunks that are empty are retired with the next record
+    struct slc_shared_tiles shared; ///< see page_sharing.h
+    uint32_t held_count;            ///< pages, each once
+    bool empty_is_ready;            ///< the image of empty places is in its layout
+    bool hurry;                     ///< chunks that are empty are retired with the next record
 };
 
 /** After an error it can be finished. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
@@ -128,9 +71,6 @@ static inline const struct slc_page_views *slc_page_pool_views(const struct slc_
 {
     return &pool->users[user].shown;
 }
-
-/** Pages that so many chunks hold, at most: if all are of one format. */
-uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
 
 /** Pages that the user could hold: those of all chunks, and those that chunks could still be made
  *  for, without pages that others hold. */
@@ -163,15 +103,10 @@ void slc_page_pool_hurry(struct slc_page_pool *pool);
 void slc_page_pool_record_empty(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                                 VkCommandBuffer commands);
 
-static inline struct slc_page_layer *slc_page_layer(const struct slc_page_pool *pool, uint32_t page)
-{
-    return &pool->chunks[page >> 16].layers[page & 0xFFFFu];
-}
-
 /** The image of a page that is held. */
 static inline VkImage slc_page_image(const struct slc_page_pool *pool, uint32_t page)
 {
-    return pool->chunks[page >> 16].image.image;
+    return pool->chunks.at[page >> 16].image.image;
 }
 
 /** Begins a frame of the user: new chunks into their layout, empty ones are retired. Before

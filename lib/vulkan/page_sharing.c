@@ -16,8 +16,9 @@ static uint32_t find(const struct slc_page_pool *pool, uint32_t user,
     const struct slc_shared_tile *tile = &pool->shared.entries[index];
     if (tile->writer == user || tile->users & 1u << user)
         return SLC_NONE;
-    *ready = tile->written && (tile->writer == SLC_MAX_PAGE_USERS ||
-                               tile->value <= pool->users[tile->writer].completed);
+    *ready =
+        tile->written && (tile->writer == SLC_MAX_PAGE_USERS ||
+                          slc_page_timelines_reached(&pool->timelines, tile->writer, tile->value));
     return index;
 }
 
@@ -31,7 +32,7 @@ enum slc_share slc_page_share_look(struct slc_page_pool *pool, uint32_t user,
                            : ready           ? SLC_SHARE_READY
                                              : SLC_SHARE_WAIT;
     if (share == SLC_SHARE_WAIT &&
-        pool->users[user].still[pool->shared.entries[index].writer] >= STALLED_FRAMES)
+        pool->timelines.of[user].still[pool->shared.entries[index].writer] >= STALLED_FRAMES)
         share = SLC_SHARE_NONE;
     pthread_mutex_unlock(&pool->mutex);
     return share;
@@ -70,7 +71,7 @@ static void place(struct slc_page_pool *pool, uint32_t user, uint32_t index, uin
     struct slc_shared_tile *tile = &pool->shared.entries[index];
     tile->page = page;
     tile->users = tile->readers = 1u << user;
-    slc_page_layer(pool, page)->shared = index + 1;
+    slc_page_layer(&pool->chunks, page)->shared = index + 1;
 }
 
 /* The entry of a tile that the user reads and that has no page. */
@@ -116,7 +117,7 @@ void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t 
                             uint64_t frame)
 {
     pthread_mutex_lock(&pool->mutex);
-    uint32_t shared = slc_page_layer(pool, page)->shared;
+    uint32_t shared = slc_page_layer(&pool->chunks, page)->shared;
     if (shared && pool->shared.entries[shared - 1].writer == user) {
         pool->shared.entries[shared - 1].written = true;
         pool->shared.entries[shared - 1].adopted = false;
@@ -134,7 +135,7 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
         place(pool, user, index, page);
         pool->shared.entries[index].written = pool->shared.entries[index].adopted = true;
         /* that of its copy at most: only texels that a frame had copied were given back */
-        pool->shared.entries[index].value = slc_page_layer(pool, page)->value;
+        pool->shared.entries[index].value = slc_page_layer(&pool->chunks, page)->value;
     }
     pthread_mutex_unlock(&pool->mutex);
 }

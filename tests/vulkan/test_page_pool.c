@@ -97,7 +97,7 @@ static void a_page_of_another_user_waits_for_its_frames(void **state)
     take_all(&r, 0, pages);
     record(&r, 0, 2);
     record(&r, 1, 1);
-    r.pool.max_size = LAYERS * 65536;
+    r.pool.chunks.max_size = LAYERS * 65536;
     assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), SLUICE_PAGE_NONE);
     slc_page_pool_give(&r.pool, r.users[0], pages[5], SLC_NO_OWNER); /* frame 2 may read it */
     assert_int_equal(slc_page_pool_take(&r.pool, r.users[1], FORMAT), SLUICE_PAGE_NONE);

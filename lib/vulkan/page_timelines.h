@@ -1,0 +1,65 @@
+/**
+ * How far each user of a page pool is. A user is a streamer in paged mode or a demand loader. Users
+ * record independently of each other: each has its own timeline of frames or launches.
+ *
+ * The pool counts the frames of all users in ticks. A user's safe tick orders its timeline among
+ * the others: all of its frames that were recorded up to that tick are complete.
+ */
+#ifndef SLC_VULKAN_PAGE_TIMELINES_H
+#define SLC_VULKAN_PAGE_TIMELINES_H
+
+#include "vulkan/dispatch.h"
+
+#define SLC_MAX_PAGE_USERS 16u
+#define SLC_PAGE_FRAMES 16u /* at least what a user may have in flight */
+
+struct slc_page_timeline {
+    VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
+    uint64_t recorded;                ///< the last frame that was recorded, and not abandoned
+    uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last that were recorded
+    uint64_t frame_count;             ///< that went through it, but for abandoned ones
+    uint64_t completed;
+    uint64_t safe_tick;             ///< frames that were recorded up to this tick are complete
+    uint64_t mark_frame, mark_tick; ///< what comes next there; 0: nothing
+    /** By user: its progress as this one saw it last, and for how many frames it stood still. */
+    uint64_t seen[SLC_MAX_PAGE_USERS];
+    uint32_t still[SLC_MAX_PAGE_USERS];
+};
+
+struct slc_page_timelines {
+    struct slc_page_timeline of[SLC_MAX_PAGE_USERS]; ///< by user
+    uint32_t user_count;
+    uint64_t tick; ///< frames recorded, of all users
+};
+
+/** SLC_MAX_PAGE_USERS if all places are taken. */
+uint32_t slc_page_timelines_free_place(const struct slc_page_timelines *timelines);
+/** `semaphore`: timeline that the user's frames signal with their numbers. */
+void slc_page_timelines_add(struct slc_page_timelines *timelines, uint32_t user,
+                            VkSemaphore semaphore);
+void slc_page_timelines_remove(struct slc_page_timelines *timelines, uint32_t user);
+
+/** Begins a tick with a frame of the user: polls the semaphores of all others. */
+void slc_page_timelines_advance(struct slc_page_timelines *timelines, const struct slc_vk *vk,
+                                uint32_t user, uint64_t completed_frame);
+/** The user's frame may read pages from now on. */
+void slc_page_timelines_record(struct slc_page_timelines *timelines, uint32_t user, uint64_t frame);
+/** The user's frames from `frame` on will never be complete: nothing may wait for them. */
+void slc_page_timelines_abandon(struct slc_page_timelines *timelines, uint32_t user,
+                                uint64_t frame);
+
+static inline bool slc_page_timelines_reached(const struct slc_page_timelines *timelines,
+                                              uint32_t user, uint64_t frame)
+{
+    return timelines->of[user].completed >= frame;
+}
+
+/** All frames of the users in the bit set, but for `except`, that were recorded up to now are
+ *  complete. */
+bool slc_page_timelines_are_idle(const struct slc_page_timelines *timelines, uint32_t users,
+                                 uint32_t except);
+/** As slc_page_timelines_are_idle, but for frames that were recorded up to the tick. */
+bool slc_page_timelines_passed(const struct slc_page_timelines *timelines, uint32_t users,
+                               uint32_t except, uint64_t tick);
+
+#endif /* SLC_VULKAN_PAGE_TIMELINES_H */
