@@ -19,14 +19,14 @@ static bool check_list(const struct slc_demand_residency *r, const struct slc_pa
     return list->count == count;
 }
 
-static bool check_pool(const struct slc_demand_residency *r, uint32_t pool)
+static bool check_lru(const struct slc_demand_residency *r, uint32_t lru)
 {
     uint64_t last = 0;
-    const struct slc_page_list *pages = &r->pools[pool].pages;
-    REQUIRE(check_list(r, pages, SLC_HOME_POOL));
+    const struct slc_page_list *pages = &r->lrus[lru].pages;
+    REQUIRE(check_list(r, pages, SLC_HOME_LRU));
     for (uint32_t i = pages->head; i != SLC_NO_NODE; i = r->nodes.at[i].next[SLC_LINK_HOME]) {
         const struct slc_page_node *node = &r->nodes.at[i];
-        REQUIRE(node->pool == pool && node->class_index == r->pools[pool].class_index);
+        REQUIRE(node->lru == lru && node->class_index == r->lrus[lru].class_index);
         REQUIRE(node->last_use >= last && node->last_use <= r->launch);
         last = node->last_use;
     }
@@ -35,22 +35,22 @@ static bool check_pool(const struct slc_demand_residency *r, uint32_t pool)
 
 static bool check_lists(const struct slc_demand_residency *r)
 {
-    uint64_t ghosts = 0, listed = r->unseen.count + r->overflow.count;
+    uint64_t restorable = 0, listed = r->unseen.count + r->overflow.count;
     uint64_t homes = 0;
-    for (uint32_t p = 0; p < r->pool_count; p++) {
-        REQUIRE(check_pool(r, p));
-        listed += r->pools[p].pages.count;
+    for (uint32_t p = 0; p < r->lru_count; p++) {
+        REQUIRE(check_lru(r, p));
+        listed += r->lrus[p].pages.count;
     }
     for (uint32_t c = 0; c < r->class_count; c++) {
-        REQUIRE(check_list(r, &r->classes[c].ghosts, SLC_HOME_GHOSTS));
-        ghosts += r->classes[c].ghosts.count;
+        REQUIRE(check_list(r, &r->classes[c].restorable, SLC_HOME_RESTORABLE));
+        restorable += r->classes[c].restorable.count;
     }
     REQUIRE(check_list(r, &r->unseen, SLC_HOME_UNSEEN));
     REQUIRE(check_list(r, &r->overflow, SLC_HOME_OVERFLOW));
     for (uint32_t i = 0; i < r->nodes.end; i++)
         if (slc_page_nodes_find(&r->nodes, r->nodes.at[i].page) == i)
             homes += r->nodes.at[i].home != SLC_HOME_NONE;
-    return homes == ghosts + listed;
+    return homes == restorable + listed;
 }
 
 /* A node by itself. */
@@ -61,15 +61,15 @@ static bool check_node(const struct slc_demand_residency *r, const struct slc_pa
     bool held = node->state == SLC_PAGE_LOADING || node->state == SLC_PAGE_RESIDENT;
     REQUIRE(held || (!node->pinned && !node->dropped));
     REQUIRE((node->place != SLC_NO_PLACE) ==
-            ((held && has_memory) || node->home == SLC_HOME_GHOSTS));
+            ((held && has_memory) || node->home == SLC_HOME_RESTORABLE));
     switch ((enum slc_page_state)node->state) {
-    case SLC_PAGE_ABSENT: return node->changed || node->home == SLC_HOME_GHOSTS;
+    case SLC_PAGE_ABSENT: return node->changed || node->home == SLC_HOME_RESTORABLE;
     case SLC_PAGE_LOADING: return node->home == SLC_HOME_NONE;
     case SLC_PAGE_RESIDENT:
         REQUIRE(!has_memory || node->value == node->place);
         if (node->home == SLC_HOME_NONE)
             return node->pinned || node->changed;
-        return !node->pinned && (node->home == SLC_HOME_POOL || node->home == SLC_HOME_UNSEEN);
+        return !node->pinned && (node->home == SLC_HOME_LRU || node->home == SLC_HOME_UNSEEN);
     case SLC_PAGE_REFUSED: return node->home == SLC_HOME_NONE || node->home == SLC_HOME_OVERFLOW;
     }
     return false;

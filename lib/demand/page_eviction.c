@@ -1,19 +1,19 @@
 #include "demand/page_eviction.h"
 
 #include "demand/page_changes.h"
-#include "demand/page_pools.h"
+#include "demand/page_lru.h"
 #include "demand/page_release.h"
 
 /* Pages that the same launch used last lie together at the head; nothing joins them any more once
  * a later launch has begun, and before that they are not evicted. */
-static void sort_head(struct slc_demand_residency *r, struct slc_page_pool *pool)
+static void sort_head(struct slc_demand_residency *r, struct slc_page_lru *lru)
 {
     struct slc_page_node *at = r->nodes.at;
-    struct slc_page_list *pages = &pool->pages;
+    struct slc_page_list *pages = &lru->pages;
     uint64_t launch = at[pages->head].last_use;
-    if (pool->sorted == launch)
+    if (lru->sorted == launch)
         return;
-    pool->sorted = launch;
+    lru->sorted = launch;
     uint32_t last = pages->head, previous = SLC_NO_NODE, head = pages->head;
     while (at[last].next[SLC_LINK_HOME] != SLC_NO_NODE &&
            at[at[last].next[SLC_LINK_HOME]].last_use == launch)
@@ -39,23 +39,22 @@ static bool goes_before(const struct slc_page_node *a, const struct slc_page_nod
     return a->rank != b->rank ? a->rank > b->rank : a->page < b->page;
 }
 
-/* SLC_NO_NODE if all of the pool were used by the launch. */
-static uint32_t first_to_go(struct slc_demand_residency *r, struct slc_page_pool *pool)
+/* SLC_NO_NODE if all pages of the list were used by the launch. */
+static uint32_t first_to_go(struct slc_demand_residency *r, struct slc_page_lru *lru)
 {
-    if (pool->pages.head == SLC_NO_NODE || slc_node(r, pool->pages.head)->last_use >= r->launch)
+    if (lru->pages.head == SLC_NO_NODE || slc_node(r, lru->pages.head)->last_use >= r->launch)
         return SLC_NO_NODE;
-    sort_head(r, pool);
-    return pool->pages.head;
+    sort_head(r, lru);
+    return lru->pages.head;
 }
 
-bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, uint32_t pool)
+bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, uint32_t lru)
 {
     uint32_t best = SLC_NO_NODE;
     if (r->no_eviction)
         return false;
-    for (uint32_t p = r->classes[class_index].first_pool; p != SLC_NO_POOL; p = r->pools[p].next) {
-        uint32_t node =
-            pool == SLC_NO_POOL || pool == p ? first_to_go(r, &r->pools[p]) : SLC_NO_NODE;
+    for (uint32_t p = r->classes[class_index].first_lru; p != SLC_NO_LRU; p = r->lrus[p].next) {
+        uint32_t node = lru == SLC_NO_LRU || lru == p ? first_to_go(r, &r->lrus[p]) : SLC_NO_NODE;
         if (node != SLC_NO_NODE &&
             (best == SLC_NO_NODE || goes_before(slc_node(r, node), slc_node(r, best))))
             best = node;
@@ -73,6 +72,6 @@ void slc_residency_trim(struct slc_demand_residency *r, uint32_t class_index)
 {
     struct slc_page_class *c = &r->classes[class_index];
     while (c->held > c->limit)
-        if (!slc_residency_evict(r, class_index, SLC_NO_POOL))
+        if (!slc_residency_evict(r, class_index, SLC_NO_LRU))
             return;
 }

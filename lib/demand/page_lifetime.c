@@ -26,7 +26,7 @@ SluiceResult slc_residency_create(const struct slc_page_residency_create_info *i
     }
     for (uint32_t i = 0; i < r->class_count; i++)
         r->classes[i] = (struct slc_page_class){
-            .limit = UINT64_MAX, .first_pool = SLC_NO_POOL, .ghosts = slc_empty_page_list()};
+            .limit = UINT64_MAX, .first_lru = SLC_NO_LRU, .restorable = slc_empty_page_list()};
     *residency = r;
     return SLUICE_SUCCESS;
 }
@@ -38,7 +38,7 @@ void slc_residency_destroy(struct slc_demand_residency *residency)
     SluiceAllocationCallbacks cb = residency->cb;
     slc_page_nodes_finish(&residency->nodes, &cb);
     slc_free(&cb, residency->classes, residency->class_count, sizeof *residency->classes);
-    slc_free(&cb, residency->pools, residency->pool_capacity, sizeof *residency->pools);
+    slc_free(&cb, residency->lrus, residency->lru_capacity, sizeof *residency->lrus);
     slc_free(&cb, residency->evicted, residency->evicted_capacity, sizeof *residency->evicted);
     slc_free(&cb, residency, 1, sizeof *residency);
 }

@@ -18,10 +18,10 @@ enum slc_page_state {
 /** The list that a node is in. */
 enum slc_page_home {
     SLC_HOME_NONE,
-    SLC_HOME_POOL,    ///< resident, in the order of the last use: may be evicted
-    SLC_HOME_UNSEEN,  ///< resident, but the launches so far did not know
-    SLC_HOME_GHOSTS,  ///< absent, its place may be retaken
-    SLC_HOME_OVERFLOW ///< refused for want of memory
+    SLC_HOME_LRU,        ///< resident, in the order of the last use: may be evicted
+    SLC_HOME_UNSEEN,     ///< resident, but the launches so far did not know
+    SLC_HOME_RESTORABLE, ///< absent, its place may be retaken
+    SLC_HOME_OVERFLOW    ///< refused for want of memory
 };
 
 enum slc_page_link {
@@ -33,10 +33,10 @@ enum slc_page_link {
 struct slc_page_node {
     uint64_t value;        ///< RESIDENT
     uint64_t shown_value;  ///< of SLC_SHOW_RESIDENT
-    uint64_t last_use;     ///< launch; for its place in a pool
+    uint64_t last_use;     ///< launch; for its place in an LRU list
     uint64_t touched;      ///< the last launch that used it or asked for it
     uint64_t visible_from; ///< UNSEEN: the first launch that sees it
-    uint32_t page, place, pool;
+    uint32_t page, place, lru;
     uint32_t next[SLC_PAGE_LINKS], previous; ///< `previous` in its home
     uint8_t state, home, shown, class_index, rank;
     bool pinned;

@@ -1,27 +1,27 @@
 #include "demand/page_release.h"
 
 #include "demand/page_changes.h"
-#include "demand/page_pools.h"
+#include "demand/page_lru.h"
 
 #include <assert.h>
 
-#define LEAST_GHOSTS 64u
+#define LEAST_RESTORABLE 64u
 
-static void drop_ghost(struct slc_demand_residency *r, uint32_t index)
+static void drop_restorable(struct slc_demand_residency *r, uint32_t index)
 {
     slc_residency_leave_home(r, index);
     slc_node(r, index)->place = SLC_NO_PLACE;
     slc_residency_note(r, index);
 }
 
-void slc_residency_become_ghost(struct slc_demand_residency *r, uint32_t index, uint32_t place)
+void slc_residency_become_restorable(struct slc_demand_residency *r, uint32_t index, uint32_t place)
 {
     struct slc_page_class *c = slc_class_of(r, index);
     slc_node(r, index)->place = place;
-    slc_page_list_append(&r->nodes, &c->ghosts, index, SLC_HOME_GHOSTS);
+    slc_page_list_append(&r->nodes, &c->restorable, index, SLC_HOME_RESTORABLE);
     /* most of those that went long ago are taken by others */
-    while (c->ghosts.count > LEAST_GHOSTS && c->ghosts.count > c->held)
-        drop_ghost(r, c->ghosts.head);
+    while (c->restorable.count > LEAST_RESTORABLE && c->restorable.count > c->held)
+        drop_restorable(r, c->restorable.head);
 }
 
 static void give_place(struct slc_demand_residency *r, uint32_t index, bool evicted)
@@ -32,7 +32,7 @@ static void give_place(struct slc_demand_residency *r, uint32_t index, bool evic
     c->memory.give(c->memory.user, place, page);
     SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_GIVE, .place = place, .page = page);
     if (evicted)
-        slc_residency_become_ghost(r, index, node->place);
+        slc_residency_become_restorable(r, index, node->place);
     else
         node->place = SLC_NO_PLACE;
 }
@@ -110,8 +110,8 @@ static void forget(struct slc_demand_residency *r, uint32_t index)
     struct slc_page_node *node = slc_node(r, index);
     switch ((enum slc_page_state)node->state) {
     case SLC_PAGE_ABSENT:
-        if (node->home == SLC_HOME_GHOSTS)
-            drop_ghost(r, index);
+        if (node->home == SLC_HOME_RESTORABLE)
+            drop_restorable(r, index);
         break;
     case SLC_PAGE_LOADING: node->dropped = true; break;
     case SLC_PAGE_RESIDENT:

@@ -9,6 +9,7 @@
 void slc_residency_release(struct slc_demand_residency *r, uint32_t index, bool evicted);
 
 /** An absent page in no list may be retaken. */
-void slc_residency_become_ghost(struct slc_demand_residency *r, uint32_t index, uint32_t place);
+void slc_residency_become_restorable(struct slc_demand_residency *r, uint32_t index,
+                                     uint32_t place);
 
 #endif /* SLC_DEMAND_PAGE_RELEASE_H */

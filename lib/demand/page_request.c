@@ -1,6 +1,6 @@
 #include "demand/page_changes.h"
 #include "demand/page_eviction.h"
-#include "demand/page_pools.h"
+#include "demand/page_lru.h"
 #include "demand/page_release.h"
 #include "demand/page_settle.h"
 
@@ -16,9 +16,9 @@ static void touch(struct slc_demand_residency *r, uint32_t index)
     node->last_use = r->launch;
     if (node->class_index == SLC_TILES && !node->pinned)
         r->use.touched++;
-    if (node->home == SLC_HOME_POOL) {
+    if (node->home == SLC_HOME_LRU) {
         slc_residency_leave_home(r, index);
-        slc_residency_enter_pool(r, index, r->launch);
+        slc_residency_enter_lru(r, index, r->launch);
     }
 }
 
@@ -73,7 +73,7 @@ static bool make_room(struct slc_demand_residency *r, uint32_t class_index)
 {
     const struct slc_page_class *c = &r->classes[class_index];
     while (c->held >= c->limit)
-        if (!slc_residency_evict(r, class_index, SLC_NO_POOL))
+        if (!slc_residency_evict(r, class_index, SLC_NO_LRU))
             return false;
     return true;
 }
@@ -96,7 +96,7 @@ static bool retake(struct slc_demand_residency *r, const struct slc_page_memory 
 
 /* There may be memory for one kind and not for another: places of the same kind help at once,
  * others when all that lies beside them is free, too. */
-static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uint32_t pool,
+static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uint32_t lru,
                        uint32_t *place)
 {
     struct slc_page_class *c = &r->classes[class_index];
@@ -104,12 +104,11 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
     *place = SLC_NO_PLACE;
     if (!c->has_memory)
         return true;
-    *place = take(r, memory, r->pools[pool].kind);
+    *place = take(r, memory, r->lrus[lru].kind);
     if (*place != SLC_NO_PLACE)
         return true;
-    if (slc_residency_evict(r, class_index, pool) ||
-        slc_residency_evict(r, class_index, SLC_NO_POOL))
-        *place = take(r, memory, r->pools[pool].kind);
+    if (slc_residency_evict(r, class_index, lru) || slc_residency_evict(r, class_index, SLC_NO_LRU))
+        *place = take(r, memory, r->lrus[lru].kind);
     else if (class_index == SLC_TILES && c->held < r->use.full_at)
         r->use.full_at = c->held;
     return *place != SLC_NO_PLACE;
@@ -117,7 +116,7 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
 
 /* A page of which nothing is held begins to hold `place`. */
 static struct slc_page_node *hold(struct slc_demand_residency *r, uint32_t *index,
-                                  const struct slc_page_request *request, uint32_t pool,
+                                  const struct slc_page_request *request, uint32_t lru,
                                   uint32_t place)
 {
     struct slc_page_class *c = &r->classes[request->class_index];
@@ -126,7 +125,7 @@ static struct slc_page_node *hold(struct slc_demand_residency *r, uint32_t *inde
     struct slc_page_node *node = slc_node(r, *index);
     node->class_index = request->class_index;
     node->rank = request->rank;
-    node->pool = pool;
+    node->lru = lru;
     node->place = place;
     node->pinned = request->pinned != 0;
     c->held++;
@@ -138,11 +137,11 @@ static struct slc_page_node *hold(struct slc_demand_residency *r, uint32_t *inde
 }
 
 static enum slc_request_answer restore(struct slc_demand_residency *r, uint32_t index,
-                                       const struct slc_page_request *request, uint32_t pool,
+                                       const struct slc_page_request *request, uint32_t lru,
                                        uint32_t place)
 {
     struct slc_page_class *c = &r->classes[request->class_index];
-    struct slc_page_node *node = hold(r, &index, request, pool, place);
+    struct slc_page_node *node = hold(r, &index, request, lru, place);
     node->state = SLC_PAGE_RESIDENT;
     node->value = place;
     c->counts.resident++;
@@ -153,10 +152,10 @@ static enum slc_request_answer restore(struct slc_demand_residency *r, uint32_t 
 }
 
 static enum slc_request_answer load(struct slc_demand_residency *r, uint32_t index,
-                                    const struct slc_page_request *request, uint32_t pool,
+                                    const struct slc_page_request *request, uint32_t lru,
                                     uint32_t place)
 {
-    struct slc_page_node *node = hold(r, &index, request, pool, place);
+    struct slc_page_node *node = hold(r, &index, request, lru, place);
     node->state = SLC_PAGE_LOADING;
     r->classes[request->class_index].counts.loading++;
     r->use.loads += request->class_index == SLC_TILES;
@@ -194,12 +193,12 @@ static void count_missing(struct slc_demand_residency *r, const struct slc_page_
 }
 
 static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uint32_t index,
-                                             const struct slc_page_request *request, uint32_t pool)
+                                             const struct slc_page_request *request, uint32_t lru)
 {
     const struct slc_page_memory *memory = &r->classes[request->class_index].memory;
     uint32_t old_place = SLC_NO_PLACE, place;
     count_missing(r, request);
-    if (index != SLC_NO_NODE) { /* no ghost while others go: it could be dropped for them */
+    if (index != SLC_NO_NODE) { /* no restorable while others go: it could be dropped for them */
         slc_residency_leave_home(r, index);
         if (slc_node(r, index)->class_index == request->class_index)
             old_place = slc_node(r, index)->place;
@@ -207,14 +206,14 @@ static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uin
     }
     if (!make_room(r, request->class_index)) {
         if (old_place != SLC_NO_PLACE)
-            slc_residency_become_ghost(r, index, old_place);
+            slc_residency_become_restorable(r, index, old_place);
         return turn_away(r, index, request);
     }
     if (old_place != SLC_NO_PLACE && retake(r, memory, old_place, request->page))
-        return restore(r, index, request, pool, old_place);
-    if (!take_place(r, request->class_index, pool, &place))
+        return restore(r, index, request, lru, old_place);
+    if (!take_place(r, request->class_index, lru, &place))
         return turn_away(r, index, request);
-    return load(r, index, request, pool, place);
+    return load(r, index, request, lru, place);
 }
 
 static enum slc_request_answer answer(struct slc_demand_residency *r,
@@ -227,14 +226,14 @@ static enum slc_request_answer answer(struct slc_demand_residency *r,
         r->use.requests++;
         return answer_known(r, index, request);
     }
-    uint32_t pool = slc_residency_pool(r, request->class_index, request->kind);
-    if (pool == SLC_NO_POOL || !slc_page_nodes_reserve(&r->nodes, &r->cb) ||
+    uint32_t lru = slc_residency_lru(r, request->class_index, request->kind);
+    if (lru == SLC_NO_LRU || !slc_page_nodes_reserve(&r->nodes, &r->cb) ||
         (!r->classes[request->class_index].has_memory && !slc_residency_reserve_evicted(r))) {
         *result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
         return SLC_REQUEST_POSTPONED;
     }
     r->use.requests++;
-    return answer_absent(r, index, request, pool);
+    return answer_absent(r, index, request, lru);
 }
 
 enum slc_request_answer slc_residency_request(struct slc_demand_residency *residency,

@@ -2,7 +2,7 @@
 
 #include "demand/page_changes.h"
 #include "demand/page_eviction.h"
-#include "demand/page_pools.h"
+#include "demand/page_lru.h"
 
 #include <assert.h>
 
@@ -25,7 +25,7 @@ void slc_residency_begin(struct slc_demand_residency *residency, uint64_t launch
         if (node->visible_from > launch)
             break;
         slc_residency_leave_home(r, index);
-        slc_residency_enter_pool(r, index, launch - 1);
+        slc_residency_enter_lru(r, index, launch - 1);
     }
     SLC_TELL_PAGES(r, .kind = SLC_PAGE_CALL_BEGIN, .launch = launch);
 }

@@ -7,10 +7,10 @@
 #include "demand/page_nodes.h"
 
 #define SLC_TILES 0u /* the class that the bias is about */
-#define SLC_NO_POOL UINT32_MAX
+#define SLC_NO_LRU UINT32_MAX
 
 /** Resident pages of one class and kind that may be evicted, the one used longest ago first. */
-struct slc_page_pool {
+struct slc_page_lru {
     uint32_t class_index, kind;
     uint32_t next; ///< of the class
     struct slc_page_list pages;
@@ -21,10 +21,10 @@ struct slc_page_class {
     uint64_t limit;
     struct slc_page_memory memory;
     bool has_memory;
-    uint32_t first_pool;
+    uint32_t first_lru;
     uint64_t held;   ///< loading or resident: they count against the limit
     uint64_t pinned; ///< of these
-    struct slc_page_list ghosts;
+    struct slc_page_list restorable;
     struct slc_residency_counts counts;
 };
 
@@ -48,8 +48,8 @@ struct slc_demand_residency {
     struct slc_page_nodes nodes;
     struct slc_page_class *classes; ///< owned
     uint32_t class_count;
-    struct slc_page_pool *pools; ///< owned
-    uint32_t pool_count, pool_capacity;
+    struct slc_page_lru *lrus; ///< owned
+    uint32_t lru_count, lru_capacity;
     uint64_t launch, prepared; ///< whose requests come; the last that was told of
     struct slc_page_list unseen, overflow;
     uint32_t changed_head, changed_tail;

@@ -298,7 +298,7 @@ static inline const char *slc_image_name(const struct slc_demand_image *image)
     return image->source && image->info.pName ? image->info.pName : "image";
 }
 
-/* settings.c */
+/* loader_settings.c */
 /** A launch begins. */
 void slc_loader_settings_apply(SluiceDemandLoader *loader);
 

@@ -1,7 +1,7 @@
 /*
  * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a
  * timeline semaphore that is only ever polled. Tiles that are unmapped keep their bindings until
- * their pages are needed (page_table.h).
+ * their pages are needed (sparse_bindings.h).
  */
 #include "vulkan/residency.h"
 
@@ -11,7 +11,7 @@
 #include "base/map.h"
 #include "vulkan/bind_list.h"
 #include "vulkan/device_heap.h"
-#include "vulkan/page_table.h"
+#include "vulkan/sparse_bindings.h"
 #include "vulkan/sparse_image.h"
 
 #include <assert.h>
@@ -19,7 +19,7 @@
 /* Batches that may be under way; more would only queue up behind a slow binding queue. */
 #define MAX_BATCHES 16u
 
-/* A tile that is given up when the last frame that may read it is over. */
+/* A tile that is evicted when the last frame that may read it is over. */
 struct pending_unmap {
     uint64_t frame; ///< the first one that does not read it
     uint64_t key;   ///< in pending_tiles
@@ -54,7 +54,7 @@ struct sparse_residency {
     uint32_t pending_first, pending_count, pending_capacity;
     struct slc_map pending_tiles;
 
-    struct slc_page_table pages;
+    struct slc_sparse_bindings pages;
     struct dying_heap *dying; ///< owned
     uint32_t dying_count, dying_capacity;
 
@@ -81,7 +81,7 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
 {
     struct sparse_residency *s = sparse(residency);
     for (uint32_t i = 0; i < slc_max_u32(1, s->images[index].layer_count); i++) {
-        slc_page_table_drop_image(&s->pages, index + i);
+        slc_sparse_bindings_drop_image(&s->pages, index + i);
         slc_touched_tiles_finish(&s->images[index + i].touched, s->cb, &s->touched);
     }
     slc_sparse_image_destroy(&s->images[index], s->vk);
@@ -185,7 +185,7 @@ static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size
         slc_device_heaps_allocate(&s->heaps, s->vk, s->cb, size, s->memory_type, heap_id);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_page_table_add_heap(&s->pages, s->cb, *heap_id, (uint32_t)page_count);
+    result = slc_sparse_bindings_add_heap(&s->pages, s->cb, *heap_id, (uint32_t)page_count);
     if (result == SLUICE_SUCCESS)
         result = reserve_dying(s);
     if (result != SLUICE_SUCCESS)
@@ -200,7 +200,8 @@ static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
     for (; heap->next_slot < s->pages.heap_page_count; heap->next_slot++) {
         uint32_t image;
         if (s->list.count >= s->list.capacity / 2 ||
-            !slc_page_table_unbind(&s->pages, &s->list, heap->heap_id, heap->next_slot, &image))
+            !slc_sparse_bindings_unbind(&s->pages, &s->list, heap->heap_id, heap->next_slot,
+                                        &image))
             return false;
         if (image == SLC_NO_IMAGE)
             continue;
@@ -262,27 +263,26 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     /* Frames under way may still read the old page through their MinMip maps. */
     if (slc_map_get(&s->pending_tiles, slc_place_key(index, place)) != SLC_MAP_NONE)
         return SLUICE_NOT_READY;
-    uint32_t displaced, count = s->list.count;
+    uint32_t unbound, count = s->list.count;
     /* While no batch can be submitted the list only grows, so it may be full. */
-    if (!slc_page_table_bind(&s->pages, &s->list, index, place, tile->heapId, tile->slot,
-                             &displaced))
+    if (!slc_sparse_bindings_bind(&s->pages, &s->list, index, place, tile->heapId, tile->slot,
+                                  &unbound))
         return SLUICE_NOT_READY;
     /* not idle from here on */
     if (s->list.count > count)
         s->images[index].last_value = s->submitted_value + 1;
-    if (displaced != SLC_NO_IMAGE)
-        s->images[displaced].last_value = s->submitted_value + 1;
+    if (unbound != SLC_NO_IMAGE)
+        s->images[unbound].last_value = s->submitted_value + 1;
     return SLUICE_SUCCESS;
 }
 
-/* What was given up was shown before, so its texels are on its page, unless unmap said otherwise.
- */
+/* An evicted tile was shown before, so its texels are on its page, unless unmap said otherwise. */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct sparse_residency *s = sparse(residency);
     struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
-    return !slc_page_table_is_spoiled(&s->pages, index, place) &&
-           slc_page_table_revive(&s->pages, index, place, tile->heapId, tile->slot);
+    return !slc_sparse_bindings_is_spoiled(&s->pages, index, place) &&
+           slc_sparse_bindings_restore(&s->pages, index, place, tile->heapId, tile->slot);
 }
 
 /* Tiles that no incomplete frame reads any more: their pages may go to others. */
@@ -293,8 +293,8 @@ static void release_pending(struct sparse_residency *s, uint64_t completed_frame
         if (unmap->frame > completed_frame + 1)
             return;
         if (!unmap->filled)
-            slc_page_table_spoil(&s->pages, unmap->index, unmap->place);
-        slc_page_table_give_up(&s->pages, unmap->index, unmap->place);
+            slc_sparse_bindings_spoil(&s->pages, unmap->index, unmap->place);
+        slc_sparse_bindings_evict(&s->pages, unmap->index, unmap->place);
         slc_map_remove(&s->pending_tiles, unmap->key);
         s->images[unmap->index].unmap_count--;
         s->pending_first = (s->pending_first + 1) % s->pending_capacity;
@@ -497,7 +497,7 @@ static void destroy(struct slc_residency *residency)
     slc_free(cb, s->tile_infos, s->max_image_count, sizeof *s->tile_infos);
     slc_free(cb, s->page_infos, s->max_image_count, sizeof *s->page_infos);
     slc_bind_list_finish(&s->list, cb);
-    slc_page_table_finish(&s->pages, cb);
+    slc_sparse_bindings_finish(&s->pages, cb);
     slc_free(cb, s->dying, s->dying_capacity, sizeof *s->dying);
     slc_map_finish(&s->pending_tiles, cb);
     slc_free(cb, s->pending, s->pending_capacity, sizeof *s->pending);
@@ -531,7 +531,7 @@ static SluiceResult create_arrays(struct sparse_residency *s)
     SluiceResult result = slc_bind_list_init(&s->list, s->cb, capacity);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_page_table_init(&s->pages, s->cb, s->max_image_count);
+    result = slc_sparse_bindings_init(&s->pages, s->cb, s->max_image_count);
     if (result != SLUICE_SUCCESS)
         return result;
     s->pending_capacity = 4 * s->max_changes;

@@ -213,7 +213,7 @@ static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult result,
                                 const char *what);
 
-/* settings.c */
+/* streamer_settings.c */
 /** A frame begins. */
 void slc_settings_apply(SluiceVulkanStreamer *s);
 

@@ -69,7 +69,16 @@ import_circles() {
     done
 }
 
-echo 1..11
+# Names that files share may be seen by every file of lib. Names without the prefix belong to one file.
+names_in_two_places() {
+    files 'lib/*.c' 'lib/*.h' |
+        xargs grep -H -o -E '^((struct|enum|union) slc_[a-z0-9_]+ \{|#define SLC_[A-Za-z0-9_]+)' |
+        sed -E 's/ \{$//; s/^([^:]*):(.*)/\2 in \1/' | sort -u |
+        awk '{ name = $1 " " $2 } name == last { print last_line; print } { last = name; last_line = $0 }' | sort -u
+    files 'lib/*.c' 'lib/*.h' | sed 's,.*/,,' | sort | uniq -d
+}
+
+echo 1..12
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -85,6 +94,8 @@ search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:bla
     '*.c' '*.cpp' '*.h' | report random_numbers_are_the_same_on_every_machine
 
 import_circles residency core demand vulkan demand_vulkan | report files_of_a_folder_do_not_import_in_circles
+
+names_in_two_places | report names_of_lib_are_unique
 
 if command -v shellcheck >/dev/null; then
     files '*.sh' '*.ci/run' | tr '\n' '\0' | xargs -0 shellcheck -x 2>&1 | report scripts_pass_shellcheck

@@ -91,15 +91,15 @@ void naive_note_change(struct naive_manager *n, struct naive_texture *t, const u
     free(after);
 }
 
-static uint64_t count_displaced(const struct naive_manager *n)
+static uint64_t count_evicted(const struct naive_manager *n)
 {
     uint32_t standby;
-    uint64_t displaced = 0;
+    uint64_t evicted = 0;
     struct naive_ref *refs = naive_collect(n, NULL, SLUICE_TILE_STATE_STANDBY, &standby);
     for (uint32_t i = 0; i < standby; i++)
-        displaced += refs[i].tile->wanted;
+        evicted += refs[i].tile->wanted;
     free(refs);
-    return displaced;
+    return evicted;
 }
 
 uint64_t naive_count_holding(const struct naive_manager *n)
@@ -127,7 +127,7 @@ void naive_look_at_bias(struct naive_manager *n)
     naive_statistics(n, &s);
     const uint64_t limit = wanted_limit(n);
     const uint64_t wanted = (uint64_t)s.requestedTileCount + s.allocatedTileCount +
-                            s.mappedTileCount + count_displaced(n);
+                            s.mappedTileCount + count_evicted(n);
     if ((b->value == 0 && wanted <= limit) || b->maps < holding)
         return;
     b->maps = 0;

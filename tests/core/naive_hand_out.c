@@ -355,8 +355,8 @@ SluiceResult naive_tiles_to_map(struct naive_manager *n, const struct call *call
     const bool evicts = stopped && !n->config.noEviction;
     if (evicts || naive_surplus(n)) {
         if (!make_room(n, evicts ? unserved : 0))
-            naive_displace_for(n, refs ? refs + stopped_at : NULL, count - stopped_at,
-                               evicts ? unserved : 0);
+            naive_evict_for(n, refs ? refs + stopped_at : NULL, count - stopped_at,
+                            evicts ? unserved : 0);
     }
     if (stopped)
         result = SLUICE_BUDGET_REACHED;

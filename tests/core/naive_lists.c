@@ -71,9 +71,9 @@ static void unmap_tile(struct naive_manager *n, struct naive_texture *t, struct 
     naive_retire_slot(n, tile, retire);
     tile->state = SLUICE_TILE_STATE_FREE;
     tile->listed = false;
-    if (tile->wanted) { /* it was displaced */
+    if (tile->wanted) { /* it was evicted */
         naive_request(n, tile, 0);
-        n->events[NAIVE_DISPLACED_UNMAPPED]++;
+        n->events[NAIVE_EVICTED_UNMAPPED]++;
     }
     n->totals.unmappedTotal++;
     t->minmip_stale = true;

@@ -18,7 +18,7 @@ struct naive_tile {
     SluiceTileState state;
     bool wanted;
     bool cancel_handed_out;
-    bool listed; ///< STANDBY and in the list for unmapping; wanted as well: displaced
+    bool listed; ///< STANDBY and in the list for unmapping; wanted as well: evicted
     uint32_t failures;
     uint32_t need;
     uint32_t heap, slot;
@@ -102,13 +102,13 @@ enum naive_event {
     NAIVE_RESERVE_KEPT, ///< a regular tile got no slot though some were free
     NAIVE_SLOT_OWED,    ///< or more than the reserve, but coarser ones are requested
     NAIVE_RETURNS,      ///< maps with returns while misses are learned
-    NAIVE_DISPLACED,
-    NAIVE_UNSEEN_DISPLACED,
-    NAIVE_SEEN_DISPLACED,
+    NAIVE_EVICTED,
+    NAIVE_UNSEEN_EVICTED,
+    NAIVE_SEEN_EVICTED,
     NAIVE_LONG_WAITED,
-    NAIVE_DISPLACED_UNMAPPED,
-    NAIVE_DISPLACED_UNWANTED, ///< before they were unmapped
-    NAIVE_PROBED,             ///< a texture, for the tiles that it gave up
+    NAIVE_EVICTED_UNMAPPED,
+    NAIVE_EVICTED_UNWANTED, ///< before they were unmapped
+    NAIVE_PROBED,           ///< a texture, for the tiles that it gave up
     NAIVE_PROBED_EARLY,
     NAIVE_RETRIED_ALL,
     NAIVE_EVENT_COUNT
@@ -190,7 +190,7 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile);
 /** Becomes STANDBY, and lists those that are then too many. */
 void naive_stand_by(struct naive_manager *n, struct naive_tile *tile);
 /** A MAPPED tile becomes STANDBY and listed, but stays wanted. */
-void naive_displace(struct naive_manager *n, struct naive_tile *tile);
+void naive_evict(struct naive_manager *n, struct naive_tile *tile);
 /** Lists the oldest STANDBY tiles that are not listed yet, until at most `keep` are left. */
 void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
@@ -233,10 +233,10 @@ struct naive_ref {
 bool naive_is_passed_over(const struct naive_manager *n, const struct naive_ref *ref);
 void naive_count_standby(const struct naive_manager *n, uint32_t *listed, uint32_t *unlisted);
 
-/* naive_displace.c */
+/* naive_evict.c */
 /* Wanted tiles for `unserved` of the requests; refs[0] is the one that got no slot. */
-void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
-                        uint32_t unserved);
+void naive_evict_for(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
+                     uint32_t unserved);
 uint32_t naive_count_all(const struct naive_manager *n, enum naive_slot_use use);
 void naive_retry_due(struct naive_manager *n, uint64_t now);
 /** Checks what all list calls have in common; *only is NULL for all textures. */

@@ -121,12 +121,12 @@ void naive_stand_by(struct naive_manager *n, struct naive_tile *tile)
     naive_list_standby(n, n->config.numExtraStandbyTiles);
 }
 
-void naive_displace(struct naive_manager *n, struct naive_tile *tile)
+void naive_evict(struct naive_manager *n, struct naive_tile *tile)
 {
     tile->state = SLUICE_TILE_STATE_STANDBY;
     tile->listed = true;
     tile->listed_at = ++n->stamp;
-    n->events[NAIVE_DISPLACED]++;
+    n->events[NAIVE_EVICTED]++;
 }
 
 void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
@@ -144,8 +144,8 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
     case SLUICE_TILE_STATE_CANCELLED: break;
-    case SLUICE_TILE_STATE_STANDBY: /* a displaced one stays listed */
-        n->events[NAIVE_DISPLACED_UNWANTED]++;
+    case SLUICE_TILE_STATE_STANDBY: /* a evicted one stays listed */
+        n->events[NAIVE_EVICTED_UNWANTED]++;
         break;
     case SLUICE_TILE_STATE_FREE: abort(); /* it was not wanted */
     }

@@ -53,7 +53,7 @@ static void release(struct naive_residency *n, struct naive_page *p, bool evicte
     else if (p->state == NAIVE_RESIDENT)
         n->evicted[n->evicted_end++] = (struct slc_page_evicted){p->id, p->class_index, p->value};
     assert_true(n->evicted_end < NAIVE_VALUES);
-    p->ghost = evicted && has_memory(n, p->class_index);
+    p->restorable = evicted && has_memory(n, p->class_index);
     p->state = NAIVE_ABSENT;
     p->pinned = p->dropped = p->waiting = false;
 }
@@ -90,7 +90,7 @@ static enum slc_request_answer turn_away(struct naive_residency *n, struct naive
         return SLC_REQUEST_POSTPONED;
     p->class_index = request->class_index;
     p->rank = request->rank;
-    p->ghost = false;
+    p->restorable = false;
     p->state = NAIVE_REFUSED;
     p->overflow = ++n->refusals;
     n->refused = true;
@@ -136,8 +136,8 @@ enum slc_request_answer naive_request(struct naive_residency *n, uint32_t page,
     while (count_held(n, request->class_index, false) >= n->limits[request->class_index])
         if (!evict(n, request->class_index, NULL))
             return turn_away(n, p, request);
-    bool restored = p->ghost && memory->retake(memory->user, p->place, p->id);
-    p->ghost = false;
+    bool restored = p->restorable && memory->retake(memory->user, p->place, p->id);
+    p->restorable = false;
     if (!restored && !find_place(n, request, &p->place))
         return turn_away(n, p, request);
     p->class_index = request->class_index;
@@ -227,7 +227,7 @@ void naive_forget(struct naive_residency *n, uint32_t page)
         release(n, p, false);
     else
         p->state = NAIVE_ABSENT;
-    p->ghost = false;
+    p->restorable = false;
     p->overflow = 0;
 }
 

@@ -13,7 +13,7 @@ struct naive_page {
     enum naive_state state;
     enum slc_page_shown shown;
     uint8_t class_index, rank;
-    bool pinned, dropped, ghost;
+    bool pinned, dropped, restorable;
     bool waiting; ///< resident, and not known to launches so far
     uint64_t visible_from, last_use, value, shown_value;
     uint64_t overflow; ///< refused for want of memory: when; else 0

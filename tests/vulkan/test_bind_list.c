@@ -117,7 +117,7 @@ static void full_list_refuses(void **state)
 #define SIZE 6u
 
 /* Oracle: an array of what each tile is bound to, painted in the order of the puts. */
-static void random_changes_end_in_the_same_page_table_as_one_by_one(void **state)
+static void random_changes_end_in_the_same_bindings_as_one_by_one(void **state)
 {
     struct slc_bind_list *list = &((struct fixture *)*state)->list;
     roll_seed(7);
@@ -177,7 +177,7 @@ int main(void)
                                         teardown),
         cmocka_unit_test_setup_teardown(pages_of_a_tail_stay_single, setup, teardown),
         cmocka_unit_test_setup_teardown(full_list_refuses, setup, teardown),
-        cmocka_unit_test_setup_teardown(random_changes_end_in_the_same_page_table_as_one_by_one,
+        cmocka_unit_test_setup_teardown(random_changes_end_in_the_same_bindings_as_one_by_one,
                                         setup, teardown),
         cmocka_unit_test(creation_survives_every_allocation_failure),
     };

@@ -1,4 +1,4 @@
-/* Wanted tiles that make room: "Displacing" of docs/manager-specification.md. */
+/* Wanted tiles that make room: "Evicting" of docs/manager-specification.md. */
 #include "core/naive_manager.h"
 
 #include <stdlib.h>
@@ -91,9 +91,9 @@ static uint32_t count_mapped(const struct naive_manager *n, uint32_t level)
     return found;
 }
 
-static void displace(struct naive_manager *n, struct looks *looks, struct naive_tile *tile)
+static void evict(struct naive_manager *n, struct looks *looks, struct naive_tile *tile)
 {
-    naive_displace(n, tile);
+    naive_evict(n, tile);
     const uint32_t left = count_mapped(n, tile->level);
     if (looks->of_level[tile->level] > left)
         looks->of_level[tile->level] = left;
@@ -108,19 +108,19 @@ static struct naive_tile *find_for(struct naive_manager *n, struct looks *looks,
     const bool waited = request->requested_at <= n->round.waited;
     const bool waited_long = request->requested_at <= n->round.waited_long;
     struct naive_tile *unseen = find_unseen(n, looks, request->level + (waited ? 1 : 0));
-    n->events[NAIVE_UNSEEN_DISPLACED] += unseen != NULL;
+    n->events[NAIVE_UNSEEN_EVICTED] += unseen != NULL;
     if (unseen)
         return unseen;
     const uint32_t gap = waited_long ? 1 : waited ? 2 : 3;
     struct naive_tile *tile =
         request->level >= gap ? finest_mapped(n, request->level - gap + 1) : NULL;
-    n->events[NAIVE_SEEN_DISPLACED] += tile != NULL;
+    n->events[NAIVE_SEEN_EVICTED] += tile != NULL;
     n->events[NAIVE_LONG_WAITED] += tile && tile->level + 1 == request->level;
     return tile;
 }
 
-void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
-                        uint32_t unserved)
+void naive_evict_for(struct naive_manager *n, const struct naive_ref *refs, uint32_t count,
+                     uint32_t unserved)
 {
     uint32_t listed, unlisted;
     naive_count_standby(n, &listed, &unlisted);
@@ -131,7 +131,7 @@ void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, u
         struct naive_tile *tile = finest_mapped(n, SLUICE_MAX_MIP_LEVELS);
         if (!tile)
             return;
-        displace(n, &looks, tile);
+        evict(n, &looks, tile);
     }
     coming -= free_slots < reserved ? reserved - free_slots : 0;
     for (uint32_t i = 0; i < count && i < NAIVE_MAX_PASSED_OVER && unserved > 0; i++) {
@@ -145,6 +145,6 @@ void naive_displace_for(struct naive_manager *n, const struct naive_ref *refs, u
         struct naive_tile *tile = find_for(n, &looks, refs[i].tile);
         if (!tile)
             return;
-        displace(n, &looks, tile);
+        evict(n, &looks, tile);
     }
 }

@@ -1,4 +1,4 @@
-#include "vulkan/page_table.h"
+#include "vulkan/sparse_bindings.h"
 
 #include "base/alloc.h"
 #include "support/failing_allocator.h"
@@ -12,7 +12,7 @@ enum { CAPACITY = 64, IMAGES = 4, HEAP = 16, HEAPS = 3, COLUMNS = 20 };
 struct fixture {
     SluiceAllocationCallbacks cb;
     struct slc_bind_list list;
-    struct slc_page_table table;
+    struct slc_sparse_bindings bindings;
 };
 
 static int setup(void **state)
@@ -20,9 +20,9 @@ static int setup(void **state)
     struct fixture *f = malloc(sizeof *f);
     f->cb = slc_allocator(NULL);
     CHECK_OK(slc_bind_list_init(&f->list, &f->cb, CAPACITY));
-    CHECK_OK(slc_page_table_init(&f->table, &f->cb, IMAGES));
+    CHECK_OK(slc_sparse_bindings_init(&f->bindings, &f->cb, IMAGES));
     for (uint32_t heap = 0; heap < HEAPS; heap++)
-        CHECK_OK(slc_page_table_add_heap(&f->table, &f->cb, heap, HEAP));
+        CHECK_OK(slc_sparse_bindings_add_heap(&f->bindings, &f->cb, heap, HEAP));
     *state = f;
     return 0;
 }
@@ -30,7 +30,7 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     struct fixture *f = *state;
-    slc_page_table_finish(&f->table, &f->cb);
+    slc_sparse_bindings_finish(&f->bindings, &f->cb);
     slc_bind_list_finish(&f->list, &f->cb);
     free(f);
     return 0;
@@ -43,9 +43,10 @@ static struct slc_tile_place at(uint32_t x)
 
 static uint32_t bind(struct fixture *f, uint32_t image, uint32_t x, uint32_t heap, uint32_t slot)
 {
-    uint32_t displaced;
-    assert_true(slc_page_table_bind(&f->table, &f->list, image, at(x), heap, slot, &displaced));
-    return displaced;
+    uint32_t unbound;
+    assert_true(
+        slc_sparse_bindings_bind(&f->bindings, &f->list, image, at(x), heap, slot, &unbound));
+    return unbound;
 }
 
 static void check_entry(const struct fixture *f, uint32_t entry, uint32_t image, uint32_t x,
@@ -64,14 +65,14 @@ static void page_that_was_given_up_is_taken_from_its_tile_when_another_gets_it(v
 {
     struct fixture *f = *state;
     assert_int_equal(bind(f, 0, 5, 1, 7), SLC_NO_IMAGE);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     assert_int_equal(f->list.count, 1); /* nothing is unbound yet */
     assert_int_equal(bind(f, 2, 9, 1, 7), 0);
     assert_int_equal(f->list.count, 3);
     check_entry(f, 1, 0, 5, SLC_UNBIND, 0);
     check_entry(f, 2, 2, 9, 1, 7);
-    assert_int_equal(f->table.unbind_count, 1);
-    assert_int_equal(f->table.unbinds_saved, 0);
+    assert_int_equal(f->bindings.unbind_count, 1);
+    assert_int_equal(f->bindings.unbinds_saved, 0);
 }
 
 static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **state)
@@ -81,7 +82,7 @@ static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **sta
         bind(f, 0, x, 1, 13 - 2 * x);
     for (uint32_t x = 0; x < 7; x++)
         if (x != 1)
-            slc_page_table_give_up(&f->table, 0, at(x));
+            slc_sparse_bindings_evict(&f->bindings, 0, at(x));
     slc_bind_list_clear(&f->list);
     assert_int_equal(bind(f, 2, 9, 1, 13 - 2 * 4), 0);
     slc_bind_list_build_runs(&f->list);
@@ -90,7 +91,7 @@ static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **sta
     assert_int_equal(run->heap_id, SLC_UNBIND);
     assert_int_equal(run->place.x, 2);
     assert_int_equal(run->count, 5);
-    assert_int_equal(f->table.unbind_count, 5);
+    assert_int_equal(f->bindings.unbind_count, 5);
     assert_int_equal(bind(f, 3, 0, 1, 13 - 2 * 6), SLC_NO_IMAGE);
     assert_int_equal(bind(f, 3, 1, 1, 13), 0);
 }
@@ -98,38 +99,38 @@ static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **sta
 static void pages_of_a_tail_are_unbound_one_by_one(void **state)
 {
     struct fixture *f = *state;
-    uint32_t displaced;
+    uint32_t unbound;
     for (uint32_t x = 0; x < 3; x++) {
         struct slc_tile_place place = {SLC_TAIL_LEVEL, x, 0};
-        assert_true(slc_page_table_bind(&f->table, &f->list, 0, place, 0, x, &displaced));
-        slc_page_table_give_up(&f->table, 0, place);
+        assert_true(slc_sparse_bindings_bind(&f->bindings, &f->list, 0, place, 0, x, &unbound));
+        slc_sparse_bindings_evict(&f->bindings, 0, place);
     }
     assert_int_equal(bind(f, 1, 0, 0, 1), 0);
-    assert_int_equal(f->table.unbind_count, 1);
+    assert_int_equal(f->bindings.unbind_count, 1);
 }
 
 static void tile_that_gets_another_page_is_bound_over(void **state)
 {
     struct fixture *f = *state;
     bind(f, 0, 5, 1, 7);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     assert_int_equal(bind(f, 0, 5, 2, 3), SLC_NO_IMAGE);
     assert_int_equal(f->list.count, 2);
     check_entry(f, 1, 0, 5, 2, 3);
     assert_int_equal(bind(f, 1, 1, 1, 7), SLC_NO_IMAGE); /* the old page is bound nowhere */
-    assert_int_equal(f->table.unbind_count, 0);
-    assert_int_equal(f->table.unbinds_saved, 1);
+    assert_int_equal(f->bindings.unbind_count, 0);
+    assert_int_equal(f->bindings.unbinds_saved, 1);
 }
 
 static void tile_that_gets_its_page_again_needs_no_bind(void **state)
 {
     struct fixture *f = *state;
     bind(f, 0, 5, 1, 7);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     assert_int_equal(bind(f, 0, 5, 1, 7), SLC_NO_IMAGE);
     assert_int_equal(f->list.count, 1);
-    assert_int_equal(f->table.unbinds_saved, 1);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    assert_int_equal(f->bindings.unbinds_saved, 1);
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     assert_int_equal(bind(f, 0, 6, 1, 7), 0); /* it has it still */
 }
 
@@ -140,8 +141,8 @@ static void swapped_pages_are_two_binds(void **state)
     bind(f, 0, 0, 0, 0);
     bind(f, 1, 0, 1, 1);
     slc_bind_list_clear(&f->list);
-    slc_page_table_give_up(&f->table, 0, at(0));
-    slc_page_table_give_up(&f->table, 1, at(0));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(0));
+    slc_sparse_bindings_evict(&f->bindings, 1, at(0));
     assert_int_equal(bind(f, 0, 0, 1, 1), 1); /* the unbind of the other tile comes first */
     assert_int_equal(bind(f, 1, 0, 0, 0), SLC_NO_IMAGE);
     slc_bind_list_build_runs(&f->list);
@@ -157,14 +158,15 @@ static void tiles_get_their_old_pages_back_whatever_slots_they_are_given(void **
     bind(f, 0, 5, 1, 7);
     bind(f, 2, 9, 1, 8);
     slc_bind_list_clear(&f->list);
-    slc_page_table_give_up(&f->table, 0, at(5));
-    slc_page_table_give_up(&f->table, 2, at(9));
-    assert_true(slc_page_table_revive(&f->table, 0, at(5), 1, 8));
-    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 7)); /* it is not given up now */
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
+    slc_sparse_bindings_evict(&f->bindings, 2, at(9));
+    assert_true(slc_sparse_bindings_restore(&f->bindings, 0, at(5), 1, 8));
+    assert_false(
+        slc_sparse_bindings_restore(&f->bindings, 0, at(5), 1, 7)); /* it is not evicted now */
     assert_int_equal(bind(f, 2, 9, 1, 7), SLC_NO_IMAGE);
     assert_int_equal(f->list.count, 0);
-    assert_int_equal(f->table.unbinds_saved, 2);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    assert_int_equal(f->bindings.unbinds_saved, 2);
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     assert_int_equal(bind(f, 1, 3, 1, 8), 0); /* by the slot, which stands for page 7 now */
     check_entry(f, 0, 0, 5, SLC_UNBIND, 0);
     check_entry(f, 1, 1, 3, 1, 7);
@@ -173,32 +175,33 @@ static void tiles_get_their_old_pages_back_whatever_slots_they_are_given(void **
 static void tile_does_not_get_back_what_another_heap_or_tile_has(void **state)
 {
     struct fixture *f = *state;
-    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 7)); /* it never was there */
+    assert_false(
+        slc_sparse_bindings_restore(&f->bindings, 0, at(5), 1, 7)); /* it never was there */
     bind(f, 0, 5, 1, 7);
-    slc_page_table_give_up(&f->table, 0, at(5));
-    assert_false(slc_page_table_revive(&f->table, 0, at(5), 2, 7));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
+    assert_false(slc_sparse_bindings_restore(&f->bindings, 0, at(5), 2, 7));
     assert_int_equal(bind(f, 2, 9, 1, 7), 0);
-    assert_false(slc_page_table_revive(&f->table, 0, at(5), 1, 8));
-    assert_int_equal(f->table.unbinds_saved, 0);
+    assert_false(slc_sparse_bindings_restore(&f->bindings, 0, at(5), 1, 8));
+    assert_int_equal(f->bindings.unbinds_saved, 0);
 }
 
 static void list_without_room_for_two_changes_nothing(void **state)
 {
     struct fixture *f = *state;
     bind(f, 0, 5, 1, 7);
-    slc_page_table_give_up(&f->table, 0, at(5));
+    slc_sparse_bindings_evict(&f->bindings, 0, at(5));
     while (f->list.count < CAPACITY - 1)
         slc_bind_list_put(&f->list, 3, at(f->list.count), 0, 0);
-    uint32_t displaced, image;
-    assert_false(slc_page_table_bind(&f->table, &f->list, 1, at(1), 1, 7, &displaced));
+    uint32_t unbound, image;
+    assert_false(slc_sparse_bindings_bind(&f->bindings, &f->list, 1, at(1), 1, 7, &unbound));
     assert_int_equal(f->list.count, CAPACITY - 1);
     slc_bind_list_put(&f->list, 3, at(100), 0, 0);
-    assert_false(slc_page_table_unbind(&f->table, &f->list, 1, 7, &image));
+    assert_false(slc_sparse_bindings_unbind(&f->bindings, &f->list, 1, 7, &image));
     slc_bind_list_clear(&f->list);
-    assert_true(slc_page_table_unbind(&f->table, &f->list, 1, 7, &image));
+    assert_true(slc_sparse_bindings_unbind(&f->bindings, &f->list, 1, 7, &image));
     assert_int_equal(image, 0);
     check_entry(f, 0, 0, 5, SLC_UNBIND, 0);
-    assert_true(slc_page_table_unbind(&f->table, &f->list, 1, 7, &image));
+    assert_true(slc_sparse_bindings_unbind(&f->bindings, &f->list, 1, 7, &image));
     assert_int_equal(image, SLC_NO_IMAGE);
     assert_int_equal(f->list.count, 1);
 }
@@ -208,25 +211,25 @@ static void image_that_is_gone_leaves_its_pages_free(void **state)
     struct fixture *f = *state;
     for (uint32_t x = 0; x < 5; x++)
         bind(f, x % 2, x, 0, x);
-    slc_page_table_give_up(&f->table, 0, at(2));
-    slc_page_table_drop_image(&f->table, 0);
-    assert_int_equal(f->table.unbinds_saved, 1);
+    slc_sparse_bindings_evict(&f->bindings, 0, at(2));
+    slc_sparse_bindings_drop_image(&f->bindings, 0);
+    assert_int_equal(f->bindings.unbinds_saved, 1);
     for (uint32_t slot = 0; slot < 5; slot += 2)
         assert_int_equal(bind(f, 3, slot, 0, slot), SLC_NO_IMAGE);
-    slc_page_table_give_up(&f->table, 1, at(3));
+    slc_sparse_bindings_evict(&f->bindings, 1, at(3));
     assert_int_equal(bind(f, 3, 3, 0, 3), 1);
 }
 
 static void heaps_have_one_size(void **state)
 {
     struct fixture *f = *state;
-    CHECK_RESULT(slc_page_table_add_heap(&f->table, &f->cb, 7, HEAP + 1),
+    CHECK_RESULT(slc_sparse_bindings_add_heap(&f->bindings, &f->cb, 7, HEAP + 1),
                  SLUICE_ERROR_INVALID_ARGUMENT);
-    CHECK_RESULT(slc_page_table_add_heap(&f->table, &f->cb, UINT32_MAX, HEAP),
+    CHECK_RESULT(slc_sparse_bindings_add_heap(&f->bindings, &f->cb, UINT32_MAX, HEAP),
                  SLUICE_ERROR_OUT_OF_HOST_MEMORY);
     bind(f, 0, 1, 2, 15);
-    CHECK_OK(slc_page_table_add_heap(&f->table, &f->cb, 100, HEAP)); /* moves everything */
-    slc_page_table_give_up(&f->table, 0, at(1));
+    CHECK_OK(slc_sparse_bindings_add_heap(&f->bindings, &f->cb, 100, HEAP)); /* moves everything */
+    slc_sparse_bindings_evict(&f->bindings, 0, at(1));
     assert_int_equal(bind(f, 1, 1, 2, 15), 0);
     assert_int_equal(bind(f, 1, 2, 100, 15), SLC_NO_IMAGE);
 }
@@ -274,13 +277,13 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
         uint32_t image = (uint32_t)roll() % IMAGES, x = (uint32_t)roll() % COLUMNS;
         uint32_t page = (uint32_t)roll() % (HEAPS * HEAP);
         if (m.live[image][x]) {
-            slc_page_table_give_up(&f->table, image, at(x));
+            slc_sparse_bindings_evict(&f->bindings, image, at(x));
             m.live[image][x] = false;
             m.taken[pages[image][x]] = false;
         } else if (!m.taken[page] && f->list.count < CAPACITY - 2) {
             uint32_t count = f->list.count;
             if (roll() % 2 &&
-                slc_page_table_revive(&f->table, image, at(x), page / HEAP, page % HEAP)) {
+                slc_sparse_bindings_restore(&f->bindings, image, at(x), page / HEAP, page % HEAP)) {
                 assert_int_equal(f->list.count, count);
                 revived++;
             } else {
@@ -297,7 +300,7 @@ static void pages_never_belong_to_two_tiles_whatever_happens(void **state)
                     assert_int_equal(m.device[i][c] / HEAP, pages[i][c] / HEAP);
     }
     assert_true(revived > 100);
-    assert_true(f->table.unbinds_saved > 100 && f->table.unbind_count > 100);
+    assert_true(f->bindings.unbinds_saved > 100 && f->bindings.unbind_count > 100);
 }
 
 static void creation_survives_every_allocation_failure(void **state)
@@ -307,11 +310,11 @@ static void creation_survives_every_allocation_failure(void **state)
     for (uint64_t n = 0; result != SLUICE_SUCCESS; n++) {
         struct failing_allocator a;
         failing_allocator_init(&a, n);
-        struct slc_page_table table;
-        result = slc_page_table_init(&table, &a.callbacks, 3);
+        struct slc_sparse_bindings bindings;
+        result = slc_sparse_bindings_init(&bindings, &a.callbacks, 3);
         for (uint32_t heap = 0; heap < 3 && result == SLUICE_SUCCESS; heap++)
-            result = slc_page_table_add_heap(&table, &a.callbacks, heap, HEAP);
-        slc_page_table_finish(&table, &a.callbacks);
+            result = slc_sparse_bindings_add_heap(&bindings, &a.callbacks, heap, HEAP);
+        slc_sparse_bindings_finish(&bindings, &a.callbacks);
         assert_int_equal(a.live_count, 0);
         if (result != SLUICE_SUCCESS)
             CHECK_RESULT(result, SLUICE_ERROR_OUT_OF_HOST_MEMORY);
