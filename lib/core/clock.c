@@ -14,12 +14,19 @@ bool slc_retire_is_backwards(const slc_manager *m, uint64_t retire_value)
     return retire_value != 0 && retire_value < m->last_retire;
 }
 
+static void request_due(slc_manager *m)
+{
+    for (uint32_t node; (node = slc_due_first(&m->residency)) &&
+                        (int64_t)(m->time - slc_node_at(&m->residency, node)->order) >= 0;)
+        slc_node_request_again(&m->residency, node);
+}
+
 void slc_advance_time(slc_manager *m, uint64_t time)
 {
     m->has_time = true;
     m->time = time;
-    for (uint32_t node; (node = slc_due_first(&m->residency)) &&
-                        (int64_t)(time - slc_node_at(&m->residency, node)->order) >= 0;)
-        slc_node_request_again(&m->residency, node);
-    slc_given_up_advance(m);
+    if (m->residency.failed.count > 0)
+        request_due(m);
+    if (m->trouble_count > 0)
+        slc_given_up_advance(m);
 }

@@ -167,14 +167,17 @@ SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureManager *manag
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
         return SLUICE_ERROR_INVALID_ARGUMENT;
-    SluiceFeedbackDesc given = {.structSize = sizeof given};
-    if (pFeedback) {
+    const SluiceFeedbackDesc *feedback = pFeedback;
+    SluiceFeedbackDesc given;
+    /* No copy if the size is right: the caller has just written the fields one by one, and to read
+     * several at once then takes longer than all other work on an unchanged map. */
+    if (feedback && feedback->structSize != sizeof given) {
         SluiceResult result =
-            slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, pFeedback, NULL);
+            slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, feedback, NULL);
         if (result != SLUICE_SUCCESS)
             return result; /* a recording has no form for it */
+        feedback = &given;
     }
-    const SluiceFeedbackDesc *feedback = pFeedback ? &given : NULL;
     struct slc_call call = {.kind = SLC_CALL_UPDATE_FEEDBACK,
                             .texture_id = textureId,
                             .feedback = feedback,

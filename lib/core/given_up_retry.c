@@ -93,7 +93,7 @@ static void probe(slc_manager *m, struct slc_managed_texture *t)
 void slc_given_up_advance(slc_manager *m)
 {
     uint64_t interval = retry_interval(m);
-    if (m->trouble_count == 0 || interval == 0)
+    if (interval == 0)
         return;
     for (struct slc_managed_texture *t; (t = first_due(m, SLC_TROUBLE_PROBED, interval));)
         slc_trouble_move(m, t, SLC_TROUBLE_RESTING); /* no answer: others have their turn */
