@@ -10,44 +10,25 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
-#include "vulkan/buffer.h"
 #include "vulkan/page_pool.h"
+#include "vulkan/page_table.h"
 #include "vulkan/sparse_layout.h"
 
 #include <sluice/shared/texture_table.h>
 
 #include <assert.h>
-#include <stdlib.h>
-#include <string.h>
 
-/* In `pages`: the tile was unmapped, and may still be on that page. Also a bit of SLUICE_PAGE_NONE.
- */
-#define PAGE_GIVEN 0x8000u
-/* In `pages`: the table shows the page, as its texels are there. */
-#define PAGE_SHOWN 0x4000u
 #define COPY_BATCH 64u
-#define STORE_BATCH 256u /* words */
 
 /* The layers of an array have parts of the table of their own and share the tail. */
 struct paged_image {
     struct slc_plain_image own_tail; ///< the packed levels; owned by layer 0, of all layers
     VkImage tail;
-    uint32_t layer_count; ///< 0 but for layer 0
-    SluiceStreamedTextureDesc desc;
+    uint32_t layer_count;            ///< 0 but for layer 0
     const SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
     SluiceFormat format;
     uint32_t block_width, block_height; ///< texels
-    uint32_t first_word, word_count;    ///< in the table; 0: all levels are packed
-    uint64_t recorded_frame;            ///< that wrote its part of the table; 0: none did
-    uint64_t stored_frame;              ///< the last that stored words there
-    bool is_lost;                       ///< the device may have other words than are in `pages`
-};
-
-/* A word of the table that changes with this frame. */
-struct store {
-    uint32_t word, value;
-    uint32_t turn; ///< of equal words the last one counts
 };
 
 struct paged_residency {
@@ -59,17 +40,10 @@ struct paged_residency {
     struct slc_page_pool *pool;     ///< borrowed
     uint32_t user;                  ///< of the pool
     struct paged_image *images;     ///< owned
-    uint32_t *new_images;           ///< owned; whose part of the table is not written yet
-    uint32_t new_image_count, max_image_count;
-
-    struct slc_buffer table;
-    struct slc_region_arena arena; ///< its words
-    uint32_t *pages;               ///< owned; by word: the page that was taken, shown or not;
-                                   ///< or, with PAGE_GIVEN, that was given back
-    struct store *stores;          ///< owned
-    uint32_t store_count, store_capacity, upload_reserve;
+    uint32_t max_image_count;
+    struct slc_page_table table; ///< its parts are those of the images
+    uint32_t upload_reserve;     ///< changes that are kept for other than unmapping
     uint64_t frame, completed_frame;
-    bool has_lost; ///< some image is
     uint32_t next_heap, heap_count;
 };
 
@@ -82,73 +56,24 @@ static void count_memory(struct paged_residency *p)
 {
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(p->pool);
     p->base.counters.device_memory_size =
-        p->memory.total_size + pool.tile_memory_size + p->table.size;
+        p->memory.total_size + pool.tile_memory_size + p->table.buffer.size;
     p->base.counters.page_chunks = pool.chunk_count;
     p->base.counters.page_chunk_shortages = pool.shortages;
 }
 
-static uint32_t level_width(const SluiceStreamedTextureDesc *desc, uint32_t level)
+static uint32_t word_of(const struct paged_residency *p, uint32_t index, const SluiceTile *tile)
 {
-    return slc_div_up_u32(slc_mip_size(desc->width, level), desc->tileWidth);
+    return slc_page_table_word(&p->table, index, tile->mipLevel, tile->x, tile->y);
 }
 
-/* The first word of a level's tiles, from the beginning of the texture's part of the table: before
- * them stands one word per level that says this to shaders. */
-static uint32_t level_word(const SluiceStreamedTextureDesc *desc, uint32_t level)
+static void give_pages(struct paged_residency *p, uint32_t index)
 {
-    uint32_t word = desc->regularMipCount;
-    for (uint32_t i = 0; i < level; i++)
-        word +=
-            level_width(desc, i) * slc_div_up_u32(slc_mip_size(desc->height, i), desc->tileHeight);
-    return word;
-}
-
-static uint32_t tile_word(const struct paged_image *image, uint32_t level, uint32_t x, uint32_t y)
-{
-    return image->first_word + level_word(&image->desc, level) +
-           y * level_width(&image->desc, level) + x;
-}
-
-static SluiceResult take_words(struct paged_residency *p, struct paged_image *image)
-{
-    const SluiceStreamedTextureDesc *desc = &image->desc;
-    if (desc->regularMipCount == 0)
-        return SLUICE_SUCCESS;
-    uint32_t count = level_word(desc, desc->regularMipCount);
-    if (!slc_region_arena_take(&p->arena, count, &image->first_word))
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
-    image->word_count = count;
-    memset(p->pages + image->first_word, 0xFF, (size_t)count * sizeof *p->pages);
-    return SLUICE_SUCCESS;
-}
-
-static bool is_taken(uint32_t page)
-{
-    return !(page & PAGE_GIVEN);
-}
-
-static uint32_t page_of(uint32_t entry)
-{
-    return entry & ~(PAGE_GIVEN | PAGE_SHOWN);
-}
-
-static void give_words(struct paged_residency *p, const struct paged_image *image)
-{
-    for (uint32_t i = image->desc.regularMipCount; i < image->word_count; i++)
-        if (is_taken(p->pages[image->first_word + i]))
-            slc_page_pool_give(p->pool, p->user, page_of(p->pages[image->first_word + i]),
-                               SLC_NO_OWNER);
-    if (image->word_count)
-        slc_region_arena_give(&p->arena, image->first_word, image->word_count);
-}
-
-static void forget_new(struct paged_residency *p, uint32_t index)
-{
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < p->new_image_count; i++)
-        if (p->new_images[i] != index)
-            p->new_images[kept++] = p->new_images[i];
-    p->new_image_count = kept;
+    const struct slc_page_table_part *part = &p->table.parts[index];
+    for (uint32_t i = part->desc.regularMipCount; i < part->word_count; i++) {
+        uint32_t entry = p->table.entries[part->first_word + i];
+        if (slc_page_is_taken(entry))
+            slc_page_pool_give(p->pool, p->user, slc_page_of_entry(entry), SLC_NO_OWNER);
+    }
 }
 
 /* Also of one that was not created to the end. */
@@ -158,8 +83,8 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     struct paged_image *layers = &p->images[index];
     slc_plain_image_destroy(&layers[0].own_tail, &p->memory, p->vk, p->cb);
     for (uint32_t i = layers[0].layer_count; i-- > 0;) {
-        forget_new(p, index + i);
-        give_words(p, &layers[i]);
+        give_pages(p, index + i);
+        slc_page_table_remove(&p->table, index + i);
         layers[i] = (struct paged_image){0};
     }
     count_memory(p);
@@ -174,14 +99,10 @@ static SluiceResult create_layer(struct paged_residency *p, uint32_t index, Slui
     if (result != SLUICE_SUCCESS)
         return result;
     image->tail = tail;
-    image->desc = *desc;
     image->format = format;
     image->block_width = info.blockWidth;
     image->block_height = info.blockHeight;
-    result = take_words(p, image);
-    if (result == SLUICE_SUCCESS && image->word_count)
-        p->new_images[p->new_image_count++] = index;
-    return result;
+    return slc_page_table_add(&p->table, index, desc);
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
@@ -289,10 +210,10 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
 {
     struct paged_residency *p = paged(residency);
     const struct paged_image *image = &p->images[index];
-    if (tile->mipLevel >= image->desc.regularMipCount)
+    if (tile->mipLevel >= p->table.parts[index].desc.regularMipCount)
         return SLUICE_SUCCESS; /* the packed levels have their own image */
-    uint32_t *page = &p->pages[tile_word(image, tile->mipLevel, tile->x, tile->y)];
-    assert(!is_taken(*page));
+    uint32_t *page = &p->table.entries[word_of(p, index, tile)];
+    assert(!slc_page_is_taken(*page));
     *page = slc_page_pool_take(p->pool, p->user, image->format);
     count_memory(p);
     if (*page == SLUICE_PAGE_NONE)
@@ -302,75 +223,63 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
     return SLUICE_SUCCESS;
 }
 
-/* What the table is to show of the entry in `pages` from this frame on. */
-static void store(struct paged_residency *p, struct paged_image *image, uint32_t word)
-{
-    uint32_t entry = p->pages[word], turn = p->store_count++;
-    bool shown = is_taken(entry) && entry & PAGE_SHOWN;
-    assert(turn < p->store_capacity);
-    p->stores[turn] = (struct store){word, shown ? page_of(entry) : SLUICE_PAGE_NONE, turn};
-    image->stored_frame = p->frame;
-}
-
 /* This frame's maps no longer show it, and earlier frames come before what this frame copies. */
 static void unmap(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
                   uint64_t frame, bool filled)
 {
     struct paged_residency *p = paged(residency);
-    struct paged_image *image = &p->images[index];
     (void)frame;
-    if (tile->mipLevel >= image->desc.regularMipCount)
+    if (tile->mipLevel >= p->table.parts[index].desc.regularMipCount)
         return;
-    uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
-    assert(is_taken(p->pages[word]));
-    uint32_t page = page_of(p->pages[word]);
+    uint32_t word = word_of(p, index, tile), *entry = &p->table.entries[word];
+    assert(slc_page_is_taken(*entry));
+    uint32_t page = slc_page_of_entry(*entry);
     slc_page_pool_give(p->pool, p->user, page, filled ? word : SLC_NO_OWNER);
-    p->pages[word] = filled ? page | PAGE_GIVEN : SLUICE_PAGE_NONE;
-    store(p, image, word);
+    *entry = filled ? page | SLC_PAGE_GIVEN : SLUICE_PAGE_NONE;
+    slc_page_table_store(&p->table, index, word, p->frame);
 }
 
 /* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
-    uint32_t word = tile_word(&p->images[index], tile->mipLevel, tile->x, tile->y);
-    assert(!is_taken(p->pages[word]));
-    if (p->pages[word] == SLUICE_PAGE_NONE)
+    uint32_t word = word_of(p, index, tile), *entry = &p->table.entries[word];
+    assert(!slc_page_is_taken(*entry));
+    if (*entry == SLUICE_PAGE_NONE)
         return false;
-    uint32_t page = page_of(p->pages[word]);
+    uint32_t page = slc_page_of_entry(*entry);
     bool there = slc_page_pool_retake(p->pool, p->user, page, word);
-    p->pages[word] = there ? page | PAGE_SHOWN : SLUICE_PAGE_NONE;
+    *entry = there ? page | SLC_PAGE_SHOWN : SLUICE_PAGE_NONE;
     if (!there)
         return false;
     const struct slc_tile_key key = key_of(&p->images[index], tile);
     slc_page_share_adopt(p->pool, p->user, &key, page);
-    store(p, &p->images[index], word);
+    slc_page_table_store(&p->table, index, word, p->frame);
     return true;
 }
 
 static enum slc_share share(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
     struct paged_residency *p = paged(residency);
-    struct paged_image *image = &p->images[index];
-    const struct slc_tile_key key = key_of(image, tile);
+    const struct slc_tile_key key = key_of(&p->images[index], tile);
     enum slc_share answer = slc_page_share_look(p->pool, p->user, &key);
     if (answer != SLC_SHARE_READY)
         return answer;
-    uint32_t word = tile_word(image, tile->mipLevel, tile->x, tile->y);
-    assert(!is_taken(p->pages[word]));
+    uint32_t word = word_of(p, index, tile);
+    assert(!slc_page_is_taken(p->table.entries[word]));
     uint32_t page = slc_page_share_take(p->pool, p->user, &key);
     if (page == SLUICE_PAGE_NONE)
         return SLC_SHARE_NONE;
-    p->pages[word] = page | PAGE_SHOWN;
-    store(p, image, word);
+    p->table.entries[word] = page | SLC_PAGE_SHOWN;
+    slc_page_table_store(&p->table, index, word, p->frame);
     return SLC_SHARE_READY;
 }
 
 static uint32_t room_to_unmap(const struct slc_residency *residency)
 {
     const struct paged_residency *p = (const struct paged_residency *)residency;
-    uint32_t taken = p->upload_reserve + p->store_count;
-    return taken < p->store_capacity ? p->store_capacity - taken : 0;
+    uint32_t taken = p->upload_reserve + p->table.store_count;
+    return taken < p->table.store_capacity ? p->table.store_capacity - taken : 0;
 }
 
 static SluiceResult submit(struct slc_residency *residency, uint64_t *value)
@@ -398,98 +307,16 @@ static uint64_t retire_limit(const struct slc_residency *residency, uint64_t com
     return completed_frame;
 }
 
-/* Before the tiles of a level stands where they begin. */
-static void record_header(struct paged_residency *p, const struct paged_image *image,
-                          VkCommandBuffer commands)
-{
-    uint32_t levels = image->desc.regularMipCount, header[SLUICE_MAX_MIP_LEVELS];
-    for (uint32_t level = 0; level < levels; level++)
-        header[level] = image->first_word + level_word(&image->desc, level);
-    VkDeviceSize first = (VkDeviceSize)image->first_word * 4;
-    p->vk->CmdUpdateBuffer(commands, p->table.buffer, first, levels * 4, header);
-}
-
-static void fill_none(struct paged_residency *p, uint32_t first, uint32_t count,
-                      VkCommandBuffer commands)
-{
-    if (count)
-        p->vk->CmdFillBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4,
-                             (VkDeviceSize)count * 4, SLUICE_PAGE_NONE);
-}
-
-static void record_no_pages(struct paged_residency *p, const struct paged_image *image,
-                            VkCommandBuffer commands)
-{
-    uint32_t levels = image->desc.regularMipCount;
-    fill_none(p, image->first_word + levels, image->word_count - levels, commands);
-}
-
-static bool is_shown(const struct paged_residency *p, uint32_t word)
-{
-    return is_taken(p->pages[word]) && p->pages[word] & PAGE_SHOWN;
-}
-
-/* Every word of its tiles, as they are before this frame's stores or already with them. */
-static void record_words(struct paged_residency *p, const struct paged_image *image,
-                         VkCommandBuffer commands)
-{
-    uint32_t run[STORE_BATCH], end = image->first_word + image->word_count;
-    for (uint32_t word = image->first_word + image->desc.regularMipCount; word < end;) {
-        uint32_t first = word, count = 0;
-        while (word < end && !is_shown(p, word))
-            word++;
-        fill_none(p, first, word - first, commands);
-        for (first = word; word < end && count < STORE_BATCH && is_shown(p, word); word++)
-            run[count++] = page_of(p->pages[word]);
-        if (count)
-            p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4, count * 4,
-                                   run);
-    }
-}
-
-static void record_lost(struct paged_residency *p, uint64_t frame, VkCommandBuffer commands)
-{
-    for (uint32_t i = 0; i < p->max_image_count; i++) {
-        struct paged_image *image = &p->images[i];
-        if (!image->is_lost)
-            continue;
-        record_words(p, image, commands);
-        image->stored_frame = frame;
-        image->is_lost = false;
-    }
-    p->has_lost = false;
-}
-
 static void record_begin(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands)
 {
     struct paged_residency *p = paged(residency);
-    for (uint32_t i = 0; i < p->new_image_count; i++) {
-        struct paged_image *image = &p->images[p->new_images[i]];
-        record_header(p, image, commands);
-        if (!image->is_lost)
-            record_no_pages(p, image, commands);
-        image->recorded_frame = frame;
-    }
-    p->new_image_count = 0;
-    if (p->has_lost)
-        record_lost(p, frame, commands);
+    slc_page_table_record_begin(&p->table, frame, commands);
     count_memory(p);
 }
 
 static void abandon(struct slc_residency *residency, uint64_t frame)
 {
-    struct paged_residency *p = paged(residency);
-    p->store_count = 0; /* of a begin that failed: lost images are written again */
-    for (uint32_t i = 0; i < p->max_image_count; i++) {
-        struct paged_image *image = &p->images[i];
-        if (image->recorded_frame >= frame) {
-            image->recorded_frame = 0;
-            p->new_images[p->new_image_count++] = i;
-            image->is_lost = true;
-        }
-        image->is_lost |= image->stored_frame >= frame;
-        p->has_lost |= image->is_lost;
-    }
+    slc_page_table_abandon(&paged(residency)->table, frame);
 }
 
 static uint32_t round_up(uint32_t size, uint32_t to)
@@ -498,20 +325,21 @@ static uint32_t round_up(uint32_t size, uint32_t to)
 }
 
 /* The copy into the image that holds the texels; which one that is. */
-static VkImage place_copy(struct paged_residency *p, struct paged_image *image,
-                          VkBufferImageCopy *copy)
+static VkImage place_copy(struct paged_residency *p, uint32_t index, VkBufferImageCopy *copy)
 {
-    const SluiceStreamedTextureDesc *desc = &image->desc;
+    const struct paged_image *image = &p->images[index];
+    const SluiceStreamedTextureDesc *desc = &p->table.parts[index].desc;
     uint32_t level = copy->imageSubresource.mipLevel;
     if (level >= desc->regularMipCount) {
         copy->imageSubresource.mipLevel = level - desc->regularMipCount;
         return image->tail;
     }
-    uint32_t word = tile_word(image, level, (uint32_t)copy->imageOffset.x / desc->tileWidth,
-                              (uint32_t)copy->imageOffset.y / desc->tileHeight);
-    assert(is_taken(p->pages[word]));
-    uint32_t page = page_of(p->pages[word]);
-    p->pages[word] |= PAGE_SHOWN;
+    uint32_t x = (uint32_t)copy->imageOffset.x / desc->tileWidth;
+    uint32_t y = (uint32_t)copy->imageOffset.y / desc->tileHeight;
+    uint32_t word = slc_page_table_word(&p->table, index, level, x, y);
+    assert(slc_page_is_taken(p->table.entries[word]));
+    uint32_t page = slc_page_of_entry(p->table.entries[word]);
+    p->table.entries[word] |= SLC_PAGE_SHOWN;
     slc_page_share_written(p->pool, p->user, page, p->frame);
     copy->imageSubresource.mipLevel = 0;
     copy->imageSubresource.baseArrayLayer = page & 0xFFFFu;
@@ -520,7 +348,7 @@ static VkImage place_copy(struct paged_residency *p, struct paged_image *image,
     /* A tile at the edge ends inside the page, where only whole blocks may end. */
     copy->imageExtent.width = round_up(copy->imageExtent.width, image->block_width);
     copy->imageExtent.height = round_up(copy->imageExtent.height, image->block_height);
-    store(p, image, word);
+    slc_page_table_store(&p->table, index, word, p->frame);
     return slc_page_image(p->pool, page);
 }
 
@@ -534,7 +362,7 @@ static void record_uploads(struct slc_residency *residency, uint32_t index,
     uint32_t copy_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         VkBufferImageCopy copy = regions[i];
-        VkImage image = place_copy(p, &p->images[index], &copy);
+        VkImage image = place_copy(p, index, &copy);
         if (copy_count && (image != target || copy_count == COPY_BATCH)) {
             p->vk->CmdCopyBufferToImage(commands, buffer, target, VK_IMAGE_LAYOUT_GENERAL,
                                         copy_count, copies);
@@ -548,48 +376,19 @@ static void record_uploads(struct slc_residency *residency, uint32_t index,
                                     copies);
 }
 
-/* By word; of a tile that went and came in one frame, as it did. */
-static int compare_stores(const void *a, const void *b)
-{
-    const struct store *x = a, *y = b;
-    if (x->word != y->word)
-        return x->word < y->word ? -1 : 1;
-    return x->turn < y->turn ? -1 : 1;
-}
-
 static void record_publish(struct slc_residency *residency, VkCommandBuffer commands)
 {
-    struct paged_residency *p = paged(residency);
-    uint32_t run[STORE_BATCH], run_count = 0, first = 0;
-    if (p->store_count > 1)
-        qsort(p->stores, p->store_count, sizeof *p->stores, compare_stores);
-    for (uint32_t i = 0; i < p->store_count; i++) {
-        const struct store *s = &p->stores[i];
-        if (i + 1 < p->store_count && s[1].word == s->word)
-            continue;
-        if (run_count && (s->word != first + run_count || run_count == STORE_BATCH)) {
-            p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4,
-                                   run_count * 4, run);
-            run_count = 0;
-        }
-        if (run_count == 0)
-            first = s->word;
-        run[run_count++] = s->value;
-    }
-    if (run_count)
-        p->vk->CmdUpdateBuffer(commands, p->table.buffer, (VkDeviceSize)first * 4, run_count * 4,
-                               run);
-    p->store_count = 0;
+    slc_page_table_record_publish(&paged(residency)->table, commands);
 }
 
 static VkBuffer page_table(const struct slc_residency *residency)
 {
-    return ((const struct paged_residency *)residency)->table.buffer;
+    return ((const struct paged_residency *)residency)->table.buffer.buffer;
 }
 
 static uint32_t page_table_offset(const struct slc_residency *residency, uint32_t index)
 {
-    return ((const struct paged_residency *)residency)->images[index].first_word;
+    return ((const struct paged_residency *)residency)->table.parts[index].first_word;
 }
 
 static void destroy(struct slc_residency *residency)
@@ -600,12 +399,8 @@ static void destroy(struct slc_residency *residency)
         for (uint32_t i = 0; i < p->max_image_count; i++)
             slc_plain_image_destroy(&p->images[i].own_tail, &p->memory, p->vk, cb);
     slc_image_memory_finish(&p->memory, cb);
-    slc_buffer_finish(&p->table, p->vk);
-    slc_free(cb, p->stores, p->store_capacity, sizeof *p->stores);
-    slc_free(cb, p->pages, p->arena.size, sizeof *p->pages);
-    slc_free(cb, p->new_images, p->max_image_count, sizeof *p->new_images);
+    slc_page_table_finish(&p->table);
     slc_free(cb, p->images, p->max_image_count, sizeof *p->images);
-    slc_region_arena_finish(&p->arena, cb);
     slc_free(cb, p, 1, sizeof *p);
 }
 
@@ -647,25 +442,6 @@ static uint32_t table_size(const struct slc_residency_create_info *info)
     return (uint32_t)(words < limit ? words : limit);
 }
 
-static SluiceResult create_arrays(struct paged_residency *p,
-                                  const struct slc_residency_create_info *info)
-{
-    SluiceResult result =
-        slc_region_arena_init(&p->arena, p->cb, table_size(info), info->max_image_count);
-    if (result != SLUICE_SUCCESS)
-        return result;
-    p->max_image_count = info->max_image_count;
-    p->upload_reserve = 4 * info->max_changes; /* copied, revived, shared, deferred */
-    p->store_capacity = 8 * info->max_changes;
-    p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
-    p->new_images = slc_alloc(p->cb, p->max_image_count, sizeof *p->new_images);
-    p->pages = slc_alloc(p->cb, p->arena.size, sizeof *p->pages);
-    p->stores = slc_alloc(p->cb, p->store_capacity, sizeof *p->stores);
-    if (!p->images || !p->new_images || !p->pages || !p->stores)
-        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    return SLUICE_SUCCESS;
-}
-
 SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *info,
                                         struct slc_residency **residency)
 {
@@ -678,12 +454,13 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->cb = info->cb;
     p->pool = info->pages;
     p->user = info->page_user;
-    SluiceResult result = create_arrays(p, info);
-    if (result == SLUICE_SUCCESS)
-        result =
-            slc_buffer_init(&p->table, p->vk, p->caps, (uint64_t)p->arena.size * 4,
-                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                            SLC_BUFFER_DEVICE);
+    p->max_image_count = info->max_image_count;
+    p->upload_reserve = 4 * info->max_changes; /* copied, revived, shared, deferred */
+    p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
+    SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+    if (p->images)
+        result = slc_page_table_init(&p->table, p->vk, p->caps, p->cb, table_size(info),
+                                     p->max_image_count, 8 * info->max_changes);
     if (result != SLUICE_SUCCESS) {
         destroy(&p->base);
         return result;
