@@ -56,11 +56,18 @@ typedef enum SluiceBakeAlpha {
     SLUICE_BAKE_ALPHA_PREMULTIPLIED = 2
 } SluiceBakeAlpha;
 
+/** Work that is spent on blocks of BC7. docs/baking.md has figures. */
+typedef enum SluiceBakeQuality {
+    SLUICE_BAKE_QUALITY_NORMAL = 0,
+    SLUICE_BAKE_QUALITY_FAST = 1,
+    SLUICE_BAKE_QUALITY_BEST = 2
+} SluiceBakeQuality;
+
 /** Settings of one picture. A field of zero selects its default. */
 typedef struct SluiceBakeSettings {
     uint32_t structSize; ///< sizeof(SluiceBakeSettings).
     /**
-     * Format of the store: any but BC2, BC6H, BC7 and the signed BC4 and BC5. Of a format and its
+     * Format of the store: any but BC2, BC6H and the signed BC4 and BC5. Of a format and its
      * sRGB twin, `transfer` selects one, whichever you name. Formats without a twin hold linear
      * light.
      *
@@ -71,6 +78,7 @@ typedef struct SluiceBakeSettings {
      * - 16- and 32-bit floats: same type, one or four channels.
      */
     SluiceFormat format;
+    SluiceBakeQuality quality;   ///< Default: NORMAL.
     SluiceBakeTransfer transfer; ///< Default: AUTO.
     SluiceBakeAlpha alpha;       ///< Default: AUTO.
     SluiceBakeFilter filter;     ///< Default: BOX.

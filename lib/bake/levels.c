@@ -131,6 +131,7 @@ SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer
     SluiceResult result = SLUICE_SUCCESS;
     uint64_t texels = (uint64_t)baking->picture->width * baking->picture->height;
     baking->tiler.writer = writer;
+    baking->tiler.quality = baking->plan.settings.quality;
     baking->total = baking->plan.threshold > 0.0f ? 2 * texels : texels;
     if (baking->plan.threshold > 0.0f)
         result = count_alpha(baking);

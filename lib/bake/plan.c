@@ -24,6 +24,7 @@ static const SluiceFormat twins[][2] = {
 SluiceResult slc_check_settings(const SluiceBakeSettings *s)
 {
     bool is_fine = (unsigned)s->format < SLUICE_FORMAT_COUNT &&
+                   (unsigned)s->quality <= SLUICE_BAKE_QUALITY_BEST &&
                    (unsigned)s->transfer <= SLUICE_BAKE_TRANSFER_LINEAR &&
                    (unsigned)s->alpha <= SLUICE_BAKE_ALPHA_PREMULTIPLIED &&
                    (unsigned)s->filter <= SLUICE_BAKE_FILTER_KAISER &&

@@ -24,6 +24,7 @@ uint64_t slc_hash_settings(const SluiceBakeSettings *settings)
         settings->compressionLevel ? settings->compressionLevel : SLUICE_BAKE_DEFAULT_COMPRESSION,
         settings->uncompressed,
         settings->keepPrimaries,
+        (uint32_t)settings->quality,
     };
     uint8_t bytes[sizeof values]; /* the same on every machine */
     for (size_t i = 0; i < sizeof values; i++)

@@ -107,7 +107,7 @@ static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegi
     void *blocks = slc_alloc(&tiler->allocator, size, 1);
     if (!blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    slc_encode_blocks(format, texels, pitch, region->width, region->height, blocks);
+    slc_encode_blocks(format, tiler->quality, texels, pitch, region->width, region->height, blocks);
     SluiceResult result =
         sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, blocks,
                              (size_t)sluiceFormatRegionSize(format, region->width, 1));
@@ -235,8 +235,8 @@ static SluiceResult encode_tail(struct slc_tiler *tiler, const void **levels, ch
         const struct slc_tiler_level *level = &tiler->levels[l];
         const void *texels = tiler->tail + level->tail_offset;
         if (blocks) {
-            slc_encode_blocks(layout->format, texels, level->width * texel_size, level->width,
-                              level->height, blocks);
+            slc_encode_blocks(layout->format, tiler->quality, texels, level->width * texel_size,
+                              level->width, level->height, blocks);
             texels = blocks;
             blocks += sluiceFormatRegionSize(layout->format, level->width, level->height);
         }

@@ -5,6 +5,7 @@
 #ifndef SLC_BAKE_TILER_H
 #define SLC_BAKE_TILER_H
 
+#include <sluice/bake.h>
 #include <sluice/store.h>
 
 #include "bake/work_pool.h"
@@ -44,6 +45,7 @@ struct slc_tiler {
     struct slc_bake_jobs *jobs;
     SluiceStoreLayout layout;
     SluiceFormat texel_format; ///< of rows: the layout's, or what blocks are made from
+    SluiceBakeQuality quality; ///< of blocks; set after init
     SluiceStoreWriter *writer;
     SluiceResult result;       ///< the first failure; under the pool's mutex
     uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex

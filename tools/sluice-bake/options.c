@@ -19,9 +19,9 @@ static const char notes[] =
     "Exit status: 0 all is well; 1 a file could not be baked, or is damaged; the others are\n"
     "baked all the same; 2 wrong usage.\n";
 
-/* In the order of the words of --format, --filter and --alpha. */
+/* In the order of the words of --format, --quality, --filter and --alpha. */
 static const char format_names[] = "auto|r8|rg8|rgba8|r16f|rg16f|rgba16f|r32f|rg32f|rgba32f|"
-                                   "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5";
+                                   "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc7";
 static const SluiceFormat formats[] = {
     SLUICE_FORMAT_UNDEFINED,
     SLUICE_FORMAT_R8_UNORM,
@@ -40,7 +40,10 @@ static const SluiceFormat formats[] = {
     SLUICE_FORMAT_BC3_UNORM_BLOCK,
     SLUICE_FORMAT_BC4_UNORM_BLOCK,
     SLUICE_FORMAT_BC5_UNORM_BLOCK,
+    SLUICE_FORMAT_BC7_UNORM_BLOCK,
 };
+static const SluiceBakeQuality qualities[] = {SLUICE_BAKE_QUALITY_FAST, SLUICE_BAKE_QUALITY_NORMAL,
+                                              SLUICE_BAKE_QUALITY_BEST};
 static const SluiceBakeFilter filters[] = {SLUICE_BAKE_FILTER_BOX, SLUICE_BAKE_FILTER_KAISER};
 static const SluiceBakeAlpha alphas[] = {SLUICE_BAKE_ALPHA_AUTO, SLUICE_BAKE_ALPHA_STRAIGHT,
                                          SLUICE_BAKE_ALPHA_PREMULTIPLIED};
@@ -49,7 +52,7 @@ _Static_assert(SLUICE_BAKE_DEFAULT_COMPRESSION == 10, "--compression has the lib
 
 /* What settings are made of. */
 struct choices {
-    int format, filter, alpha;
+    int format, quality, filter, alpha;
     bool srgb, linear;
 };
 
@@ -115,7 +118,7 @@ static bool is_complete(const struct option_table *table, const struct options *
 
 enum option_outcome parse_options(struct options *o, int argc, char **argv)
 {
-    struct choices c = {0};
+    struct choices c = {.quality = 1};
     SluiceBakeSettings *s = &o->settings;
     *o = (struct options){0};
     const struct option options[] = {
@@ -125,6 +128,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_SECTION, .help = "Texels"},
         {OPTION_CHOICE, "format", format_names, "auto", &c.format,
          "format of the texels; auto: by channels, bit depth and meaning."},
+        {OPTION_CHOICE, "quality", "fast|normal|best", "normal", &c.quality, "work spent on bc7"},
         {OPTION_FLAG, "srgb", .value = &c.srgb,
          .help = "the numbers are sRGB, as is assumed for integers of two channels or more"},
         {OPTION_FLAG, "linear", .value = &c.linear,
@@ -159,6 +163,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
     if (outcome != OPTIONS_RUN)
         return outcome;
     s->format = formats[c.format];
+    s->quality = qualities[c.quality];
     s->filter = filters[c.filter];
     s->alpha = alphas[c.alpha];
     if (c.srgb || c.linear)

@@ -1,0 +1,259 @@
+/** Puts texels of SLC_LANES blocks between two ends that a mode of BC7 can store. */
+#ifndef SLC_BAKE_BC7_FIT_H
+#define SLC_BAKE_BC7_FIT_H
+
+#include "bake/block_lanes.h"
+
+#include <stdbool.h>
+
+/** Lowest bits that the channels of one end (OWN) or of both ends (SHARED) have in common. */
+enum slc_p_bits { SLC_P_BITS_NONE, SLC_P_BITS_OWN, SLC_P_BITS_SHARED };
+
+/** How a mode stores ends and indices. */
+struct slc_bc7_precision {
+    int bits; ///< of a channel of an end, with the p bit
+    enum slc_p_bits p_bits;
+    int index_count; ///< 4, 8 or 16
+};
+
+/** Texels to be fitted: up to four channels of 16 numbers from 0 to 255. */
+struct slc_bc7_points {
+    int channel_count;
+    const slc_floats *channels[4]; ///< [16] each
+    const slc_floats *weights;     ///< [16]: 1 for texels that count, 0 for others; NULL: all 1
+    slc_ints sets_p; ///< -1: p bits must be 1, so that an alpha of 255 is stored as such
+};
+
+struct slc_bc7_fit {
+    slc_ints ends[2][4]; ///< codes with their p bits
+    slc_ints indices[16];
+    slc_floats error; ///< sum of squares over texels and channels
+};
+
+/** Inlined, so that counts and precision are constants. */
+#define SLC_INLINE static inline __attribute__((always_inline))
+
+/* The number that a code stands for. */
+SLC_INLINE slc_floats slc_bc7_value(slc_ints code, int bits)
+{
+    return slc_to_floats((code << (8 - bits)) | (code >> (2 * bits - 8)));
+}
+
+/* Sums of products of channels, less those of the means. */
+SLC_INLINE void slc_bc7_covariance(const struct slc_bc7_points *points, slc_floats mean[4],
+                                   slc_floats cov[4][4])
+{
+    slc_floats count = slc_all(points->weights ? 0.0f : 16.0f);
+    for (int i = 0; i < 16 && points->weights; i++)
+        count += points->weights[i];
+    slc_floats inverse = 1.0f / slc_greater(count, slc_all(1.0f));
+    for (int a = 0; a < points->channel_count; a++) {
+        slc_floats sum = slc_all(0.0f), products[4] = {sum, sum, sum, sum};
+        for (int i = 0; i < 16; i++) {
+            slc_floats value = points->channels[a][i];
+            if (points->weights)
+                value *= points->weights[i];
+            sum += value;
+            for (int b = 0; b <= a; b++)
+                products[b] += value * points->channels[b][i];
+        }
+        mean[a] = sum * inverse;
+        for (int b = 0; b <= a; b++)
+            cov[a][b] = cov[b][a] = products[b] - sum * mean[b];
+    }
+}
+
+/* Power iteration from the column of the largest variance. */
+SLC_INLINE void slc_principal_axis(int count, slc_floats cov[4][4], int rounds, slc_floats axis[4])
+{
+    slc_floats largest = cov[0][0], trace = cov[0][0];
+    for (int c = 0; c < count; c++)
+        axis[c] = cov[0][c];
+    for (int a = 1; a < count; a++) {
+        slc_ints larger = cov[a][a] > largest;
+        largest = slc_select(larger, cov[a][a], largest);
+        trace += cov[a][a];
+        for (int c = 0; c < count; c++)
+            axis[c] = slc_select(larger, cov[a][c], axis[c]);
+    }
+    slc_floats scale = 1.0f / (trace + 1e-6f);
+    for (int r = 0; r < rounds; r++) {
+        slc_floats next[4];
+        for (int a = 0; a < count; a++) {
+            next[a] = cov[a][0] * axis[0];
+            for (int b = 1; b < count; b++)
+                next[a] += cov[a][b] * axis[b];
+        }
+        for (int a = 0; a < count; a++)
+            axis[a] = next[a] * scale;
+    }
+}
+
+/* Where the outermost texels lie on the axis through the mean. */
+SLC_INLINE void slc_bc7_first_ends(const struct slc_bc7_points *points, slc_floats ends[2][4])
+{
+    slc_floats mean[4], cov[4][4], axis[4];
+    int count = points->channel_count;
+    slc_bc7_covariance(points, mean, cov);
+    slc_principal_axis(count, cov, 3, axis);
+    slc_floats length = slc_all(0.0f), offset = length, low = length, high = length;
+    for (int c = 0; c < count; c++) {
+        length += axis[c] * axis[c];
+        offset += axis[c] * mean[c];
+    }
+    for (int i = 0; i < 16; i++) {
+        slc_floats t = axis[0] * points->channels[0][i] - offset;
+        for (int c = 1; c < count; c++)
+            t += axis[c] * points->channels[c][i];
+        if (points->weights)
+            t *= points->weights[i];
+        low = slc_lesser(low, t);
+        high = slc_greater(high, t);
+    }
+    slc_floats inverse = 1.0f / slc_greater(length, slc_all(1e-20f));
+    for (int c = 0; c < count; c++) {
+        ends[0][c] = mean[c] + axis[c] * (low * inverse);
+        ends[1][c] = mean[c] + axis[c] * (high * inverse);
+    }
+}
+
+/* Nearest code with the p bit `p`; adds the square of the distance. */
+SLC_INLINE slc_ints slc_bc7_code(slc_floats value, const struct slc_bc7_precision *precision, int p,
+                                 slc_floats *error)
+{
+    int bits = precision->bits;
+    slc_floats wanted = slc_clamp(value, 0.0f, 255.0f), code;
+    code = wanted * ((float)((1 << bits) - 1) / 255.0f);
+    slc_ints codes;
+    if (precision->p_bits == SLC_P_BITS_NONE) {
+        codes = slc_to_ints(code + 0.5f);
+    } else {
+        code = slc_clamp((code - (float)p) * 0.5f + 0.5f, 0.0f, (float)(1 << (bits - 1)) - 0.5f);
+        codes = slc_to_ints(code) * 2 + p;
+    }
+    slc_floats off = slc_bc7_value(codes, bits) - wanted;
+    *error += off * off;
+    return codes;
+}
+
+SLC_INLINE void slc_bc7_quantize(const struct slc_bc7_points *points,
+                                 const struct slc_bc7_precision *precision, slc_floats ends[2][4],
+                                 slc_ints codes[2][4])
+{
+    slc_ints other[2][4];
+    slc_floats error[2][2] = {{{0}}};
+    bool has_p = precision->p_bits != SLC_P_BITS_NONE;
+    for (int e = 0; e < 2; e++)
+        for (int c = 0; c < points->channel_count; c++) {
+            codes[e][c] = slc_bc7_code(ends[e][c], precision, 0, &error[e][0]);
+            if (has_p)
+                other[e][c] = slc_bc7_code(ends[e][c], precision, 1, &error[e][1]);
+        }
+    for (int e = 0; e < 2 && has_p; e++) {
+        slc_ints set = error[e][1] < error[e][0];
+        if (precision->p_bits == SLC_P_BITS_SHARED)
+            set = error[0][1] + error[1][1] < error[0][0] + error[1][0];
+        set |= points->sets_p;
+        for (int c = 0; c < points->channel_count; c++)
+            codes[e][c] = slc_select_ints(set, other[e][c], codes[e][c]);
+    }
+}
+
+/* round(64 index / (count - 1)), as the format's tables of weights have it. */
+SLC_INLINE slc_floats slc_bc7_weight(slc_ints index, int count)
+{
+    slc_floats scaled = slc_to_floats(index) * (64.0f / (float)(count - 1)) + 0.5f;
+    return slc_to_floats(slc_to_ints(scaled));
+}
+
+/* Nearest indices and the error of what is decoded from them. */
+SLC_INLINE void slc_bc7_index(const struct slc_bc7_points *points,
+                              const struct slc_bc7_precision *precision, struct slc_bc7_fit *fit)
+{
+    int count = points->channel_count, last = precision->index_count - 1;
+    slc_floats low[4], step[4], along[4], length = slc_all(0.0f), offset = slc_all(0.5f);
+    for (int c = 0; c < count; c++) {
+        low[c] = slc_bc7_value(fit->ends[0][c], precision->bits);
+        step[c] = slc_bc7_value(fit->ends[1][c], precision->bits) - low[c];
+        length += step[c] * step[c];
+    }
+    slc_floats scale = (float)last / slc_greater(length, slc_all(1.0f));
+    for (int c = 0; c < count; c++) {
+        along[c] = step[c] * scale;
+        offset -= low[c] * along[c];
+        low[c] = low[c] * 64.0f + 32.0f;
+    }
+    fit->error = slc_all(0.0f);
+    for (int i = 0; i < 16; i++) {
+        slc_floats t = offset, error = slc_all(0.0f);
+        for (int c = 0; c < count; c++)
+            t += along[c] * points->channels[c][i];
+        fit->indices[i] = slc_to_ints(slc_clamp(t, 0.0f, (float)last + 0.5f));
+        slc_floats weight = slc_bc7_weight(fit->indices[i], precision->index_count);
+        for (int c = 0; c < count; c++) {
+            slc_ints decoded = slc_to_ints(low[c] + step[c] * weight) >> 6;
+            slc_floats off = slc_to_floats(decoded) - points->channels[c][i];
+            error += off * off;
+        }
+        fit->error += points->weights ? error * points->weights[i] : error;
+    }
+}
+
+/* Ends of least squared error for the indices; those of before where all indices are the same. */
+SLC_INLINE void slc_bc7_solve(const struct slc_bc7_points *points,
+                              const struct slc_bc7_precision *precision,
+                              const struct slc_bc7_fit *fit, slc_floats ends[2][4])
+{
+    slc_floats zero = slc_all(0.0f), n = zero, b = zero, bb = zero;
+    slc_floats sum[4] = {zero, zero, zero, zero}, b_sum[4] = {zero, zero, zero, zero};
+    for (int i = 0; i < 16; i++) {
+        slc_floats one = points->weights ? points->weights[i] : slc_all(1.0f);
+        slc_floats weight = slc_bc7_weight(fit->indices[i], precision->index_count) * 0.015625f;
+        if (points->weights)
+            weight *= one;
+        n += one;
+        b += weight;
+        bb += weight * weight;
+        for (int c = 0; c < points->channel_count; c++) {
+            sum[c] += points->channels[c][i] * one;
+            b_sum[c] += points->channels[c][i] * weight;
+        }
+    }
+    slc_floats ab = b - bb, aa = n - b - ab, det = aa * bb - ab * ab;
+    slc_ints solvable = det > 1e-3f;
+    slc_floats inverse = 1.0f / slc_greater(det, slc_all(1e-3f));
+    for (int c = 0; c < points->channel_count; c++) {
+        slc_floats a_sum = sum[c] - b_sum[c];
+        slc_floats low = (a_sum * bb - b_sum[c] * ab) * inverse;
+        slc_floats high = (b_sum[c] * aa - a_sum * ab) * inverse;
+        ends[0][c] = slc_select(solvable, low, ends[0][c]);
+        ends[1][c] = slc_select(solvable, high, ends[1][c]);
+    }
+}
+
+/** Fits texels and improves the ends `rounds` times. */
+SLC_INLINE void slc_bc7_fit_points(const struct slc_bc7_points *points,
+                                   const struct slc_bc7_precision *precision, int rounds,
+                                   struct slc_bc7_fit *best)
+{
+    slc_floats ends[2][4];
+    struct slc_bc7_fit fit;
+    slc_bc7_first_ends(points, ends);
+    slc_bc7_quantize(points, precision, ends, best->ends);
+    slc_bc7_index(points, precision, best);
+    fit = *best;
+    for (int r = 0; r < rounds; r++) {
+        slc_bc7_solve(points, precision, &fit, ends);
+        slc_bc7_quantize(points, precision, ends, fit.ends);
+        slc_bc7_index(points, precision, &fit);
+        slc_ints better = fit.error < best->error;
+        best->error = slc_select(better, fit.error, best->error);
+        for (int e = 0; e < 2; e++)
+            for (int c = 0; c < points->channel_count; c++)
+                best->ends[e][c] = slc_select_ints(better, fit.ends[e][c], best->ends[e][c]);
+        for (int i = 0; i < 16; i++)
+            best->indices[i] = slc_select_ints(better, fit.indices[i], best->indices[i]);
+    }
+}
+
+#endif /* SLC_BAKE_BC7_FIT_H */

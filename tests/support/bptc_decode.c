@@ -1,0 +1,102 @@
+#include "support/bptc_decode.h"
+
+#include "bake/block_partitions.h"
+
+#include <string.h>
+
+struct reader {
+    const uint8_t *bytes;
+    int at;
+};
+
+/* One bit at a time, as the specification counts them. */
+static int take(struct reader *reader, int count)
+{
+    int value = 0;
+    for (int i = 0; i < count; i++, reader->at++)
+        value |= (reader->bytes[reader->at / 8] >> (reader->at % 8) & 1) << i;
+    return value;
+}
+
+static const int weights2[] = {0, 21, 43, 64};
+static const int weights3[] = {0, 9, 18, 27, 37, 46, 55, 64};
+static const int weights4[] = {0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64};
+
+static int interpolate(int a, int b, int index, int bits)
+{
+    const int *weights = bits == 2 ? weights2 : bits == 3 ? weights3 : weights4;
+    return ((64 - weights[index]) * a + weights[index] * b + 32) >> 6;
+}
+
+static int expand(int code, int bits)
+{
+    code <<= 8 - bits;
+    return code | code >> bits;
+}
+
+struct bc7_mode {
+    int regions, partition_bits, rotation_bits, selector_bits, color_bits, alpha_bits;
+    int own_p, shared_p, index_bits, second_index_bits;
+};
+
+static const struct bc7_mode bc7_modes[8] = {
+    [1] = {2, 6, 0, 0, 6, 0, 0, 1, 3, 0},
+    [4] = {1, 0, 2, 1, 5, 6, 0, 0, 2, 3},
+    [5] = {1, 0, 2, 0, 7, 8, 0, 0, 2, 2},
+    [6] = {1, 0, 0, 0, 7, 7, 1, 0, 4, 0},
+};
+
+static void take_indices(struct reader *reader, int bits, int partition, int regions,
+                         int indices[16])
+{
+    for (int i = 0; i < 16; i++) {
+        bool is_anchor = i == 0 || (regions == 2 && i == slc_partition_anchors[partition]);
+        indices[i] = take(reader, bits - is_anchor);
+    }
+}
+
+bool bc7_decode(const uint8_t block[16], uint8_t rgba[64], int *mode)
+{
+    struct reader reader = {block, 0};
+    int ends[4][4], first[16], second[16];
+    for (*mode = 0; *mode < 8 && take(&reader, 1) == 0;)
+        ++*mode;
+    if (*mode == 8 || bc7_modes[*mode].regions == 0)
+        return false;
+    const struct bc7_mode *m = &bc7_modes[*mode];
+    int partition = take(&reader, m->partition_bits), rotation = take(&reader, m->rotation_bits);
+    int selector = take(&reader, m->selector_bits), end_count = 2 * m->regions;
+    for (int c = 0; c < 4; c++)
+        for (int e = 0; e < end_count; e++)
+            ends[e][c] = take(&reader, c < 3 ? m->color_bits : m->alpha_bits);
+    int has_p = m->own_p || m->shared_p, p = 0;
+    for (int e = 0; e < end_count && has_p; e++) {
+        p = m->own_p || e % 2 == 0 ? take(&reader, 1) : p;
+        for (int c = 0; c < 4; c++)
+            ends[e][c] = ends[e][c] << 1 | p;
+    }
+    for (int e = 0; e < end_count; e++)
+        for (int c = 0; c < 4; c++) {
+            int bits = (c < 3 ? m->color_bits : m->alpha_bits) + has_p;
+            ends[e][c] = c == 3 && m->alpha_bits == 0 ? 255 : expand(ends[e][c], bits);
+        }
+    take_indices(&reader, m->index_bits, partition, m->regions, first);
+    if (m->second_index_bits)
+        take_indices(&reader, m->second_index_bits, partition, m->regions, second);
+    for (int i = 0; i < 16; i++) {
+        int region = m->regions == 2 ? slc_partitions[partition] >> i & 1 : 0;
+        const int(*pair)[4] = (const int(*)[4])ends + 2 * region;
+        for (int c = 0; c < 4; c++) {
+            bool use_second = m->second_index_bits && (c < 3) == (selector == 1);
+            int index = use_second ? second[i] : first[i];
+            int bits = use_second ? m->second_index_bits : m->index_bits;
+            rgba[4 * i + c] = (uint8_t)interpolate(pair[0][c], pair[1][c], index, bits);
+        }
+        if (rotation) {
+            uint8_t alpha = rgba[4 * i + 3];
+            rgba[4 * i + 3] = rgba[4 * i + rotation - 1];
+            rgba[4 * i + rotation - 1] = alpha;
+        }
+    }
+    return reader.at == 128;
+}
