@@ -109,11 +109,13 @@ bool measure_fill(const struct bench *bench)
 {
     struct fill_rates rates = {0}, growing = {0};
     for (uint32_t tiles = 512; tiles <= (options.quick ? 512u : 8192u); tiles *= 2) {
-        const SluiceDemandLoaderCreateInfo info = {
-            .structSize = sizeof info, .maxTilesInFlight = tiles, .minStagingSize = UINT64_MAX};
+        struct bench staged = *bench;
+        const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                                   .maxTilesInFlight = tiles};
+        staged.min_staging_size = UINT64_MAX;
         char name[64];
         snprintf(name, sizeof name, "fill.%u_in_flight", tiles);
-        if (!fill_with(bench, &info, name, &rates))
+        if (!fill_with(&staged, &info, name, &rates))
             return false;
     }
     const SluiceDemandLoaderCreateInfo defaults = {.structSize = sizeof defaults};

@@ -31,14 +31,15 @@ static bool create_loader(struct rig *rig, const SluiceDemandLoaderCreateInfo *g
                                                    .physicalDevice = gpu->physical_device,
                                                    .device = gpu->device,
                                                    .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                                   .log = {.pfnLog = print_log}};
+                                                   .log = {.pfnLog = print_log},
+                                                   .loaderThreadCount = rig->bench->threads,
+                                                   .maxPageChunkCount = DEMAND_BENCH_CHUNKS,
+                                                   .minStagingSize = rig->bench->min_staging_size};
     if (!check(sluiceCreateVulkanContext(&context, &rig->context), "sluiceCreateVulkanContext"))
         return false;
     SluiceDemandLoaderCreateInfo info = *given;
     info.context = rig->context;
     info.launchesInFlight = RIG_SLOTS;
-    info.maxPageChunkCount = DEMAND_BENCH_CHUNKS;
-    info.loaderThreadCount = rig->bench->threads;
     return check(sluiceCreateDemandLoader(&info, &rig->loader), "sluiceCreateDemandLoader");
 }
 

@@ -18,7 +18,8 @@ struct bench {
     uint32_t texture_size; ///< texels
     uint32_t columns;      ///< columns x columns textures
     uint32_t threads;      ///< that load; 0: as the library does
-    bool wall;             ///< time stamps are no use
+    uint64_t min_staging_size;
+    bool wall; ///< time stamps are no use
 };
 
 /** Says on stderr what it is about, and returns false unless `result` is a success or news. */

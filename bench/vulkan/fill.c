@@ -29,10 +29,10 @@ static struct rig_info fill_info(const struct bench *bench, uint32_t tiles_per_f
 {
     uint32_t size = options.quick ? 4096 : 8192, count = options.quick ? 4 : 16;
     return (struct rig_info){.bench = bench,
+                             .context.minStagingSize = UINT64_MAX,
                              .streamer = {.maxTextureCount = count,
                                           .texturesPerFrame = count,
                                           .tilesPerFrame = tiles_per_frame,
-                                          .minStagingSize = UINT64_MAX,
                                           .feedbackTimeoutTicks = UINT64_MAX / 4},
                              .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                              .texture_size = size,
@@ -139,7 +139,7 @@ static bool fill_best(const struct rig_info *info, struct fill_times *times, uin
 static bool fill_growing(const struct bench *bench)
 {
     struct rig_info info = fill_info(bench, 256);
-    info.streamer.minStagingSize = 0;
+    info.context.minStagingSize = 0;
     struct fill_times times;
     uint64_t tile_count;
     if (!fill_best(&info, &times, &tile_count))

@@ -33,6 +33,8 @@ static bool create_context(struct rig *rig, const struct rig_info *info)
     create.sparseQueue = gpu->sparse_queue;
     create.sparseQueueFamilyIndex = gpu->sparse_family;
     create.log.pfnLog = print_log;
+    create.loaderThreadCount = rig->bench->threads;
+    create.maxPageChunkCount = BENCH_PAGE_CHUNKS;
     return check(sluiceCreateVulkanContext(&create, &rig->context), "sluiceCreateVulkanContext");
 }
 
@@ -44,8 +46,6 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
     if (create.residencyMode == SLUICE_RESIDENCY_MODE_AUTO)
         create.residencyMode = rig->bench->mode;
     create.framesInFlight = RIG_FRAMES;
-    create.loaderThreadCount = rig->bench->threads;
-    create.maxPageChunkCount = BENCH_PAGE_CHUNKS;
     create.ticksPerSecond = 60; /* frames */
     create.noStandbyTiles = create.numExtraStandbyTiles == 0;
     return check(sluiceCreateVulkanStreamer(&create, &rig->streamer), "sluiceCreateVulkanStreamer");

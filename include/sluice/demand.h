@@ -58,8 +58,9 @@ typedef struct SluiceDemandLoaderCreateInfo {
      */
     uint32_t maxRequestsPerLaunch;
     /**
-     * Bytes of device memory for tiles. Hard limit. At most the tiles that maxPageChunkCount images
-     * hold are used: 7.4 GiB for 64 images of one format. Default: half of the device's memory.
+     * Bytes of device memory for tiles. Hard limit. At most the tiles that the context's
+     * maxPageChunkCount images hold are used: 7.4 GiB for 64 images of one format. Default: half of
+     * the device's memory.
      */
     uint64_t memoryBudget;
     /**
@@ -68,16 +69,6 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * retry.
      */
     uint32_t maxTilesInFlight;
-    uint32_t loaderThreadCount;      ///< As in SluiceVulkanStreamerCreateInfo.
-    SluiceTileRetryPolicy readRetry; ///< Also for resources that return SLUICE_NOT_READY.
-    /**
-     * Most concurrent reads per source. All openings together count as one source, and so do the
-     * fills of one resource. Default: as in SluiceTileLoaderCreateInfo. The first front end of the
-     * context decides.
-     */
-    uint32_t maxReadsPerSource;
-    uint32_t
-        maxPageChunkCount; ///< As in SluiceVulkanStreamerCreateInfo. At most 2^10. Default: 64.
     /** Never evict, and do not track which pages shaders use. Slightly faster. */
     bool noEviction;
     /**
@@ -85,21 +76,15 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * and samples there use coarser ones. Default: a LOD bias for all textures.
      */
     bool noLodBias;
-    SluiceTileReadFailureCallback failure; ///< Receives every failed read. See loader.h.
+    /** Receives every failed read of this loader (loader.h). userValue is the id of the texture or
+     *  resource. */
+    SluiceTileReadFailureCallback failure;
     /**
      * Nanoseconds until failed work may be tried again: textures that could not be opened, and four
      * tiles of a texture or pages of a resource; the others as soon as one of the four loads. They
      * are loaded when shaders next request them. Default: 30 s. UINT64_MAX: never.
      */
     uint64_t failureRetryDelayNs;
-    /**
-     * Bytes of staging memory made at creation and kept. At least 4 MiB, at most 64 KiB times
-     * maxTilesInFlight. Reads that need more get it in blocks of 4 MiB, which are freed after 120
-     * idle launches. Making blocks costs the first fill a third of its rate on an H200
-     * (bench/demand, fill.defaults.rate). UINT64_MAX makes all staging memory at creation. Default:
-     * 4 MiB.
-     */
-    uint64_t minStagingSize;
 } SluiceDemandLoaderCreateInfo;
 
 /**

@@ -238,9 +238,6 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t texturesPerFrame;         ///< Feedback maps read back per frame. Default: 10.
     uint32_t tilesPerFrame; ///< Most tiles mapped and uploaded per frame, 1 to 2^14. Default: 256.
     uint32_t maxLoadsInFlight; ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
-    /** Threads that read. Default: as in SluiceTileLoaderCreateInfo. The first front end of the
-     *  context decides; see vulkan_context.h. */
-    uint32_t loaderThreadCount;
     uint32_t heapTileCapacity; ///< Tiles per heap, 1 to 2^20. Default: 256.
     uint32_t maxHeapCount;     ///< Default: as many as fit into device memory.
     /**
@@ -291,33 +288,12 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      */
     uint32_t maxTouchedTiles;
     /**
-     * Paged mode: most array images for pages. Each holds pages of one texel format. At most 2^10.
-     * Default: 64. When all are in use, finer tiles find no page (pageChunkShortages in the
-     * statistics). This is also SluiceVulkanPages.viewCount: mind the device's per-stage limits on
-     * samplers and sampled images.
-     *
-     * Sizes: the images of a format have 64, 64, 128, 256, 512, 1024, then 2048 tiles each (4 to
-     * 128 MiB). They are smaller if the device lacks memory or supports fewer layers. 64 images
-     * hold 120 832 tiles (7.4 GiB) of one format, or 49 152 tiles (3 GiB) of eight formats: the
-     * first 2048 tiles of a format take six images.
-     *
-     * The first front end of the context decides; see vulkan_context.h.
-     */
-    uint32_t maxPageChunkCount;
-    /**
      * Time in which a region becomes one level sharper after finer tiles became resident. Avoids
      * popping; steps are 1/256 level. In time stamps, at most 2^40. Default: 0, at once. A tenth of
      * a second is hardly noticeable. Regions become coarser at once, because their tiles are
      * evicted; unless memory is short, such tiles were not in view.
      */
     uint64_t residencyFadeTicks;
-    /**
-     * Immediate retries of failed reads (loader.h). After they are used up, the manager requests
-     * the tile again after retryDelayTicks.
-     */
-    SluiceTileRetryPolicy readRetry;
-    /** Default: as in SluiceTileLoaderCreateInfo. The first front end of the context decides. */
-    uint32_t maxReadsPerSource;
     /**
      * Unit of time stamps and of all times in this struct. At most 10^12. Default: 10^9
      * (nanoseconds). If your time stamps count frames, set the frames per second; otherwise each
@@ -345,14 +321,6 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * fallback color for some frames (SLUICE_MIP_UNTOUCHED), as it does just after it was added.
      */
     bool packedLevelsOnDemand;
-    /**
-     * Bytes of staging memory made at creation and kept. At least 4 MiB, at most 64 KiB times
-     * maxLoadsInFlight. Reads that need more get it in blocks of 4 MiB, which are freed after 120
-     * idle frames. Making blocks halves the rate of the first fill on an H200
-     * (bench/vulkan, fill.growing.rate). UINT64_MAX makes all staging memory at creation. Default:
-     * 4 MiB.
-     */
-    uint64_t minStagingSize;
     /**
      * Whether the descriptor sets of frames have an array of all textures. It has maxTextureCount
      * elements; the index is SluiceVulkanTexture.tableIndex, also for layers of arrays. Requires

@@ -7,10 +7,9 @@
  * first, then the context, then the device.
  *
  * Streamers and demand loaders are the front ends of a context. They share loader threads, staging
- * memory and the images of pages. The first front end makes them with its loaderThreadCount,
- * maxReadsPerSource and maxPageChunkCount. The last front end destroys them. A streamer in paged
- * mode and a demand loader that have the same SluiceImageSource read each tile once and keep it on
- * one page.
+ * memory and the images of pages. These are made with the settings of the context when a front end
+ * first needs them, and destroyed with the last front end. A streamer in paged mode and a demand
+ * loader that have the same SluiceImageSource read each tile once and keep it on one page.
  *
  * Submit frames and launches of a context to queues of one family. The functions that begin, end,
  * abandon or process them must not run at the same time for two front ends of one context. If they
@@ -19,7 +18,7 @@
 #ifndef SLUICE_VULKAN_CONTEXT_H
 #define SLUICE_VULKAN_CONTEXT_H
 
-#include <sluice/base.h>
+#include <sluice/loader.h>
 
 #include <vulkan/vulkan_core.h>
 
@@ -113,6 +112,45 @@ typedef struct SluiceVulkanContextCreateInfo {
     /** Cache for the compute pipelines of the library, so that the application can store it. Must
      *  outlive the context. Default: the context makes one of its own. */
     VkPipelineCache pipelineCache;
+    /** Threads that read for all streamers and demand loaders. At most 2^10. Default: processors -
+     * 1, at least 2. */
+    uint32_t loaderThreadCount;
+    /**
+     * Most concurrent reads of one source, and so most threads that a stalled source occupies. For
+     * a demand loader all openings together count as one source, and so do the fills of one
+     * resource. Default: loaderThreadCount - 1, at least 1.
+     */
+    uint32_t maxReadsPerSource;
+    /**
+     * Immediate retries of failed reads (loader.h), also of resources that return SLUICE_NOT_READY.
+     * After they are used up, a streamer requests the tile again after its retryDelayTicks, and a
+     * demand loader after its failureRetryDelayNs.
+     */
+    SluiceTileRetryPolicy readRetry;
+    /**
+     * Paged mode and demand loading: most array images for pages. Each holds pages of one texel
+     * format. At most 2^10. Default: 64. When all are in use, finer tiles find no page
+     * (pageChunkShortages in the statistics). This is also SluiceVulkanPages.viewCount: mind the
+     * device's per-stage limits on samplers and sampled images.
+     *
+     * Sizes: the images of a format have 64, 64, 128, 256, 512, 1024, then 2048 tiles each (4 to
+     * 128 MiB). They are smaller if the device lacks memory or supports fewer layers. 64 images
+     * hold 120 832 tiles (7.4 GiB) of one format, or 49 152 tiles (3 GiB) of eight formats: the
+     * first 2048 tiles of a format take six images.
+     */
+    uint32_t maxPageChunkCount;
+    /**
+     * Bytes of staging memory that are kept while idle. A streamer or demand loader makes them at
+     * its creation, if there are fewer: at least 4 MiB, at most 64 KiB times its maxLoadsInFlight
+     * or maxTilesInFlight. Reads that need more get it in blocks of 4 MiB: an idle block of another
+     * front end, or a new one that is freed after 120 idle frames or launches.
+     *
+     * Making blocks halves the rate of the first fill of a streamer on an H200 (bench/vulkan,
+     * fill.growing.rate), and costs that of a demand loader a third (bench/demand,
+     * fill.defaults.rate). UINT64_MAX makes all staging memory of each front end at its creation.
+     * Default: 4 MiB.
+     */
+    uint64_t minStagingSize;
 } SluiceVulkanContextCreateInfo;
 
 /**
@@ -122,8 +160,9 @@ typedef struct SluiceVulkanContextCreateInfo {
  * "sluice: ".
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a memoryBudget below 4 MiB,
- *         or a queue family that does not exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if
- *         instance or device were created for less than Vulkan 1.2;
+ *         a loaderThreadCount or maxPageChunkCount above its limit, or a queue family that does not
+ *         exist or lacks a capability; SLUICE_ERROR_UNSUPPORTED if instance or device were created
+ *         for less than Vulkan 1.2;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  * Thread safety: any thread.
  */

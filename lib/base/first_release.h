@@ -53,7 +53,7 @@
 #define SLC_FIRST_SluiceBakeInfo SLC_UP_TO(SluiceBakeInfo, pfnProgress)
 #define SLC_FIRST_SluiceBakeReport SLC_UP_TO(SluiceBakeReport, clampedTexelCount)
 #define SLC_FIRST_SluiceDemandLoaderCreateInfo                                                     \
-    SLC_UP_TO(SluiceDemandLoaderCreateInfo, minStagingSize)
+    SLC_UP_TO(SluiceDemandLoaderCreateInfo, failureRetryDelayNs)
 #define SLC_FIRST_SluiceDemandLoaderSettings SLC_UP_TO(SluiceDemandLoaderSettings, noLodBias)
 #define SLC_FIRST_SluiceDemandSampler SLC_UP_TO(SluiceDemandSampler, explicitAddressModes)
 #define SLC_FIRST_SluiceDemandTextureCreateInfo                                                    \
@@ -82,7 +82,7 @@
     SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesShared)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
-    SLC_UP_TO(SluiceVulkanContextCreateInfo, pipelineCache)
+    SLC_UP_TO(SluiceVulkanContextCreateInfo, minStagingSize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
     SLC_UP_TO(SluiceVulkanContextStatistics, refusedBlockCount)
 

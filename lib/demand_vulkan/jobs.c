@@ -68,17 +68,11 @@ static void on_failure(void *user, const SluiceTileReadFailure *failure)
 
 static SluiceResult create_reader(SluiceDemandLoader *loader)
 {
-    const SluiceDemandLoaderCreateInfo *info = &loader->info;
-    SluiceTileLoaderCreateInfo create = {.structSize = sizeof create,
-                                         .threadCount = info->loaderThreadCount,
-                                         .requestCapacity = loader->job_count,
-                                         .pAllocator = &loader->cb,
-                                         .retry = info->readRetry,
-                                         .maxReadsPerSource = info->maxReadsPerSource,
-                                         .end = {loader, on_end}};
-    if (info->failure.pfnFailed)
+    SluiceTileLoaderCreateInfo create = {
+        .structSize = sizeof create, .requestCapacity = loader->job_count, .end = {loader, on_end}};
+    if (loader->info.failure.pfnFailed)
         create.failure = (SluiceTileReadFailureCallback){loader, on_failure};
-    return slc_create_shared_loader(loader->context, &create, &loader->reader);
+    return slc_create_shared_loader(&loader->context->shared, &create, &loader->reader);
 }
 
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
@@ -95,9 +89,8 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
         slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
                             &loader->jobs[i]);
     loader->free_tile_count = loader->free_other_count = tiles;
-    SluiceResult result =
-        slc_staging_init(&loader->staging, &loader->context->shared.staging, &loader->vk,
-                         &loader->caps, &loader->cb, tiles, loader->info.minStagingSize);
+    SluiceResult result = slc_staging_init(&loader->staging, &loader->context->shared.staging,
+                                           &loader->vk, &loader->caps, &loader->cb, tiles);
     return result == SLUICE_SUCCESS ? create_reader(loader) : result;
 }
 

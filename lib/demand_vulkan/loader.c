@@ -38,7 +38,6 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
         {"pageCapacity", info->pageCapacity, 1, MAX_PAGES},
         {"maxRequestsPerLaunch", info->maxRequestsPerLaunch, 1, MAX_REQUESTS},
         {"maxTilesInFlight", info->maxTilesInFlight, 1, MAX_TILES_IN_FLIGHT},
-        {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
         {"memoryBudget", info->memoryBudget ? info->memoryBudget : MIN_BUDGET, MIN_BUDGET,
          UINT64_MAX},
     };
@@ -52,7 +51,6 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
     info->maxTextureCount = or_default(info->maxTextureCount, 1u << 17);
     info->maxRequestsPerLaunch = or_default(info->maxRequestsPerLaunch, 8192);
     info->maxTilesInFlight = or_default(info->maxTilesInFlight, 1024);
-    info->maxPageChunkCount = or_default(info->maxPageChunkCount, 64);
     if (info->failureRetryDelayNs == 0)
         info->failureRetryDelayNs = UINT64_C(30000000000);
     if (info->pageCapacity == 0)
@@ -67,13 +65,13 @@ static SluiceResult fill_in(SluiceDemandLoaderCreateInfo *info)
 static void choose_budget(SluiceDemandLoader *loader)
 {
     SluiceDemandLoaderCreateInfo *info = &loader->info;
+    uint32_t chunks = loader->context->shared.max_page_chunks;
     uint64_t most =
-        slc_page_chunks_capacity(info->maxPageChunkCount, loader->caps.max_image_array_layers) *
-        SLC_TILE_SIZE;
+        slc_page_chunks_capacity(chunks, loader->caps.max_image_array_layers) * SLC_TILE_SIZE;
     if (info->memoryBudget > most)
         slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "maxPageChunkCount %u images of tiles use at most %llu MiB of the memoryBudget",
-                info->maxPageChunkCount, (unsigned long long)(most >> 20));
+                chunks, (unsigned long long)(most >> 20));
     if (info->memoryBudget == 0)
         info->memoryBudget = slc_device_memory_size(&loader->caps) / 2;
 }
@@ -210,8 +208,7 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
 
 static SluiceResult create_memory(SluiceDemandLoader *loader)
 {
-    SluiceResult result =
-        slc_use_pages(loader->context, loader->info.maxPageChunkCount, &loader->pages);
+    SluiceResult result = slc_use_pages(&loader->context->shared, &loader->pages);
     if (result == SLUICE_SUCCESS)
         result = slc_page_pool_add_user(loader->pages, loader->semaphore, loader->info.memoryBudget,
                                         &loader->memory, &loader->page_user);
@@ -339,7 +336,7 @@ static void destroy_device_parts(SluiceDemandLoader *loader)
     slc_demand_scan_finish(&loader->scan, &loader->vk);
     if (loader->page_user < SLC_MAX_PAGE_USERS)
         slc_page_pool_remove_user(loader->pages, loader->page_user);
-    slc_drop_pages(loader->context, loader->pages);
+    slc_drop_pages(&loader->context->shared, loader->pages);
     slc_buffer_finish(&loader->table_buffer, &loader->vk);
     slc_buffer_finish(&loader->levels_buffer, &loader->vk);
     loader->vk.DestroySemaphore(loader->vk.device, loader->semaphore, NULL);
@@ -357,7 +354,7 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
     slc_demand_textures_finish(loader);
     slc_preloads_finish(loader);
     slc_retries_finish(loader);
-    slc_destroy_shared_loader(loader->context, loader->reader);
+    slc_destroy_shared_loader(&loader->context->shared, loader->reader);
     slc_jobs_finish(loader);
     slc_residency_destroy(loader->residency);
     slc_page_space_destroy(loader->space);

@@ -8,12 +8,22 @@
 #include <assert.h>
 
 #define MIN_BUDGET (UINT64_C(4) << 20)
+#define MAX_THREADS 1024u
 
 static SluiceResult check_budget(const SluiceLogCallback *log, uint64_t bytes)
 {
     const struct slc_limit limit = {"memoryBudget", bytes ? bytes : MIN_BUDGET, MIN_BUDGET,
                                     UINT64_MAX};
     return slc_check_limits(log, &limit, 1);
+}
+
+static SluiceResult check_shared_limits(const SluiceVulkanContextCreateInfo *info)
+{
+    const struct slc_limit limits[] = {
+        {"loaderThreadCount", info->loaderThreadCount, 0, MAX_THREADS},
+        {"maxPageChunkCount", info->maxPageChunkCount, 0, SLC_MAX_PAGE_CHUNKS},
+    };
+    return slc_check_limits(&info->log, limits, sizeof limits / sizeof limits[0]);
 }
 
 static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
@@ -28,6 +38,8 @@ static SluiceResult check_fields(const SluiceVulkanContextCreateInfo *info)
         {"a function of pDeviceMemory",
          memory == NULL || (memory->pfnAllocate && memory->pfnFree)}};
     SluiceResult result = slc_check_required(&info->log, fields, sizeof fields / sizeof fields[0]);
+    if (result == SLUICE_SUCCESS)
+        result = check_shared_limits(info);
     return result == SLUICE_SUCCESS ? check_budget(&info->log, info->memoryBudget) : result;
 }
 
@@ -79,8 +91,7 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
         return result;
     slc_caps_init(&context->caps, &context->vk);
     context->sparse_queue = info->sparseQueue;
-    pthread_mutex_init(&context->shared.mutex, NULL);
-    slc_staging_group_init(&context->shared.staging);
+    slc_shared_parts_init(&context->shared, &context->vk, &context->caps, &context->cb, info);
     atomic_init(&context->child_count, 0);
     if (info->pDeviceMemory) {
         context->memory_callbacks = *info->pDeviceMemory;
@@ -139,11 +150,10 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
         return;
     }
     SluiceAllocationCallbacks cb = context->cb;
-    slc_staging_group_finish(&context->shared.staging);
     slc_memory_client_finish(&context->memory);
     slc_memory_budget_finish(&context->budget);
     context->vk.DestroyPipelineCache(context->vk.device, context->pipeline_cache, NULL);
-    pthread_mutex_destroy(&context->shared.mutex);
+    slc_shared_parts_finish(&context->shared);
     slc_free(&cb, context, 1, sizeof *context);
 }
 

@@ -4,24 +4,11 @@
 
 #include "vulkan/caps.h"
 #include "vulkan/memory_budget.h"
-#include "vulkan/staging.h"
+#include "vulkan/shared_parts.h"
 
 #include <sluice/vulkan_context.h>
 
-#include <pthread.h>
 #include <stdatomic.h>
-
-struct slc_page_pool;
-struct slc_read_pool;
-
-/** See shared_parts.h. */
-struct slc_shared_parts {
-    pthread_mutex_t mutex; ///< around what follows
-    struct slc_page_pool *pages;
-    struct slc_read_pool *threads;
-    uint32_t page_users, loader_count;
-    struct slc_staging_group staging; ///< has its own mutex
-};
 
 struct SluiceVulkanContext {
     SluiceAllocationCallbacks cb;

@@ -109,23 +109,19 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
     SluiceResult result = slc_map_init(&s->tile_units, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
-    result = slc_staging_init(&s->staging, &s->context->shared.staging, &s->vk, &s->caps, &s->cb,
-                              count, s->info.minStagingSize);
+    result =
+        slc_staging_init(&s->staging, &s->context->shared.staging, &s->vk, &s->caps, &s->cb, count);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceTileLoaderCreateInfo loader = {.structSize = sizeof loader,
-                                         .threadCount = s->info.loaderThreadCount,
                                          .requestCapacity = count,
-                                         .pAllocator = &s->cb,
-                                         .retry = s->info.readRetry,
-                                         .maxReadsPerSource = s->info.maxReadsPerSource,
                                          .maxSourceCount = s->info.maxTextureCount};
-    return slc_create_shared_loader(s->context, &loader, &s->loader);
+    return slc_create_shared_loader(&s->context->shared, &loader, &s->loader);
 }
 
 void slc_loads_finish(SluiceVulkanStreamer *s)
 {
-    slc_destroy_shared_loader(s->context,
+    slc_destroy_shared_loader(&s->context->shared,
                               s->loader); /* first: its threads write into the staging slots */
     slc_staging_finish(&s->staging);
     slc_map_finish(&s->tile_units, &s->cb);

@@ -5,30 +5,53 @@
 
 #include <assert.h>
 
-static SluiceResult create_pages(SluiceVulkanContext *context, uint32_t chunk_count)
+#define DEFAULT_PAGE_CHUNKS 64u
+
+void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk *vk,
+                           const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                           const SluiceVulkanContextCreateInfo *info)
 {
-    struct slc_page_pool *pool = slc_calloc(&context->cb, 1, sizeof *pool);
+    shared->vk = vk;
+    shared->caps = caps;
+    shared->cb = cb;
+    shared->thread_count = info->loaderThreadCount;
+    shared->max_reads_per_source = info->maxReadsPerSource;
+    shared->max_page_chunks =
+        info->maxPageChunkCount ? info->maxPageChunkCount : DEFAULT_PAGE_CHUNKS;
+    shared->retry = info->readRetry;
+    pthread_mutex_init(&shared->mutex, NULL);
+    slc_staging_group_init(&shared->staging, info->minStagingSize);
+}
+
+void slc_shared_parts_finish(struct slc_shared_parts *shared)
+{
+    assert(!shared->pages && !shared->threads);
+    slc_staging_group_finish(&shared->staging);
+    pthread_mutex_destroy(&shared->mutex);
+}
+
+static SluiceResult create_pages(struct slc_shared_parts *shared)
+{
+    struct slc_page_pool *pool = slc_calloc(shared->cb, 1, sizeof *pool);
     if (!pool)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     SluiceResult result =
-        slc_page_pool_init(pool, &context->vk, &context->caps, &context->cb, chunk_count);
+        slc_page_pool_init(pool, shared->vk, shared->caps, shared->cb, shared->max_page_chunks);
     if (result == SLUICE_SUCCESS) {
-        context->shared.pages = pool;
+        shared->pages = pool;
         return SLUICE_SUCCESS;
     }
     slc_page_pool_finish(pool);
-    slc_free(&context->cb, pool, 1, sizeof *pool);
+    slc_free(shared->cb, pool, 1, sizeof *pool);
     return result;
 }
 
-SluiceResult slc_use_pages(SluiceVulkanContext *context, uint32_t chunk_count,
-                           struct slc_page_pool **pool)
+SluiceResult slc_use_pages(struct slc_shared_parts *shared, struct slc_page_pool **pool)
 {
-    struct slc_shared_parts *shared = &context->shared;
     SluiceResult result = SLUICE_SUCCESS;
     pthread_mutex_lock(&shared->mutex);
     if (!shared->pages)
-        result = create_pages(context, chunk_count);
+        result = create_pages(shared);
     if (result == SLUICE_SUCCESS) {
         shared->page_users++;
         *pool = shared->pages;
@@ -37,16 +60,15 @@ SluiceResult slc_use_pages(SluiceVulkanContext *context, uint32_t chunk_count,
     return result;
 }
 
-void slc_drop_pages(SluiceVulkanContext *context, struct slc_page_pool *pool)
+void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool)
 {
-    struct slc_shared_parts *shared = &context->shared;
     if (!pool)
         return;
     pthread_mutex_lock(&shared->mutex);
     assert(pool == shared->pages && shared->page_users > 0);
     if (--shared->page_users == 0) {
         slc_page_pool_finish(pool);
-        slc_free(&context->cb, pool, 1, sizeof *pool);
+        slc_free(shared->cb, pool, 1, sizeof *pool);
         shared->pages = NULL;
     }
     pthread_mutex_unlock(&shared->mutex);
@@ -61,17 +83,21 @@ static void drop_threads(struct slc_shared_parts *shared)
     shared->threads = NULL;
 }
 
-SluiceResult slc_create_shared_loader(SluiceVulkanContext *context,
+SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
                                       const SluiceTileLoaderCreateInfo *info,
                                       SluiceTileLoader **loader)
 {
-    struct slc_shared_parts *shared = &context->shared;
     SluiceResult result = SLUICE_SUCCESS;
+    SluiceTileLoaderCreateInfo create = *info;
+    create.pAllocator = shared->cb;
+    create.threadCount = shared->thread_count;
+    create.maxReadsPerSource = shared->max_reads_per_source;
+    create.retry = shared->retry;
     pthread_mutex_lock(&shared->mutex);
     if (!shared->threads)
-        result = slc_read_pool_create(info, &shared->threads);
+        result = slc_read_pool_create(&create, &shared->threads);
     if (result == SLUICE_SUCCESS)
-        result = slc_create_pool_loader(shared->threads, info, loader);
+        result = slc_create_pool_loader(shared->threads, &create, loader);
     if (result == SLUICE_SUCCESS)
         shared->loader_count++;
     else
@@ -80,9 +106,8 @@ SluiceResult slc_create_shared_loader(SluiceVulkanContext *context,
     return result;
 }
 
-void slc_destroy_shared_loader(SluiceVulkanContext *context, SluiceTileLoader *loader)
+void slc_destroy_shared_loader(struct slc_shared_parts *shared, SluiceTileLoader *loader)
 {
-    struct slc_shared_parts *shared = &context->shared;
     if (!loader)
         return;
     sluiceDestroyTileLoader(loader);

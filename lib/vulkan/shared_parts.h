@@ -1,28 +1,53 @@
 /**
- * Threads and pages that the front ends of a context share. Made by the first front end, with its
- * settings, and destroyed with the last one.
+ * Threads and pages that the front ends of a context share. Made with the settings of the context
+ * when there is a front end, and destroyed with the last one.
  */
 #ifndef SLC_VULKAN_SHARED_PARTS_H
 #define SLC_VULKAN_SHARED_PARTS_H
 
-#include "vulkan/context.h"
 #include "vulkan/page_pool.h"
+#include "vulkan/staging.h"
 
 #include <sluice/loader.h>
+#include <sluice/vulkan_context.h>
 
-/** Pages of the context. `chunk_count` counts if there are none yet. Errors: OUT_OF_HOST_MEMORY,
- *  OUT_OF_DEVICE_MEMORY, VULKAN. */
-SluiceResult slc_use_pages(SluiceVulkanContext *context, uint32_t chunk_count,
-                           struct slc_page_pool **pool);
+#include <pthread.h>
+
+struct slc_read_pool;
+
+struct slc_shared_parts {
+    const struct slc_vk *vk; ///< of the context, with its memory client
+    const struct slc_caps *caps;
+    const SluiceAllocationCallbacks *cb;
+    uint32_t thread_count;         ///< 0: the default of tile loaders
+    uint32_t max_reads_per_source; ///< 0: the default of tile loaders
+    uint32_t max_page_chunks;      ///< images of pages
+    SluiceTileRetryPolicy retry;   ///< of failed reads
+    pthread_mutex_t mutex;         ///< around the next four
+    struct slc_page_pool *pages;
+    struct slc_read_pool *threads;
+    uint32_t page_users, loader_count;
+    struct slc_staging_group staging; ///< has its own mutex
+};
+
+/** Takes the settings. Makes nothing yet. */
+void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk *vk,
+                           const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                           const SluiceVulkanContextCreateInfo *info);
+/** There are no front ends. */
+void slc_shared_parts_finish(struct slc_shared_parts *shared);
+
+/** Pages of the context. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+SluiceResult slc_use_pages(struct slc_shared_parts *shared, struct slc_page_pool **pool);
 /** Ends what slc_use_pages began. NULL is allowed. */
-void slc_drop_pages(SluiceVulkanContext *context, struct slc_page_pool *pool);
+void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool);
 
-/** A tile loader on the context's threads. Number of threads, reads per source and bytes in flight
- *  count if there are no threads yet. Errors: OUT_OF_HOST_MEMORY. */
-SluiceResult slc_create_shared_loader(SluiceVulkanContext *context,
+/** A tile loader on the context's threads. Uses requestCapacity, maxSourceCount and the callbacks
+ * of `info`; the context decides about the rest. Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
                                       const SluiceTileLoaderCreateInfo *info,
                                       SluiceTileLoader **loader);
 /** NULL is allowed. */
-void slc_destroy_shared_loader(SluiceVulkanContext *context, SluiceTileLoader *loader);
+void slc_destroy_shared_loader(struct slc_shared_parts *shared, SluiceTileLoader *loader);
 
 #endif /* SLC_VULKAN_SHARED_PARTS_H */

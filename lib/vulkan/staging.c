@@ -9,15 +9,15 @@
 
 #define IDLE_TICKS 120u
 
-void slc_staging_group_init(struct slc_staging_group *group)
+void slc_staging_group_init(struct slc_staging_group *group, uint64_t kept_size)
 {
-    *group = (struct slc_staging_group){0};
+    *group = (struct slc_staging_group){.kept_size = kept_size};
     pthread_mutex_init(&group->mutex, NULL);
 }
 
 void slc_staging_group_finish(struct slc_staging_group *group)
 {
-    assert(!group->first);
+    assert(!group->first && group->size == 0);
     pthread_mutex_destroy(&group->mutex);
 }
 
@@ -42,7 +42,7 @@ static bool take_idle(struct slc_staging *s, uint32_t index)
 {
     struct slc_buffer *to = &s->blocks[index].buffer;
     for (struct slc_staging *other = s->group->first; other; other = other->next)
-        for (uint32_t i = other->kept_count; other != s && i < other->block_count; i++) {
+        for (uint32_t i = 1; other != s && i < other->block_count; i++) {
             struct slc_buffer *from = &other->blocks[i].buffer;
             if (!from->buffer || other->blocks[i].used_count || from->size != block_size(s, index))
                 continue;
@@ -58,17 +58,26 @@ static bool take_idle(struct slc_staging *s, uint32_t index)
 static SluiceResult make_block(struct slc_staging *s, uint32_t index)
 {
     s->blocks[index].idle_since = s->tick;
-    return slc_buffer_init(&s->blocks[index].buffer, s->vk, s->caps, block_size(s, index),
-                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    SluiceResult result =
+        slc_buffer_init(&s->blocks[index].buffer, s->vk, s->caps, block_size(s, index),
+                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SLC_BUFFER_UPLOAD);
+    if (result == SLUICE_SUCCESS)
+        s->group->size += block_size(s, index);
+    return result;
+}
+
+static void free_block(struct slc_staging *s, uint32_t index)
+{
+    struct slc_buffer *buffer = &s->blocks[index].buffer;
+    if (buffer->buffer)
+        s->group->size -= block_size(s, index);
+    slc_buffer_finish(buffer, s->vk);
 }
 
 SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_group *group,
                               const struct slc_vk *vk, const struct slc_caps *caps,
-                              const SluiceAllocationCallbacks *cb, uint32_t slot_count,
-                              uint64_t kept_size)
+                              const SluiceAllocationCallbacks *cb, uint32_t slot_count)
 {
-    const uint64_t size = (uint64_t)SLC_STAGING_BLOCK_SLOTS * SLC_TILE_SIZE;
-    uint64_t kept = kept_size / size + (kept_size % size != 0);
     *staging =
         (struct slc_staging){.group = group,
                              .vk = vk,
@@ -76,9 +85,6 @@ SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_gr
                              .cb = cb,
                              .block_count = slc_div_up_u32(slot_count, SLC_STAGING_BLOCK_SLOTS),
                              .slot_count = slot_count};
-    staging->kept_count = kept < 1                      ? 1
-                          : kept < staging->block_count ? (uint32_t)kept
-                                                        : staging->block_count;
     staging->blocks = slc_calloc(cb, staging->block_count, sizeof *staging->blocks);
     if (!staging->blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -86,7 +92,9 @@ SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_gr
     pthread_mutex_lock(&group->mutex);
     staging->next = group->first;
     group->first = staging;
-    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < staging->kept_count; i++)
+    for (uint32_t i = 0; result == SLUICE_SUCCESS && i < staging->block_count &&
+                         (i == 0 || group->size < group->kept_size);
+         i++)
         result = make_block(staging, i);
     pthread_mutex_unlock(&group->mutex);
     return result;
@@ -101,9 +109,9 @@ void slc_staging_finish(struct slc_staging *staging)
     while (*link != staging)
         link = &(*link)->next;
     *link = staging->next;
-    pthread_mutex_unlock(&staging->group->mutex);
     for (uint32_t i = 0; i < staging->block_count; i++)
-        slc_buffer_finish(&staging->blocks[i].buffer, staging->vk);
+        free_block(staging, i);
+    pthread_mutex_unlock(&staging->group->mutex);
     slc_free(staging->cb, staging->blocks, staging->block_count, sizeof *staging->blocks);
     *staging = (struct slc_staging){0};
 }
@@ -156,11 +164,12 @@ void slc_staging_trim(struct slc_staging *staging)
     staging->tick++;
     staging->refused = false;
     pthread_mutex_lock(&staging->group->mutex);
-    for (uint32_t i = staging->kept_count; i < staging->block_count; i++) {
-        struct slc_staging_block *block = &staging->blocks[i];
+    for (uint32_t i = 1; i < staging->block_count; i++) {
+        const struct slc_staging_block *block = &staging->blocks[i];
         if (block->buffer.buffer && block->used_count == 0 &&
-            staging->tick - block->idle_since > IDLE_TICKS)
-            slc_buffer_finish(&block->buffer, staging->vk);
+            staging->tick - block->idle_since > IDLE_TICKS &&
+            staging->group->size - block->buffer.size >= staging->group->kept_size)
+            free_block(staging, i);
     }
     pthread_mutex_unlock(&staging->group->mutex);
 }

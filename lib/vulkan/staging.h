@@ -1,11 +1,12 @@
 /**
- * Slots of one tile each that the host writes and the GPU copies from, in blocks of 4 MiB. Some
- * blocks are kept from the start. The others are made when a slot of theirs is first needed, and
- * freed when all of their slots are idle for a while. The user chooses slots, and should prefer
- * those that were used last.
+ * Slots of one tile each that the host writes and the GPU copies from, in blocks of 4 MiB. A block
+ * is made when a slot of it is first needed. The user chooses slots, and should prefer those that
+ * were used last.
  *
  * The staging memories of a group share blocks: one that needs a block takes an idle one from
- * another before it allocates. The blocks that are kept from the start are never taken.
+ * another before it allocates. A group keeps some memory: its members make it at their start, and
+ * free idle blocks only beyond that size. The first block of each member is its own, made at its
+ * start and never taken or freed, so that each can always go on.
  */
 #ifndef SLC_VULKAN_STAGING_H
 #define SLC_VULKAN_STAGING_H
@@ -27,6 +28,8 @@ struct slc_staging;
 struct slc_staging_group {
     pthread_mutex_t mutex; ///< around the blocks of all members
     struct slc_staging *first;
+    uint64_t kept_size; ///< bytes of blocks that stay while they are idle
+    uint64_t size;      ///< bytes of all blocks
 };
 
 struct slc_staging {
@@ -37,23 +40,22 @@ struct slc_staging {
     const SluiceAllocationCallbacks *cb;
     struct slc_staging_block *blocks; ///< owned
     uint32_t block_count, slot_count;
-    uint32_t kept_count; ///< blocks that are made at the start and never freed
     uint64_t tick;
     bool refused; ///< since the last tick: the device is not asked again before the next
 };
 
-void slc_staging_group_init(struct slc_staging_group *group);
+/** Keeps at least `kept_size` bytes, as far as members have slots for them. */
+void slc_staging_group_init(struct slc_staging_group *group, uint64_t kept_size);
 /** It has no members. */
 void slc_staging_group_finish(struct slc_staging_group *group);
 
 /**
- * Makes blocks for `kept_size` bytes: at least one, at most all. Errors: OUT_OF_HOST_MEMORY,
- * OUT_OF_DEVICE_MEMORY, VULKAN; finish it then, too.
+ * Makes the first block, and more until the group has what it keeps. Errors:
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN; finish it then, too.
  */
 SluiceResult slc_staging_init(struct slc_staging *staging, struct slc_staging_group *group,
                               const struct slc_vk *vk, const struct slc_caps *caps,
-                              const SluiceAllocationCallbacks *cb, uint32_t slot_count,
-                              uint64_t kept_size);
+                              const SluiceAllocationCallbacks *cb, uint32_t slot_count);
 /** Threads no longer write into it and the GPU no longer reads it. */
 void slc_staging_finish(struct slc_staging *staging);
 
@@ -65,7 +67,8 @@ bool slc_staging_ensure(struct slc_staging *staging, uint32_t slot);
 void slc_staging_take(struct slc_staging *staging, uint32_t slot);
 /** No frame under way reads it. */
 void slc_staging_give(struct slc_staging *staging, uint32_t slot);
-/** Once per frame: frees blocks that nobody used for 120 frames, except those that are kept. */
+/** Once per frame: frees blocks that nobody used for 120 frames, except those that the group keeps.
+ */
 void slc_staging_trim(struct slc_staging *staging);
 
 /** Of one that has memory. */

@@ -44,7 +44,6 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
         {"heapTileCapacity", info->heapTileCapacity, 1, 1u << 20},
         {"maxRegionCount", info->maxRegionCount, SLC_REGION_ALIGNMENT, 1u << 28},
         {"feedbackEncoding", (uint32_t)info->feedbackEncoding, 0, SLUICE_FEEDBACK_ENCODING_MASKS},
-        {"maxPageChunkCount", info->maxPageChunkCount, 1, SLC_MAX_PAGE_CHUNKS},
         {"residencyFadeTicks", info->residencyFadeTicks, 0, SLC_MAX_FADE_TIME},
         {"residencyMode", (uint32_t)info->residencyMode, 0, SLUICE_RESIDENCY_MODE_DENSE},
         {"textureArray", (uint32_t)info->textureArray, 0, SLUICE_TEXTURE_ARRAY_SEPARATE},
@@ -63,7 +62,6 @@ static SluiceResult fill_in(SluiceVulkanStreamerCreateInfo *info)
                 slc_max_u32(64, 4 * slc_min_u32(info->tilesPerFrame, SLC_MAX_TILES_PER_FRAME)));
     set_default(&info->heapTileCapacity, SLUICE_DEFAULT_HEAP_TILE_CAPACITY);
     set_default(&info->maxRegionCount, 1u << 20);
-    set_default(&info->maxPageChunkCount, 64);
     info->texturesPerFrame = slc_min_u32(info->texturesPerFrame, info->maxTextureCount);
     set_default(&info->feedbackReadbackSize, slc_min_u32(info->maxRegionCount, 1u << 22));
     SluiceResult result = check_limits(log, info);
@@ -299,7 +297,7 @@ static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
 {
     SluiceResult result = create_semaphore(s);
     if (result == SLUICE_SUCCESS)
-        result = slc_use_pages(s->context, s->info.maxPageChunkCount, &s->pages);
+        result = slc_use_pages(&s->context->shared, &s->pages);
     if (result == SLUICE_SUCCESS)
         result = slc_page_pool_add_user(s->pages, s->semaphore, 0, &s->memory, &s->page_user);
     if (result == SLUICE_SUCCESS)
@@ -414,7 +412,7 @@ static void destroy_device_parts(SluiceVulkanStreamer *s)
         s->residency->interface->destroy(s->residency);
     if (s->page_user < SLC_MAX_PAGE_USERS)
         slc_page_pool_remove_user(s->pages, s->page_user);
-    slc_drop_pages(s->context, s->pages);
+    slc_drop_pages(&s->context->shared, s->pages);
     s->vk.DestroySemaphore(s->vk.device, s->semaphore, NULL);
 }
 

@@ -52,14 +52,14 @@ static bool create_loader(struct tracer *t)
         .device = t->gpu.device,
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .log = {.pfnLog = log_say},
+        .loaderThreadCount = o->threads,
+        .maxPageChunkCount = TRACER_PAGE_CHUNKS,
     };
     SluiceDemandLoaderCreateInfo info = {
         .structSize = sizeof info,
         .pageCapacity = TRACER_PAGE_CAPACITY,
         .maxRequestsPerLaunch = o->requests,
         .memoryBudget = o->budget,
-        .loaderThreadCount = o->threads,
-        .maxPageChunkCount = TRACER_PAGE_CHUNKS,
     };
     SluiceResult result = sluiceCreateVulkanContext(&context, &t->context);
     info.context = t->context;

@@ -28,10 +28,19 @@ uint32_t view_texture_count(const struct picture_list *pictures)
     return 2 + 2 * pictures->count;
 }
 
+static bool begin_slowness(struct view *view)
+{
+    if (view->request.everything || slowness_begin(&view->slowness, view->request.settings,
+                                                   view_texture_count(view->request.pictures)))
+        return true;
+    fprintf(stderr, "out of memory\n");
+    return false;
+}
+
 static bool create_context(struct view *view)
 {
     const struct gpu *gpu = view->request.gpu;
-    const SluiceVulkanContextCreateInfo info = {
+    SluiceVulkanContextCreateInfo info = {
         .structSize = sizeof info,
         .queueFamilyIndex = gpu->family,
         .instance = gpu->instance,
@@ -41,7 +50,11 @@ static bool create_context(struct view *view)
         .sparseQueue = gpu->sparse_queue,
         .sparseQueueFamilyIndex = gpu->sparse_family,
         .log = {NULL, log_say},
+        .loaderThreadCount = view->request.settings->threads,
+        .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
     };
+    if (view->slowness.on) /* what is on its way is asked for once more, then in the next frame */
+        info.readRetry = (SluiceTileRetryPolicy){2, 1000000, 1000000};
     return check(sluiceCreateVulkanContext(&info, &view->context), "sluiceCreateVulkanContext");
 }
 
@@ -52,13 +65,11 @@ static bool create_streamer(struct view *view)
         .structSize = sizeof info,
         .context = view->context,
         .residencyMode = view->request.mode,
-        .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
         .framesInFlight = VIEW_FRAMES_IN_FLIGHT,
         .maxTextureCount = view_texture_count(view->request.pictures),
         .maxRegionCount = VIEW_MAX_REGIONS,
         .texturesPerFrame = settings->textures_per_frame,
         .tilesPerFrame = settings->tiles_per_frame,
-        .loaderThreadCount = settings->threads,
         .heapTileCapacity = settings->heap_tiles,
         .maxHeapCount = settings->max_heaps,
         .numExtraStandbyTiles = settings->standby,
@@ -76,12 +87,7 @@ static bool create_streamer(struct view *view)
         info.maxHeapCount = 0;
         info.maxLoadsInFlight = 0;
         info.residencyFadeTicks = 0;
-    } else if (!slowness_begin(&view->slowness, settings, info.maxTextureCount)) {
-        fprintf(stderr, "out of memory\n");
-        return false;
     }
-    if (view->slowness.on) /* what is on its way is asked for once more, then in the next frame */
-        info.readRetry = (SluiceTileRetryPolicy){2, 1000000, 1000000};
     return check(sluiceCreateVulkanStreamer(&info, &view->streamer), "sluiceCreateVulkanStreamer");
 }
 
@@ -292,7 +298,7 @@ static bool create_prediction(struct view *view)
 bool view_create(const struct view_request *request, const char *record_path, struct view *view)
 {
     *view = (struct view){.request = *request};
-    bool created = create_context(view) && create_streamer(view);
+    bool created = begin_slowness(view) && create_context(view) && create_streamer(view);
     /* Before the first texture, so that the recording is complete. */
     const SluiceFileRecordingInfo recording = {
         .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};

@@ -280,7 +280,7 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
                                 : "no device has Vulkan 1.2 and what the residency mode needs");
     if (extension_count && !has_extensions(h, &extras))
         return no_device(h, "the device lacks an extension that this test is about");
-    if (!create_device(h, &extras) || harness_set_context(h, NULL, NULL) != SLUICE_SUCCESS)
+    if (!create_device(h, &extras) || harness_set_context(h, NULL) != SLUICE_SUCCESS)
         return 1;
     const char *abandon = getenv("SLUICE_ABANDON");
     h->abandon_one_in = abandon ? (uint32_t)strtoul(abandon, NULL, 10) : 0;
@@ -327,13 +327,20 @@ SluiceVulkanContextCreateInfo harness_context_info(struct harness *h)
                                            .log = {h, on_log}};
 }
 
-SluiceResult harness_set_context(struct harness *h, const SluiceAllocationCallbacks *allocator,
-                                 PFN_vkGetInstanceProcAddr get)
+SluiceResult harness_set_context(struct harness *h, const SluiceVulkanContextCreateInfo *settings)
 {
-    SluiceVulkanContextCreateInfo info = harness_context_info(h);
-    info.pAllocator = allocator;
-    if (get)
-        info.pfnGetInstanceProcAddr = get;
+    const SluiceVulkanContextCreateInfo usual = harness_context_info(h);
+    SluiceVulkanContextCreateInfo info = settings ? *settings : usual;
+    info.structSize = usual.structSize;
+    info.queueFamilyIndex = usual.queueFamilyIndex;
+    info.instance = usual.instance;
+    info.physicalDevice = usual.physicalDevice;
+    info.device = usual.device;
+    info.sparseQueue = usual.sparseQueue;
+    info.sparseQueueFamilyIndex = usual.sparseQueueFamilyIndex;
+    info.log = usual.log;
+    if (!info.pfnGetInstanceProcAddr)
+        info.pfnGetInstanceProcAddr = usual.pfnGetInstanceProcAddr;
     sluiceDestroyVulkanContext(h->context);
     return sluiceCreateVulkanContext(&info, &h->context);
 }

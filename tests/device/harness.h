@@ -96,13 +96,12 @@ int harness_init_with(struct harness *h, const char *const *extensions, uint32_t
 int harness_finish(struct harness *h, int status);
 
 /**
- * Replaces the harness's context by one with this allocator, whose functions `get` finds; NULL: the
- * default, the harness's own. After an error there is none. Its streamers and demand loaders must
- * have been destroyed.
+ * Replaces the harness's context by one with these settings, except for the device, its queues and
+ * the log; a function that is NULL is the harness's own. NULL: the usual context. After an error
+ * there is none. Its streamers and demand loaders must have been destroyed.
  */
-SluiceResult harness_set_context(struct harness *h, const SluiceAllocationCallbacks *allocator,
-                                 PFN_vkGetInstanceProcAddr get);
-/** Settings of such a context. */
+SluiceResult harness_set_context(struct harness *h, const SluiceVulkanContextCreateInfo *settings);
+/** Settings of the usual context. */
 SluiceVulkanContextCreateInfo harness_context_info(struct harness *h);
 
 /** Fills in the context, the mode if that is AUTO, and frames as the unit of time: then 0 is the

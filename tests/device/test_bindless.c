@@ -277,7 +277,6 @@ static void picture_init(struct picture *p, struct harness *h, SluiceTextureArra
                                            .textureArray = array,
                                            .maxTextureCount = 4 * TEXTURES,
                                            .maxRegionCount = 1 << 12,
-                                           .maxPageChunkCount = 8,
                                            .feedbackTimeoutTicks = 1000};
     harness_fill(h, &info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &p->streamer));
@@ -502,5 +501,6 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.maxPageChunkCount = 8}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -24,7 +24,6 @@ static void note_failure(void *user, const SluiceTileReadFailure *failure)
 static SluiceDemandLoaderCreateInfo quick_retries(struct told *told)
 {
     return (SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
-                                          .readRetry = {3, 1, 1},
                                           .failure = {told, note_failure}};
 }
 
@@ -249,7 +248,7 @@ static void reads_of_textures_that_are_gone_change_nothing(void **state)
     (void)state;
     struct runner r;
     struct runner_image slow, other;
-    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .loaderThreadCount = 3};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info};
     runner_init(&r, &h, &info);
     runner_image_init(&slow, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
     runner_image_init(&other, SLUICE_FORMAT_R8G8B8A8_UNORM, 300, 300, 2);
@@ -326,5 +325,7 @@ int main(void)
         cmocka_unit_test(reads_of_textures_that_are_gone_change_nothing),
         cmocka_unit_test(a_source_may_go_as_soon_as_its_texture_is_destroyed),
     };
+    CHECK_OK(harness_set_context(
+        &h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3, .readRetry = {3, 1, 1}}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -60,12 +60,14 @@ static void a_loader_makes_the_staging_memory_that_it_is_asked_for(void **state)
     for (int i = 0; i < 2; i++) {
         struct runner r;
         const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
-                                                   .memoryBudget = 40u << 20,
-                                                   .minStagingSize = i ? UINT64_MAX : 0};
+                                                   .memoryBudget = 40u << 20};
+        const SluiceVulkanContextCreateInfo context = {.minStagingSize = i ? UINT64_MAX : 0};
+        CHECK_OK(harness_set_context(&h, &context));
         runner_init(&r, &h, &info);
         sizes[i] = runner_statistics(&r).hostVisibleMemorySize;
         runner_finish(&r);
     }
+    CHECK_OK(harness_set_context(&h, NULL));
     assert_int_equal(sizes[1] - sizes[0], 60u << 20); /* 1024 tiles in flight, less 4 MiB */
 }
 
@@ -285,8 +287,10 @@ static void formats_share_few_images_of_pages(void **state)
     (void)state;
     struct runner r;
     struct runner_image images[2];
-    const SluiceDemandLoaderCreateInfo info = {
-        .structSize = sizeof info, .memoryBudget = 512u << 20, .maxPageChunkCount = 2};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info,
+                                               .memoryBudget = 512u << 20};
+    const SluiceVulkanContextCreateInfo context = {.maxPageChunkCount = 2};
+    CHECK_OK(harness_set_context(&h, &context));
     h.quiet = true;
     runner_init(&r, &h, &info);
     assert_non_null(strstr(h.last_message, "at most 8 MiB of the memoryBudget"));
@@ -310,6 +314,7 @@ static void formats_share_few_images_of_pages(void **state)
     runner_finish(&r);
     for (uint32_t i = 0; i < 2; i++)
         runner_image_finish(&images[i]);
+    CHECK_OK(harness_set_context(&h, NULL));
 }
 
 static void preloaded_levels_are_there_before_they_are_sampled(void **state)
@@ -418,6 +423,9 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_of_instance(VkInstance insta
     return (PFN_vkVoidFunction)get_of_device;
 }
 
+static const SluiceVulkanContextCreateInfo poor_context = {.pfnGetInstanceProcAddr =
+                                                               get_of_instance};
+
 static void a_device_without_memory_is_a_smaller_budget(void **state)
 {
     (void)state;
@@ -430,7 +438,7 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16};
     poor.left = 64u << 20;
-    CHECK_OK(harness_set_context(&h, NULL, get_of_instance));
+    CHECK_OK(harness_set_context(&h, &poor_context));
     runner_fill(&h, &info);
     CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
     poor.left = 20u << 20;
@@ -448,7 +456,7 @@ static void a_device_without_memory_is_a_smaller_budget(void **state)
     assert_true(statistics.tileMemorySize <= 20u << 20);
     assert_true(statistics.residentTileCount >= 64);
     runner_finish(&r);
-    CHECK_OK(harness_set_context(&h, NULL, NULL));
+    CHECK_OK(harness_set_context(&h, NULL));
     runner_image_finish(&image);
 }
 
@@ -463,7 +471,7 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16};
     poor.left = UINT64_MAX;
-    CHECK_OK(harness_set_context(&h, NULL, get_of_instance));
+    CHECK_OK(harness_set_context(&h, &poor_context));
     runner_fill(&h, &info);
     CHECK_OK(sluiceCreateDemandLoader(&info, &loader));
     runner_init_with(&r, &h, loader);
@@ -492,7 +500,7 @@ static void a_launch_that_cannot_be_prepared_takes_nothing_with_it(void **state)
     h.quiet = false;
     assert_true(failures > 0);
     runner_finish(&r);
-    CHECK_OK(harness_set_context(&h, NULL, NULL));
+    CHECK_OK(harness_set_context(&h, NULL));
     runner_image_finish(&image);
 }
 
@@ -518,12 +526,13 @@ static bool live(struct failing_allocator *allocator, struct runner_image *image
                                          .memoryBudget = 8u << 20,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
-                                         .maxTilesInFlight = 16,
-                                         .loaderThreadCount = 2};
+                                         .maxTilesInFlight = 16};
+    const SluiceVulkanContextCreateInfo context = {.pAllocator = &allocator->callbacks,
+                                                   .loaderThreadCount = 2};
     SluiceDemandLoader *loader = NULL;
     SluiceDemandTextureId id;
     struct runner r;
-    SluiceResult result = harness_set_context(&h, &allocator->callbacks, NULL);
+    SluiceResult result = harness_set_context(&h, &context);
     runner_fill(&h, &info);
     if (result == SLUICE_SUCCESS)
         result = sluiceCreateDemandLoader(&info, &loader);
@@ -574,7 +583,7 @@ static void a_loader_survives_every_refused_allocation(void **state)
         assert_true(n < 500);
         failing_allocator_init(&allocator, n);
         complete = live(&allocator, &image);
-        CHECK_OK(harness_set_context(&h, NULL, NULL));
+        CHECK_OK(harness_set_context(&h, NULL));
         assert_int_equal(allocator.live_count, 0);
         assert_int_equal(allocator.live_bytes, 0);
     }

@@ -16,7 +16,6 @@ static const uint64_t soon = 1, never = UINT64_MAX;
 static SluiceDemandLoaderCreateInfo quick_retries(uint64_t delay)
 {
     return (SluiceDemandLoaderCreateInfo){.structSize = sizeof(SluiceDemandLoaderCreateInfo),
-                                          .readRetry = {2, 1, 1},
                                           .failureRetryDelayNs = delay};
 }
 
@@ -275,5 +274,6 @@ int main(void)
         cmocka_unit_test(values_that_could_not_be_found_are_found_later),
         cmocka_unit_test(textures_may_go_while_they_wait_to_be_tried_again),
     };
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.readRetry = {2, 1, 1}}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -190,9 +190,8 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     store_init(&store);
     store.later = 7;
     store.failing_page = 11;
-    const SluiceDemandLoaderCreateInfo create = {.structSize = sizeof create,
-                                                 .readRetry = {2, 1, 1}};
-    runner_init(&r, &h, &create);
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.readRetry = {2, 1, 1}}));
+    runner_init(&r, &h, NULL);
     const SluiceDemandResourceCreateInfo info = describe(&store, 0);
     CHECK_OK(sluiceAddDemandResource(r.loader, &info, &id, &first));
     runner_add_page(&r, first + 10);
@@ -207,6 +206,7 @@ static void later_is_asked_again_and_what_fails_is_told(void **state)
     assert_int_equal(r.requests.refusedCount, 1);
     runner_finish(&r);
     store_finish(&store);
+    CHECK_OK(harness_set_context(&h, NULL));
 }
 
 static void resources_are_served_by_rank_and_before_finer_tiles(void **state)

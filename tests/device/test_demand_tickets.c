@@ -16,7 +16,7 @@ struct held {
 
 static void setup(struct held *held)
 {
-    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .loaderThreadCount = 3};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info};
     runner_init(&held->r, &h, &info);
     runner_image_init(&held->image, SLUICE_FORMAT_R8G8B8A8_UNORM, 1024, 1024, 1);
     held->id = runner_add_texture(&held->r, &held->image);
@@ -238,5 +238,6 @@ int main(void)
         cmocka_unit_test(an_abort_wakes_all_though_reads_are_stuck),
         cmocka_unit_test(many_tickets_end_and_the_last_ones_are_remembered),
     };
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 3}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

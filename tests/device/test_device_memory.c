@@ -135,7 +135,7 @@ static SluiceVulkanContext *context_with(uint32_t refuse_one_in, uint64_t budget
 
 static void context_without(void)
 {
-    CHECK_OK(harness_set_context(&h, NULL, NULL));
+    CHECK_OK(harness_set_context(&h, NULL));
     assert_int_equal(allocator.live_parts, 0);
     assert_true(allocator.parts > 10);
     assert_int_equal(allocator.at_odd_offsets, allocator.parts);

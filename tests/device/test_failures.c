@@ -171,12 +171,13 @@ static void texture_can_be_removed_after_any_number_of_frames(void **state)
 
 static void loads_nobody_wants_any_more_are_cancelled(void **state)
 {
+    struct harness *h = *state;
     struct faulty f;
+    CHECK_OK(harness_set_context(h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
     faulty_init(
-        &f, *state,
+        &f, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
-                                         .feedbackTimeoutTicks = 2,
-                                         .loaderThreadCount = 1});
+                                         .feedbackTimeoutTicks = 2});
     const struct scene_aim left = {0.02, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     const struct scene_aim right = {0.7, 0.02, 0.2, 0.96, 0.2, 0.3, 0, 0};
     scene_settle(&f.scene, 6);
@@ -197,6 +198,7 @@ static void loads_nobody_wants_any_more_are_cancelled(void **state)
     assert_int_equal(scene_missing(&f.scene), 0);
     assert_int_equal(scene_non_resident(&f.scene), 0);
     faulty_finish(&f);
+    CHECK_OK(harness_set_context(h, NULL));
 }
 
 static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
@@ -260,13 +262,14 @@ static void creation_survives_every_allocation_failure(void **state)
         SluiceVulkanStreamerCreateInfo info = {
             .structSize = sizeof info, .tilesPerFrame = 16, .mapEverything = true};
         SluiceVulkanStreamer *streamer = NULL;
-        SluiceResult result = harness_set_context(h, &a.callbacks, NULL);
+        SluiceResult result =
+            harness_set_context(h, &(SluiceVulkanContextCreateInfo){.pAllocator = &a.callbacks});
         harness_fill(h, &info);
         if (result == SLUICE_SUCCESS)
             result = sluiceCreateVulkanStreamer(&info, &streamer);
         assert_true((result == SLUICE_SUCCESS) == (streamer != NULL));
         harness_destroy(h, streamer);
-        CHECK_OK(harness_set_context(h, NULL, NULL));
+        CHECK_OK(harness_set_context(h, NULL));
         assert_int_equal(a.live_count, 0);
         if (result == SLUICE_SUCCESS)
             break;
@@ -283,7 +286,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     SluiceImageSource *source =
         pattern_source(PATTERN_LEVEL, 1024, 1024, SLUICE_FORMAT_R8G8B8A8_UNORM);
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 1000};
-    CHECK_OK(harness_set_context(h, &a.callbacks, NULL));
+    CHECK_OK(harness_set_context(h, &(SluiceVulkanContextCreateInfo){.pAllocator = &a.callbacks}));
     harness_fill(h, &info);
     h->quiet = true;
     SluiceVulkanStreamer *streamer;
@@ -323,7 +326,7 @@ static void adding_and_streaming_survive_every_allocation_failure(void **state)
     assert_int_equal(scene_missing(&scene), 0);
     h->quiet = false;
     scene_finish(&scene);
-    CHECK_OK(harness_set_context(h, NULL, NULL));
+    CHECK_OK(harness_set_context(h, NULL));
     assert_int_equal(a.live_count, 0);
     sluiceDestroyImageSource(source);
 }

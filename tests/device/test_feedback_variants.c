@@ -37,7 +37,6 @@ static void stage_init(struct stage *stage, struct harness *h, SluiceVulkanStrea
                        enum writer_kind kind)
 {
     *stage = (struct stage){.h = h};
-    info.loaderThreadCount = 1; /* reads arrive in the same order every time */
     info.feedbackTimeoutTicks = 1000;
     harness_fill(h, &info);
     h->time = 0;
@@ -228,5 +227,7 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
+    /* reads arrive in the same order every time */
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -62,11 +62,11 @@ static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(
     struct harness *h = *state;
     struct scene scene;
     h->quiet = true;
+    CHECK_OK(harness_set_context(h, &(SluiceVulkanContextCreateInfo){.maxPageChunkCount = 1}));
     scene_init(
         &scene, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .feedbackTimeoutTicks = 1000,
-                                         .maxPageChunkCount = 1,
                                          .tilesPerFrame = 16,
                                          .maxLoadsInFlight = 64,
                                          .retryDelayTicks = 3});
@@ -92,6 +92,7 @@ static void pages_that_run_out_leave_coarse_pictures_and_room_for_packed_levels(
     assert_int_equal(scene_non_resident(&scene), 0);
     scene_finish(&scene);
     h->quiet = false;
+    CHECK_OK(harness_set_context(h, NULL));
 }
 
 static void pages_found_by_a_loop_are_those_found_by_an_index(void **state)
@@ -130,11 +131,11 @@ static void standby_tiles_make_room_for_those_of_another_format(void **state)
     const struct scene_aim fine = {0, 0, 0.6, 0.6, 0.1, 0.2, 0, 0};
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     h->quiet = true; /* that pages are short */
+    CHECK_OK(harness_set_context(h, &(SluiceVulkanContextCreateInfo){.maxPageChunkCount = 2}));
     scene_init(
         &scene, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .feedbackTimeoutTicks = 4,
-                                         .maxPageChunkCount = 2,
                                          .numExtraStandbyTiles = 1024});
     uint32_t first =
         scene_add(&scene, pattern_source(PATTERN_LEVEL, 2048, 2048, SLUICE_FORMAT_R8G8B8A8_UNORM));
@@ -152,6 +153,7 @@ static void standby_tiles_make_room_for_those_of_another_format(void **state)
     scene_check_levels(&scene);
     h->quiet = false;
     scene_finish(&scene);
+    CHECK_OK(harness_set_context(h, NULL));
 }
 
 int main(void)

@@ -83,7 +83,6 @@ static void play(struct harness *h, struct run *run, SluiceVulkanStreamerCreateI
 {
     *run = (struct run){0};
     struct scene scene;
-    info.loaderThreadCount = 1; /* reads arrive in the same order every time */
     h->time = 0;
     scene_init(&scene, h, info);
     SluiceRecordWriter writer = {&run->recording, write_bytes};
@@ -185,5 +184,7 @@ int main(void)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tests[i].initial_state = &h;
+    /* reads arrive in the same order every time */
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

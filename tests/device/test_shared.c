@@ -111,14 +111,12 @@ static void add_to_loader(struct stage *s)
 
 static void init_with(struct stage *s, uint64_t budget, uint64_t timeout)
 {
-    const SluiceDemandLoaderCreateInfo info = {
-        .structSize = sizeof info, .memoryBudget = budget, .readRetry = {.maxAttempts = 1}};
+    const SluiceDemandLoaderCreateInfo info = {.structSize = sizeof info, .memoryBudget = budget};
     counter_init(&s->counter);
     scene_init(
         &s->scene, &h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
-                                         .feedbackTimeoutTicks = timeout,
-                                         .readRetry = {.maxAttempts = 1}});
+                                         .feedbackTimeoutTicks = timeout});
     runner_init(&s->runner, &h, &info);
     stream(s);
     add_to_loader(s);
@@ -422,5 +420,7 @@ int main(void)
         cmocka_unit_test(changed_texels_are_read_again_by_the_one_that_was_told),
         cmocka_unit_test(an_idle_front_end_is_not_waited_for),
     };
+    CHECK_OK(
+        harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.readRetry = {.maxAttempts = 1}}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

@@ -68,7 +68,6 @@ SluiceResult gallery_create(struct gallery *g, SluiceResidencyMode mode)
                                            .tilesPerFrame = 16,
                                            .maxTextureCount = 5,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
                                            .heapTileCapacity = 8,
                                            .feedbackTimeoutTicks = 20};
     g->fake.pAllocator = &g->memory.callbacks;

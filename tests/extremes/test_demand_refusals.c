@@ -112,9 +112,10 @@ static void open_life(struct life *l)
                                                .memoryBudget = 8u << 20,
                                                .maxTextureCount = 64,
                                                .pageCapacity = 1u << 16,
-                                               .maxTilesInFlight = 16,
-                                               .loaderThreadCount = 1};
-    CHECK_OK(harness_set_context(&h, &l->memory.callbacks, NULL));
+                                               .maxTilesInFlight = 16};
+    const SluiceVulkanContextCreateInfo context = {.pAllocator = &l->memory.callbacks,
+                                                   .loaderThreadCount = 1};
+    CHECK_OK(harness_set_context(&h, &context));
     runner_init(&l->r, &h, &info);
 }
 
@@ -176,7 +177,7 @@ static void every_call_survives_every_refused_allocation(void **state)
                 check_shown(&l, &l.other);
         }
         runner_finish(&l.r);
-        CHECK_OK(harness_set_context(&h, NULL, NULL));
+        CHECK_OK(harness_set_context(&h, NULL));
         left += l.memory.live_count + (l.image.opened - l.image.closed) +
                 (l.other.opened - l.other.closed);
         runner_image_finish(&l.image);
@@ -219,7 +220,7 @@ static void questions_take_no_memory(void **state)
     assert_int_equal(l.memory.calls, calls_before);
     l.memory.refuse_from = UINT64_MAX;
     runner_finish(&l.r);
-    CHECK_OK(harness_set_context(&h, NULL, NULL));
+    CHECK_OK(harness_set_context(&h, NULL));
     assert_int_equal(h.EndCommandBuffer(h.commands[0]), VK_SUCCESS);
     assert_int_equal(l.memory.live_count, 0);
     runner_image_finish(&l.image);

@@ -43,7 +43,8 @@ static void memory_that_ends_is_a_coarser_picture_until_there_is_more(void **sta
     struct harness *h = *state;
     uint32_t slowest = 0, coarse = 0, cases = 0;
     failing_layer_set(h, 0, false, VK_SUCCESS);
-    CHECK_OK(harness_set_context(h, NULL, failing_layer_get));
+    CHECK_OK(harness_set_context(
+        h, &(SluiceVulkanContextCreateInfo){.pfnGetInstanceProcAddr = failing_layer_get}));
     h->quiet = true;
     static const uint64_t sizes[] = {0, 3u << 20, 16u << 20}; /* of 85 tiles, 5.6 MB */
     for (; cases < 3; cases++) {
@@ -52,7 +53,7 @@ static void memory_that_ends_is_a_coarser_picture_until_there_is_more(void **sta
         slowest = frames > slowest ? frames : slowest;
     }
     h->quiet = false;
-    CHECK_OK(harness_set_context(h, NULL, NULL));
+    CHECK_OK(harness_set_context(h, NULL));
     note("a real device whose memory ends: frames until all is sharp again", cases, slowest,
          RECOVERY - 1);
     assert_true(slowest < RECOVERY && coarse == 2);

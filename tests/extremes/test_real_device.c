@@ -7,6 +7,8 @@
 #include "support/failing_allocator.h"
 
 static struct harness h;
+static const SluiceVulkanContextCreateInfo failing = {.pfnGetInstanceProcAddr = failing_layer_get,
+                                                      .loaderThreadCount = 1};
 static bool is_long_run;
 
 enum { FRAMES = 5, LAUNCHES = 6 };
@@ -17,10 +19,9 @@ static SluiceResult create_streamer(SluiceVulkanStreamer **streamer)
                                            .tilesPerFrame = 16,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
                                            .mapEverything = true};
     *streamer = NULL;
-    SluiceResult result = harness_set_context(&h, NULL, failing_layer_get);
+    SluiceResult result = harness_set_context(&h, &failing);
     harness_fill(&h, &info);
     return result == SLUICE_SUCCESS ? sluiceCreateVulkanStreamer(&info, streamer) : result;
 }
@@ -123,10 +124,9 @@ static SluiceResult create_loader(SluiceDemandLoader **loader)
                                          .memoryBudget = 8u << 20,
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1u << 16,
-                                         .maxTilesInFlight = 16,
-                                         .loaderThreadCount = 1};
+                                         .maxTilesInFlight = 16};
     *loader = NULL;
-    SluiceResult result = harness_set_context(&h, NULL, failing_layer_get);
+    SluiceResult result = harness_set_context(&h, &failing);
     runner_fill(&h, &info);
     return result == SLUICE_SUCCESS ? sluiceCreateDemandLoader(&info, loader) : result;
 }

@@ -148,8 +148,7 @@ static void init_streamer(struct fixture *f)
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .maxTextureCount = 8,
                                          .tilesPerFrame = 4,
-                                         .maxRegionCount = 64,
-                                         .loaderThreadCount = 1};
+                                         .maxRegionCount = 64};
     harness_fill(&h, &f->streamer_info);
     CHECK_OK(sluiceCreateVulkanStreamer(&f->streamer_info, &f->streamer));
     f->settings.structSize = sizeof f->settings;
@@ -168,8 +167,7 @@ static void init_loader(struct fixture *f)
                                        .maxTextureCount = 64,
                                        .pageCapacity = 4096,
                                        .maxTilesInFlight = 4,
-                                       .memoryBudget = 4 << 20,
-                                       .loaderThreadCount = 1};
+                                       .memoryBudget = 4 << 20};
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->loader));
     CHECK_OK(sluiceGetDemandLoaderSettings(f->loader, &f->loader_settings));
     CHECK_OK(sluiceCreateDemandLoader(&f->loader_info, &f->fresh_loader));
@@ -228,5 +226,6 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {CALLS_TESTS};
+    CHECK_OK(harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.loaderThreadCount = 1}));
     return harness_finish(&h, RUN_TESTS(tests));
 }

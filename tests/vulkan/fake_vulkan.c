@@ -851,14 +851,19 @@ VkImage fake_vulkan_image_of(VkImageView view)
 
 SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake)
 {
-    return (SluiceVulkanContextCreateInfo){.structSize = sizeof(SluiceVulkanContextCreateInfo),
-                                           .instance = (VkInstance)(void *)fake,
-                                           .physicalDevice = (VkPhysicalDevice)(void *)fake,
-                                           .device = (VkDevice)(void *)fake,
-                                           .pfnGetInstanceProcAddr = get_instance_function,
-                                           .sparseQueue = (VkQueue)(void *)fake,
-                                           .pAllocator = fake->pAllocator,
-                                           .log = fake->log};
+    return (SluiceVulkanContextCreateInfo){
+        .structSize = sizeof(SluiceVulkanContextCreateInfo),
+        .instance = (VkInstance)(void *)fake,
+        .physicalDevice = (VkPhysicalDevice)(void *)fake,
+        .device = (VkDevice)(void *)fake,
+        .pfnGetInstanceProcAddr = get_instance_function,
+        .sparseQueue = (VkQueue)(void *)fake,
+        .pAllocator = fake->pAllocator,
+        .log = fake->log,
+        .loaderThreadCount = fake->loaderThreadCount ? fake->loaderThreadCount : 1,
+        .readRetry = fake->readRetry,
+        .maxPageChunkCount = fake->maxPageChunkCount,
+        .minStagingSize = fake->minStagingSize};
 }
 
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

@@ -99,9 +99,12 @@ struct fake_vulkan {
     bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
     bool no_resolve;     ///< compute passes leave no trace: for the demand loader
 
-    /** Of the next context; zeroed: none. */
+    /** Of the next context; zeroed: none, defaults, and one thread. */
     SluiceLogCallback log;
     const SluiceAllocationCallbacks *pAllocator;
+    uint32_t loaderThreadCount, maxPageChunkCount;
+    SluiceTileRetryPolicy readRetry;
+    uint64_t minStagingSize;
 
     const char *missing; ///< function that neither instance nor device has; NULL: none
 
@@ -128,7 +131,7 @@ struct fake_vulkan {
 /** Fills in the times: if ticksPerSecond is 0, time stamps count frames, and 0 is the newest
  *  map alone, no standby tiles, and a second try at once. */
 void fake_vulkan_fill(SluiceVulkanStreamerCreateInfo *info);
-/** Settings of a context on the device, with the log and the allocator of `fake`. */
+/** Settings of a context on the device, with those of `fake`. */
 SluiceVulkanContextCreateInfo fake_vulkan_context_info(struct fake_vulkan *fake);
 /** Creates a streamer on a context of its own. `*streamer` is NULL after an error. */
 SluiceResult fake_vulkan_create(struct fake_vulkan *fake, SluiceVulkanStreamerCreateInfo *info,

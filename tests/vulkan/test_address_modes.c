@@ -54,10 +54,8 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
     fake = (struct fake_vulkan){.tail_page_count = 1, .log = {&warnings, count_warnings}};
-    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
-                                           .maxTextureCount = 8,
-                                           .maxRegionCount = 256,
-                                           .loaderThreadCount = 1};
+    SluiceVulkanStreamerCreateInfo info = {
+        .structSize = sizeof info, .maxTextureCount = 8, .maxRegionCount = 256};
     fake_vulkan_fill(&info);
     SluiceVulkanStreamer *streamer;
     SluiceImageSource *sources[sizeof cases / sizeof cases[0]];

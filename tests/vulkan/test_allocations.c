@@ -91,7 +91,6 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                                            .maxTextureCount = TEXTURES,
                                            .maxRegionCount = 16384,
                                            .texturesPerFrame = share,
-                                           .loaderThreadCount = 1,
                                            .heapTileCapacity = 64,
                                            .feedbackTimeoutTicks = 3 * TEXTURES / share + 10};
     w->fake.pAllocator = &w->allocations.callbacks;

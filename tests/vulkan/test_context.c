@@ -1,4 +1,5 @@
 /* Contexts: what they refuse and name, and that their children keep them alive. */
+#include "image/read_pool.h"
 #include "vulkan/fake_vulkan.h"
 #include "vulkan/streamer.h"
 
@@ -390,8 +391,7 @@ static void two_streamers_stay_within_one_budget(void **state)
                                                    .maxTextureCount = 4,
                                                    .maxRegionCount = 1 << 12,
                                                    .feedbackTimeoutTicks = 100,
-                                                   .heapTileCapacity = 64,
-                                                   .loaderThreadCount = 1};
+                                                   .heapTileCapacity = 64};
             const SluiceVulkanTextureCreateInfo add = {.structSize = sizeof add, .source = source};
             SluiceVulkanTexture texture;
             fake_vulkan_fill(&info);
@@ -422,6 +422,64 @@ static void two_streamers_stay_within_one_budget(void **state)
         assert_int_equal(fake.live_objects, 0);
     }
     sluiceDestroyImageSource(source);
+}
+
+/* The smaller one has 32 slots of staging memory, half a block. */
+static void create_front_end(SluiceVulkanContext *context, bool demand,
+                             SluiceVulkanStreamer **streamer, SluiceDemandLoader **loader)
+{
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                           .context = context,
+                                           .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
+                                           .maxRegionCount = 256};
+    const SluiceDemandLoaderCreateInfo demand_info = {.structSize = sizeof demand_info,
+                                                      .context = context,
+                                                      .maxTextureCount = 64,
+                                                      .maxTilesInFlight = 32,
+                                                      .pageCapacity = 1 << 16};
+    SluiceVulkanPages pages = {.structSize = sizeof pages};
+    fake_vulkan_fill(&info);
+    if (demand) {
+        CHECK_OK(sluiceCreateDemandLoader(&demand_info, loader));
+        CHECK_OK(sluiceGetDemandPages(*loader, &pages));
+    } else {
+        CHECK_OK(sluiceCreateVulkanStreamer(&info, streamer));
+        CHECK_OK(sluiceGetVulkanPages(*streamer, &pages));
+    }
+    assert_int_equal(pages.viewCount, 5);
+}
+
+static void front_ends_in_either_order_have_the_settings_of_the_context(void **state)
+{
+    (void)state;
+    const uint64_t mib = 1 << 20;
+    for (int demand_first = 0; demand_first < 2; demand_first++) {
+        SluiceVulkanContextCreateInfo create = start();
+        SluiceVulkanContext *context;
+        SluiceVulkanStreamer *streamer;
+        SluiceDemandLoader *loader;
+        create.loaderThreadCount = 3;
+        create.maxReadsPerSource = 2;
+        create.readRetry.maxAttempts = 7;
+        create.maxPageChunkCount = 5;
+        create.minStagingSize = 12 * mib - 1;
+        CHECK_OK(sluiceCreateVulkanContext(&create, &context));
+        assert_int_equal(statistics_of(context).stagingMemorySize, 0);
+        create_front_end(context, demand_first, &streamer, &loader);
+        assert_true(statistics_of(context).stagingMemorySize == (demand_first ? 2 : 12) * mib);
+        create_front_end(context, !demand_first, &streamer, &loader);
+        assert_true(statistics_of(context).stagingMemorySize == 14 * mib);
+        const struct slc_read_pool *threads = context->shared.threads;
+        assert_int_equal(threads->thread_count, 3);
+        assert_int_equal(threads->load.max_running_per_source, 2);
+        for (const SluiceTileLoader *own = threads->loaders; own; own = own->next)
+            assert_int_equal(own->retry.maxAttempts, 7);
+        sluiceDestroyVulkanStreamer(streamer);
+        sluiceDestroyDemandLoader(loader);
+        assert_int_equal(statistics_of(context).memoryBlockCount, 0);
+        sluiceDestroyVulkanContext(context);
+        assert_int_equal(fake.live_objects, 0);
+    }
 }
 
 static void questions_take_no_memory(void **state)
@@ -492,6 +550,7 @@ int main(void)
         cmocka_unit_test(objects_go_without_names_if_the_instance_has_no_debug_utils),
         cmocka_unit_test(a_given_pipeline_cache_is_used_and_kept),
         cmocka_unit_test(two_streamers_stay_within_one_budget),
+        cmocka_unit_test(front_ends_in_either_order_have_the_settings_of_the_context),
         cmocka_unit_test(questions_take_no_memory),
         cmocka_unit_test(creation_that_fails_leaves_no_child),
     };

@@ -49,7 +49,6 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
                                            .maxTextureCount = 8,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
                                            .maxTouchedTiles = BEARABLE};
     fake.log = (SluiceLogCallback){&errors, note_error};
     fake_vulkan_fill(&info);
@@ -95,13 +94,11 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     (void)state;
     static struct fake_vulkan fake; /* large */
     uint32_t warnings = 0;
-    fake = (struct fake_vulkan){.want = want_all};
+    fake = (struct fake_vulkan){.want = want_all, .maxPageChunkCount = 2};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 8,
                                            .maxRegionCount = 1024,
-                                           .loaderThreadCount = 1,
-                                           .feedbackTimeoutTicks = 1000,
-                                           .maxPageChunkCount = 2};
+                                           .feedbackTimeoutTicks = 1000};
     fake.log = (SluiceLogCallback){&warnings, count_shortages};
     fake_vulkan_fill(&info);
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
@@ -143,14 +140,12 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     (void)state;
     static struct fake_vulkan fake; /* large */
     uint32_t seen = 0;
-    fake = (struct fake_vulkan){.want = want_one, .user = &seen};
+    fake = (struct fake_vulkan){.want = want_one, .user = &seen, .maxPageChunkCount = 2};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 8,
                                            .maxRegionCount = 1024,
-                                           .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 2,
-                                           .numExtraStandbyTiles = 1024,
-                                           .maxPageChunkCount = 2};
+                                           .numExtraStandbyTiles = 1024};
     fake_vulkan_fill(&info);
     info.residencyMode = SLUICE_RESIDENCY_MODE_PAGED;
     SluiceVulkanStreamer *streamer;

@@ -232,8 +232,7 @@ static struct stage *stage_of_loader(void)
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1 << 16,
                                          .launchesInFlight = 3,
-                                         .memoryBudget = 4 << 20,
-                                         .loaderThreadCount = 1};
+                                         .memoryBudget = 4 << 20};
     CHECK_OK(sluiceCreateDemandLoader(&info, &s.loader));
     return &s;
 }

@@ -101,13 +101,13 @@ static void setup_with_rest(struct fixture *f, SluiceResidencyMode mode, uint64_
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 2,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 2,
                                            .feedbackTimeoutTicks = 1u << 30,
                                            .retryDelayTicks = 1,
-                                           .readRetry = {LOADER_ATTEMPTS, 1, 1},
                                            .maxLoadsInFlight = f->loads_in_flight,
                                            .givenUpRetryDelayTicks = rest};
     f->fake.log = (SluiceLogCallback){f, on_log};
+    f->fake.loaderThreadCount = 2;
+    f->fake.readRetry = (SluiceTileRetryPolicy){LOADER_ATTEMPTS, 1, 1};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&f->fake, &info, &f->streamer));

@@ -51,7 +51,6 @@ static SluiceResult create(struct fake_vulkan *fake, SluiceVulkanStreamer **stre
                                            .tilesPerFrame = 16,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 100};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

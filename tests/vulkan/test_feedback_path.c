@@ -64,7 +64,6 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
-                                           .loaderThreadCount = 1,
                                            .feedbackTimeoutTicks = 100};
     fake.log = (SluiceLogCallback){&warnings, count_warnings};
     fake_vulkan_fill(&info);

@@ -387,7 +387,6 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
                                            .texturesPerFrame = 3,
-                                           .loaderThreadCount = 1,
                                            .heapTileCapacity = heap_capacity,
                                            .maxHeapCount = heaps,
                                            .feedbackTimeoutTicks = 2,

@@ -55,12 +55,10 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                             .pName = "grey"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
-    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
-                                           .feedbackTimeoutTicks = 2,
-                                           .loaderThreadCount = 1,
-                                           .minStagingSize = min_staging_size};
+    SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
+    s.fake.minStagingSize = min_staging_size;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     return &s;
 }

@@ -55,7 +55,6 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
     info.maxTextureCount = 4;
     info.maxRegionCount = 256;
     info.tilesPerFrame = 4; /* so that packed tiles are handed out in parts */
-    info.loaderThreadCount = 1;
     fake_vulkan_fill(&info);
     info.residencyMode = mode;
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));

@@ -317,13 +317,12 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
                                            .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
                                            .maxTextureCount = 3 * TEXTURES,
-                                           .loaderThreadCount = 1,
                                            .heapTileCapacity = heap_capacity,
                                            .maxHeapCount = heaps,
                                            .feedbackTimeoutTicks = 2,
-                                           .maxRegionCount = 1 << 14,
-                                           .maxPageChunkCount = CHUNKS};
+                                           .maxRegionCount = 1 << 14};
     fake_vulkan_fill(&info);
+    m->fake.maxPageChunkCount = CHUNKS;
     CHECK_OK(fake_vulkan_create(&m->fake, &info, &m->streamer));
     SluiceVulkanBuffers buffers = {.structSize = sizeof buffers};
     sluiceGetVulkanBuffers(m->streamer, &buffers);
@@ -361,11 +360,10 @@ static void devices_with_few_samplers_have_no_sets(void **state)
     (void)state;
     static struct fake_vulkan fake;
     for (uint32_t samplers = CHUNKS - 1; samplers <= CHUNKS; samplers++) {
-        fake = (struct fake_vulkan){.max_samplers = samplers};
+        fake = (struct fake_vulkan){.max_samplers = samplers, .maxPageChunkCount = CHUNKS};
         SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                                .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
-                                               .maxRegionCount = 1 << 10,
-                                               .maxPageChunkCount = CHUNKS};
+                                               .maxRegionCount = 1 << 10};
         SluiceVulkanStreamer *streamer;
         CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
         VkDescriptorSetLayout layout;

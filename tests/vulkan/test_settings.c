@@ -58,7 +58,6 @@ static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     SluiceVulkanStreamerCreateInfo info = *settings;
     info.maxTextureCount = TEXTURES;
     info.maxRegionCount = 1 << 10;
-    info.loaderThreadCount = 1;
     fake_vulkan_fill(&info);
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};
@@ -331,8 +330,7 @@ static struct stage *stage_of_loader(void)
                                          .maxTextureCount = 64,
                                          .pageCapacity = 1 << 16,
                                          .maxRequestsPerLaunch = 100,
-                                         .failureRetryDelayNs = 5,
-                                         .loaderThreadCount = 1};
+                                         .failureRetryDelayNs = 5};
     CHECK_OK(sluiceCreateDemandLoader(&info, &s.loader));
     return &s;
 }

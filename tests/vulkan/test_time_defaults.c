@@ -61,7 +61,6 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
     info.retryDelayTicks = asked.retryDelayTicks;
     info.maxTextureCount = 4;
     info.maxRegionCount = 256;
-    info.loaderThreadCount = 1;
     s.fake.log = (SluiceLogCallback){&s, count_warnings};
     CHECK_OK(fake_vulkan_create(&s.fake, &info, &s.streamer));
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = s.source};

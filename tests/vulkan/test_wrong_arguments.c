@@ -41,8 +41,7 @@ static SluiceVulkanStreamerCreateInfo small(struct fake_vulkan *fake, struct lin
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
-                                           .tilesPerFrame = 16,
-                                           .loaderThreadCount = 1};
+                                           .tilesPerFrame = 16};
     fake_vulkan_fill(&info);
     return info;
 }
@@ -193,7 +192,6 @@ static void streamers_take_every_limit_of_the_header_and_nothing_beyond(void **s
         FIELD(SluiceVulkanStreamerCreateInfo, maxLoadsInFlight, 1u << 16),
         FIELD(SluiceVulkanStreamerCreateInfo, heapTileCapacity, 1u << 20),
         FIELD(SluiceVulkanStreamerCreateInfo, maxRegionCount, 1u << 28),
-        FIELD(SluiceVulkanStreamerCreateInfo, maxPageChunkCount, 1u << 10),
         FIELD(SluiceVulkanStreamerCreateInfo, residencyFadeTicks, UINT64_C(1) << 40),
         FIELD(SluiceVulkanStreamerCreateInfo, feedbackEncoding, SLUICE_FEEDBACK_ENCODING_MASKS),
         FIELD(SluiceVulkanStreamerCreateInfo, residencyMode, SLUICE_RESIDENCY_MODE_DENSE)};
@@ -222,8 +220,7 @@ static void demand_loaders_take_every_limit_of_the_header_and_nothing_beyond(voi
         FIELD(SluiceDemandLoaderCreateInfo, maxTextureCount, 1u << 24),
         FIELD(SluiceDemandLoaderCreateInfo, pageCapacity, UINT64_C(1) << 31),
         FIELD(SluiceDemandLoaderCreateInfo, maxRequestsPerLaunch, 1u << 20),
-        FIELD(SluiceDemandLoaderCreateInfo, maxTilesInFlight, 1u << 16),
-        FIELD(SluiceDemandLoaderCreateInfo, maxPageChunkCount, 1u << 10)};
+        FIELD(SluiceDemandLoaderCreateInfo, maxTilesInFlight, 1u << 16)};
     static const struct field budget = FIELD(SluiceDemandLoaderCreateInfo, memoryBudget, 0);
     static struct fake_vulkan fake; /* large */
     struct lines lines;
@@ -245,6 +242,28 @@ static void demand_loaders_take_every_limit_of_the_header_and_nothing_beyond(voi
     CHECK_RESULT(sluiceCreateDemandLoader(&info, &loader), SLUICE_ERROR_INVALID_ARGUMENT);
     check_line(&lines, "memoryBudget");
     sluiceDestroyVulkanContext(context);
+}
+
+static void contexts_take_every_limit_of_the_header_and_nothing_beyond(void **state)
+{
+    (void)state;
+    static const struct field fields[] = {
+        FIELD(SluiceVulkanContextCreateInfo, loaderThreadCount, 1u << 10),
+        FIELD(SluiceVulkanContextCreateInfo, maxPageChunkCount, 1u << 10)};
+    static struct fake_vulkan fake; /* large */
+    struct lines lines = {0};
+    fake = (struct fake_vulkan){.log = {&lines, keep_line}};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
+        for (uint64_t beyond = 0; beyond < 2; beyond++) {
+            SluiceVulkanContextCreateInfo info = fake_vulkan_context_info(&fake);
+            SluiceVulkanContext *context;
+            set_field(&info, &fields[i], fields[i].most + beyond);
+            CHECK_RESULT(sluiceCreateVulkanContext(&info, &context),
+                         beyond ? SLUICE_ERROR_INVALID_ARGUMENT : SLUICE_SUCCESS);
+            if (beyond)
+                check_line(&lines, fields[i].name);
+            sluiceDestroyVulkanContext(context);
+        }
 }
 
 static void sparse_mode_needs_a_context_with_a_sparse_queue(void **state)
@@ -380,6 +399,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(infos_that_no_image_has_are_refused_in_every_mode),
         cmocka_unit_test(streamers_take_every_limit_of_the_header_and_nothing_beyond),
+        cmocka_unit_test(contexts_take_every_limit_of_the_header_and_nothing_beyond),
         cmocka_unit_test(demand_loaders_take_every_limit_of_the_header_and_nothing_beyond),
         cmocka_unit_test(sparse_mode_needs_a_context_with_a_sparse_queue),
         cmocka_unit_test(without_a_context_nothing_is_created),
