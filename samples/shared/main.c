@@ -3,22 +3,26 @@
  * streamer for the raster pass and a demand loader for the rays, of one context, which read each
  * tile once and keep it on one page. --apart gives each a context of its own, to compare.
  */
+#include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
+#include "../../tools/common/text.h"
 #include "../common/png_file.h"
 #include "passes.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define TEXTURE_SIZE 2048
 #define BUDGET (UINT64_C(64) << 20) /* bytes of tiles */
 #define HEAP_TILES 64               /* the streamer's share of the budget comes in heaps of 4 MiB */
-#define UNSUPPORTED 77
+#define EXIT_USAGE 2
+#define EXIT_NO_DEVICE 77
 
 struct settings {
-    const char *output;
+    const char *output, *device;
     uint32_t width, height, frames;
-    bool apart, validation;
+    bool apart, validation, list_devices;
 };
 
 struct app {
@@ -44,7 +48,7 @@ static void print_message(void *pUserData, SluiceLogSeverity severity, const cha
 {
     (void)pUserData;
     if (severity != SLUICE_LOG_INFO)
-        fprintf(stderr, "%s\n", pMessage);
+        text_say("%s", pMessage);
 }
 
 /* Tiles, bricks or panels, in [0, 1) of u and v; the same picture in every level. */
@@ -264,46 +268,62 @@ static void destroy(struct app *app)
     gpu_destroy(&app->gpu);
 }
 
-/* The exit status, or -1: run. */
-static int read_settings(struct settings *settings, int argc, char **argv)
+static enum option_outcome read_settings(struct settings *settings, int argc, char **argv)
 {
     uint32_t size[2];
     const struct option options[] = {
-        {OPTION_TEXT, "output", "FILE.png", "shared.png", &settings->output, "the picture",
+        {OPTION_TEXT, "output", "FILE", "shared.png", &settings->output, "the picture, as PNG",
          .letter = 'o'},
-        {OPTION_EXTENT, "size", "WxH", "640x360", size, "of the picture", 16, 4096},
+        {OPTION_EXTENT, "size", "WxH", "640x360", size, "pixels", 16, 4096},
         {OPTION_UINT, "frames", "N", "30", &settings->frames, "frames, and as many launches", 1,
          1000000},
         {OPTION_FLAG, "apart", NULL, NULL, &settings->apart,
          "a context for each front end: nothing is shared"},
+        option_device(&settings->device),
+        option_list_devices(&settings->list_devices),
         option_validation(&settings->validation),
     };
     const struct option_table table = {
-        .program = "shared-tiles",
-        .usage = "usage: shared-tiles [options]\n"
-                 "Rasterizes a room and traces what its floor reflects, with the same textures.\n",
-        .options = options,
-        .option_count = sizeof options / sizeof options[0]};
+        "shared-tiles",
+        "usage: shared-tiles [options]\n\n"
+        "Rasterizes a room and traces what its floor reflects, with the same textures.\n",
+        "Exit status: 0; 1 if something failed; 2 for wrong usage; 77 if no device has pages.\n",
+        options, sizeof options / sizeof *options};
     enum option_outcome outcome = options_parse(&table, argc, argv);
     settings->width = size[0];
     settings->height = size[1];
-    return outcome == OPTIONS_RUN ? -1 : outcome == OPTIONS_HELP ? 0 : 1;
+    return outcome;
+}
+
+/* A status, unless what was printed did not get out. */
+static int ends_well(int status)
+{
+    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)
 {
     struct app app = {0};
     bool unsupported = false;
-    int status = read_settings(&app.settings, argc, argv);
-    if (status >= 0)
-        return status;
+    switch (read_settings(&app.settings, argc, argv)) {
+    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
+    case OPTIONS_ERROR: return EXIT_USAGE;
+    case OPTIONS_RUN: break;
+    }
+    if (app.settings.list_devices)
+        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+    if (!output_can_write(app.settings.output))
+        return EXIT_FAILURE;
     const struct gpu_request request = {
+        .device = app.settings.device,
         .validation = app.settings.validation,
         .modes = {SLUICE_RESIDENCY_MODE_PAGED, SLUICE_RESIDENCY_MODE_PAGED}};
     if (!gpu_create(&request, &app.gpu, &unsupported))
-        return unsupported ? UNSUPPORTED : 1;
+        return unsupported ? EXIT_NO_DEVICE : EXIT_FAILURE;
     bool good = create(&app) && run(&app);
-    good = good && app.gpu.validation_messages == 0;
     destroy(&app);
-    return good ? 0 : 1;
+    uint32_t messages = atomic_load(&app.gpu.validation_messages);
+    if (messages > 0)
+        fprintf(stderr, "the validation layers had %u messages\n", messages);
+    return good && messages == 0 ? ends_well(EXIT_SUCCESS) : EXIT_FAILURE;
 }

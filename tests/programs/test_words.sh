@@ -16,7 +16,7 @@ program() { # NAME: its path, or nothing if this build has none
 }
 replay=$(program sluice-replay) info=$(program sluice-info) bake=$(program sluice-bake)
 tradeoff=$(program sluice-tradeoff) streaming=$(program streaming) tracer=$(program demand-tracer)
-minimal=$(program minimal)
+minimal=$(program minimal) shared=$(program shared-tiles)
 
 # plain TOOL ARGUMENTS...: names the red thing, and prints no escape code
 plain() {
@@ -74,10 +74,11 @@ done
 fact help_that_cannot_be_printed_is_a_failure
 
 good=0
-for path in $streaming $tracer; do
+for path in $streaming $tracer $shared; do
     full "$path" --list-devices || good=1
 done
 [ -z "$minimal" ] || full "$minimal" --size 16x16 --frames 1 --output minimal.png || good=1
+[ -z "$shared" ] || full "$shared" --size 16x16 --frames 1 --output shared.png || good=1
 [ $good -eq 0 ] && full "$replay" "$trace" && full "$replay" "$trace" --json && full "$replay" "$trace" --dump
 fact answers_that_cannot_be_printed_are_a_failure
 
@@ -104,11 +105,11 @@ fi
 # Of a loader without drivers, whatever is installed.
 export VK_DRIVER_FILES=/nonexistent.json VK_ICD_FILENAMES=/nonexistent.json VK_LOADER_LAYERS_DISABLE='*'
 good=0
-for path in $streaming $tracer $minimal; do
+for path in $streaming $tracer $minimal $shared; do
     tool=$path
     { run 77 && grep -q '^there is no Vulkan driver; install' err && [ ! -s out ] && ! grep -q -- '-9' err; } || good=1
 done
-for path in $streaming $tracer; do
+for path in $streaming $tracer $shared; do
     tool=$path
     { run 77 --list-devices && grep -q '^there is no Vulkan driver; install' err; } || good=1
 done
