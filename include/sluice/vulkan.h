@@ -399,6 +399,24 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
     SluiceVulkanStreamer *streamer, const SluiceVulkanStreamerSettings *pSettings);
 
 /**
+ * Moves tiles together so that memory can be freed: at most `maxTileCount` tiles leave the heap
+ * that is used least, if fuller heaps have room for them. Writes to `*pTileCount` how many; 0 means
+ * that nothing is left to do.
+ *
+ * Call it between frames, for example once per frame while the view stands still. Tiles on standby
+ * are evicted. Wanted tiles are read again; until then shaders see a coarser level. Heaps without
+ * tiles are released in the next frames, and freed when the GPU has finished with them. Packed
+ * levels do not move.
+ *
+ * Under a memory budget nobody needs to call it: frames do the same while more memory is in use
+ * than the budget allows (sluiceSetVulkanMemoryBudget). Does nothing in paged and dense mode.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ */
+SLUICE_API SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *streamer,
+                                                    uint32_t maxTileCount, uint32_t *pTileCount);
+
+/**
  * Waits until no read is in progress and all submitted bindings are complete. Does not wait for
  * frames.
  *
@@ -738,10 +756,12 @@ SLUICE_API SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer 
  * You may call between any two calls of the streamer, on the thread that uses it:
  * - functions that take a const manager
  * - sluiceGetGivenUpTiles, sluiceRetryFailedTiles
- * - sluiceSetConfig, sluiceTrimStandbyTiles, sluiceReleaseHeap
+ * - sluiceSetConfig, sluiceTrimStandbyTiles, sluiceReleaseHeap. In sparse mode, frames evacuate and
+ *   release heaps beyond targetHeapCount by themselves
  * - sluiceBeginRecording and sluiceBeginFileRecording, before the first texture is added
  *
- * The streamer makes all other calls itself. They return SLUICE_ERROR_INVALID_ARGUMENT and change
+ * The streamer makes all other calls itself, sluiceEvacuateHeaps among them
+ * (sluiceCompactVulkanStreamer). They return SLUICE_ERROR_INVALID_ARGUMENT and change
  * nothing, and sluiceDestroyStreamedTextureManager does nothing (manager.h, pLocked).
  */
 SLUICE_API SluiceStreamedTextureManager *

@@ -182,9 +182,10 @@ SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
 /**
  * Sets the memory budget (SluiceVulkanContextCreateInfo.memoryBudget), in bytes. 0: no limit.
  *
- * If more is in use, nothing is freed by this call. No memory for tiles is allocated until less is
- * in use than the budget. Page images that have run empty are freed in later frames and launches.
- * Heaps of streamers in sparse mode stay.
+ * If more is in use, this call frees nothing, but the next frames do. No memory for tiles is
+ * allocated until less is in use than the budget. Streamers in sparse mode evict tiles, standby
+ * tiles first, and free heaps until the budget holds; heaps with packed tiles stay. Page images
+ * that have run empty are freed in later frames and launches.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
  *         4 MiB.

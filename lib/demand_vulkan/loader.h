@@ -207,11 +207,11 @@ struct SluiceDemandLoader {
     SluiceAllocationCallbacks cb;
     SluiceDemandLoaderCreateInfo info; ///< with the defaults filled in
     SluiceVulkanContext *context;
-    struct slc_vk vk;                 ///< the context's, but for memory_client
-    struct slc_memory_client memory;  ///< of vk
-    uint64_t memory_pressure;         ///< bytes, as of the last launch; see memory_budget.h
-    struct slc_caps caps;             ///< the context's
-    bool usable[SLUICE_FORMAT_COUNT]; ///< formats that the device samples and filters
+    struct slc_vk vk;                           ///< the context's, but for memory_client
+    struct slc_memory_client memory;            ///< of vk
+    struct slc_memory_pressure memory_pressure; ///< as of the last launch
+    struct slc_caps caps;                       ///< the context's
+    bool usable[SLUICE_FORMAT_COUNT];           ///< formats that the device samples and filters
     VkSemaphore semaphore;
 
     struct slc_page_pool *pages; ///< of the context; NULL: not yet

@@ -8,6 +8,7 @@
 #include "vulkan/load_cancels.h"
 #include "vulkan/load_deferred.h"
 #include "vulkan/load_starts.h"
+#include "vulkan/shrink.h"
 #include "vulkan/tile_upload.h"
 
 #define MAX_BARRIERS 64u
@@ -77,6 +78,7 @@ static SluiceResult bind(SluiceVulkanStreamer *s)
 static SluiceResult decide(SluiceVulkanStreamer *s)
 {
     SluiceResult result = retire(s);
+    s->memory_pressure = slc_memory_client_begin(&s->memory); /* without what was just freed */
     if (result >= 0)
         result = slc_loads_collect(s);
     if (result >= 0)
@@ -85,6 +87,8 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
         result = slc_loads_cancel(s);
     if (result >= 0)
         result = slc_loads_make_room(s);
+    if (result >= 0)
+        result = slc_shrink_step(s);
     if (result >= 0)
         result = unmap_tiles(s);
     if (result >= 0)
@@ -216,7 +220,6 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                   .frameIndex = s->frame,
                                   .semaphore = s->semaphore,
                                   .signalValue = s->frame};
-    s->memory_pressure = slc_memory_client_begin(&s->memory);
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)

@@ -185,21 +185,33 @@ void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory
     pthread_mutex_unlock(&source->budget->mutex);
 }
 
+/* Of `amount`, in proportion to `own` of `all`; rounded up, so that what is left of it ends. */
+static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
+{
+    const uint64_t unit = 1 << 16; /* products of bytes could be beyond 64 bits */
+    if (own >= all || amount == 0)
+        return amount;
+    uint64_t share = (amount / unit + 1) * (own / unit + 1) / (all / unit + 1) * unit + unit;
+    return smaller(smaller(share, amount), own);
+}
+
 /* What was refused stays visible until the client has begun twice: others, which begin at other
  * times, then have begun in between. */
-uint64_t slc_memory_client_begin(struct slc_memory_client *client)
+struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *client)
 {
     struct slc_memory_budget *budget = client->budget;
     pthread_mutex_lock(&budget->mutex);
     uint64_t used = tile_memory(budget), limit = smaller(budget->limit, budget->device_limit);
-    uint64_t pressure = used > limit ? used - limit : 0;
+    uint64_t own = client->tiles + (client->source ? client->source->tiles : 0);
+    struct slc_memory_pressure pressure = {.beyond = used > limit ? used - limit : 0};
     for (const struct slc_memory_client *other = budget->clients; other; other = other->next)
         if (other != client)
-            pressure +=
+            pressure.refused +=
                 other->refused > other->refused_before ? other->refused : other->refused_before;
     client->refused_before = client->refused;
     client->refused = 0;
-    pressure = smaller(pressure, client->tiles + (client->source ? client->source->tiles : 0));
+    pressure.refused = smaller(pressure.refused, own);
+    pressure.beyond = share_of(pressure.beyond, own, used);
     pthread_mutex_unlock(&budget->mutex);
     return pressure;
 }

@@ -79,13 +79,14 @@ void slc_memory_client_set_source(struct slc_memory_client *client,
  *  and that is enough. */
 void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory_client *client);
 
-/**
- * Once per frame or launch. Returns the pressure on this client: bytes of tile memory, at most what
- * it and its source have, that it should release if it does not need them. 0 while everything fits.
- *
- * The pressure is what is in use beyond the limit, and what other clients were refused lately.
- */
-uint64_t slc_memory_client_begin(struct slc_memory_client *client);
+/** Bytes of tile memory that a client should release; at most what it and its source have. */
+struct slc_memory_pressure {
+    uint64_t beyond;  ///< must go: the client's share of what is in use beyond the limit
+    uint64_t refused; ///< should go if the client does not need it: others were refused it lately
+};
+
+/** Once per frame or launch. Returns the pressure on this client; zeros while everything fits. */
+struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *client);
 
 /** Bytes that the client has now. Either may be NULL. 0 without a budget. */
 void slc_memory_client_get(struct slc_memory_client *client, uint64_t *device, uint64_t *host);

@@ -77,6 +77,8 @@ struct slc_residency_interface {
     SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
                                   uint32_t *heap_id);
     void (*release_heap)(struct slc_residency *residency, uint32_t heap_id);
+    /** Bytes of heaps that were released and are not freed yet. NULL: heaps have no memory. */
+    uint64_t (*going_size)(const struct slc_residency *residency);
 
     /** `frame` begins. `completed_frame`: the last frame that is over on the GPU. Never waits. */
     SluiceResult (*update)(struct slc_residency *residency, uint64_t frame,

@@ -237,6 +237,12 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     s->dying[s->dying_count++] = (struct dying_heap){heap_id, 0, last_value(s), false};
 }
 
+static uint64_t going_size(const struct slc_residency *residency)
+{
+    const struct sparse_residency *s = const_sparse(residency);
+    return (uint64_t)s->dying_count * s->pages.heap_page_count * SLC_TILE_SIZE;
+}
+
 static uint32_t room_to_unmap(const struct slc_residency *residency)
 {
     const struct sparse_residency *s = const_sparse(residency);
@@ -514,6 +520,7 @@ static const struct slc_residency_interface sparse_interface = {
     .reserve = reserve,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
+    .going_size = going_size,
     .update = update,
     .map = map,
     .unmap = unmap,

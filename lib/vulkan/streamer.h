@@ -112,16 +112,24 @@ struct slc_unit_list {
     uint32_t first, last;
 };
 
+/** See shrink.h. */
+struct slc_shrink {
+    uint32_t own_target; ///< targetHeapCount that the application has set; 0: none
+    uint32_t target;     ///< that the manager has
+    bool compacting;     ///< heaps that become empty are released without any pressure
+};
+
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
     SluiceVulkanContext *context;
-    struct slc_vk vk;                ///< the context's, but for memory_client
-    struct slc_memory_client memory; ///< of vk
-    uint64_t memory_pressure;        ///< bytes, as of the last begin; see memory_budget.h
-    struct slc_caps caps;            ///< the context's
-    struct slc_page_pool *pages;     ///< of the context; NULL: not yet
-    uint32_t page_user;              ///< of these; SLC_MAX_PAGE_USERS: not yet
+    struct slc_vk vk;                           ///< the context's, but for memory_client
+    struct slc_memory_client memory;            ///< of vk
+    struct slc_memory_pressure memory_pressure; ///< as of the last begin
+    struct slc_shrink shrink;
+    struct slc_caps caps;        ///< the context's
+    struct slc_page_pool *pages; ///< of the context; NULL: not yet
+    uint32_t page_user;          ///< of these; SLC_MAX_PAGE_USERS: not yet
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;
     bool manager_locked; ///< for the application, but inside of the streamer's own calls

@@ -107,6 +107,9 @@ static SluiceResult live(void)
             CHECK_OK(sluiceRemoveVulkanTexture(g.streamer, g.textures[1].textureId));
         if (frame == 11)
             result = gallery_add(&g, 1);
+        uint32_t moved;
+        if (frame == 13)
+            result = sluiceCompactVulkanStreamer(g.streamer, 10, &moved);
     }
     return result;
 }

@@ -7,6 +7,7 @@
  * - memory goes only when nothing is bound to it any more, and nothing under way was.
  */
 #include "vulkan/fake_vulkan.h"
+#include "vulkan/streamer.h"
 
 #include "support/roll.h"
 #include "support/test.h"
@@ -45,6 +46,9 @@ struct model {
     uint32_t abandoned_in_all; ///< frames
     uint32_t heaps_freed, added;
     uint32_t window; ///< seed of what the camera sees
+    uint32_t
+        shrink_one_in; ///< frames, before which the budget changes or heaps are emptied; 0: none
+    uint32_t moved;    ///< tiles, by the latter
 };
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
@@ -369,11 +373,32 @@ static void release_heaps(struct model *m)
         CHECK_OK(sluiceReleaseHeap(manager, heaps[i]));
 }
 
+#define HEAP_SIZE (64u * 65536u)
+
+/* From one heap to none too few. */
+static void change_memory(struct model *m)
+{
+    uint32_t count = 0;
+    if (roll() % 3) {
+        CHECK_OK(
+            sluiceSetVulkanMemoryBudget(m->streamer->context, (uint64_t)roll() % 6 * HEAP_SIZE));
+        return;
+    }
+    CHECK_OK(sluiceCompactVulkanStreamer(m->streamer, (uint32_t)roll() % 20, &count));
+    assert_true(count < 20);
+    m->moved += count;
+}
+
 static uint64_t freed_in_all;
 
-static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
-                           uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
+struct memory_plan {
+    uint32_t heap_capacity, heaps, shrink_one_in;
+};
+
+static void run_plan(uint32_t tail_page_count, uint64_t metadata_size,
+                     const struct memory_plan *plan, unsigned seed, uint32_t abandon_one_in)
 {
+    uint32_t heap_capacity = plan->heap_capacity, heaps = plan->heaps;
     static struct model model; /* large */
     struct model *m = &model;
     *m = (struct model){.fake = {.tail_page_count = tail_page_count,
@@ -381,7 +406,8 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
                                  .want = want,
                                  .user = m},
                         .submitted = UINT64_MAX,
-                        .abandon_one_in = abandon_one_in};
+                        .abandon_one_in = abandon_one_in,
+                        .shrink_one_in = plan->shrink_one_in};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .framesInFlight = FRAMES_IN_FLIGHT,
                                            .tilesPerFrame = 24,
@@ -403,8 +429,10 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
             m->window = (uint32_t)roll() % (step % 500 < 250 ? 2 : 40);
         if (step % 50 == 0)
             remove_any(m);
-        if (step % 7 == 0)
+        if (step % 7 == 0 && !m->shrink_one_in)
             release_heaps(m);
+        if (m->shrink_one_in && (uint32_t)roll() % m->shrink_one_in == 0)
+            change_memory(m);
         shown += model_frame(m, step);
     }
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
@@ -419,6 +447,7 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
     /* once each, but for those that came last */
     assert_in_range(m->fake.metadata_binds, metadata_size ? m->added - 2 * TEXTURES : 0,
                     metadata_size ? m->added : 0);
+    assert_true(!m->shrink_one_in || m->heaps_freed > 3);
     freed_in_all += m->heaps_freed;
     /* whatever is bound now is never looked at again */
     m->fake.destroyed_count = 0;
@@ -427,6 +456,22 @@ static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uin
     assert_int_equal(m->fake.live_memory, 0);
     for (uint32_t i = 0; i < 2 * TEXTURES; i++)
         sluiceDestroyImageSource(m->textures[i].source);
+}
+
+static void run_abandoning(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
+                           uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
+{
+    const struct memory_plan plan = {heap_capacity, heaps, 0};
+    run_plan(tail_page_count, metadata_size, &plan, seed, abandon_one_in);
+}
+
+static void promises_hold_while_the_budget_changes(void **state)
+{
+    (void)state;
+    const struct memory_plan small = {16, 0, 20}, usual = {32, 0, 40};
+    run_plan(1, 0, &small, 51, 0);
+    run_plan(2, 0, &usual, 52, 0);
+    run_plan(0, 0, &small, 53, 3);
 }
 
 static void run(uint32_t tail_page_count, uint64_t metadata_size, uint32_t heap_capacity,
@@ -567,6 +612,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_metadata_that_is_bound_once),
         cmocka_unit_test(promises_hold_with_room_for_everything),
         cmocka_unit_test(promises_hold_where_frames_are_abandoned),
+        cmocka_unit_test(promises_hold_while_the_budget_changes),
         cmocka_unit_test(heaps_were_freed_in_some_run),
         cmocka_unit_test(layers_of_an_array_bind_tails_and_metadata_of_their_own),
         cmocka_unit_test(texture_added_inside_a_frame_has_no_feedback_in_it),

@@ -1,0 +1,136 @@
+#include "vulkan/shrink.h"
+
+#include "base/checked.h"
+#include "core/observer.h"
+
+#define HEAPS_AT_ONCE 16u
+/* Wanted tiles that move show a coarser level until they are there again. */
+#define MOVES_PER_FRAME 64u
+
+static uint64_t without(uint64_t amount, uint64_t taken)
+{
+    return amount > taken ? amount - taken : 0;
+}
+
+static uint64_t min_u64(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint64_t div_up(uint64_t a, uint64_t b)
+{
+    return a / b + (a % b > 0);
+}
+
+/* Heaps that hold what is wanted, with the slots that the manager keeps for packed tiles. */
+static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
+                             const SluiceStreamedTextureStatistics *stats)
+{
+    uint64_t tiles = (uint64_t)stats->mappedTileCount + stats->allocatedTileCount +
+                     stats->requestedTileCount + stats->cancelledTileCount +
+                     stats->reservedSlotCount;
+    return div_up(tiles, s->info.heapTileCapacity);
+}
+
+/* How many heaps are to be left; 0: as many as there are. Memory of released heaps comes later. */
+static uint32_t choose_target(const SluiceVulkanStreamer *s,
+                              const SluiceStreamedTextureStatistics *stats)
+{
+    const uint64_t size = (uint64_t)s->info.heapTileCapacity * SLC_TILE_SIZE;
+    const struct slc_memory_pressure *pressure = &s->memory_pressure;
+    uint64_t live = stats->heapCount, going = s->residency->interface->going_size(s->residency);
+    uint64_t beyond = without(pressure->beyond, going);
+    uint64_t refused = without(pressure->refused, without(going, pressure->beyond));
+    uint64_t target = live;
+    if (refused) {
+        uint64_t needed = needed_heaps(s, stats);
+        target = without(live, div_up(refused, size));
+        target = target > needed ? target : min_u64(needed, live);
+    }
+    if (beyond)
+        target = min_u64(target, without(live, div_up(beyond, size)));
+    if (!pressure->beyond && target == live)
+        return 0; /* else no heap may come before the last ones are freed */
+    return target ? (uint32_t)target : 1;
+}
+
+/* The application may have a target of its own; the smaller one counts. */
+static SluiceResult set_target(SluiceVulkanStreamer *s, uint32_t target)
+{
+    struct slc_shrink *shrink = &s->shrink;
+    SluiceStreamedTextureManagerConfig config = *slc_manager_config(s->manager);
+    config.structSize = sizeof config;
+    if (config.targetHeapCount != shrink->target)
+        shrink->own_target = config.targetHeapCount;
+    if (shrink->own_target && (!target || target > shrink->own_target))
+        target = shrink->own_target;
+    shrink->target = target;
+    if (config.targetHeapCount == target)
+        return SLUICE_SUCCESS;
+    config.targetHeapCount = target;
+    return slc_streamer_check(s, sluiceSetConfig(s->manager, &config), "sluiceSetConfig");
+}
+
+static uint32_t count_evicted(SluiceVulkanStreamer *s)
+{
+    uint32_t count = 0;
+    sluiceGetTilesToUnmap(s->manager, SLUICE_ALL_TEXTURES, s->frame, &count, NULL);
+    return count;
+}
+
+static SluiceResult release_empty_heaps(SluiceVulkanStreamer *s)
+{
+    uint32_t heaps[HEAPS_AT_ONCE], count = HEAPS_AT_ONCE;
+    SluiceResult result = sluiceGetEmptyHeaps(s->manager, &count, heaps);
+    for (uint32_t i = 0; i < count && result >= 0; i++)
+        result = sluiceReleaseHeap(s->manager, heaps[i]);
+    return slc_streamer_check(s, result, "sluiceReleaseHeap");
+}
+
+/* Without memory for it there is another frame. */
+static SluiceResult evacuate(SluiceVulkanStreamer *s, uint32_t count)
+{
+    SluiceResult result = sluiceEvacuateHeaps(s->manager, count);
+    return result == SLUICE_ERROR_OUT_OF_HOST_MEMORY
+               ? SLUICE_SUCCESS
+               : slc_streamer_check(s, result, "sluiceEvacuateHeaps");
+}
+
+SluiceResult slc_shrink_step(SluiceVulkanStreamer *s)
+{
+    struct slc_shrink *shrink = &s->shrink;
+    if (!s->residency->interface->going_size)
+        return SLUICE_SUCCESS;
+    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
+    sluiceGetStatistics(s->manager, &stats);
+    SluiceResult result = set_target(s, choose_target(s, &stats));
+    bool too_many = shrink->target && stats.heapCount > shrink->target;
+    if (result >= 0 && (too_many || shrink->compacting))
+        result = release_empty_heaps(s);
+    if (result >= 0 && too_many)
+        result = evacuate(s, slc_min_u32(MOVES_PER_FRAME, s->info.tilesPerFrame));
+    if (stats.retiringSlotCount == 0 && count_evicted(s) == 0)
+        shrink->compacting = false;
+    return result;
+}
+
+SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *streamer, uint32_t maxTileCount,
+                                         uint32_t *pTileCount)
+{
+    SluiceVulkanStreamer *s = streamer;
+    if (!s || !pTileCount)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pTileCount = 0;
+    if (!s->residency->interface->going_size)
+        return SLUICE_SUCCESS;
+    s->manager_locked = false;
+    uint32_t before = count_evicted(s);
+    SluiceResult result = sluiceEvacuateHeaps(s->manager, maxTileCount);
+    uint32_t after = count_evicted(s);
+    s->manager_locked = true;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    *pTileCount = after - before;
+    s->shrink.compacting = true;
+    return SLUICE_SUCCESS;
+}
