@@ -20,7 +20,7 @@ bool check(SluiceResult result, const char *what)
 {
     if (result >= 0)
         return true;
-    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    fprintf(stderr, "%s: %s\n", what, sluiceGetResultName(result));
     return false;
 }
 

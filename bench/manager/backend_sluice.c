@@ -57,7 +57,7 @@ struct bench_manager {
 static void check(SluiceResult result, const char *what)
 {
     if (result < 0) {
-        fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+        fprintf(stderr, "%s: %s\n", what, sluiceGetResultName(result));
         abort();
     }
 }

@@ -7,7 +7,7 @@
 void must(SluiceResult result, const char *what)
 {
     if (result < 0) {
-        fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+        fprintf(stderr, "%s: %s\n", what, sluiceGetResultName(result));
         exit(1);
     }
 }

@@ -19,7 +19,7 @@ static void must(SluiceResult result, const char *what)
 {
     if (result == SLUICE_SUCCESS)
         return;
-    fprintf(stderr, "%s: %s\n", what, sluiceResultString(result));
+    fprintf(stderr, "%s: %s\n", what, sluiceGetResultName(result));
     exit(1);
 }
 
@@ -113,7 +113,7 @@ static void write_tile(SluiceStoreWriter *writer, SluiceImageSource *source, uin
     SluiceImageRegion region;
     must(sluiceGetStoreWriterLayout(writer, &layout), "layout");
     must(sluiceGetStoreTileRegion(&layout, level, x, y, &region), "tile");
-    size_t pitch = sluiceFormatRegionSize(layout.format, region.width, 1);
+    size_t pitch = sluiceGetFormatRegionSize(layout.format, region.width, 1);
     must(sluiceReadImageRegion(source, &region, texels, pitch), "reading the picture");
     must(sluiceWriteStoreTile(writer, 0, level, x, y, texels, pitch), "writing");
 }
@@ -126,10 +126,10 @@ static void write_tail(SluiceStoreWriter *writer, SluiceImageSource *source,
         SluiceImageRegion region;
         must(sluiceGetStoreTileRegion(layout, l, 0, 0, &region), "level");
         must(sluiceReadImageRegion(source, &region, texels,
-                                   sluiceFormatRegionSize(layout->format, region.width, 1)),
+                                   sluiceGetFormatRegionSize(layout->format, region.width, 1)),
              "reading the picture");
         levels[l - layout->tailFirstLevel] = texels;
-        texels += sluiceFormatRegionSize(layout->format, region.width, region.height);
+        texels += sluiceGetFormatRegionSize(layout->format, region.width, region.height);
     }
     must(sluiceWriteStoreTail(writer, 0, levels, NULL), "writing");
 }

@@ -28,7 +28,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     const struct free_source *source = (struct free_source *)base;
     SluiceFormatInfo format = {.structSize = sizeof format};
     sluiceGetFormatInfo(source->info.format, &format);
-    size_t row = (size_t)sluiceFormatRegionSize(source->info.format, region->width, 1);
+    size_t row = (size_t)sluiceGetFormatRegionSize(source->info.format, region->width, 1);
     uint32_t rows = (region->height + format.blockHeight - 1) / format.blockHeight;
     if (row == row_pitch) { /* tightly packed, as tiles are */
         row *= rows;

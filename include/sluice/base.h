@@ -95,7 +95,7 @@ typedef enum SluiceResult {
  * Returns the enumerator's name, or "SLUICE_RESULT_UNKNOWN" for other values. Never NULL.
  * Thread safety: any thread.
  */
-SLUICE_API const char *sluiceResultString(SluiceResult result);
+SLUICE_API const char *sluiceGetResultName(SluiceResult result);
 
 /**
  * Functions that allocate and free host memory. Sluice calls them on the threads that use the

@@ -80,7 +80,7 @@ SLUICE_API SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInf
  * Returns the bytes per texel. 0 for compressed formats, UNDEFINED and unknown values.
  * Thread safety: any thread.
  */
-SLUICE_API uint32_t sluiceFormatTexelSize(SluiceFormat format);
+SLUICE_API uint32_t sluiceGetFormatTexelSize(SluiceFormat format);
 /**
  * Returns the bytes of `width` x `height` texels with tightly packed rows. Partial blocks count as
  * whole blocks. A height of 1 gives the size of one row.
@@ -88,12 +88,12 @@ SLUICE_API uint32_t sluiceFormatTexelSize(SluiceFormat format);
  * UINT64_MAX if the size exceeds 64 bits. 0 for UNDEFINED and unknown values.
  * Thread safety: any thread.
  */
-SLUICE_API uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height);
+SLUICE_API uint64_t sluiceGetFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height);
 /**
  * Returns the name without prefix, such as "R8_UNORM". "UNDEFINED" for UNDEFINED and unknown
  * values. Thread safety: any thread.
  */
-SLUICE_API const char *sluiceFormatString(SluiceFormat format);
+SLUICE_API const char *sluiceGetFormatName(SluiceFormat format);
 /**
  * Gets width and height, in texels, of the standard 64 KiB tile.
  *

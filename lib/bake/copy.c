@@ -43,7 +43,7 @@ static SluiceResult copy_tile(struct slot *slot, bool *found)
     if (result != SLUICE_SUCCESS)
         return result;
     region.arrayLayer = slot->layer;
-    size_t pitch = (size_t)sluiceFormatRegionSize(copy->layout.format, region.width, 1);
+    size_t pitch = (size_t)sluiceGetFormatRegionSize(copy->layout.format, region.width, 1);
     result = sluiceReadImageRegion(copy->source, &region, slot->texels, pitch);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -128,10 +128,10 @@ static SluiceResult copy_tail(struct slc_copy *copy, uint32_t layer, char *texel
         if (result != SLUICE_SUCCESS || found)
             return result;
         region.arrayLayer = layer;
-        size_t pitch = (size_t)sluiceFormatRegionSize(layout->format, region.width, 1);
+        size_t pitch = (size_t)sluiceGetFormatRegionSize(layout->format, region.width, 1);
         result = sluiceReadImageRegion(copy->source, &region, texels, pitch);
         levels[l - layout->tailFirstLevel] = texels;
-        texels += sluiceFormatRegionSize(layout->format, region.width, region.height);
+        texels += sluiceGetFormatRegionSize(layout->format, region.width, region.height);
     }
     return result == SLUICE_SUCCESS ? sluiceWriteStoreTail(copy->writer, layer, levels, NULL)
                                     : result;

@@ -142,7 +142,7 @@ static float find_threshold(const struct slc_plan *plan)
 {
     float cutout = plan->settings.cutout;
     bool is_bytes =
-        sluiceFormatTexelSize(plan->rules.format) == 4 && has_srgb_twin(plan->rules.format);
+        sluiceGetFormatTexelSize(plan->rules.format) == 4 && has_srgb_twin(plan->rules.format);
     if (!plan->rules.alpha || cutout == 0.0f || !is_bytes)
         return plan->rules.alpha ? cutout : 0.0f;
     return (ceilf(cutout * 255.0f) - 0.5f) / 255.0f;
@@ -161,9 +161,9 @@ SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSe
         format = natural_format(picture, settings->normalMap, srgb);
     plan->rules.srgb = srgb;
     plan->format = slc_format_twin(format, srgb);
-    if (sluiceFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
+    if (sluiceGetFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
         slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s", picture->name,
-                sluiceFormatString(plan->format));
+                sluiceGetFormatName(plan->format));
         return SLUICE_ERROR_UNSUPPORTED;
     }
     find_rules(picture, plan);

@@ -224,7 +224,7 @@ static void write_chunk(const struct slc_rules *rules, const float *rgba, float 
 void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,
                       void *texels, uint32_t count)
 {
-    size_t texel_size = sluiceFormatTexelSize(rules->format);
+    size_t texel_size = sluiceGetFormatTexelSize(rules->format);
     for (uint32_t i = 0; i < count; i += CHUNK)
         write_chunk(rules, rgba + 4 * (size_t)i, alpha_scale, (char *)texels + i * texel_size,
                     slc_min_u32(CHUNK, count - i));

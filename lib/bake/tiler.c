@@ -9,7 +9,7 @@
 static void plan(struct slc_tiler *tiler, const SluiceStoreLayout *layout,
                  SluiceFormat texel_format, bool reaches_around)
 {
-    size_t texel_size = sluiceFormatTexelSize(texel_format);
+    size_t texel_size = sluiceGetFormatTexelSize(texel_format);
     *tiler = (struct slc_tiler){.layout = *layout, .texel_format = texel_format};
     uint32_t level_count = slc_min_u32(layout->mipLevelCount, SLUICE_STORE_MAX_MIP_LEVELS);
     for (uint32_t l = 0; l < level_count; l++) {
@@ -30,7 +30,7 @@ static size_t band_size(const struct slc_tiler *tiler, uint32_t l)
 {
     const struct slc_tiler_level *level = &tiler->levels[l];
     return (size_t)level->width * slc_min_u32(tiler->layout.tileHeight, level->height) *
-           sluiceFormatTexelSize(tiler->texel_format);
+           sluiceGetFormatTexelSize(tiler->texel_format);
 }
 
 uint64_t slc_tiler_memory(const SluiceStoreLayout *layout, SluiceFormat texel_format,
@@ -103,14 +103,14 @@ static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegi
     SluiceFormat format = tiler->layout.format;
     if (format == tiler->texel_format)
         return sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, texels, pitch);
-    size_t size = (size_t)sluiceFormatRegionSize(format, region->width, region->height);
+    size_t size = (size_t)sluiceGetFormatRegionSize(format, region->width, region->height);
     void *blocks = slc_alloc(&tiler->allocator, size, 1);
     if (!blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     slc_encode_blocks(format, tiler->quality, texels, pitch, region->width, region->height, blocks);
     SluiceResult result =
         sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, blocks,
-                             (size_t)sluiceFormatRegionSize(format, region->width, 1));
+                             (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
     slc_free(&tiler->allocator, blocks, size, 1);
     return result;
 }
@@ -127,7 +127,7 @@ static SluiceResult write_tile(struct slc_tile_job *job, bool *found)
     result = sluiceGetStoreTileRegion(&tiler->layout, band->level, job->x, band->y, &region);
     if (result != SLUICE_SUCCESS)
         return result;
-    size_t texel_size = sluiceFormatTexelSize(tiler->texel_format);
+    size_t texel_size = sluiceGetFormatTexelSize(tiler->texel_format);
     return write_encoded(tiler, &region, job->x, band->y, band->texels + region.x * texel_size,
                          tiler->levels[band->level].width * texel_size);
 }
@@ -192,7 +192,7 @@ static struct slc_band *open_band(struct slc_tiler *tiler, struct slc_tiler_leve
 void *slc_tiler_begin_row(struct slc_tiler *tiler, uint32_t l, uint32_t y)
 {
     struct slc_tiler_level *level = &tiler->levels[l];
-    size_t pitch = level->width * (size_t)sluiceFormatTexelSize(tiler->texel_format);
+    size_t pitch = level->width * (size_t)sluiceGetFormatTexelSize(tiler->texel_format);
     if (l >= tiler->layout.tailFirstLevel)
         return tiler->tail + level->tail_offset + y * pitch;
     uint32_t tile_height = tiler->layout.tileHeight;
@@ -230,7 +230,7 @@ void slc_tiler_end_row(struct slc_tiler *tiler, uint32_t l, uint32_t y)
 static SluiceResult encode_tail(struct slc_tiler *tiler, const void **levels, char *blocks)
 {
     const SluiceStoreLayout *layout = &tiler->layout;
-    size_t texel_size = sluiceFormatTexelSize(tiler->texel_format);
+    size_t texel_size = sluiceGetFormatTexelSize(tiler->texel_format);
     for (uint32_t l = layout->tailFirstLevel; l < layout->mipLevelCount; l++) {
         const struct slc_tiler_level *level = &tiler->levels[l];
         const void *texels = tiler->tail + level->tail_offset;
@@ -238,7 +238,7 @@ static SluiceResult encode_tail(struct slc_tiler *tiler, const void **levels, ch
             slc_encode_blocks(layout->format, tiler->quality, texels, level->width * texel_size,
                               level->width, level->height, blocks);
             texels = blocks;
-            blocks += sluiceFormatRegionSize(layout->format, level->width, level->height);
+            blocks += sluiceGetFormatRegionSize(layout->format, level->width, level->height);
         }
         levels[l - layout->tailFirstLevel] = texels;
     }

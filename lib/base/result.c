@@ -1,6 +1,6 @@
 #include <sluice/base.h>
 
-const char *sluiceResultString(SluiceResult result)
+const char *sluiceGetResultName(SluiceResult result)
 {
     /* No default label, so that -Wswitch names the enumerator that someone forgot. */
     switch (result) {

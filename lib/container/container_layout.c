@@ -28,8 +28,8 @@ SluiceResult slc_layout_check(const struct slc_container_layout *layout,
 
 uint64_t slc_layout_image_size(const struct slc_container_layout *layout, uint32_t level)
 {
-    return sluiceFormatRegionSize(layout->format, slc_mip_size(layout->width, level),
-                                  slc_mip_size(layout->height, level));
+    return sluiceGetFormatRegionSize(layout->format, slc_mip_size(layout->width, level),
+                                     slc_mip_size(layout->height, level));
 }
 
 /* One format of those that differ in how bytes are understood, not in which there are. */
@@ -53,7 +53,7 @@ SluiceResult slc_layout_rename(struct slc_container_layout *layout,
     if (format != SLUICE_FORMAT_UNDEFINED && bytes_of(format) != bytes_of(layout->format))
         return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
                               "holds %s and cannot be read as %s; nothing is converted",
-                              sluiceFormatString(layout->format), sluiceFormatString(format));
+                              sluiceGetFormatName(layout->format), sluiceGetFormatName(format));
     if (format != SLUICE_FORMAT_UNDEFINED)
         layout->format = format;
     return SLUICE_SUCCESS;

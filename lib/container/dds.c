@@ -130,7 +130,7 @@ static SluiceResult place_images(const struct slc_input_file *file, uint64_t sta
     return slc_input_fail(file, SLUICE_ERROR_CORRUPT_DATA,
                           "has %llu bytes; %u x %u texels of %s, %u layers, need %llu",
                           (unsigned long long)file->size, layout->width, layout->height,
-                          sluiceFormatString(layout->format), layout->layer_count,
+                          sluiceGetFormatName(layout->format), layout->layer_count,
                           (unsigned long long)(start + chain * layout->layer_count));
 }
 

@@ -191,7 +191,7 @@ static void fail(SluiceDemandLoader *loader, struct slc_demand_image *image, Slu
     if (!texture->told)
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "%s cannot be used as a texture (index %u): %s%s%s; %s.", slc_image_name(image),
-                image->texture, sluiceResultString(result), image->trouble ? ": " : "",
+                image->texture, sluiceGetResultName(result), image->trouble ? ": " : "",
                 image->trouble ? image->trouble : "",
                 slc_retries_words(loader, retrying, sizeof retrying));
     texture->told = true;

@@ -110,7 +110,7 @@ static void apply(SluiceDemandLoader *loader, const struct slc_page_change *chan
     if (!loader->page_table_was_full)
         slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "no room in the page table for page %u and perhaps others: %s", change->page,
-                sluiceResultString(result));
+                sluiceGetResultName(result));
     loader->page_table_was_full = true;
     slc_residency_forget(loader->residency, change->page, 1);
 }

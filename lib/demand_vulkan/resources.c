@@ -250,7 +250,8 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
             tell_evicted(resource, page, job->value);
         if (refuse && !resource->told)
             slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
-                    "page %u of a resource has no value: %s; %s.", page, sluiceResultString(result),
+                    "page %u of a resource has no value: %s; %s.", page,
+                    sluiceGetResultName(result),
                     slc_retries_words(loader, retrying, sizeof retrying));
         resource->told |= refuse;
         refuse = refuse && slc_retries_add(loader, &resource->retry_group, job->page);

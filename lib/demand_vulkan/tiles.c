@@ -35,7 +35,7 @@ static uint32_t write_tail(const struct slc_demand_image *image,
         struct slc_demand_place place =
             slc_demand_tail_place(image->tile_width, image->tile_height, image->blocks, k);
         parts[k] = (struct slc_tile_part){{level, 0, 0, width, height}, offset, place.x, place.y};
-        uint32_t size = (uint32_t)sluiceFormatRegionSize(image->info.format, width, height);
+        uint32_t size = (uint32_t)sluiceGetFormatRegionSize(image->info.format, width, height);
         offset += (size + STAGING_ALIGNMENT - 1) / STAGING_ALIGNMENT * STAGING_ALIGNMENT;
     }
     return count;
@@ -190,12 +190,12 @@ static void log_failure(const SluiceDemandLoader *loader, struct slc_demand_imag
     if (level == image->regular_count && !texture->told)
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
                 "%s: levels from %u on cannot be read, and so it cannot be sampled: %s; %s.", name,
-                level, sluiceResultString(result), retrying);
+                level, sluiceGetResultName(result), retrying);
     else if (level < image->regular_count && !image->told)
         slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
                 "%s: level %u, tile (%u, %u) cannot be read: %s. Showing a coarser level; %s.",
                 name, level, index % slc_image_level_width(image, level),
-                index / slc_image_level_width(image, level), sluiceResultString(result), retrying);
+                index / slc_image_level_width(image, level), sluiceGetResultName(result), retrying);
     if (level == image->regular_count)
         texture->told = texture->told_tail = true;
     else

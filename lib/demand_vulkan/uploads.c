@@ -84,7 +84,7 @@ static void add(struct copies *c, const struct slc_demand_job *job,
         .imageExtent = {round_up(part->region.width, block), round_up(part->region.height, block),
                         1}};
     if (!job->counted)
-        c->loader->counts.bytesUploaded += sluiceFormatRegionSize(
+        c->loader->counts.bytesUploaded += sluiceGetFormatRegionSize(
             job->image->info.format, part->region.width, part->region.height);
 }
 

@@ -167,7 +167,7 @@ static void deliver_colors(struct slc_exr_file *file, const unsigned char *row,
                            const struct slc_exr_target *target, char *result)
 {
     uint32_t component_count = slc_min_u32(3, slc_format_channel_count(target->format));
-    size_t texel_size = sluiceFormatTexelSize(target->format);
+    size_t texel_size = sluiceGetFormatTexelSize(target->format);
     uint32_t size = (uint32_t)texel_size / slc_format_channel_count(target->format);
     bool encode = target->format == SLUICE_FORMAT_R8G8B8A8_SRGB;
     for (uint32_t done = 0; done < shared->width; done += BATCH, result += BATCH * texel_size) {
@@ -192,7 +192,7 @@ static void deliver_row(struct slc_exr_file *file, const unsigned char *row,
                         const struct slc_exr_target *target, char *result)
 {
     uint32_t component_count = slc_format_channel_count(target->format);
-    size_t texel_size = sluiceFormatTexelSize(target->format);
+    size_t texel_size = sluiceGetFormatTexelSize(target->format);
     struct component component = {(uint32_t)texel_size / component_count, false, texel_size};
     if (file->converts)
         deliver_colors(file, row, chunk, shared, target, result);
@@ -252,7 +252,7 @@ SluiceResult slc_exr_decode_chunk(struct slc_exr_decoder *decoder,
     const unsigned char *texels = decoder->pipeline.unpacked_buffer;
     SluiceImageRegion shared = intersect(&chunk->region, &target->region);
     size_t row_size = (size_t)chunk->region.width * file->texel_size;
-    size_t result_texel = sluiceFormatTexelSize(target->format);
+    size_t result_texel = sluiceGetFormatTexelSize(target->format);
     for (uint32_t y = shared.y; y < shared.y + shared.height; y++)
         deliver_row(file, texels + (y - chunk->region.y) * row_size, &chunk->region, &shared,
                     target,

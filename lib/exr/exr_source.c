@@ -73,7 +73,7 @@ static SluiceResult build_chain(struct exr_source *source)
             .format = info->format,
             .region = {0, 0, 0, info->width, info->height},
             .texels = source->chain.texels,
-            .pitch = (size_t)info->width * sluiceFormatTexelSize(info->format),
+            .pitch = (size_t)info->width * sluiceGetFormatTexelSize(info->format),
         };
         result = read_chunks(&source->file, &target);
     }
@@ -247,12 +247,12 @@ static SluiceResult describe(struct exr_source *source, SluiceFormat format, uin
         source->info.mipLevelCount = 1;
         source->reads_chain = false;
     }
-    uint64_t size = (uint64_t)file->width * file->height * sluiceFormatTexelSize(format);
+    uint64_t size = (uint64_t)file->width * file->height * sluiceGetFormatTexelSize(format);
     if (size <= max_size)
         return SLUICE_SUCCESS;
     return slc_input_fail(&file->input, SLUICE_ERROR_UNSUPPORTED,
                           "is %u x %u texels, %llu bytes as %s; maxImageSize is %llu", file->width,
-                          file->height, (unsigned long long)size, sluiceFormatString(format),
+                          file->height, (unsigned long long)size, sluiceGetFormatName(format),
                           (unsigned long long)max_size);
 }
 
@@ -267,7 +267,7 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     if (result != SLUICE_SUCCESS)
         return result;
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
-        (sluiceFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format)))
+        (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);

@@ -136,7 +136,7 @@ static void convert_texels(SluiceFormat format, const char *texels, uint16_t (*h
                            uint32_t count)
 {
     enum { BATCH = 64 };
-    uint32_t texel_size = sluiceFormatTexelSize(format);
+    uint32_t texel_size = sluiceGetFormatTexelSize(format);
     uint32_t channels = slc_format_channel_count(format);
     if (texel_size == 2 * channels) {
         for (uint32_t i = 0; i < count; i++)
@@ -158,7 +158,7 @@ static void pack_tile(const struct writer *writer, const struct tile *tile, cons
     enum { BATCH = 64 };
     uint16_t halves[BATCH][4];
     uint32_t width = tile->region.width, channels = writer->channel_count;
-    size_t texel_size = sluiceFormatTexelSize(writer->image.format);
+    size_t texel_size = sluiceGetFormatTexelSize(writer->image.format);
     for (uint32_t y = 0; y < tile->region.height; y++, packed += (size_t)2 * channels * width)
         for (uint32_t x = 0; x < width; x += BATCH) {
             uint32_t count = slc_min_u32(BATCH, width - x);
@@ -178,7 +178,7 @@ static void pack_tile(const struct writer *writer, const struct tile *tile, cons
 static SluiceResult make_tile(struct writer *writer, const struct tile *tile,
                               const struct tile_buffers *buffers)
 {
-    size_t pitch = (size_t)tile->region.width * sluiceFormatTexelSize(writer->image.format);
+    size_t pitch = (size_t)tile->region.width * sluiceGetFormatTexelSize(writer->image.format);
     SluiceResult result =
         sluiceReadImageRegion(writer->source, &tile->region, buffers->texels, pitch);
     if (result != SLUICE_SUCCESS)
@@ -324,7 +324,7 @@ static void *worker_main(void *argument)
     const SluiceAllocationCallbacks *cb = &writer->allocator;
     size_t texels = (size_t)writer->info.tileWidth * writer->info.tileHeight;
     struct tile_buffers buffers = {
-        .texels_size = texels * sluiceFormatTexelSize(writer->image.format),
+        .texels_size = texels * sluiceGetFormatTexelSize(writer->image.format),
         .packed_size = texels * 2 * writer->channel_count,
     };
     buffers.texels = slc_alloc(cb, buffers.texels_size, 1);

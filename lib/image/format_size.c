@@ -63,13 +63,13 @@ SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo)
     return result;
 }
 
-uint32_t sluiceFormatTexelSize(SluiceFormat format)
+uint32_t sluiceGetFormatTexelSize(SluiceFormat format)
 {
     const SluiceFormatInfo *info = &find(format)->info;
     return info->blockSize && !slc_format_is_compressed(info) ? info->blockSize : 0;
 }
 
-uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height)
+uint64_t sluiceGetFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height)
 {
     const SluiceFormatInfo *info = &find(format)->info;
     if (info->blockSize == 0)
@@ -78,7 +78,7 @@ uint64_t sluiceFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t he
     return row && rows > UINT64_MAX / row ? UINT64_MAX : row * rows;
 }
 
-const char *sluiceFormatString(SluiceFormat format)
+const char *sluiceGetFormatName(SluiceFormat format)
 {
     return find(format)->name;
 }

@@ -59,7 +59,7 @@ SluiceResult slc_image_info_check(const SluiceImageInfo *info, enum slc_image_le
                 "%s: the source's %s: width %u, height %u, mipLevelCount %u, format %s (%d), "
                 "arrayLayerCount %u",
                 info->pName && info->pName[0] ? info->pName : "image", trouble, info->width,
-                info->height, info->mipLevelCount, sluiceFormatString(info->format),
+                info->height, info->mipLevelCount, sluiceGetFormatName(info->format),
                 (int)info->format, info->arrayLayerCount);
     return SLUICE_ERROR_INVALID_ARGUMENT;
 }

@@ -12,7 +12,7 @@ static bool plan(struct slc_mip_chain *chain, SluiceFormat format, uint32_t widt
 {
     *chain = (struct slc_mip_chain){.format = format, .width = width, .height = height};
     chain->level_count = slc_mip_count(slc_max_u32(width, height));
-    size_t texel_size = sluiceFormatTexelSize(format);
+    size_t texel_size = sluiceGetFormatTexelSize(format);
     for (uint32_t level = 0; level < chain->level_count; level++) {
         size_t size;
         chain->offsets[level] = chain->size;
@@ -98,7 +98,7 @@ static void build_level(struct slc_mip_chain *chain, uint32_t level,
     uint32_t source_height = slc_mip_size(chain->height, level - 1);
     uint32_t width = slc_mip_size(chain->width, level);
     uint32_t height = slc_mip_size(chain->height, level);
-    size_t texel_size = sluiceFormatTexelSize(chain->format);
+    size_t texel_size = sluiceGetFormatTexelSize(chain->format);
     const char *source = slc_mip_chain_level(chain, level - 1);
     char *result = slc_mip_chain_level(chain, level);
     for (uint32_t y = 0; y < height; y++) {
@@ -143,7 +143,7 @@ SluiceResult slc_mip_chain_build(struct slc_mip_chain *chain, const SluiceAlloca
 void slc_mip_chain_read(const struct slc_mip_chain *chain, const SluiceImageRegion *region,
                         void *texels, size_t row_pitch)
 {
-    size_t texel_size = sluiceFormatTexelSize(chain->format);
+    size_t texel_size = sluiceGetFormatTexelSize(chain->format);
     size_t pitch = slc_mip_size(chain->width, region->mipLevel) * texel_size;
     const char *source =
         slc_mip_chain_level(chain, region->mipLevel) + region->y * pitch + region->x * texel_size;

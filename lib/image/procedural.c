@@ -27,7 +27,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
     struct procedural_source *source = (struct procedural_source *)base;
     uint32_t width = slc_mip_size(source->info.width, region->mipLevel);
     uint32_t height = slc_mip_size(source->info.height, region->mipLevel);
-    uint32_t texel_size = sluiceFormatTexelSize(source->info.format);
+    uint32_t texel_size = sluiceGetFormatTexelSize(source->info.format);
     float rgba[BATCH][4];
     for (uint32_t y = 0; y < region->height; y++) {
         char *row = (char *)texels + y * row_pitch;

@@ -44,10 +44,10 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
         const SluiceImageRegion *region = &read->regions[read->done_count];
         result = sluiceReadImageRegionLocated(
             source, region, read->texels[read->done_count],
-            sluiceFormatRegionSize(info->format, region->width, 1), fault);
+            sluiceGetFormatRegionSize(info->format, region->width, 1), fault);
         if (result != SLUICE_SUCCESS)
             return result;
-        read->done_size += sluiceFormatRegionSize(info->format, region->width, region->height);
+        read->done_size += sluiceGetFormatRegionSize(info->format, region->width, region->height);
     }
     return SLUICE_SUCCESS;
 }

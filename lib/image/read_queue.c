@@ -183,7 +183,7 @@ static uint64_t size_of(const struct slc_read *read)
     for (uint32_t i = read->done_count; i < read->region_count; i++) {
         const SluiceImageRegion *region = &read->regions[i];
         uint64_t bytes =
-            sluiceFormatRegionSize(read->source->format, region->width, region->height);
+            sluiceGetFormatRegionSize(read->source->format, region->width, region->height);
         if (read->source->format == SLUICE_FORMAT_UNDEFINED)
             bytes = (uint64_t)region->width * region->height;
         if (read->source->format == SLUICE_FORMAT_UNDEFINED)

@@ -40,7 +40,7 @@ static void dump_request(struct slc_dump *dump, const struct slc_page_call *call
         dump->event, request->page, request->class_index, request->rank,
         request->pinned ? " pinned" : "", request->kind, answer_names[call->request_answer],
         call->result == SLUICE_SUCCESS ? "" : ", ",
-        call->result == SLUICE_SUCCESS ? "" : sluiceResultString(call->result));
+        call->result == SLUICE_SUCCESS ? "" : sluiceGetResultName(call->result));
 }
 
 static void dump_changes(struct slc_dump *dump, const struct slc_page_call *call)

@@ -270,7 +270,7 @@ void slc_dump_decisions(struct slc_dump *dump, const SluiceStreamedTextureManage
         dump_map(dump, call->feedback);
     bool heap = call->kind == SLC_CALL_HEAP_ANSWER;
     add(dump, "%" PRIu64 " %s %s", dump->event, heap ? "allocate-heap" : "=",
-        sluiceResultString(call->result));
+        sluiceGetResultName(call->result));
     if (heap && call->result >= SLUICE_SUCCESS)
         add(dump, " heap=%" PRIu32, call->heap_id);
     if (call->kind == SLC_CALL_ADD_TEXTURE && call->result >= SLUICE_SUCCESS)

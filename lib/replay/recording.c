@@ -81,7 +81,8 @@ static SluiceResult play_call(struct slc_replay *replay, struct slc_record *reco
          call->texture_id != recorded.texture_id) ||
         (slc_call_lists(call->kind) && player->hash != record->hash))
         slc_note_divergence(replay, player->event_count, offset,
-                            sluiceResultString(recorded.result), sluiceResultString(call->result));
+                            sluiceGetResultName(recorded.result),
+                            sluiceGetResultName(call->result));
     player->answer_count = player->answers_used = 0;
     player->answers_missing = false;
     return SLUICE_SUCCESS;

@@ -125,7 +125,7 @@ static void log_loss(const SluiceRecorder *recorder)
 {
     if (recorder->file.is_open && recorder->result != SLUICE_ERROR_IO)
         slc_log(&recorder->file.log, SLUICE_LOG_ERROR, "%s: the recording is lost: %s",
-                recorder->file.target, sluiceResultString(recorder->result));
+                recorder->file.target, sluiceGetResultName(recorder->result));
 }
 
 SluiceResult slc_recorder_end(SluiceRecorder *recorder)

@@ -18,8 +18,8 @@ static bool is_in_tail(const SluiceStoreLayout *layout, uint32_t level)
 
 static uint64_t level_size(const SluiceStoreLayout *layout, uint32_t level)
 {
-    return sluiceFormatRegionSize(layout->format, slc_mip_size(layout->width, level),
-                                  slc_mip_size(layout->height, level));
+    return sluiceGetFormatRegionSize(layout->format, slc_mip_size(layout->width, level),
+                                     slc_mip_size(layout->height, level));
 }
 
 static void lay_out_levels(SluiceStoreLayout *layout)
@@ -146,7 +146,7 @@ uint32_t slc_store_chunk_size(const struct slc_store_grid *grid,
     if (slc_store_is_tail(grid, place))
         return grid->layout.tailSize;
     SluiceImageRegion region = slc_store_chunk_region(grid, place);
-    return (uint32_t)sluiceFormatRegionSize(grid->layout.format, region.width, region.height);
+    return (uint32_t)sluiceGetFormatRegionSize(grid->layout.format, region.width, region.height);
 }
 
 uint64_t slc_store_chunk_offset(const struct slc_store_grid *grid,

@@ -61,8 +61,8 @@ void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc
     caps->granularityHeight = granularity.height;
     caps->tileWidth = tile.width;
     caps->tileHeight = tile.height;
-    caps->sparse =
-        tile.depth == 1 && sluiceFormatRegionSize(format, tile.width, tile.height) == SLC_TILE_SIZE;
+    caps->sparse = tile.depth == 1 &&
+                   sluiceGetFormatRegionSize(format, tile.width, tile.height) == SLC_TILE_SIZE;
 }
 
 SluiceResult sluiceGetVulkanFormatCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,

@@ -313,6 +313,6 @@ SluiceResult slc_streamer_check(const SluiceVulkanStreamer *s, SluiceResult resu
 {
     if (result < 0)
         slc_log(&s->vk.log, SLUICE_LOG_ERROR, "%s refused with %s", what,
-                sluiceResultString(result));
+                sluiceGetResultName(result));
     return result;
 }

@@ -143,7 +143,7 @@ static void log_shortage(struct slc_page_chunks *chunks, SluiceFormat format)
         slc_log(&chunks->vk->log, SLUICE_LOG_WARNING,
                 "all maxPageChunkCount %u images of pages are in use: no more than %u tiles of %s, "
                 "finer ones will not be loaded",
-                chunks->count, chunks->page_count[format], sluiceFormatString(format));
+                chunks->count, chunks->page_count[format], sluiceGetFormatName(format));
 }
 
 /* Fewer and fewer layers, until the device has memory for them and the cap holds. */

@@ -8,8 +8,8 @@ static uint64_t texel_bytes(const SluiceImageInfo *info, uint32_t first_level)
 {
     uint64_t bytes = 0;
     for (uint32_t level = first_level; level < info->mipLevelCount; level++)
-        bytes += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
-                                        slc_mip_size(info->height, level));
+        bytes += sluiceGetFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                           slc_mip_size(info->height, level));
     return bytes;
 }
 
@@ -55,7 +55,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
     const char *trouble = check_format(vk, &create, texel_bytes(info, first_level));
     if (trouble) {
         slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",
-                info->width, info->height, sluiceFormatString(info->format), trouble);
+                info->width, info->height, sluiceGetFormatName(info->format), trouble);
         return SLUICE_ERROR_UNSUPPORTED;
     }
     SluiceResult result = slc_vk_result(

@@ -31,7 +31,7 @@ static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *textur
                  (unsigned long long)reads.lastFailureOffset);
     bool packed = tile >= texture->layout.regularTileCount;
     slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
-            name_of(texture), place, sluiceResultString(result),
+            name_of(texture), place, sluiceGetResultName(result),
             packed ? "Its packed levels are missing" : "Showing a coarser level",
             seconds(s, s->info.retryDelayTicks));
 }

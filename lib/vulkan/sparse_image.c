@@ -58,8 +58,8 @@ static uint64_t texel_bytes(const SluiceImageInfo *info)
 {
     uint64_t size = 0;
     for (uint32_t level = 0; level < info->mipLevelCount; level++)
-        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
-                                       slc_mip_size(info->height, level));
+        size += sluiceGetFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                          slc_mip_size(info->height, level));
     return size * layer_count(info);
 }
 
@@ -161,7 +161,7 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
     }
     if (trouble) {
         slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",
-                info->width, info->height, sluiceFormatString(info->format), trouble);
+                info->width, info->height, sluiceGetFormatName(info->format), trouble);
         slc_sparse_image_destroy(image, vk);
         return SLUICE_ERROR_UNSUPPORTED;
     }

@@ -120,8 +120,8 @@ static uint32_t packed_pages(const SluiceStreamedTextureDesc *desc, const Sluice
 {
     uint64_t size = 0;
     for (uint32_t level = desc->regularMipCount; level < desc->mipLevelCount; level++)
-        size += sluiceFormatRegionSize(info->format, slc_mip_size(info->width, level),
-                                       slc_mip_size(info->height, level));
+        size += sluiceGetFormatRegionSize(info->format, slc_mip_size(info->width, level),
+                                          slc_mip_size(info->height, level));
     return (uint32_t)((size + SLC_TILE_SIZE - 1) / SLC_TILE_SIZE);
 }
 

@@ -95,9 +95,9 @@ static void upload_block(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
         struct slc_unit *unit = &s->units[units[i]];
         uint32_t added = unit_copies(s, units[i], &s->copies[copy_count]);
         for (uint32_t j = copy_count; j < copy_count + added && !unit->published; j++)
-            s->counts.bytesUploaded += sluiceFormatRegionSize(s->textures[texture].info.format,
-                                                              s->copies[j].imageExtent.width,
-                                                              s->copies[j].imageExtent.height);
+            s->counts.bytesUploaded += sluiceGetFormatRegionSize(s->textures[texture].info.format,
+                                                                 s->copies[j].imageExtent.width,
+                                                                 s->copies[j].imageExtent.height);
         copy_count += added;
         assert(copy_count <= s->copy_capacity);
         unit->state = SLC_UNIT_UPLOADED;
@@ -153,7 +153,7 @@ static SluiceResult publish_units(SluiceVulkanStreamer *s, const uint32_t *units
 static bool needs_barriers(const SluiceVulkanStreamer *s, uint32_t texture)
 {
     return s->residency->interface->ordinary_images &&
-           sluiceFormatTexelSize(s->textures[texture].info.format) == 0;
+           sluiceGetFormatTexelSize(s->textures[texture].info.format) == 0;
 }
 
 static void wait_for_copies(const SluiceVulkanStreamer *s, VkCommandBuffer commands)

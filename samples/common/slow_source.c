@@ -83,7 +83,7 @@ static bool request(struct slow_source *source, const SluiceImageInfo *info,
     struct wanted *wanted = add(source, region);
     if (!wanted)
         return false;
-    uint64_t size = sluiceFormatRegionSize(info->format, region->width, region->height);
+    uint64_t size = sluiceGetFormatRegionSize(info->format, region->width, region->height);
     wanted->due = send(source->line, (double)now, size);
     wanted->asked = now;
     return true;

@@ -11,7 +11,7 @@
 static bool check(SluiceResult result, const char *what)
 {
     if (result != SLUICE_SUCCESS)
-        text_say("%s: %s", what, sluiceResultString(result));
+        text_say("%s: %s", what, sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

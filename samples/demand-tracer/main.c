@@ -67,7 +67,7 @@ static bool create_loader(struct tracer *t)
         result = sluiceCreateDemandLoader(&info, &t->loader);
     if (result == SLUICE_SUCCESS)
         return true;
-    text_say("textures cannot be loaded on demand: %s", sluiceResultString(result));
+    text_say("textures cannot be loaded on demand: %s", sluiceGetResultName(result));
     t->unsupported = result == SLUICE_ERROR_UNSUPPORTED;
     return false;
 }

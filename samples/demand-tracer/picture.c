@@ -78,7 +78,7 @@ static bool write_exr(const struct picture *picture, const char *path)
         result = sluiceWriteExrFile(&write, source);
     sluiceDestroyImageSource(source);
     if (result != SLUICE_SUCCESS)
-        text_say("%s: cannot write: %s", path, sluiceResultString(result));
+        text_say("%s: cannot write: %s", path, sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

@@ -105,7 +105,7 @@ static bool create_texture(const struct tracer_options *options, SluiceDemandLoa
     };
     SluiceResult result = sluiceAddDemandTexture(loader, &info, &texture->id);
     if (result != SLUICE_SUCCESS)
-        text_say("a texture cannot be created: %s", sluiceResultString(result));
+        text_say("a texture cannot be created: %s", sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

@@ -30,7 +30,7 @@ struct renderer {
 
 static void check_result(SluiceResult result, const char *call)
 {
-    check(result == SLUICE_SUCCESS, call, sluiceResultString(result));
+    check(result == SLUICE_SUCCESS, call, sluiceGetResultName(result));
 }
 
 static void print_message(void *pUserData, SluiceLogSeverity severity, const char *pMessage)

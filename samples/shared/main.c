@@ -40,7 +40,7 @@ struct app {
 static bool sluice(SluiceResult result, const char *what)
 {
     if (result != SLUICE_SUCCESS)
-        fprintf(stderr, "shared-tiles: %s: %s\n", what, sluiceResultString(result));
+        fprintf(stderr, "shared-tiles: %s: %s\n", what, sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

@@ -71,7 +71,7 @@ static SluiceResult choose_settings(const struct picture_path *picture, enum pix
 static void refuse(struct picture_path *picture, SluiceResult result)
 {
     picture->refused = true;
-    text_say("%s: left out: %s", picture->path, sluiceResultString(result));
+    text_say("%s: left out: %s", picture->path, sluiceGetResultName(result));
 }
 
 static const struct bake_job *find_job(const struct bake_job *jobs, size_t count,

@@ -137,7 +137,7 @@ static bool run_pass(struct pass *pass, const char *what)
 static bool check(SluiceResult result, uint32_t frame)
 {
     if (result != SLUICE_SUCCESS)
-        text_say("frame %u cannot be compared: %s", frame, sluiceResultString(result));
+        text_say("frame %u cannot be compared: %s", frame, sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

@@ -44,7 +44,7 @@ static float texel_luminance(const uint8_t *texel, SluiceFormat format)
 /** From the mean and the brightest tenth of a small level; 1 for pictures that are well exposed. */
 static float exposure_for(const uint8_t *texels, uint32_t count, SluiceFormat format)
 {
-    uint32_t texel_size = sluiceFormatTexelSize(format);
+    uint32_t texel_size = sluiceGetFormatTexelSize(format);
     double sum = 0.0, log_sum = 0.0;
     uint32_t used = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -80,7 +80,7 @@ SluiceResult exposure_measure(SluiceImageSource *source, const SluiceImageInfo *
                               float *exposure)
 {
     SluiceImageRegion region = small_level(info);
-    size_t pitch = (size_t)region.width * sluiceFormatTexelSize(info->format);
+    size_t pitch = (size_t)region.width * sluiceGetFormatTexelSize(info->format);
     *exposure = 1.0f;
     if (pitch == 0) /* blocks */
         return SLUICE_SUCCESS;

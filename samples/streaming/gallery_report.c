@@ -271,7 +271,7 @@ static void add_pictures(struct report *report, const struct picture_list *pictu
         snprintf(size, sizeof size, "%u x %u", pictures->pictures[i].info.width,
                  pictures->pictures[i].info.height);
         report_row(report, pictures->pictures[i].path, size,
-                   sluiceFormatString(pictures->pictures[i].info.format), NULL);
+                   sluiceGetFormatName(pictures->pictures[i].info.format), NULL);
     }
     report_end_table(report);
 }

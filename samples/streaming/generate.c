@@ -110,7 +110,7 @@ static bool write_picture(const struct pattern_image *image, const char *path,
         result = sluiceWriteExrFile(&info, source);
     sluiceDestroyImageSource(source);
     if (result != SLUICE_SUCCESS)
-        text_say("%s: cannot be made: %s", path, sluiceResultString(result));
+        text_say("%s: cannot be made: %s", path, sluiceGetResultName(result));
     return result == SLUICE_SUCCESS;
 }
 

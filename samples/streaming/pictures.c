@@ -20,13 +20,13 @@ static bool is_compressed(SluiceFormat format)
 static bool refuse(const char *path, const SluiceImageInfo *info, const char *why)
 {
     text_say("%s: %u x %u texels of %s: %s", path, info->width, info->height,
-             sluiceFormatString(info->format), why);
+             sluiceGetFormatName(info->format), why);
     return false;
 }
 
 static bool fits(const char *path, const SluiceImageInfo *info, const struct picture_limits *limits)
 {
-    uint64_t bytes = sluiceFormatRegionSize(info->format, info->width, info->height);
+    uint64_t bytes = sluiceGetFormatRegionSize(info->format, info->width, info->height);
     if (info->width > limits->max_size || info->height > limits->max_size ||
         bytes > limits->max_bytes - limits->max_bytes / 4)
         return refuse(path, info, "more than the device can address");
@@ -83,7 +83,7 @@ static bool create_reliefs(struct picture_list *list)
         SluiceResult result = pattern_create_source(&picture->relief_pattern,
                                                     SLUICE_FORMAT_R8_UNORM, &picture->relief);
         if (result != SLUICE_SUCCESS) {
-            text_say("%s: no relief: %s", picture->path, sluiceResultString(result));
+            text_say("%s: no relief: %s", picture->path, sluiceGetResultName(result));
             return false;
         }
     }
@@ -93,7 +93,7 @@ static bool create_reliefs(struct picture_list *list)
 static const char *reason(SluiceResult result)
 {
     return result == SLUICE_NOT_READY ? "too few file descriptors; ulimit -n allows more"
-                                      : sluiceResultString(result);
+                                      : sluiceGetResultName(result);
 }
 
 static bool open_all(const struct picture_path *paths, size_t count, enum pixel_format pixels,

@@ -18,7 +18,7 @@ static bool check(SluiceResult result, const char *what)
 {
     if (result == SLUICE_SUCCESS)
         return true;
-    text_say("%s: %s", what, sluiceResultString(result));
+    text_say("%s: %s", what, sluiceGetResultName(result));
     return false;
 }
 
@@ -112,7 +112,7 @@ static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
     }
     SluiceImageInfo image = {.structSize = sizeof image, .pName = "a texture"};
     (void)sluiceGetImageInfo(source, &image);
-    text_say("%s: cannot be streamed: %s", image.pName, sluiceResultString(result));
+    text_say("%s: cannot be streamed: %s", image.pName, sluiceGetResultName(result));
     return result;
 }
 

@@ -41,7 +41,7 @@ static uint64_t packed_bytes(const SluiceStreamedTextureLayout *layout, SluiceFo
     for (uint32_t level = layout->desc.regularMipCount; level < layout->desc.mipLevelCount;
          level++) {
         uint32_t width = layout->desc.width >> level, height = layout->desc.height >> level;
-        size += sluiceFormatRegionSize(format, width ? width : 1, height ? height : 1);
+        size += sluiceGetFormatRegionSize(format, width ? width : 1, height ? height : 1);
     }
     return size;
 }

@@ -47,7 +47,7 @@ static SluiceResult read_region(SluiceImageSource *base, const SluiceImageRegion
                                 void *texels, size_t pitch)
 {
     struct plain_source *source = (struct plain_source *)base;
-    size_t size = sluiceFormatTexelSize(source->info.format);
+    size_t size = sluiceGetFormatTexelSize(source->info.format);
     for (uint32_t y = 0; y < region->height; y++)
         memcpy((char *)texels + y * pitch,
                (const char *)source->texels +
@@ -84,10 +84,10 @@ void *read_bytes(const char *path, uint32_t level, size_t *size)
     CHECK_OK(sluiceGetImageInfo(source, &info));
     uint32_t width = slc_mip_size(info.width, level), height = slc_mip_size(info.height, level);
     SluiceImageRegion region = {level, 0, 0, width, height, 0};
-    *size = (size_t)sluiceFormatRegionSize(info.format, width, height);
+    *size = (size_t)sluiceGetFormatRegionSize(info.format, width, height);
     void *bytes = malloc(*size);
     CHECK_OK(sluiceReadImageRegion(source, &region, bytes,
-                                   (size_t)sluiceFormatRegionSize(info.format, width, 1)));
+                                   (size_t)sluiceGetFormatRegionSize(info.format, width, 1)));
     sluiceDestroyImageSource(source);
     return bytes;
 }

@@ -86,7 +86,7 @@ static void check(const struct kind *kind, uint32_t width, uint32_t height)
     uint8_t *decoded = decode(kind, blocks, width, height);
     double value = psnr(decoded, rgba, width * height, kind->channels);
     if (value < kind->least)
-        fail_msg("%s %ux%u: %g dB", sluiceFormatString(kind->format), width, height, value);
+        fail_msg("%s %ux%u: %g dB", sluiceGetFormatName(kind->format), width, height, value);
     free(decoded);
     free(blocks);
     free(rgba);

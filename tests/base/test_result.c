@@ -8,7 +8,7 @@ static void every_result_has_its_own_name(void **state)
     const char *names[64];
     int count = 0;
     for (int value = -40; value < 10; value++) {
-        const char *name = sluiceResultString((SluiceResult)value);
+        const char *name = sluiceGetResultName((SluiceResult)value);
         if (strcmp(name, "SLUICE_RESULT_UNKNOWN") == 0)
             continue;
         for (int i = 0; i < count; i++)

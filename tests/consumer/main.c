@@ -24,9 +24,9 @@
 
 int main(void)
 {
-    if (strcmp(sluiceResultString(SLUICE_SUCCESS), "SLUICE_SUCCESS") != 0)
+    if (strcmp(sluiceGetResultName(SLUICE_SUCCESS), "SLUICE_SUCCESS") != 0)
         return 1;
-    if (sluiceFormatTexelSize(SLUICE_FORMAT_R8G8B8A8_SRGB) != 4)
+    if (sluiceGetFormatTexelSize(SLUICE_FORMAT_R8G8B8A8_SRGB) != 4)
         return 2;
 #ifdef WITH_EXR
     SluiceExrImageSourceCreateInfo info = {.structSize = sizeof info,

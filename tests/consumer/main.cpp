@@ -6,7 +6,7 @@
 
 int main()
 {
-    if (std::strcmp(sluiceResultString(SLUICE_SUCCESS), "SLUICE_SUCCESS") != 0)
+    if (std::strcmp(sluiceGetResultName(SLUICE_SUCCESS), "SLUICE_SUCCESS") != 0)
         return 1;
     std::printf("sluice %d.%d.%d\n", SLUICE_VERSION_MAJOR, SLUICE_VERSION_MINOR,
                 SLUICE_VERSION_PATCH);

@@ -35,7 +35,7 @@ static void check_refusal(const char *path, open_function *open, const struct re
     SluiceImageSource *source = open(path, SLUICE_FORMAT_UNDEFINED, &tally);
     SluiceResult result = read_everything(source);
     if (result != refusal->result || tally.errors != 1 || !strstr(tally.last, refusal->message))
-        fail_msg("%zu: %s, %d errors: %s", number, sluiceResultString(result), tally.errors,
+        fail_msg("%zu: %s, %d errors: %s", number, sluiceGetResultName(result), tally.errors,
                  tally.last);
     sluiceDestroyImageSource(source);
 }
@@ -72,7 +72,7 @@ void check_renaming(struct file_bytes file, const struct picture *picture, open_
     sluiceDestroyImageSource(source);
     source = open(scratch.path, foreign, &tally);
     CHECK_RESULT(read_everything(source), SLUICE_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(tally.last, sluiceFormatString(foreign)));
+    assert_non_null(strstr(tally.last, sluiceGetFormatName(foreign)));
     sluiceDestroyImageSource(source);
     scratch_finish(&scratch);
     free(file.bytes);

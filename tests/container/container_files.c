@@ -326,8 +326,9 @@ SluiceResult read_everything(SluiceImageSource *source)
         for (uint32_t level = 0; level < info.mipLevelCount; level++) {
             SluiceImageRegion region = {
                 level, 0, 0, level_size(info.width, level), level_size(info.height, level), layer};
-            uint64_t row = sluiceFormatRegionSize(info.format, region.width, 1);
-            void *texels = malloc(sluiceFormatRegionSize(info.format, region.width, region.height));
+            uint64_t row = sluiceGetFormatRegionSize(info.format, region.width, 1);
+            void *texels =
+                malloc(sluiceGetFormatRegionSize(info.format, region.width, region.height));
             assert_non_null(texels);
             result = sluiceReadImageRegion(source, &region, texels, row);
             free(texels);

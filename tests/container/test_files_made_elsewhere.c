@@ -72,7 +72,7 @@ static void texel_of(SluiceFormat format, const uint8_t *texels, uint32_t width,
                      uint32_t y, uint8_t rgba[4])
 {
     uint32_t block = y / 4 * ((width + 3) / 4) + x / 4;
-    if (sluiceFormatTexelSize(format) == 4) {
+    if (sluiceGetFormatTexelSize(format) == 4) {
         memcpy(rgba, texels + 4 * ((size_t)y * width + x), 4);
     } else if (format == SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK) {
         decode_color(texels + 8 * (size_t)block, x % 4, y % 4, false, rgba);
@@ -87,14 +87,14 @@ static void check_level(SluiceImageSource *source, const SluiceImageInfo *info, 
     uint32_t width = info->width >> level ? info->width >> level : 1;
     uint32_t height = info->height >> level ? info->height >> level : 1;
     SluiceImageRegion region = {level, 0, 0, width, height};
-    uint8_t *texels = malloc(sluiceFormatRegionSize(info->format, width, height));
+    uint8_t *texels = malloc(sluiceGetFormatRegionSize(info->format, width, height));
     assert_non_null(texels);
     CHECK_OK(sluiceReadImageRegion(source, &region, texels,
-                                   sluiceFormatRegionSize(info->format, width, 1)));
+                                   sluiceGetFormatRegionSize(info->format, width, 1)));
     /* A block has four colours on the line that its texels cover: a sixth of it is lost. */
     double covered = (8.0 / width + 4.0 / height) / 3;
     double limit = SMALL_ERROR, squares = 0;
-    if (sluiceFormatTexelSize(info->format) == 0)
+    if (sluiceGetFormatTexelSize(info->format) == 0)
         limit += 255 * (covered < 1 ? covered : 1) / 6;
     for (uint32_t y = 0; y < height; y++)
         for (uint32_t x = 0; x < width; x++) {

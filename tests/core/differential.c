@@ -212,8 +212,8 @@ static void compare_outcomes(struct differential *d)
     if (d->call.null != NULL_SECOND && a->result >= 0)
         d->entries[d->call.kind] += a->count + d->call.count;
     if (a->result != b->result)
-        fail(d, "the result is %s, expected %s", sluiceResultString(a->result),
-             sluiceResultString(b->result));
+        fail(d, "the result is %s, expected %s", sluiceGetResultName(a->result),
+             sluiceGetResultName(b->result));
     if (d->naive.complaint[0])
         fail(d, "%s", d->naive.complaint);
     if (a->answer_count != b->answer_count)
@@ -252,7 +252,7 @@ static void compare_tiles(struct differential *d, const struct naive_texture *t)
         SluiceTile tile, expected = naive_tile_info(t, i);
         SluiceResult result = sluiceGetTileState(d->manager, t->id, i, &state, &tile);
         if (result != SLUICE_SUCCESS)
-            fail(d, "sluiceGetTileState says %s", sluiceResultString(result));
+            fail(d, "sluiceGetTileState says %s", sluiceGetResultName(result));
         else if (state != t->tiles[i].state)
             fail(d, "tile %" PRIu32 " of %" PRIx64 " is %s, expected %s", i, t->id,
                  state_name(state), state_name(t->tiles[i].state));
@@ -268,7 +268,7 @@ static void compare_minmip(struct differential *d, const struct naive_texture *t
     SluiceResult result =
         sluiceWriteMinMipData(d->manager, t->id, t->layout.minMipWidth, size, texels);
     if (result != SLUICE_SUCCESS)
-        fail(d, "sluiceWriteMinMipData says %s", sluiceResultString(result));
+        fail(d, "sluiceWriteMinMipData says %s", sluiceGetResultName(result));
     for (size_t i = 0; i < size && !d->failed; i++)
         if (texels[i] != t->minmip[i])
             fail(d, "MinMip texel %zu of %" PRIx64 " is %u, expected %u", i, t->id, texels[i],
@@ -327,7 +327,7 @@ static void publish(struct differential *d)
         SluiceResult result =
             sluiceWriteMinMipRect(d->manager, r, w, w * h - at, published_copy(d, t)->texels + at);
         if (result != SLUICE_SUCCESS)
-            fail(d, "sluiceWriteMinMipRect says %s", sluiceResultString(result));
+            fail(d, "sluiceWriteMinMipRect says %s", sluiceGetResultName(result));
     }
     for (uint32_t i = 0; i < n->texture_room && !d->failed; i++) {
         const struct naive_texture *t = n->textures[i];
@@ -440,7 +440,7 @@ static void start(struct differential *d, struct choice choice)
     };
     SluiceResult result = sluiceCreateStreamedTextureManager(&info, &d->manager);
     if (result != SLUICE_SUCCESS)
-        fail(d, "sluiceCreateStreamedTextureManager says %s", sluiceResultString(result));
+        fail(d, "sluiceCreateStreamedTextureManager says %s", sluiceGetResultName(result));
 }
 
 /* Repeated calls of DefragmentTiles end. */
@@ -496,7 +496,7 @@ int differential_run(struct differential *d, struct choice choice, uint32_t call
         }
         step(d);
         if (log)
-            fprintf(log, "       -> %s, %" PRIu32 "\n", sluiceResultString(d->seen.result),
+            fprintf(log, "       -> %s, %" PRIu32 "\n", sluiceGetResultName(d->seen.result),
                     d->seen.count);
     }
     if (!d->failed)
@@ -540,7 +540,7 @@ void differential_print_coverage(const struct differential *d, FILE *file)
             fprintf(file, " %" PRIu64 " entries,", d->entries[kind]);
         for (int r = 0; r < 64; r++)
             if (d->coverage[kind][r])
-                fprintf(file, " %s %" PRIu64, sluiceResultString((SluiceResult)(r - 32)),
+                fprintf(file, " %s %" PRIu64, sluiceGetResultName((SluiceResult)(r - 32)),
                         d->coverage[kind][r]);
         fprintf(file, "\n");
     }

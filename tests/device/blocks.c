@@ -183,7 +183,7 @@ struct block_range block_texel(SluiceFormat format, uint32_t level, uint32_t x, 
         for (uint32_t c = 0; c < 4; c++)
             set_exact(&range, c, (float)((seed >> (8 * c) & 127) * 2 + 1) / 255.0f);
     }
-    if (strstr(sluiceFormatString(format), "SRGB"))
+    if (strstr(sluiceGetFormatName(format), "SRGB"))
         decode_range(&range);
     for (uint32_t c = 0; c < 4; c++) {
         range.low[c] -= ROUNDING * fmaxf(1, range.low[c]);

@@ -273,7 +273,7 @@ static void check_sample(const struct kind *k, const struct sample *s, const flo
             "%ux%u %s, modes %d %d, anisotropy %g: uv %.9g %.9g dx %.9g %.9g dy %.9g %.9g "
             "bias %g; channel %u is %g, of the whole texture %g; alpha %g; lod %g, level %u of %u, "
             "sampled with dx %.9g %.9g dy %.9g %.9g, at least %g",
-            k->width, k->height, sluiceFormatString(k->format), (int)k->u, (int)k->v,
+            k->width, k->height, sluiceGetFormatName(k->format), (int)k->u, (int)k->v,
             (double)k->anisotropy, (double)s->in.uv[0], (double)s->in.uv[1], (double)s->in.dx[0],
             (double)s->in.dx[1], (double)s->in.dy[0], (double)s->in.dy[1], (double)s->in.lodBias, c,
             (double)s->out.color[c], (double)truth[c], (double)s->out.color[3], (double)s->out.lod,

@@ -46,11 +46,11 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
 static SluiceImageSource *create_source(SluiceFormat format)
 {
     SluiceImageSource *source;
-    if (sluiceFormatTexelSize(format) == 0)
+    if (sluiceGetFormatTexelSize(format) == 0)
         return block_source(WIDTH, HEIGHT, format);
     const SluiceProceduralImage image = {NULL, texel};
     const SluiceImageInfo info = {sizeof info, WIDTH,  HEIGHT,
-                                  0,           format, sluiceFormatString(format)};
+                                  0,           format, sluiceGetFormatName(format)};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
 }
@@ -59,7 +59,7 @@ static struct block_range expected(SluiceImageSource *source, SluiceFormat forma
                                    uint32_t x, uint32_t y)
 {
     struct block_range range;
-    if (sluiceFormatTexelSize(format) == 0)
+    if (sluiceGetFormatTexelSize(format) == 0)
         return block_texel(format, level, x, y);
     uint8_t bytes[16];
     float rgba[4], slack = is_srgb(format) ? 0.005f : 1e-6f;
@@ -86,7 +86,7 @@ static void check(const struct runner *r, uint32_t sample, SluiceImageSource *so
         if (!out.resident || !(out.color[i] >= range.low[i] - 1e-5f) ||
             !(out.color[i] <= range.high[i] + 1e-5f))
             fail_msg("%s, level %u (%u, %u), channel %u: %g is not within %g and %g",
-                     sluiceFormatString(format), level, x, y, i, (double)out.color[i],
+                     sluiceGetFormatName(format), level, x, y, i, (double)out.color[i],
                      (double)range.low[i], (double)range.high[i]);
     }
 }
@@ -172,7 +172,7 @@ static void destroy_block(SluiceImageSource *source)
  */
 static float decoding_slack(SluiceFormat format)
 {
-    bool encoded = strstr(sluiceFormatString(format), "SRGB") != NULL;
+    bool encoded = strstr(sluiceGetFormatName(format), "SRGB") != NULL;
     return is_signed(format) ? 2.0f / 127 + 0.06f : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
 }
 
@@ -214,7 +214,7 @@ static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
             for (uint32_t c = 0; c < 4; c++)
                 if (!(fabsf(decoded.color[c] - base.color[c]) < slack))
                     fail_msg("%s, channel %u: %g, and the device decodes %g",
-                             sluiceFormatString((SluiceFormat)f), c, (double)base.color[c],
+                             sluiceGetFormatName((SluiceFormat)f), c, (double)base.color[c],
                              (double)decoded.color[c]);
         }
         runner_finish(&r);

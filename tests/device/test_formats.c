@@ -34,7 +34,7 @@ static struct block_range expected_range(const struct scene_texture *texture,
                                          const SluiceImageRegion *region)
 {
     SluiceFormat format = texture->info.format;
-    if (sluiceFormatTexelSize(format) == 0)
+    if (sluiceGetFormatTexelSize(format) == 0)
         return block_texel(format, region->mipLevel, region->x, region->y);
     float expected[4];
     texel_of_source(texture, region, expected);
@@ -58,7 +58,7 @@ static void check_fetched(const struct scene_texture *texture, const struct Prob
         if (!(out->color[c] >= range.low[c] && out->color[c] <= range.high[c]))
             fail_msg("%ux%u %s: level %u (%u, %u) channel %u is %.9g, not %.9g to %.9g",
                      texture->info.width, texture->info.height,
-                     sluiceFormatString(texture->info.format), region.mipLevel, region.x, region.y,
+                     sluiceGetFormatName(texture->info.format), region.mipLevel, region.x, region.y,
                      c, (double)out->color[c], (double)range.low[c], (double)range.high[c]);
 }
 
@@ -96,7 +96,7 @@ static void add_format(struct scene *scene, SluiceFormat format, const uint32_t 
                        uint32_t size_count)
 {
     for (uint32_t s = 0; s < size_count; s++)
-        scene_add(scene, sluiceFormatTexelSize(format)
+        scene_add(scene, sluiceGetFormatTexelSize(format)
                              ? pattern_source(PATTERN_HASH, sizes[s][0], sizes[s][1], format)
                              : block_source(sizes[s][0], sizes[s][1], format));
 }

@@ -189,11 +189,11 @@ static uint32_t compare(struct harness *h, const struct picture_case *c, enum pa
         double db = psnr(&pictures, &truth, l);
         fprintf(stderr, "# %s, %s, %ux%u %s: %.1f dB of %.0f\n",
                 kind == PATTERN_HASH ? "noise" : "waves", look[l].name, c->width, c->height,
-                sluiceFormatString(c->format), db, at_least[l]);
+                sluiceGetFormatName(c->format), db, at_least[l]);
         if (db < at_least[l])
             fail_msg("%s, %s, %ux%u %s, modes %d %d, anisotropy %g, feedback of %u pixels: %.1f dB",
                      kind == PATTERN_HASH ? "noise" : "waves", look[l].name, c->width, c->height,
-                     sluiceFormatString(c->format), (int)c->u, (int)c->v, (double)c->anisotropy,
+                     sluiceGetFormatName(c->format), (int)c->u, (int)c->v, (double)c->anisotropy,
                      feedback_count, db);
     }
     uint32_t missing = 0;

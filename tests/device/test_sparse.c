@@ -35,7 +35,7 @@ static void layouts_agree_with_formats(void **state)
             assert_int_equal(layout.tileWidth, format.tileWidth);
             assert_int_equal(layout.tileHeight, format.tileHeight);
             assert_int_equal(
-                sluiceFormatRegionSize((SluiceFormat)f, layout.tileWidth, layout.tileHeight),
+                sluiceGetFormatRegionSize((SluiceFormat)f, layout.tileWidth, layout.tileHeight),
                 65536);
             assert_true(layout.regularMipCount <= layout.mipLevelCount);
             assert_true(layout.packedTileCount > 0 ||

@@ -82,7 +82,7 @@ static void check_fetched(const struct scene_texture *texture, const struct Prob
     for (uint32_t c = 0; c < pattern_channel_count(format); c++)
         if (!(fabsf(out->color[c] - rgba[c]) <= pattern_tolerance(format)))
             fail_msg("%ux%u %s: level %u (%u, %u) channel %u is %.9g, not %.9g",
-                     texture->info.width, texture->info.height, sluiceFormatString(format), level,
+                     texture->info.width, texture->info.height, sluiceGetFormatName(format), level,
                      x, y, c, (double)out->color[c], (double)rgba[c]);
 }
 

@@ -53,7 +53,7 @@ static SluiceResult read_level(SluiceImageSource *source, const SluiceImageInfo 
 {
     enum { STRIP = 128 };
     uint32_t width = slc_mip_size(info->width, level), height = slc_mip_size(info->height, level);
-    size_t pitch = (size_t)width * sluiceFormatTexelSize(info->format);
+    size_t pitch = (size_t)width * sluiceGetFormatTexelSize(info->format);
     char *texels = malloc(pitch * STRIP);
     assert_non_null(texels);
     SluiceResult result = SLUICE_SUCCESS;
@@ -147,7 +147,7 @@ static void every_damaged_file_is_refused_for_what_it_is(void **state)
         SluiceResult expected =
             is_unsupported(entry->d_name) ? SLUICE_ERROR_UNSUPPORTED : SLUICE_ERROR_CORRUPT_DATA;
         if (is_core_3_1() ? result != expected : !is_answer_to_damage(result))
-            fail_msg("%s: %s", entry->d_name, sluiceResultString(result));
+            fail_msg("%s: %s", entry->d_name, sluiceGetResultName(result));
         count++;
     }
     closedir(directory);
@@ -167,7 +167,7 @@ static void a_file_cut_at_any_byte_is_an_error(void **state)
             assert_int_equal(ftruncate(scratch.descriptor, (off_t)size), 0);
             SluiceResult result = read_all(scratch.path, SLUICE_FORMAT_UNDEFINED);
             if (result != SLUICE_ERROR_CORRUPT_DATA)
-                fail_msg("%s cut at %zu: %s", names[i], size, sluiceResultString(result));
+                fail_msg("%s cut at %zu: %s", names[i], size, sluiceGetResultName(result));
         }
         scratch_finish(&scratch);
     }
@@ -191,7 +191,7 @@ static void any_changed_byte_gives_an_error_or_an_image(void **state)
                 SluiceResult result = read_all(scratch.path, SLUICE_FORMAT_UNDEFINED);
                 if (!is_answer_to_damage(result))
                     fail_msg("%s with %02x at %zu: %s", names[i], byte, at,
-                             sluiceResultString(result));
+                             sluiceGetResultName(result));
                 assert_int_equal(pwrite(scratch.descriptor, &scratch.bytes[at], 1, (off_t)at), 1);
             }
         scratch_finish(&scratch);

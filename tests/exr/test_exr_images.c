@@ -68,7 +68,7 @@ static SluiceImageSource *open_image(const char *name, SluiceFormat format, Slui
 static void *read_region(SluiceImageSource *source, const SluiceImageInfo *info,
                          const SluiceImageRegion *region)
 {
-    size_t pitch = (size_t)region->width * sluiceFormatTexelSize(info->format);
+    size_t pitch = (size_t)region->width * sluiceGetFormatTexelSize(info->format);
     void *texels = malloc(pitch * region->height);
     CHECK_OK(sluiceReadImageRegion(source, region, texels, pitch));
     return texels;
@@ -101,7 +101,7 @@ static void compare_region(const struct image *image, const SluiceImageRegion *r
                            const void *texels, const struct plain_level *level)
 {
     uint32_t size = image->format == SLUICE_FORMAT_R32_SFLOAT ? 4 : 2;
-    uint32_t count = sluiceFormatTexelSize(image->format) / size;
+    uint32_t count = sluiceGetFormatTexelSize(image->format) / size;
     for (uint32_t y = 0; y < region->height; y++)
         for (uint32_t x = 0; x < region->width; x++)
             for (uint32_t c = 0; c < count; c++) {
@@ -310,7 +310,7 @@ static void compare_mean(const struct image *image, const struct numbers *above,
                                            : is_nearest_half(mean, value);
                 if (!is_right)
                     fail_msg("%s as %s, level %u (%u, %u) component %u: %Lg, not %Lg", image->name,
-                             sluiceFormatString(level->format), level->region.mipLevel, x, y, c,
+                             sluiceGetFormatName(level->format), level->region.mipLevel, x, y, c,
                              value, mean);
             }
 }

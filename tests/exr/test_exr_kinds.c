@@ -120,7 +120,7 @@ static char *read_level(SluiceImageSource *source, const SluiceImageInfo *info, 
 {
     *region = (SluiceImageRegion){level, 0, 0, slc_mip_size(info->width, level),
                                   slc_mip_size(info->height, level)};
-    size_t pitch = (size_t)region->width * sluiceFormatTexelSize(info->format);
+    size_t pitch = (size_t)region->width * sluiceGetFormatTexelSize(info->format);
     char *texels = malloc(pitch * region->height);
     CHECK_OK(sluiceReadImageRegion(source, region, texels, pitch));
     return texels;
@@ -131,7 +131,7 @@ static void check_level(const struct kind *kind, SluiceImageSource *source,
 {
     SluiceImageRegion region;
     char *texels = read_level(source, info, level, &region);
-    size_t size = sluiceFormatTexelSize(info->format);
+    size_t size = sluiceGetFormatTexelSize(info->format);
     for (uint32_t y = 0; y < region.height; y++)
         for (uint32_t x = 0; x < region.width; x++) {
             float rgba[4];
@@ -140,7 +140,7 @@ static void check_level(const struct kind *kind, SluiceImageSource *source,
             slc_texels_from_rgba(info->format, rgba, expected, 1);
             if (memcmp(expected, texels + ((size_t)y * region.width + x) * size, size) != 0)
                 fail_msg("%s as %s, level %u (%u, %u) is not what was written", kind->name,
-                         sluiceFormatString(info->format), level, x, y);
+                         sluiceGetFormatName(info->format), level, x, y);
         }
     free(texels);
 }
@@ -161,7 +161,7 @@ static void every_kind_opens_or_is_refused_as_documented(void **state)
         SluiceImageInfo info = {.structSize = sizeof info};
         SluiceResult result = open_kind(&kinds[i], SLUICE_FORMAT_UNDEFINED, &source);
         if (result != kinds[i].result)
-            fail_msg("%s: %s", kinds[i].name, sluiceResultString(result));
+            fail_msg("%s: %s", kinds[i].name, sluiceGetResultName(result));
         if (result != SLUICE_SUCCESS) {
             assert_null(source);
             continue;
@@ -267,7 +267,7 @@ static void check_random_region(SluiceImageSource *source, const SluiceImageInfo
     SluiceImageRegion region = {level, r[0] % width, r[1] % height, 0, 0};
     region.width = 1 + r[2] % (width - region.x);
     region.height = 1 + r[3] % (height - region.y);
-    size_t size = sluiceFormatTexelSize(info->format);
+    size_t size = sluiceGetFormatTexelSize(info->format);
     size_t row = region.width * size, pitch = row + r[0] % 9;
     char *texels = malloc(pitch * region.height);
     memset(texels, 0x5A, pitch * region.height);

@@ -39,7 +39,7 @@ static uint32_t draw(struct reader *reader, uint32_t below)
 static bool matches(const struct reader *reader, const SluiceImageRegion *region,
                     const char *texels)
 {
-    size_t size = sluiceFormatTexelSize(reader->info.format);
+    size_t size = sluiceGetFormatTexelSize(reader->info.format);
     size_t pitch = slc_mip_size(reader->info.width, region->mipLevel) * size;
     for (uint32_t y = 0; y < region->height; y++)
         if (memcmp(texels + y * region->width * size,
@@ -59,7 +59,7 @@ static void *read_at_random(void *argument)
         SluiceImageRegion region = {level, draw(reader, width), draw(reader, height), 0, 0};
         region.width = 1 + draw(reader, width - region.x);
         region.height = 1 + draw(reader, height - region.y);
-        size_t pitch = region.width * sluiceFormatTexelSize(reader->info.format);
+        size_t pitch = region.width * sluiceGetFormatTexelSize(reader->info.format);
         char *texels = malloc(pitch * region.height);
         if (sluiceReadImageRegion(reader->source, &region, texels, pitch) != SLUICE_SUCCESS ||
             !matches(reader, &region, texels))
@@ -75,7 +75,7 @@ static char **read_levels(SluiceImageSource *source, const SluiceImageInfo *info
     for (uint32_t level = 0; level < info->mipLevelCount; level++) {
         SluiceImageRegion region = {level, 0, 0, slc_mip_size(info->width, level),
                                     slc_mip_size(info->height, level)};
-        size_t pitch = region.width * sluiceFormatTexelSize(info->format);
+        size_t pitch = region.width * sluiceGetFormatTexelSize(info->format);
         levels[level] = malloc(pitch * region.height);
         CHECK_OK(sluiceReadImageRegion(source, &region, levels[level], pitch));
     }

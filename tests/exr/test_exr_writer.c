@@ -86,7 +86,7 @@ static void expected_row(SluiceImageSource *source, const SluiceImageInfo *info,
                          uint32_t y, uint16_t (*halves)[4], uint32_t width)
 {
     SluiceImageRegion region = {level, 0, y, width, 1};
-    size_t size = sluiceFormatTexelSize(info->format);
+    size_t size = sluiceGetFormatTexelSize(info->format);
     char *texels = malloc(width * size);
     float(*rgba)[4] = malloc(width * sizeof *rgba);
     CHECK_OK(sluiceReadImageRegion(source, &region, texels, width * size));

@@ -68,7 +68,7 @@ static float *read_form(enum form form)
     SluiceImageInfo info = {.structSize = sizeof info};
     SluiceImageRegion region = {0, 0, 0, VALUES_WIDTH, VALUES_HEIGHT, 0};
     CHECK_OK(sluiceGetImageInfo(source, &info));
-    size_t pitch = VALUES_WIDTH * sluiceFormatTexelSize(info.format);
+    size_t pitch = VALUES_WIDTH * sluiceGetFormatTexelSize(info.format);
     char *texels = malloc(pitch * VALUES_HEIGHT);
     float *rgba = malloc(4 * VALUES_TEXELS * sizeof *rgba);
     CHECK_OK(sluiceReadImageRegion(source, &region, texels, pitch));

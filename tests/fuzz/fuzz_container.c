@@ -32,8 +32,8 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
 {
     SluiceImageRegion region = {
         level, 0, 0, level_size(info->width, level), level_size(info->height, level), layer};
-    uint64_t row = sluiceFormatRegionSize(info->format, region.width, 1);
-    uint64_t size = sluiceFormatRegionSize(info->format, region.width, region.height);
+    uint64_t row = sluiceGetFormatRegionSize(info->format, region.width, 1);
+    uint64_t size = sluiceGetFormatRegionSize(info->format, region.width, region.height);
     if (size > MAX_LEVEL_SIZE)
         return;
     void *texels = malloc(size);

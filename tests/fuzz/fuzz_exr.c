@@ -17,7 +17,7 @@ static void read_level(SluiceImageSource *source, const SluiceImageInfo *info, u
     enum { STRIP = 64 };
     uint32_t width = info->width >> level ? info->width >> level : 1;
     uint32_t height = info->height >> level ? info->height >> level : 1;
-    size_t pitch = (size_t)width * sluiceFormatTexelSize(info->format);
+    size_t pitch = (size_t)width * sluiceGetFormatTexelSize(info->format);
     void *texels = malloc(pitch * STRIP);
     for (uint32_t y = 0; texels && y < height; y += STRIP) {
         uint32_t rows = height - y < STRIP ? height - y : STRIP;

@@ -29,8 +29,8 @@ static void read_tile(SluiceImageSource *source, const SluiceStoreInfo *info,
                       const SluiceImageRegion *tile)
 {
     SluiceFormat format = info->layout.format;
-    size_t row = sluiceFormatRegionSize(format, tile->width, 1);
-    size_t size = sluiceFormatRegionSize(format, tile->width, tile->height);
+    size_t row = sluiceGetFormatRegionSize(format, tile->width, 1);
+    size_t size = sluiceGetFormatRegionSize(format, tile->width, tile->height);
     void *texels = malloc(size); /* of the exact size, so that writing beyond it is seen */
     if (!texels)
         return;

@@ -88,9 +88,9 @@ static void texels_survive_a_round_trip_in_every_format(void **state)
     for (size_t f = 0; f < sizeof all_formats / sizeof all_formats[0]; f++) {
         SluiceFormat format = all_formats[f];
         unsigned char texels[2 * 16 + 1];
-        texels[2 * sluiceFormatTexelSize(format)] = 0xA5;
+        texels[2 * sluiceGetFormatTexelSize(format)] = 0xA5;
         slc_texels_from_rgba(format, given[0], texels, 2);
-        assert_int_equal(texels[2 * sluiceFormatTexelSize(format)], 0xA5);
+        assert_int_equal(texels[2 * sluiceGetFormatTexelSize(format)], 0xA5);
         float back[2][4];
         slc_texels_to_rgba(format, texels, back[0], 2);
         for (uint32_t i = 0; i < 2; i++)

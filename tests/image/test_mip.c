@@ -18,7 +18,7 @@ static uint32_t next_random(uint32_t *random)
 static void fill(struct slc_mip_chain *chain, uint32_t *random)
 {
     float rgba[4];
-    size_t texel_size = sluiceFormatTexelSize(chain->format);
+    size_t texel_size = sluiceGetFormatTexelSize(chain->format);
     size_t count = (size_t)chain->width * chain->height;
     for (size_t i = 0; i < count; i++) {
         for (int c = 0; c < 4; c++)
@@ -31,7 +31,7 @@ static void load(const struct slc_mip_chain *chain, uint32_t level, uint32_t x, 
                  float rgba[4])
 {
     size_t width = slc_mip_size(chain->width, level);
-    size_t texel_size = sluiceFormatTexelSize(chain->format);
+    size_t texel_size = sluiceGetFormatTexelSize(chain->format);
     const char *texel = slc_mip_chain_level(chain, level) + (y * width + x) * texel_size;
     slc_texels_to_rgba(chain->format, texel, rgba, 1);
 }
@@ -96,7 +96,7 @@ static void check_chain(SluiceFormat format, uint32_t width, uint32_t height)
                     long double expected = mean(&chain, level, x, y, c);
                     if (fabsl(expected - rgba[c]) > tolerance(format, c, expected))
                         fail_msg("%s %ux%u level %u (%u, %u) channel %d: %.9Lg, not %.9g",
-                                 sluiceFormatString(format), width, height, level, x, y, c,
+                                 sluiceGetFormatName(format), width, height, level, x, y, c,
                                  expected, (double)rgba[c]);
                 }
             }
@@ -135,7 +135,7 @@ static float mean_of_two(SluiceFormat format, float a, float b)
     struct slc_mip_chain chain;
     CHECK_OK(slc_mip_chain_init(&chain, &cb, format, 1, 2));
     const float texels[2][4] = {{a}, {b}};
-    size_t texel_size = sluiceFormatTexelSize(format);
+    size_t texel_size = sluiceGetFormatTexelSize(format);
     if (format == SLUICE_FORMAT_R32_SFLOAT) {
         memcpy(chain.texels, &a, 4);
         memcpy(chain.texels + 4, &b, 4);

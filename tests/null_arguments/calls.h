@@ -43,25 +43,25 @@ static void calls_finish(struct fixture *f);
 static inline void check_null(const char *what, SluiceResult result)
 {
     if (result != SLUICE_ERROR_NULL_POINTER)
-        fail_msg("%s: %s", what, sluiceResultString(result));
+        fail_msg("%s: %s", what, sluiceGetResultName(result));
 }
 
 static inline void check_error(const char *what, SluiceResult result)
 {
     if (result >= 0)
-        fail_msg("%s: %s", what, sluiceResultString(result));
+        fail_msg("%s: %s", what, sluiceGetResultName(result));
 }
 
 static inline void check_good(const char *what, SluiceResult result)
 {
     if (result < 0)
-        fail_msg("%s: %s", what, sluiceResultString(result));
+        fail_msg("%s: %s", what, sluiceGetResultName(result));
 }
 
 /* It came back. */
 static inline void check_any(const char *what, SluiceResult result)
 {
-    if (strcmp(sluiceResultString(result), "SLUICE_RESULT_UNKNOWN") == 0)
+    if (strcmp(sluiceGetResultName(result), "SLUICE_RESULT_UNKNOWN") == 0)
         fail_msg("%s: %d", what, (int)result);
 }
 
@@ -118,7 +118,7 @@ static inline void sized_check(const char *what, const struct sized *sized, Slui
     if (wrong                        ? result != SLUICE_ERROR_INVALID_ARGUMENT
         : sized->kind == SIZED_NEWER ? result != SLUICE_ERROR_UNSUPPORTED
                                      : result < 0)
-        fail_msg("%s, %s structSize %u: %s", what, name, sized->given, sluiceResultString(result));
+        fail_msg("%s, %s structSize %u: %s", what, name, sized->given, sluiceGetResultName(result));
     uint32_t end = sized->read || result < 0 ? 0 : sized->given;
     if (memcmp(sized->bytes, &sized->given, sizeof sized->given) != 0)
         fail_msg("%s, %s: structSize has changed", what, name);

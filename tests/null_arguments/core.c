@@ -13,16 +13,16 @@
 
 /* clang-format off */
 /* CALLS
-sluiceResultString(SLUICE_SUCCESS)
+sluiceGetResultName(SLUICE_SUCCESS)
 
 sluicePredictFeedbackMiss(&f->rate, 0.5, &f->out.number)
 sluiceChooseFeedbackProbability(&f->rate, 0.01, &f->out.probability)
 sluicePredictFeedbackDelay(&f->rate, 0.5, &f->out.delay)
 
 sluiceGetFormatInfo(SLUICE_FORMAT_R8_UNORM, &f->out.format)
-sluiceFormatTexelSize(SLUICE_FORMAT_R8_UNORM)
-sluiceFormatRegionSize(SLUICE_FORMAT_R8_UNORM, 4, 4)
-sluiceFormatString(SLUICE_FORMAT_R8_UNORM)
+sluiceGetFormatTexelSize(SLUICE_FORMAT_R8_UNORM)
+sluiceGetFormatRegionSize(SLUICE_FORMAT_R8_UNORM, 4, 4)
+sluiceGetFormatName(SLUICE_FORMAT_R8_UNORM)
 sluiceGetStandardTileShape(SLUICE_FORMAT_R8_UNORM, &f->out.width, &f->out.height)
 sluiceGetImageInfo(f->source, &f->out.info)
 sluiceReadImageRegion(f->source, &f->region, f->out.texels, sizeof f->out.texels)

@@ -126,9 +126,9 @@ static SluiceResult write_tail(SluiceStoreWriter *writer, const SluiceStoreLayou
         CHECK_OK(sluiceGetStoreTileRegion(layout, l, 0, 0, &region));
         region.arrayLayer = layer;
         paint(picture, layout->format, &region, next,
-              sluiceFormatRegionSize(layout->format, region.width, 1));
+              sluiceGetFormatRegionSize(layout->format, region.width, 1));
         levels[l - layout->tailFirstLevel] = next;
-        next += sluiceFormatRegionSize(layout->format, region.width, region.height);
+        next += sluiceGetFormatRegionSize(layout->format, region.width, region.height);
     }
     assert_int_equal(next - memory, layout->tailSize);
     SluiceResult result = sluiceWriteStoreTail(writer, layer, levels, NULL);
@@ -145,7 +145,7 @@ SluiceResult write_one(SluiceStoreWriter *writer, const SluiceStoreLayout *layou
     CHECK_OK(sluiceGetStoreTileRegion(layout, level, x, y, &region));
     region.arrayLayer = layer;
     /* Every other tile with rows that are not tight. */
-    size_t pitch = sluiceFormatRegionSize(layout->format, region.width, 1) + (x + y) % 2 * 24;
+    size_t pitch = sluiceGetFormatRegionSize(layout->format, region.width, 1) + (x + y) % 2 * 24;
     unsigned char *texels = calloc(region.height, pitch);
     paint(picture, layout->format, &region, texels, pitch);
     SluiceResult result = sluiceWriteStoreTile(writer, layer, level, x, y, texels, pitch);
@@ -192,8 +192,8 @@ static SluiceResult read_level(SluiceImageSource *source, const SluiceImageInfo 
 {
     SluiceImageRegion region = {
         level, 0, 0, slc_mip_size(info->width, level), slc_mip_size(info->height, level), layer};
-    size_t pitch = sluiceFormatRegionSize(info->format, region.width, 1);
-    void *texels = malloc(sluiceFormatRegionSize(info->format, region.width, region.height));
+    size_t pitch = sluiceGetFormatRegionSize(info->format, region.width, 1);
+    void *texels = malloc(sluiceGetFormatRegionSize(info->format, region.width, region.height));
     SluiceResult result = sluiceReadImageRegion(source, &region, texels, pitch);
     if (result == SLUICE_SUCCESS)
         assert_true(is_painted(picture, info->format, &region, texels, pitch));

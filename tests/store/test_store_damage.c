@@ -195,7 +195,7 @@ static void contradictions_under_right_checksums_are_noticed(void **state)
         SluiceResult result = read_store(victim.scratch.path, PICTURE_SMOOTH, &messages);
         if (!is_an_error_of_the_file(result))
             fail_msg("%zu: %llu is %s", lies[i].at, (unsigned long long)lies[i].value,
-                     sluiceResultString(result));
+                     sluiceGetResultName(result));
         assert_int_equal(messages.errors, 1);
     }
     free(copy);

@@ -46,8 +46,8 @@ static SluiceImageRegion draw_region(const SluiceImageInfo *info, uint32_t *rand
 static void check_region(SluiceImageSource *source, const SluiceImageInfo *info,
                          const SluiceImageRegion *region, size_t gap)
 {
-    size_t row = sluiceFormatRegionSize(info->format, region->width, 1), pitch = row + gap;
-    size_t rows = sluiceFormatRegionSize(info->format, region->width, region->height) / row;
+    size_t row = sluiceGetFormatRegionSize(info->format, region->width, 1), pitch = row + gap;
+    size_t rows = sluiceGetFormatRegionSize(info->format, region->width, region->height) / row;
     size_t size = (rows - 1) * pitch + row;
     unsigned char *texels = malloc(size);
     memset(texels, 0xA5, size);

@@ -21,7 +21,7 @@ static void check_with_naive_reader(const char *path, enum picture picture)
                 layer};
             SluiceFormat format = (SluiceFormat)store.format;
             assert_true(is_painted(picture, format, &region, texels,
-                                   sluiceFormatRegionSize(format, region.width, 1)));
+                                   sluiceGetFormatRegionSize(format, region.width, 1)));
             free(texels);
         }
     naive_store_finish(&store);

@@ -66,7 +66,7 @@ static void *read_some(void *argument)
             atomic_fetch_add(job->failures, 1);
         region.arrayLayer = (random >> 24) % job->layer_count;
         region.width = region.width - (random & 1) * (region.width / 2);
-        size_t pitch = sluiceFormatRegionSize(job->layout.format, region.width, 1);
+        size_t pitch = sluiceGetFormatRegionSize(job->layout.format, region.width, 1);
         void *texels = malloc(pitch * region.height);
         if (sluiceReadImageRegion(job->source, &region, texels, pitch) ||
             !is_painted(PICTURE_MIXED, job->layout.format, &region, texels, pitch))

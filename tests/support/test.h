@@ -19,8 +19,8 @@
         SluiceResult check_result_ = (expression);                                                 \
         SluiceResult check_expected_ = (expected);                                                 \
         if (check_result_ != check_expected_)                                                      \
-            fail_msg("%s is %s, not %s", #expression, sluiceResultString(check_result_),           \
-                     sluiceResultString(check_expected_));                                         \
+            fail_msg("%s is %s, not %s", #expression, sluiceGetResultName(check_result_),          \
+                     sluiceGetResultName(check_expected_));                                        \
     } while (0)
 
 #define CHECK_OK(expression) CHECK_RESULT(expression, SLUICE_SUCCESS)

@@ -35,7 +35,7 @@ static void check(uint32_t width, uint32_t height, uint32_t regular, SluiceForma
             assert_true(r->offset >= end && r->offset % SLC_STAGING_ALIGNMENT == 0);
             assert_true(r->region.x % info.blockWidth == 0 && r->region.y % info.blockHeight == 0);
             end = r->offset +
-                  (uint32_t)sluiceFormatRegionSize(format, r->region.width, r->region.height);
+                  (uint32_t)sluiceGetFormatRegionSize(format, r->region.width, r->region.height);
             assert_true(end <= SLOT);
         }
     }

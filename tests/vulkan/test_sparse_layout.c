@@ -200,7 +200,7 @@ static void granularity_in_blocks_is_told_from_granularity_in_texels(void **stat
         assert_int_equal(layout.desc.tileWidth, cases[i].meant.width);
         assert_int_equal(layout.desc.tileHeight, cases[i].meant.height);
         assert_int_equal(
-            sluiceFormatRegionSize(info.format, layout.desc.tileWidth, layout.desc.tileHeight),
+            sluiceGetFormatRegionSize(info.format, layout.desc.tileWidth, layout.desc.tileHeight),
             SLC_TILE_SIZE);
     }
 }

@@ -188,7 +188,8 @@ bool bake_jobs_run(struct bake_job *jobs, size_t count, const struct bake_condit
                                   .log = {&run, on_log}};
     SluiceResult result = sluiceCreateBaker(&info, &run.baker);
     if (result != SLUICE_SUCCESS) {
-        text_say("%spictures cannot be baked: %s", conditions->speaker, sluiceResultString(result));
+        text_say("%spictures cannot be baked: %s", conditions->speaker,
+                 sluiceGetResultName(result));
         return false;
     }
     pthread_mutex_init(&run.log_mutex, NULL);

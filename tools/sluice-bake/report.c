@@ -20,7 +20,7 @@ static const char *reason(const struct bake_job *job)
 {
     if (!job->is_done)
         return "it was not begun";
-    return job->message[0] ? job->message : sluiceResultString(job->result);
+    return job->message[0] ? job->message : sluiceGetResultName(job->result);
 }
 
 /* In the largest unit that leaves three digits. */
@@ -44,7 +44,7 @@ static void print_row(const struct bake_job *job)
     if (r->outputSize)
         size_text(r->outputSize, out);
     printf("%-9s  %13s  %-20s  %9s  %9s  ", names[status_of(job)], size,
-           r->width ? sluiceFormatString(r->format) : "", size_text(job->size, in), out);
+           r->width ? sluiceGetFormatName(r->format) : "", size_text(job->size, in), out);
     text_write(stdout, job->output);
     putchar('\n');
 }
@@ -57,14 +57,14 @@ static void print_object(const struct bake_job *job)
     printf(", \"output\": ");
     text_write_json(stdout, job->output);
     printf(", \"status\": \"%s\", \"result\": \"%s\"", names[status_of(job)],
-           sluiceResultString(job->result));
+           sluiceGetResultName(job->result));
     if (status_of(job) == FAILED) {
         printf(", \"error\": ");
         text_write_json(stdout, reason(job));
     }
     printf(", \"width\": %u, \"height\": %u, \"levels\": %u, \"layers\": %u, \"format\": \"%s\"",
            r->width, r->height, r->mipLevelCount, r->arrayLayerCount,
-           sluiceFormatString(r->format));
+           sluiceGetFormatName(r->format));
     printf(", \"input_size\": %" PRIu64 ", \"output_size\": %" PRIu64 ", \"memory\": %" PRIu64
            ", \"resumed_tiles\": %" PRIu64 ", \"replaced_texels\": %" PRIu64
            ", \"nan_texels\": %" PRIu64 ", \"infinite_texels\": %" PRIu64

@@ -26,7 +26,7 @@ static void print_object(const char *path, SluiceResult result, const SluiceStor
     text_write_json(stdout, path);
     printf(", \"status\": \"%s\", \"result\": \"%s\", \"tiles\": %" PRIu64 ", \"defects\": %" PRIu64
            ", \"stored_size\": %" PRIu64 ", \"texel_size\": %" PRIu64 "}\n",
-           result == SLUICE_SUCCESS ? "whole" : "damaged", sluiceResultString(result),
+           result == SLUICE_SUCCESS ? "whole" : "damaged", sluiceGetResultName(result),
            report->tileCount, report->defectCount, report->storedSize, report->texelSize);
 }
 
@@ -36,7 +36,8 @@ static void print_row(const char *path, SluiceResult result, const SluiceStoreRe
     printf("%s  %9" PRIu64 " tiles  ", is_whole ? "whole  " : "damaged", report->tileCount);
     text_write(stdout, path);
     if (!is_whole)
-        printf(": %" PRIu64 " cannot be read; %s", report->defectCount, sluiceResultString(result));
+        printf(": %" PRIu64 " cannot be read; %s", report->defectCount,
+               sluiceGetResultName(result));
     putchar('\n');
 }
 

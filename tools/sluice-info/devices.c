@@ -126,7 +126,7 @@ bool ask_device(const struct devices *d, uint32_t index, uint32_t width, uint32_
     SluiceResult result = sluiceGetVulkanDeviceCapabilities(d->instance, d->devices[index], d->get,
                                                             &report->capabilities);
     if (result != SLUICE_SUCCESS) {
-        text_say("sluice-info: device %u does not answer: %s", index, sluiceResultString(result));
+        text_say("sluice-info: device %u does not answer: %s", index, sluiceGetResultName(result));
         return false;
     }
     VkDevice device = create_device(d, report);

@@ -120,7 +120,7 @@ bool open_texture_file(struct texture_file *file, const char *path,
     if (result == SLUICE_SUCCESS)
         return true;
     if (!file->has_spoken)
-        text_say("sluice-info: %s: %s", path, sluiceResultString(result));
+        text_say("sluice-info: %s: %s", path, sluiceGetResultName(result));
     close_texture_file(file);
     return false;
 }

@@ -104,7 +104,7 @@ static void print_format(SluiceFormat format, const struct format_report *f)
         snprintf(packed, sizeof packed, "%u of %u, %u pages (%s)", f->layout.regularMipCount,
                  f->layout.mipLevelCount, f->layout.packedTileCount,
                  f->layout.driverTail ? "tail" : "no tail");
-    printf("  %-26s %-6s %-6s %-7s %-9s %-9s %s\n", sluiceFormatString(format), yes_no(c->sparse),
+    printf("  %-26s %-6s %-6s %-7s %-9s %-9s %s\n", sluiceGetFormatName(format), yes_no(c->sparse),
            yes_no(c->sampled), yes_no(c->linearFilter), granularity, tile, packed);
 }
 
@@ -195,7 +195,7 @@ static void print_json_format(const struct device_report *r, SluiceFormat format
     const struct format_report *f = &r->formats[format];
     const SluiceVulkanFormatCapabilities *c = &f->capabilities;
     printf("%s{", format == 1 ? "" : ",");
-    print_string("format", sluiceFormatString(format));
+    print_string("format", sluiceGetFormatName(format));
     print_flag("sparse", c->sparse);
     print_flag("sampled", c->sampled);
     print_flag("linearFilter", c->linearFilter);

@@ -33,8 +33,8 @@ static uint64_t texel_size(const SluiceImageInfo *image)
 {
     uint64_t size = 0;
     for (uint32_t l = 0; l < image->mipLevelCount; l++)
-        size += sluiceFormatRegionSize(image->format, level_size(image->width, l),
-                                       level_size(image->height, l));
+        size += sluiceGetFormatRegionSize(image->format, level_size(image->width, l),
+                                          level_size(image->height, l));
     return size * (image->arrayLayerCount ? image->arrayLayerCount : 1);
 }
 
@@ -200,7 +200,7 @@ static void print_file(const struct texture_file *file, const char *path)
     printf("  size                    %u x %u texels, %u levels, %u layers\n", image->width,
            image->height, image->mipLevelCount,
            image->arrayLayerCount ? image->arrayLayerCount : 1);
-    printf("  format                  %s\n", sluiceFormatString(image->format));
+    printf("  format                  %s\n", sluiceGetFormatName(image->format));
     printf("  texels                  %" PRIu64 " bytes\n", texel_size(image));
     printf("  file                    %" PRIu64 " bytes\n", file_size(path));
     show_what_is_in_a_store(file, false);
@@ -216,7 +216,7 @@ static void print_file_json(const struct texture_file *file, const char *path)
            ", \"arrayLayerCount\": %u, \"format\": \"%s\", \"texelSize\": %" PRIu64
            ", \"fileSize\": %" PRIu64,
            file->kind, image->width, image->height, image->mipLevelCount,
-           image->arrayLayerCount ? image->arrayLayerCount : 1, sluiceFormatString(image->format),
+           image->arrayLayerCount ? image->arrayLayerCount : 1, sluiceGetFormatName(image->format),
            texel_size(image), file_size(path));
     show_what_is_in_a_store(file, true);
     show_what_is_in_an_exr(file, true);

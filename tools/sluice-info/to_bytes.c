@@ -78,7 +78,7 @@ static uint8_t channel_to_byte(uint32_t size, const char *channel, bool is_alpha
 
 void texels_to_bytes(SluiceFormat format, const void *texels, uint8_t *rgba, size_t count)
 {
-    uint32_t size = channel_size(format), channels = sluiceFormatTexelSize(format) / size;
+    uint32_t size = channel_size(format), channels = sluiceGetFormatTexelSize(format) / size;
     const char *in = texels;
     for (size_t i = 0; i < count; i++, rgba += 4) {
         rgba[0] = rgba[1] = rgba[2] = 0;

@@ -58,7 +58,7 @@ static bool find_region(const struct options *o, const SluiceImageInfo *image,
 static uint32_t strip_height(const struct options *options, const SluiceImageRegion *region,
                              SluiceFormat format)
 {
-    uint64_t row = (uint64_t)region->width * (sluiceFormatTexelSize(format) + 4);
+    uint64_t row = (uint64_t)region->width * (sluiceGetFormatTexelSize(format) + 4);
     uint32_t height = 64;
     while (height > 1 && height * row > options->memory / 2)
         height /= 2;
@@ -77,7 +77,7 @@ static bool write_rows(struct texture_file *file, const char *in, const SluiceIm
                        const struct strip *strip, struct png_rows *rows)
 {
     SluiceFormat format = file->image.format;
-    size_t pitch = (size_t)region->width * sluiceFormatTexelSize(format);
+    size_t pitch = (size_t)region->width * sluiceGetFormatTexelSize(format);
     uint32_t end = region->y + region->height;
     for (uint32_t y = region->y; y < end;) {
         SluiceImageRegion part = *region;
@@ -85,7 +85,7 @@ static bool write_rows(struct texture_file *file, const char *in, const SluiceIm
         part.height = least(strip->height - y % strip->height, end - y);
         SluiceResult result = sluiceReadImageRegion(file->source, &part, strip->texels, pitch);
         if (result != SLUICE_SUCCESS)
-            return file->has_spoken ? false : fail(in, sluiceResultString(result));
+            return file->has_spoken ? false : fail(in, sluiceGetResultName(result));
         texels_to_bytes(format, strip->texels, strip->rgba, (size_t)part.width * part.height);
         if (!png_rows_write(rows, strip->rgba, part.height))
             return false;
@@ -112,7 +112,7 @@ static bool write_region(const struct options *options, struct texture_file *fil
 {
     struct strip strip = {.height = strip_height(options, region, file->image.format)};
     size_t count = (size_t)region->width * strip.height;
-    strip.texels = malloc(count * sluiceFormatTexelSize(file->image.format));
+    strip.texels = malloc(count * sluiceGetFormatTexelSize(file->image.format));
     strip.rgba = malloc(4 * count);
     bool done = strip.texels && strip.rgba ? write_strips(file, options, region, &strip)
                                            : fail(options->files.items[0], "out of memory");

@@ -107,7 +107,7 @@ static bool run(const struct options *o, struct expectation *expectation)
         if (status == SLUICE_ERROR_CORRUPT_DATA)
             snprintf(where, sizeof where, " at byte %" PRIu64, result.errorOffset);
         text_say("sluice-replay: %s: %s%s after %" PRIu64 " events, hash %016" PRIx64, o->trace,
-                 sluiceResultString(status), where, result.eventCount, result.decisionHash);
+                 sluiceGetResultName(status), where, result.eventCount, result.decisionHash);
         if (expectation) /* what is missing in the dump follows from this */
             expectation->differs = true;
         return false;

@@ -14,7 +14,7 @@
 static bool check(SluiceResult result, const char *call)
 {
     if (result < 0)
-        text_say("%s: %s", call, sluiceResultString(result));
+        text_say("%s: %s", call, sluiceGetResultName(result));
     return result >= 0;
 }
 

@@ -213,7 +213,7 @@ bool view_add_map(struct view *v, const SluiceStreamedTextureManager *manager, S
     const size_t pitch = l->minMipWidth, size = pitch * l->minMipHeight;
     SluiceResult result = sluiceWriteMinMipData(manager, id, pitch, size, v->min_mip);
     if (result != SLUICE_SUCCESS)
-        text_say("sluiceWriteMinMipData: %s", sluiceResultString(result));
+        text_say("sluiceWriteMinMipData: %s", sluiceGetResultName(result));
     else
         see_map(v, t, l, map, frame);
     return result == SLUICE_SUCCESS;
