@@ -62,8 +62,7 @@ static bool fill_create(struct fill *fill, const struct rig_info *info)
     fill->wants.pipeline = rig_wants_pipeline(rig);
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     if (!fill->wants.pipeline ||
-        !check(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(rig->streamer),
-                                      rig->textures[0].textureId, &layout),
+        !check(sluiceGetTextureLayout(rig->manager, rig->textures[0].textureId, &layout),
                "sluiceGetTextureLayout"))
         return false;
     fill->tile_count = wanted_tiles(&layout, patch) * rig->texture_count;

@@ -48,7 +48,10 @@ static bool create_streamer(struct rig *rig, const struct rig_info *info)
     create.framesInFlight = RIG_FRAMES;
     create.ticksPerSecond = 60; /* frames */
     create.noStandbyTiles = create.numExtraStandbyTiles == 0;
-    return check(sluiceCreateVulkanStreamer(&create, &rig->streamer), "sluiceCreateVulkanStreamer");
+    return check(sluiceCreateVulkanStreamer(&create, &rig->streamer),
+                 "sluiceCreateVulkanStreamer") &&
+           check(sluiceGetVulkanStreamerManager(rig->streamer, &rig->manager),
+                 "sluiceGetVulkanStreamerManager");
 }
 
 static bool add_textures(struct rig *rig, const struct rig_info *info)
@@ -65,8 +68,7 @@ static bool add_textures(struct rig *rig, const struct rig_info *info)
                 "sluiceAddVulkanTexture"))
             return false;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    if (!check(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(rig->streamer),
-                                      rig->textures[0].textureId, &layout),
+    if (!check(sluiceGetTextureLayout(rig->manager, rig->textures[0].textureId, &layout),
                "sluiceGetTextureLayout"))
         return false;
     rig->map_width = layout.feedbackWidth;

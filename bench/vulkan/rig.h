@@ -44,6 +44,7 @@ struct rig {
     const struct bench *bench;
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
+    SluiceStreamedTextureManager *manager; ///< the streamer's
     struct free_source source;
     SluiceVulkanTexture *textures; ///< owned
     uint32_t texture_count;

@@ -159,9 +159,11 @@ SLUICE_API SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t
  *
  * Its result is SLUICE_ERROR_CANCELLED if it had not begun, had regions left or waited for a retry;
  * otherwise the cancel has no effect. Unknown and collected tickets are ignored.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
-SLUICE_API void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket);
+SLUICE_API SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket);
 
 /**
  * Collects finished reads in the order in which they finished. Never waits.
@@ -177,9 +179,11 @@ SLUICE_API SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_
 
 /**
  * Waits until no read is queued, running or waiting for a retry. For tests and shutdown.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
-SLUICE_API void sluiceWaitTileLoaderIdle(SluiceTileLoader *loader);
+SLUICE_API SluiceResult sluiceWaitTileLoaderIdle(SluiceTileLoader *loader);
 
 /**
  * Statistics of the reads of one source, or of all reads.

@@ -750,8 +750,7 @@ SLUICE_API SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer 
                                                      SluiceResidencyMode *pMode);
 
 /**
- * Returns the streamer's manager, or NULL if `streamer` is NULL. The manager is destroyed with the
- * streamer.
+ * Gets the streamer's manager. The manager is destroyed with the streamer.
  *
  * You may call between any two calls of the streamer, on the thread that uses it:
  * - functions that take a const manager
@@ -763,9 +762,11 @@ SLUICE_API SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer 
  * The streamer makes all other calls itself, sluiceEvacuateHeaps among them
  * (sluiceCompactVulkanStreamer). They return SLUICE_ERROR_INVALID_ARGUMENT and change
  * nothing, and sluiceDestroyStreamedTextureManager does nothing (manager.h, pLocked).
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  */
-SLUICE_API SluiceStreamedTextureManager *
-sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer);
+SLUICE_API SluiceResult sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer,
+                                                       SluiceStreamedTextureManager **pManager);
 
 #ifdef __cplusplus
 } /* extern "C" */

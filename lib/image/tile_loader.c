@@ -166,10 +166,10 @@ SluiceResult sluiceSubmitTileRead(SluiceTileLoader *loader, const SluiceTileRead
     return sluiceSubmitTileReads(loader, 1, pRead, pTicket);
 }
 
-void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
+SluiceResult sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
 {
     if (!loader)
-        return;
+        return SLUICE_ERROR_NULL_POINTER;
     pthread_mutex_lock(&loader->pool->mutex);
     struct slc_read *read = slc_read_queue_find(&loader->queue, ticket);
     if (read)
@@ -179,6 +179,7 @@ void sluiceCancelTileRead(SluiceTileLoader *loader, uint64_t ticket)
         slc_read_pool_signal(loader->pool);
     slc_loader_signal_if_idle(loader);
     pthread_mutex_unlock(&loader->pool->mutex);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_t *pResultCount,
@@ -196,14 +197,15 @@ SluiceResult sluiceCollectTileReads(SluiceTileLoader *loader, uint32_t *pResultC
     return more ? SLUICE_INCOMPLETE : SLUICE_SUCCESS;
 }
 
-void sluiceWaitTileLoaderIdle(SluiceTileLoader *loader)
+SluiceResult sluiceWaitTileLoaderIdle(SluiceTileLoader *loader)
 {
     if (!loader)
-        return;
+        return SLUICE_ERROR_NULL_POINTER;
     pthread_mutex_lock(&loader->pool->mutex);
     while (!slc_read_queue_is_idle(&loader->queue))
         pthread_cond_wait(&loader->pool->idle, &loader->pool->mutex);
     pthread_mutex_unlock(&loader->pool->mutex);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceGetTileLoaderStatistics(SluiceTileLoader *loader,

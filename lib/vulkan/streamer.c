@@ -548,7 +548,11 @@ SluiceResult sluiceGetVulkanResidencyMode(const SluiceVulkanStreamer *streamer,
     return SLUICE_SUCCESS;
 }
 
-SluiceStreamedTextureManager *sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer)
+SluiceResult sluiceGetVulkanStreamerManager(SluiceVulkanStreamer *streamer,
+                                            SluiceStreamedTextureManager **pManager)
 {
-    return streamer ? streamer->manager : NULL;
+    if (!streamer || !pManager)
+        return SLUICE_ERROR_NULL_POINTER;
+    *pManager = streamer->manager;
+    return SLUICE_SUCCESS;
 }

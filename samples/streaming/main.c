@@ -138,7 +138,7 @@ static bool draw_frame(struct walk *walk, uint32_t frame, uint64_t time_stamp)
     if (!view_draw(&gallery->streamed, &camera, time_stamp, &drawn))
         return false;
     if (gallery->streamed.request.needs && drawn.statistics.tilesMapped != walk->tiles_mapped)
-        needs_add_loaded(&walk->needs, sluiceGetVulkanStreamerManager(gallery->streamed.streamer));
+        needs_add_loaded(&walk->needs, gallery->streamed.manager);
     walk->tiles_mapped = drawn.statistics.tilesMapped;
     walk->measure->frames[frame].host_seconds = drawn.host_seconds;
     walk->measure->frames[frame].statistics = drawn.statistics;

@@ -88,7 +88,10 @@ static bool create_streamer(struct view *view)
         info.maxLoadsInFlight = 0;
         info.residencyFadeTicks = 0;
     }
-    return check(sluiceCreateVulkanStreamer(&info, &view->streamer), "sluiceCreateVulkanStreamer");
+    return check(sluiceCreateVulkanStreamer(&info, &view->streamer),
+                 "sluiceCreateVulkanStreamer") &&
+           check(sluiceGetVulkanStreamerManager(view->streamer, &view->manager),
+                 "sluiceGetVulkanStreamerManager");
 }
 
 static SluiceResult add_texture(struct view *view, SluiceImageSource *source,
@@ -303,8 +306,7 @@ bool view_create(const struct view_request *request, const char *record_path, st
     const SluiceFileRecordingInfo recording = {
         .structSize = sizeof recording, .pPath = record_path, .log = {.pfnLog = log_say}};
     if (created && record_path)
-        created = check(sluiceBeginFileRecording(sluiceGetVulkanStreamerManager(view->streamer),
-                                                 &recording, &view->recorder),
+        created = check(sluiceBeginFileRecording(view->manager, &recording, &view->recorder),
                         record_path);
     if (created && create_descriptor_pool(view) && create_surfaces(view) && create_slots(view) &&
         view_needs_create(view) && create_prediction(view))

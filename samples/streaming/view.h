@@ -48,10 +48,11 @@ struct view_frame {
 
 struct view {
     struct view_request request;
-    SluiceVulkanContext *context;   ///< owned
-    SluiceVulkanStreamer *streamer; ///< owned
-    SluiceRecorder *recorder;       ///< owned
-    struct slowness slowness;       ///< of its sources; the truth has none
+    SluiceVulkanContext *context;          ///< owned
+    SluiceVulkanStreamer *streamer;        ///< owned
+    SluiceStreamedTextureManager *manager; ///< the streamer's
+    SluiceRecorder *recorder;              ///< owned
+    struct slowness slowness;              ///< of its sources; the truth has none
     VkDescriptorPool descriptor_pool;
     struct renderer_surface *surfaces; ///< owned; floor, wall, pictures
     struct needs_id *texture_ids;      ///< owned; of all textures, in the order of their making

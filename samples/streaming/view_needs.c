@@ -22,8 +22,7 @@ bool view_needs_create(struct view *view)
 
 bool view_needs_begin(const struct view *view, struct needs *needs)
 {
-    return needs_begin(needs, sluiceGetVulkanStreamerManager(view->streamer), view->texture_ids,
-                       view->texture_count);
+    return needs_begin(needs, view->manager, view->texture_ids, view->texture_count);
 }
 
 bool view_needs(struct view *view, uint32_t slot, struct needs *needs, struct needs_frame *frame)
@@ -48,7 +47,7 @@ static uint64_t packed_bytes(const SluiceStreamedTextureLayout *layout, SluiceFo
 
 struct view_reads view_reads(const struct view *view)
 {
-    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(view->streamer);
+    const SluiceStreamedTextureManager *manager = view->manager;
     struct view_reads all = {0, 0};
     for (uint32_t i = 0; i < view->texture_count; i++) {
         SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};

@@ -2,6 +2,7 @@
 #include "device/scene.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -29,7 +30,7 @@ static void add_texture(struct scene *scene, uint32_t i, uint32_t leg)
 
 static uint32_t count_mapped(const struct scene *scene, uint32_t i)
 {
-    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(scene->streamer);
+    const SluiceStreamedTextureManager *manager = manager_of(scene->streamer);
     SluiceTextureId id = scene->textures[i].texture.textureId;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     uint32_t count = 0;

@@ -3,6 +3,7 @@
 
 #include "base/checked.h"
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -70,7 +71,7 @@ static void layers_of_an_array_hold_their_own_texels(void **state)
 
 static uint32_t count_mapped(struct array_scene *a, uint32_t layer)
 {
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(a->scene.streamer);
+    SluiceStreamedTextureManager *manager = manager_of(a->scene.streamer);
     SluiceTextureId id = a->scene.textures[layer].texture.textureId;
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
     CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));

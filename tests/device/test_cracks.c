@@ -7,6 +7,7 @@
 #include "device/scene.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -206,7 +207,7 @@ static void find_regular_levels(const struct scene *scene)
 {
     for (uint32_t t = 0; t < TEXTURES; t++) {
         SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-        CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(scene->streamer),
+        CHECK_OK(sluiceGetTextureLayout(manager_of(scene->streamer),
                                         scene->textures[t].texture.textureId, &layout));
         regular_levels[t] = layout.desc.regularMipCount;
     }

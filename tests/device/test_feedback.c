@@ -3,6 +3,7 @@
 
 #include "base/checked.h"
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 #include "vulkan/shader_twins.h"
 
@@ -26,8 +27,8 @@ static struct SluiceTextureEntry entry_of(struct scene *scene, uint32_t index)
 {
     const struct scene_texture *texture = &scene->textures[index];
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(scene->streamer),
-                                    texture->texture.textureId, &layout));
+    CHECK_OK(
+        sluiceGetTextureLayout(manager_of(scene->streamer), texture->texture.textureId, &layout));
     struct SluiceTextureEntry e = {.width = texture->info.width,
                                    .height = texture->info.height,
                                    .mipLevelCount = texture->info.mipLevelCount,
@@ -380,7 +381,7 @@ static void resolve_hands_over_and_clears_only_the_maps_of_its_turn(void **state
     /* level 0 and 1 of the one region that each of them wants, and the packed levels */
     for (uint32_t t = 0; t < 3; t++) {
         uint8_t map[16];
-        CHECK_OK(sluiceWriteMinMipData(sluiceGetVulkanStreamerManager(scene.streamer),
+        CHECK_OK(sluiceWriteMinMipData(manager_of(scene.streamer),
                                        scene.textures[t].texture.textureId, 4, 16, map));
         for (uint32_t i = 0; i < 16; i++)
             assert_true(i == 10 ? map[i] == 0 : map[i] > 0 && map[i] < SLUICE_MIP_UNTOUCHED);

@@ -3,6 +3,7 @@
 #include "device/ray_tracer.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 #include "vulkan/shader_twins.h"
 
@@ -114,8 +115,8 @@ static void what_rays_hit_becomes_resident(void **state)
     aim(&stage, 60);
     harness_settle(stage.h, stage.streamer, 8, ray_tracer_record, &stage.tracer);
     uint8_t map[REGIONS];
-    CHECK_OK(sluiceWriteMinMipData(sluiceGetVulkanStreamerManager(stage.streamer),
-                                   stage.texture.textureId, REGIONS_X, REGIONS, map));
+    CHECK_OK(sluiceWriteMinMipData(manager_of(stage.streamer), stage.texture.textureId, REGIONS_X,
+                                   REGIONS, map));
     uint32_t touched = 0;
     for (uint32_t i = 0; i < REGIONS; i++) {
         assert_true(map[i] <= stage.expected[i]);

@@ -3,6 +3,7 @@
 #include "device/writer.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <sluice/replay.h>
@@ -42,8 +43,7 @@ static void stage_init(struct stage *stage, struct harness *h, SluiceVulkanStrea
     h->time = 0;
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &stage->streamer));
     SluiceRecordWriter writer = {stage, write_bytes};
-    CHECK_OK(sluiceBeginRecording(sluiceGetVulkanStreamerManager(stage->streamer), &writer, NULL,
-                                  &stage->recorder));
+    CHECK_OK(sluiceBeginRecording(manager_of(stage->streamer), &writer, NULL, &stage->recorder));
     for (uint32_t i = 0; i < TEXTURES; i++) {
         stage->sources[i] = pattern_source(PATTERN_LEVEL, SIZE, SIZE, SLUICE_FORMAT_R8G8B8A8_UNORM);
         SluiceVulkanTextureCreateInfo texture = {.structSize = sizeof texture,
@@ -85,8 +85,8 @@ static void random_samples(struct stage *stage, uint32_t count, float max_lod)
 static void min_mips(struct stage *stage, uint8_t maps[TEXTURES][REGIONS])
 {
     for (uint32_t i = 0; i < TEXTURES; i++)
-        CHECK_OK(sluiceWriteMinMipData(sluiceGetVulkanStreamerManager(stage->streamer),
-                                       stage->textures[i].textureId, 8, REGIONS, maps[i]));
+        CHECK_OK(sluiceWriteMinMipData(manager_of(stage->streamer), stage->textures[i].textureId, 8,
+                                       REGIONS, maps[i]));
 }
 
 static void level_bits_lead_to_the_same_recording_as_levels(void **state)

@@ -5,6 +5,7 @@
  */
 #include "device/scene.h"
 
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -95,7 +96,7 @@ static void draw_in(struct harness *h, SluiceResidencyMode mode, const struct pi
     }
     assert_int_equal(scene_non_resident(&s.scene), 0);
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(s.scene.streamer),
+    CHECK_OK(sluiceGetTextureLayout(manager_of(s.scene.streamer),
                                     s.scene.textures[s.texture].texture.textureId, &layout));
     out->packed_level = layout.desc.regularMipCount;
     scene_finish(&s.scene);

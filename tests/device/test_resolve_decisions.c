@@ -2,6 +2,7 @@
 #include "device/scene.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <sluice/replay.h>
@@ -69,7 +70,7 @@ static void move(struct scene *scene, uint32_t frame)
 static void read_maps(struct scene *scene, struct run *run)
 {
     for (uint32_t i = 0; i < TEXTURES; i++) {
-        SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(scene->streamer);
+        SluiceStreamedTextureManager *manager = manager_of(scene->streamer);
         SluiceTextureId id = scene->textures[i].texture.textureId;
         SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
         CHECK_OK(sluiceGetTextureLayout(manager, id, &layout));
@@ -87,8 +88,7 @@ static void play(struct harness *h, struct run *run, SluiceVulkanStreamerCreateI
     scene_init(&scene, h, info);
     SluiceRecordWriter writer = {&run->recording, write_bytes};
     SluiceRecorder *recorder;
-    CHECK_OK(sluiceBeginRecording(sluiceGetVulkanStreamerManager(scene.streamer), &writer, NULL,
-                                  &recorder));
+    CHECK_OK(sluiceBeginRecording(manager_of(scene.streamer), &writer, NULL, &recorder));
     for (uint32_t i = 0; i < TEXTURES; i++)
         add_one(&scene, i);
     roll_seed(61);

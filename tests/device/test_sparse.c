@@ -2,6 +2,7 @@
 #include "device/scene.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <stdio.h>
@@ -118,7 +119,7 @@ static void tiles_that_come_back_to_their_pages_need_no_unbind(void **state)
     for (uint32_t round = 0; round < 4; round++) {
         scene_aim(&scene, t, 64, round % 2 ? &coarse : &fine);
         scene_settle(&scene, 20);
-        CHECK_OK(sluiceTrimStandbyTiles(sluiceGetVulkanStreamerManager(scene.streamer), 0));
+        CHECK_OK(sluiceTrimStandbyTiles(manager_of(scene.streamer), 0));
         scene_settle(&scene, 6);
         scene_check_levels(&scene);
         assert_int_equal(scene_missing(&scene), 0);

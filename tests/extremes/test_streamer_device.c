@@ -1,6 +1,7 @@
 /* A device whose memory ends, and one that is lost, while a streamer uses it. */
 #include "extremes/gallery.h"
 #include "extremes/note.h"
+#include "support/streamer_manager.h"
 
 #include <sluice/manager.h>
 
@@ -26,8 +27,8 @@ static uint8_t coarsest(void)
     uint8_t worst = 0;
     for (uint32_t t = 0; t < GALLERY_TEXTURES; t++) {
         uint8_t map[16];
-        CHECK_OK(sluiceWriteMinMipData(sluiceGetVulkanStreamerManager(g.streamer),
-                                       g.textures[t].textureId, 4, sizeof map, map));
+        CHECK_OK(sluiceWriteMinMipData(manager_of(g.streamer), g.textures[t].textureId, 4,
+                                       sizeof map, map));
         for (uint32_t i = 0; i < 16; i++)
             worst = map[i] > worst ? map[i] : worst;
     }

@@ -37,7 +37,7 @@ sluiceGetVulkanReadStatistics(f->streamer, ?f->source, &f->out.reads)
 sluiceRetryVulkanSource(f->streamer, ?f->source)
 sluiceGetVulkanResidencyMode(f->streamer, &f->out.mode)
 sluiceChooseVulkanResidencyMode(&f->h->caps, f->h->mode, 1, &f->out.mode)
-sluiceGetVulkanStreamerManager(f->streamer)
+sluiceGetVulkanStreamerManager(f->streamer, &f->out.manager)
 
 sluiceCreateDemandLoader(&f->loader_info, &f->out.loader) => sluiceDestroyDemandLoader(f->out.loader)
 !sluiceDestroyDemandLoader(f->loader)
@@ -119,6 +119,7 @@ struct fixture {
         SluiceDemandBuffers demand_buffers;
         SluiceDemandLaunch launch;
         SluiceDemandRequests requests;
+        SluiceStreamedTextureManager *manager;
         SluiceRecorder *recorder;
         SluiceDemandTicketStatus ticket_status;
         SluiceDemandStatistics demand_statistics;

@@ -1,6 +1,7 @@
 /* More textures than a device bears: what fits goes on, and a line says what to do. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -173,7 +174,7 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     CHECK_OK(sluiceGetVulkanStreamerStatistics(streamer, &stats));
     assert_true(stats.pageChunkShortages > 0);
     SluiceStreamedTextureLayout layout = {.structSize = sizeof layout};
-    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
+    const SluiceStreamedTextureManager *manager = manager_of(streamer);
     CHECK_OK(sluiceGetTextureLayout(manager, texture.textureId, &layout));
     for (uint32_t i = 0; i < layout.tileCount; i++) {
         SluiceTileState tile_state;

@@ -1,6 +1,7 @@
 /* From a source that fails, through the loader and the manager, to what is shown. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <stdatomic.h>
@@ -153,7 +154,7 @@ static void run_frames(struct fixture *f, uint32_t count)
 /* What each tile of level 0 is, and what may be sampled there. */
 static void check_level_0(struct fixture *f, SluiceTileState lost_state, uint8_t lost_level)
 {
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f->streamer);
+    SluiceStreamedTextureManager *manager = manager_of(f->streamer);
     uint8_t map[TILES * TILES];
     CHECK_OK(sluiceWriteMinMipData(manager, f->texture.textureId, TILES, sizeof map, map));
     for (uint32_t y = 0; y < TILES; y++)
@@ -168,7 +169,7 @@ static void check_level_0(struct fixture *f, SluiceTileState lost_state, uint8_t
 
 static void check_given_up(struct fixture *f)
 {
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f->streamer);
+    SluiceStreamedTextureManager *manager = manager_of(f->streamer);
     SluiceTile tiles[8];
     uint32_t count = 8;
     CHECK_OK(sluiceGetGivenUpTiles(manager, &count, tiles));
@@ -216,7 +217,7 @@ static void check_story(SluiceResidencyMode mode)
     f.source.is_broken = false;
     run_frames(&f, 5); /* nobody asks of its own accord */
     check_level_0(&f, SLUICE_TILE_STATE_GIVEN_UP, 1);
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+    SluiceStreamedTextureManager *manager = manager_of(f.streamer);
     CHECK_OK(sluiceRetryFailedTiles(manager, f.texture.textureId));
     run_frames(&f, 5);
     check_level_0(&f, SLUICE_TILE_STATE_MAPPED, 0);
@@ -322,7 +323,7 @@ static void messages_of_a_source_that_comes_and_goes_are_bounded(void **state)
         f.source.is_broken = i % 2 == 0;
         CHECK_OK(sluiceRetryVulkanSource(f.streamer, NULL));
         run_frames(&f, 3);
-        SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+        SluiceStreamedTextureManager *manager = manager_of(f.streamer);
         CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
     }
     assert_true(f.warnings <= 2);
@@ -346,7 +347,7 @@ static void sources_that_are_not_ready_leave_room_for_others(void **state)
     run_frames(&f, 5);
     CHECK_OK(sluiceAddVulkanTexture(f.streamer, &info, &second));
     run_frames(&f, 20);
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(f.streamer);
+    SluiceStreamedTextureManager *manager = manager_of(f.streamer);
     for (uint32_t i = 0; i < TILES * TILES; i++) {
         SluiceTileState tile_state;
         CHECK_OK(sluiceGetTileState(manager, second.textureId, i, &tile_state, NULL));

@@ -10,6 +10,7 @@
 #include "vulkan/streamer.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -89,8 +90,7 @@ static void model_add(struct model *m)
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
     t->layout.structSize = sizeof t->layout;
-    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
-                                    t->texture.textureId, &t->layout));
+    CHECK_OK(sluiceGetTextureLayout(manager_of(m->streamer), t->texture.textureId, &t->layout));
     assert_true(t->layout.tileCount <= MAX_TILES);
 }
 
@@ -209,7 +209,7 @@ static void take_copies(struct model *m)
 static uint32_t take_visible(struct model *m)
 {
     uint32_t count = 0;
-    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    const SluiceStreamedTextureManager *manager = manager_of(m->streamer);
     for (uint32_t i = 0; i < 2 * TEXTURES; i++) {
         struct texture *t = &m->textures[i];
         for (uint32_t j = 0; t->removed && j < t->layout.tileCount; j++)
@@ -364,7 +364,7 @@ static void remove_any(struct model *m)
 /* As an application does that wants its memory back; some of it is needed again at once. */
 static void release_heaps(struct model *m)
 {
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    SluiceStreamedTextureManager *manager = manager_of(m->streamer);
     uint32_t heaps[8], count = 8;
     CHECK_OK(sluiceTrimStandbyTiles(manager, 0));
     SluiceResult result = sluiceGetEmptyHeaps(manager, &count, heaps);

@@ -11,6 +11,7 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/roll.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <sluice/shared/bindings.h>
@@ -108,8 +109,7 @@ static void model_add(struct model *m)
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
     t->layout.structSize = sizeof t->layout;
-    CHECK_OK(sluiceGetTextureLayout(sluiceGetVulkanStreamerManager(m->streamer),
-                                    t->texture.textureId, &t->layout));
+    CHECK_OK(sluiceGetTextureLayout(manager_of(m->streamer), t->texture.textureId, &t->layout));
 }
 
 static void model_remove(struct model *m, struct texture *t)
@@ -187,7 +187,7 @@ static void check_tile(const struct model *m, const struct texture *t, uint32_t 
 static uint32_t check_shown(struct model *m)
 {
     uint32_t count = 0;
-    const SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(m->streamer);
+    const SluiceStreamedTextureManager *manager = manager_of(m->streamer);
     for (uint32_t i = 0; i < TEXTURES; i++) {
         struct texture *t = &m->textures[i];
         if (t->number && t->first_word == UINT32_MAX)

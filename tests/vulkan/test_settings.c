@@ -2,6 +2,7 @@
 #include "vulkan/fake_vulkan.h"
 
 #include "support/failing_allocator.h"
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <sluice/demand.h>
@@ -277,7 +278,7 @@ static void configuration_of_the_manager_and_settings_are_one(void **state)
                                                  .numExtraStandbyTiles = 21,
                                                  .missesToExpire = 2,
                                                  .prefetchLevels = 1};
-    CHECK_OK(sluiceSetConfig(sluiceGetVulkanStreamerManager(s->streamer), &config));
+    CHECK_OK(sluiceSetConfig(manager_of(s->streamer), &config));
     SluiceVulkanStreamerSettings settings = get(s);
     assert_int_equal(settings.numExtraStandbyTiles, 21);
     stage_finish(s);

@@ -3,6 +3,7 @@
 
 #include "vulkan/time_defaults.h"
 
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <string.h>
@@ -96,7 +97,7 @@ static void frames(struct stage *s, uint32_t count)
 static SluiceStreamedTextureStatistics statistics(const struct stage *s)
 {
     SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
-    sluiceGetStatistics(sluiceGetVulkanStreamerManager(s->streamer), &stats);
+    sluiceGetStatistics(manager_of(s->streamer), &stats);
     return stats;
 }
 

@@ -2,6 +2,7 @@
  * nothing behind. */
 #include "vulkan/fake_vulkan.h"
 
+#include "support/streamer_manager.h"
 #include "support/test.h"
 
 #include <sluice/demand.h>
@@ -346,7 +347,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     SluiceVulkanStreamer *streamer;
     SluiceVulkanStreamerCreateInfo info = small(&fake, &lines);
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
-    SluiceStreamedTextureManager *manager = sluiceGetVulkanStreamerManager(streamer);
+    SluiceStreamedTextureManager *manager = manager_of(streamer);
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = &source.base};
     SluiceVulkanTexture texture;
     SluiceStreamedTextureDesc desc = {512, 512, 10, 2, 1, 128, 128};
