@@ -228,6 +228,21 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
     const SluiceLogCallback *pLog, VkPhysicalDeviceFeatures *pFeatures,
     VkPhysicalDeviceVulkan12Features *pVulkan12);
 
+/** Switches for tests and measurements. Zero is normal use. */
+typedef struct SluiceVulkanStreamerDebugInfo {
+    uint32_t structSize; ///< sizeof(SluiceVulkanStreamerDebugInfo).
+    /**
+     * Every tile is always wanted. Makes the picture with everything resident that streamed
+     * pictures are compared with. Needs memory for all tiles, and reads no feedback back.
+     */
+    bool mapEverything;
+    /**
+     * Reads back whole feedback maps rather than what changed in them. Decisions are the same.
+     * Shows what reading back changes saves.
+     */
+    bool wholeFeedbackMaps;
+} SluiceVulkanStreamerDebugInfo;
+
 /** Settings of a streamer. A field of zero selects its default. */
 typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t structSize;               ///< sizeof(SluiceVulkanStreamerCreateInfo).
@@ -256,7 +271,6 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * (manager.h). Default: 0.25 s. 1: as soon as possible.
      */
     uint64_t retryDelayTicks;
-    bool mapEverything;      ///< Every tile is always wanted. For reference pictures.
     uint32_t maxRegionCount; ///< Feedback regions (tiles of level 0), 4 to 2^28. Default: 2^20.
     /**
      * Bytes of resolved feedback read back per frame. A texture takes 4 bytes per region that
@@ -265,10 +279,6 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * Default: maxRegionCount, at most 2^22; with maxRegionCount everything fits.
      */
     uint32_t feedbackReadbackSize;
-    /**
-     * Read back whole maps rather than changes. Decisions are the same. For tests and measurements.
-     */
-    bool wholeFeedbackMaps;
     SluiceFeedbackEncoding feedbackEncoding;
     /**
      * Shaders that define SLUICE_FEEDBACK_TURN_WORD write feedback only for textures that are
@@ -329,6 +339,7 @@ typedef struct SluiceVulkanStreamerCreateInfo {
      * (bindings.glsl). Default: none.
      */
     SluiceTextureArray textureArray;
+    const SluiceVulkanStreamerDebugInfo *pDebug; ///< Copied. NULL in normal use: all off.
 } SluiceVulkanStreamerCreateInfo;
 
 /**

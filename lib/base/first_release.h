@@ -70,8 +70,9 @@
     SLC_UP_TO(SluiceVulkanFormatCapabilities, maxImageSize)
 #define SLC_FIRST_SluiceVulkanSparseImageLayout                                                    \
     SLC_UP_TO(SluiceVulkanSparseImageLayout, memoryTypeBits)
-#define SLC_FIRST_SluiceVulkanStreamerCreateInfo                                                   \
-    SLC_UP_TO(SluiceVulkanStreamerCreateInfo, textureArray)
+#define SLC_FIRST_SluiceVulkanStreamerDebugInfo                                                    \
+    SLC_UP_TO(SluiceVulkanStreamerDebugInfo, wholeFeedbackMaps)
+#define SLC_FIRST_SluiceVulkanStreamerCreateInfo SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pDebug)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
 #define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanTextureCreateInfo, maxAnisotropy)

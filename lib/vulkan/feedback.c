@@ -57,7 +57,7 @@ void slc_feedback_add(SluiceVulkanStreamer *s, struct slc_texture *texture)
 {
     slc_feedback_map_init(&texture->feedback, s->feedback_levels + texture->region_first,
                           texture->layout.feedbackWidth * texture->layout.feedbackHeight);
-    texture->feedback_whole = s->info.wholeFeedbackMaps;
+    texture->feedback_whole = s->debug.wholeFeedbackMaps;
 }
 
 uint64_t slc_feedback_size(const SluiceVulkanStreamer *s, uint32_t region_count)
@@ -116,7 +116,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
             ask_for_all(s, texture, true);
             continue;
         }
-        ask_for_all(s, texture, s->info.wholeFeedbackMaps);
+        ask_for_all(s, texture, s->debug.wholeFeedbackMaps);
         s->counts.feedbackWords += resolved.count;
         SluiceResult result = give_map(
             s, texture->id, texture->feedback.levels, texture->layout.feedbackWidth,
@@ -129,7 +129,7 @@ static SluiceResult read_slot(SluiceVulkanStreamer *s, const struct slc_readback
 
 SluiceResult slc_feedback_read(SluiceVulkanStreamer *s)
 {
-    if (s->info.mapEverything)
+    if (s->debug.mapEverything)
         return want_everything(s);
     struct slc_readback_slot *slot;
     while ((slot = slc_readback_oldest(&s->readback, s->completed_frame))) {
@@ -200,7 +200,7 @@ static void list_items(SluiceVulkanStreamer *s, struct slc_readback_slot *slot, 
 void slc_feedback_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     uint32_t share = share_of_frame(s);
-    if (share == 0 || s->info.mapEverything)
+    if (share == 0 || s->debug.mapEverything)
         return;
     struct slc_readback_slot *slot =
         slc_readback_begin(&s->readback, s->slot, s->frame, s->time_stamp);

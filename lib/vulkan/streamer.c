@@ -154,13 +154,13 @@ static SluiceResult create_arrays(SluiceVulkanStreamer *s)
     s->turns = slc_calloc(cb, 1, slc_turns_size(s));
     s->min_mip_staging = slc_calloc(cb, s->info.framesInFlight, sizeof *s->min_mip_staging);
     s->feedback_levels = slc_alloc(cb, s->info.maxRegionCount, 1);
-    if (s->info.mapEverything)
+    if (s->debug.mapEverything)
         s->zero_map = slc_calloc(cb, s->info.maxRegionCount, 1);
     if (!s->textures || !s->by_manager_index || !s->primaries || !s->new_textures ||
         !s->packed_queue || !s->frame_units || !s->tiles || !s->tile_indices || !s->copies ||
         !s->min_mip_texels || !s->min_mip_levels || !s->fades || !s->around_row ||
         !s->feedback_levels || !s->turns || !s->min_mip_staging || !s->around_words ||
-        (s->info.mapEverything && !s->zero_map))
+        (s->debug.mapEverything && !s->zero_map))
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     memset(s->min_mip_texels, 0xFF, s->info.maxRegionCount * sizeof *s->min_mip_texels);
     memset(s->min_mip_levels, SLUICE_MIP_UNTOUCHED, s->info.maxRegionCount);
@@ -323,8 +323,13 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
         return SLUICE_ERROR_NULL_POINTER;
     SluiceVulkanContext *context = pCreateInfo->context;
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info};
+    SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug};
     SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceVulkanStreamerCreateInfo), &info,
                                           pCreateInfo, &context->vk.log);
+    if (result == SLUICE_SUCCESS && info.pDebug)
+        result = slc_struct_read(SLC_STRUCT(SluiceVulkanStreamerDebugInfo), &debug, info.pDebug,
+                                 &context->vk.log);
+    info.pDebug = NULL; /* copied */
     if (result == SLUICE_SUCCESS)
         result = fill_in(&info);
     if (result != SLUICE_SUCCESS)
@@ -340,6 +345,7 @@ SluiceResult sluiceCreateVulkanStreamer(const SluiceVulkanStreamerCreateInfo *pC
     s->vk.memory_client = &s->memory;
     s->caps = context->caps;
     s->info = info;
+    s->debug = debug;
     s->page_user = SLC_MAX_PAGE_USERS;
     s->time_check.on = pCreateInfo->ticksPerSecond == 0;
     result = create_arrays(s);

@@ -122,6 +122,7 @@ struct slc_shrink {
 struct SluiceVulkanStreamer {
     SluiceAllocationCallbacks cb;
     SluiceVulkanStreamerCreateInfo info; ///< defaults filled in
+    SluiceVulkanStreamerDebugInfo debug;
     SluiceVulkanContext *context;
     struct slc_vk vk;                           ///< the context's, but for memory_client
     struct slc_memory_client memory;            ///< of vk

@@ -68,6 +68,9 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                    .sparseQueueFamilyIndex = r->gpu.sparse_family,
                                                    .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &r->context));
+    /* Only to compare with: --everything keeps all tiles in memory. */
+    const SluiceVulkanStreamerDebugInfo debug = {.structSize = sizeof debug,
+                                                 .mapEverything = settings->everything};
     const SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                                  .context = r->context,
                                                  .residencyMode = settings->mode,
@@ -75,7 +78,7 @@ static void create_streamer(struct renderer *r, const struct settings *settings)
                                                  .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
                                                  .ticksPerSecond = 60, /* one a frame */
                                                  .feedbackTimeoutTicks = 128,
-                                                 .mapEverything = settings->everything};
+                                                 .pDebug = &debug};
     SLUICE(sluiceCreateVulkanStreamer(&info, &r->streamer));
 }
 

@@ -61,6 +61,8 @@ static bool create_context(struct view *view)
 static bool create_streamer(struct view *view)
 {
     const struct settings *settings = view->request.settings;
+    const SluiceVulkanStreamerDebugInfo everything = {.structSize = sizeof everything,
+                                                      .mapEverything = true};
     SluiceVulkanStreamerCreateInfo info = {
         .structSize = sizeof info,
         .context = view->context,
@@ -82,7 +84,7 @@ static bool create_streamer(struct view *view)
         .maxTouchedTiles = settings->touched_tiles,
     };
     if (view->request.everything) {
-        info.mapEverything = true;
+        info.pDebug = &everything;
         info.tilesPerFrame = 1024;
         info.maxHeapCount = 0;
         info.maxLoadsInFlight = 0;

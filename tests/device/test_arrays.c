@@ -2,6 +2,7 @@
 #include "device/array_scene.h"
 
 #include "base/checked.h"
+#include "support/map_everything.h"
 #include "support/roll.h"
 #include "support/streamer_manager.h"
 #include "support/test.h"
@@ -54,7 +55,8 @@ static void layers_of_an_array_hold_their_own_texels(void **state)
     roll_seed(8);
     for (uint32_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
         struct array_scene a;
-        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .mapEverything = true};
+        SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
+                                               .pDebug = &map_everything};
         if (!array_scene_init(&a, *state, info, true, sizes[s], rgba8)) {
             array_scene_finish(&a);
             continue;

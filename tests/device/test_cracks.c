@@ -6,6 +6,7 @@
  */
 #include "device/scene.h"
 
+#include "support/map_everything.h"
 #include "support/roll.h"
 #include "support/streamer_manager.h"
 #include "support/test.h"
@@ -190,7 +191,7 @@ static void scene_begin(struct scene *scene, struct harness *h, SluiceResidencyM
                                            .texturesPerFrame = TEXTURES,
                                            .heapTileCapacity = 64,
                                            .maxHeapCount = whole ? 0 : 6,
-                                           .mapEverything = whole,
+                                           .pDebug = whole ? &map_everything : NULL,
                                            .residencyFadeTicks = fade_time};
     scene_init(scene, h, info);
     for (uint32_t t = 0; t < TEXTURES; t++) {

@@ -3,6 +3,7 @@
 
 #include "support/failing_allocator.h"
 #include "support/fault_source.h"
+#include "support/map_everything.h"
 #include "support/test.h"
 
 #include <stdlib.h>
@@ -260,7 +261,7 @@ static void creation_survives_every_allocation_failure(void **state)
         struct failing_allocator a;
         failing_allocator_init(&a, n);
         SluiceVulkanStreamerCreateInfo info = {
-            .structSize = sizeof info, .tilesPerFrame = 16, .mapEverything = true};
+            .structSize = sizeof info, .tilesPerFrame = 16, .pDebug = &map_everything};
         SluiceVulkanStreamer *streamer = NULL;
         SluiceResult result =
             harness_set_context(h, &(SluiceVulkanContextCreateInfo){.pAllocator = &a.callbacks});

@@ -2,6 +2,7 @@
 #include "device/scene.h"
 
 #include "base/checked.h"
+#include "support/map_everything.h"
 #include "support/roll.h"
 #include "support/streamer_manager.h"
 #include "support/test.h"
@@ -127,9 +128,10 @@ static void check_finite_twin(const struct SluiceTextureEntry *e, const struct P
 static void glsl_and_c_twins_agree(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){
-                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .pDebug = &map_everything});
     const uint32_t sizes[][2] = {{1024, 1024}, {1000, 700}, {1, 3000}, {4096, 1}, {129, 65}};
     roll_seed(31);
     for (uint32_t i = 0; i < 5; i++)
@@ -165,9 +167,10 @@ static void glsl_and_c_twins_agree(void **state)
 static void extremes_stay_inside_the_map(void **state)
 {
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){
-                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .pDebug = &map_everything});
     roll_seed(32);
     for (uint32_t mode = 0; mode < 4; mode++)
         scene_add_as(&scene, pattern_source(PATTERN_LEVEL, 1000, 700, SLUICE_FORMAT_R8G8B8A8_UNORM),

@@ -2,6 +2,7 @@
 #include "device/painter.h"
 #include "device/scene.h"
 
+#include "support/map_everything.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ static void draw(struct harness *h, enum way way, uint32_t width, uint32_t heigh
         &scene, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .feedbackTimeoutTicks = 1000,
-                                         .mapEverything = way == EVERYTHING});
+                                         .pDebug = way == EVERYTHING ? &map_everything : NULL});
     uint32_t t = scene_add_as(
         &scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, anisotropy,

@@ -4,6 +4,7 @@
 
 #include "base/checked.h"
 #include "image/convert.h"
+#include "support/map_everything.h"
 #include "support/roll.h"
 #include "support/test.h"
 
@@ -110,7 +111,7 @@ static void check_formats(struct harness *h, const uint32_t (*even)[2], const ui
         scene_init(
             &scene, h,
             (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
-                                             .mapEverything = true});
+                                             .pDebug = &map_everything});
         uint32_t f = first, count = 0;
         for (; f < SLUICE_FORMAT_COUNT && count + size_count <= SCENE_TEXTURES; f++) {
             add_format(&scene, (SluiceFormat)f, f % 2 ? odd : even, size_count);

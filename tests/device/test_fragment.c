@@ -2,6 +2,7 @@
 #include "device/painter.h"
 #include "device/scene.h"
 
+#include "support/map_everything.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static void picture_init(struct picture *p, struct harness *h, bool everything, 
         &p->scene, h,
         (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                          .feedbackTimeoutTicks = 1000,
-                                         .mapEverything = everything,
+                                         .pDebug = everything ? &map_everything : NULL,
                                          .tilesPerFrame = 64});
     p->texture = scene_add_as(
         &p->scene, pattern_source(PATTERN_LEVEL, width, height, SLUICE_FORMAT_R8G8B8A8_UNORM),

@@ -121,7 +121,8 @@ static void changes_and_whole_maps_decide_the_same(void **state)
                                                .feedbackTimeoutTicks = 5,
                                                .maxHeapCount = 2};
         play(*state, &changes, info, 0);
-        info.wholeFeedbackMaps = true;
+        info.pDebug = &(const SluiceVulkanStreamerDebugInfo){.structSize = sizeof *info.pDebug,
+                                                             .wholeFeedbackMaps = true};
         play(*state, &whole, info, 0);
         assert_true(changes.stats.feedbackMaps > FRAMES && changes.stats.tilesMapped > 100);
         assert_true(changes.stats.tilesUnmapped > 10);

@@ -2,6 +2,7 @@
 #include "device/scene.h"
 
 #include "base/checked.h"
+#include "support/map_everything.h"
 #include "support/roll.h"
 #include "support/test.h"
 
@@ -136,9 +137,10 @@ static void every_texel_is_where_the_source_has_it(void **state)
     const uint32_t sizes[][2] = {{600, 300}, {1, 1},      {257, 129}, {128, 128}, {1, 700},
                                  {900, 1},   {1031, 517}, {64, 2048}, {8192, 128}};
     struct scene scene;
-    scene_init(&scene, *state,
-               (SluiceVulkanStreamerCreateInfo){
-                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
+    scene_init(
+        &scene, *state,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .pDebug = &map_everything});
     uint32_t expected = 0;
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
         for (size_t f = s % 3; f < FORMATS; f += 3, expected++)
@@ -162,7 +164,7 @@ static void settled_colours_are_those_of_a_resident_texture(void **state)
             &scene, *state,
             (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
                                              .feedbackTimeoutTicks = 1000,
-                                             .mapEverything = !streamed});
+                                             .pDebug = streamed ? NULL : &map_everything});
         roll_seed(2);
         const uint32_t sizes[][2] = {{1024, 1024}, {1000, 600}, {777, 1311}, {2048, 100}};
         for (uint32_t i = 0; i < 12; i++) {

@@ -5,6 +5,7 @@
 #include "extremes/failing_layer.h"
 #include "extremes/note.h"
 #include "support/failing_allocator.h"
+#include "support/map_everything.h"
 
 static struct harness h;
 static const SluiceVulkanContextCreateInfo failing = {.pfnGetInstanceProcAddr = failing_layer_get,
@@ -19,7 +20,7 @@ static SluiceResult create_streamer(SluiceVulkanStreamer **streamer)
                                            .tilesPerFrame = 16,
                                            .maxTextureCount = 4,
                                            .maxRegionCount = 256,
-                                           .mapEverything = true};
+                                           .pDebug = &map_everything};
     *streamer = NULL;
     SluiceResult result = harness_set_context(&h, &failing);
     harness_fill(&h, &info);

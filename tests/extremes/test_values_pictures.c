@@ -9,6 +9,7 @@
 
 #include "base/checked.h"
 #include "image/convert.h"
+#include "support/map_everything.h"
 #include "support/test.h"
 
 #include <sluice/exr.h>
@@ -269,9 +270,10 @@ static void values_reach_shaders_and_metrics(void **state)
 {
     (void)state;
     struct scene scene;
-    scene_init(&scene, fixture.h,
-               (SluiceVulkanStreamerCreateInfo){
-                   .structSize = sizeof(SluiceVulkanStreamerCreateInfo), .mapEverything = true});
+    scene_init(
+        &scene, fixture.h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .pDebug = &map_everything});
     uint32_t textures[FORM_COUNT];
     for (int form = 0; form < FORM_COUNT; form++)
         textures[form] = scene_add(&scene, open_form((enum form)form));
