@@ -40,7 +40,10 @@ typedef uint64_t SluiceDemandResourceId;
 /** Ticket of the work that one call started. 0: no work, always complete. */
 typedef uint64_t SluiceDemandTicket;
 
+/** No texture. Value of an id in a zeroed struct. */
 #define SLUICE_NO_DEMAND_TEXTURE ((SluiceDemandTextureId)0)
+/** All textures of a loader, in calls that say so. Never the id of a texture. */
+#define SLUICE_ALL_DEMAND_TEXTURES ((SluiceDemandTextureId)UINT64_MAX)
 
 /** Settings of a demand loader. A field of zero selects its default. */
 typedef struct SluiceDemandLoaderCreateInfo {
@@ -292,11 +295,11 @@ SLUICE_API SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader
  * Allows failed work of a texture to be tried again at once: its opening, or tiles that could not
  * be read. Call it when you learn that its file can be read again.
  *
- * SLUICE_NO_DEMAND_TEXTURE means all textures and resources. Resident tiles stay. Shaders request
+ * SLUICE_ALL_DEMAND_TEXTURES means all textures and resources. Resident tiles stay. Shaders request
  * the others in the next launches.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
- *         SLUICE_ERROR_INVALID_ARGUMENT for grids.
+ *         SLUICE_ERROR_INVALID_ARGUMENT for grids and SLUICE_NO_DEMAND_TEXTURE.
  */
 SLUICE_API SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader,
                                                  SluiceDemandTextureId textureId);

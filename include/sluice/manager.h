@@ -53,9 +53,10 @@ typedef struct SluiceStreamedTextureManager SluiceStreamedTextureManager;
  */
 typedef uint64_t SluiceTextureId;
 
-/** No texture. In calls that return lists of tiles: all textures. */
-#define SLUICE_ALL_TEXTURES ((SluiceTextureId)0)
+/** No texture. Value of an id in a zeroed struct. */
 #define SLUICE_NO_TEXTURE ((SluiceTextureId)0)
+/** All textures of a manager, in calls that say so. Never the id of a texture. */
+#define SLUICE_ALL_TEXTURES ((SluiceTextureId)UINT64_MAX)
 
 /** In a feedback map: nothing was sampled. In a MinMip map: not even packed levels are resident. */
 #define SLUICE_MIP_UNTOUCHED 255
@@ -85,6 +86,7 @@ typedef struct SluiceStreamedTextureManagerCreateInfo {
      * configuration, trimming, heaps, retries and recording still work.
      */
     const bool *pLocked;
+    SluiceLogCallback log; ///< Why an argument is refused with SLUICE_ERROR_INVALID_ARGUMENT.
 } SluiceStreamedTextureManagerCreateInfo;
 
 /** Recommended values for the create-info. */
@@ -412,8 +414,8 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
  * Returns SLUICE_INCOMPLETE if requests are left because `pTiles` is full or because they were all
  * skipped. Returns SLUICE_BUDGET_REACHED if requests are left for lack of slots.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE,
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for SLUICE_NO_TEXTURE; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager,
                                             SluiceTextureId textureId, uint32_t *pTileCount,
@@ -457,11 +459,12 @@ SLUICE_API SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *ma
                                                 const uint32_t *pTileIndices, uint64_t timeStamp);
 
 /**
- * Makes all GIVEN_UP and FAILED tiles of a texture, or of all textures, REQUESTED at once. Tiles
- * that were GIVEN_UP reset their count of failures. Call it when you learn that a source can be
- * read again.
+ * Makes all GIVEN_UP and FAILED tiles of a texture REQUESTED at once; with SLUICE_ALL_TEXTURES,
+ * those of all textures. Tiles that were GIVEN_UP reset their count of failures. Call it when you
+ * learn that a source can be read again.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_TEXTURE, SLUICE_ERROR_STALE_TEXTURE.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT for SLUICE_NO_TEXTURE.
  */
 SLUICE_API SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *manager,
                                                SluiceTextureId textureId);
@@ -480,8 +483,10 @@ SLUICE_API SluiceResult sluiceGetGivenUpTiles(SluiceStreamedTextureManager *mana
  * Returns CANCELLED tiles whose loads can be stopped, each once.
  *
  * A tile that is wanted again before it is returned becomes ALLOCATED again and is not listed. A
- * tile that is wanted again later becomes REQUESTED when it is answered. Uses `pTileCount` and
- * `pTiles` as sluiceGetTilesToMap.
+ * tile that is wanted again later becomes REQUESTED when it is answered. Uses `textureId`,
+ * `pTileCount` and `pTiles` as sluiceGetTilesToMap.
+ *
+ * Errors: as sluiceGetTilesToMap.
  */
 SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *manager,
                                                SluiceTextureId textureId, uint32_t *pTileCount,
@@ -509,7 +514,7 @@ SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager 
  * The tiles become FREE, or REQUESTED if they were evicted while wanted. The MinMip maps no longer
  * show them. Their slots are released once `retireValue` has completed. It must complete after
  * every use of the old MinMip maps. A tile that is wanted again before it is returned becomes
- * MAPPED and is not listed. Uses `pTileCount` and `pTiles` as sluiceGetTilesToMap.
+ * MAPPED and is not listed. Uses `textureId`, `pTileCount` and `pTiles` as sluiceGetTilesToMap.
  *
  * Errors: as sluiceGetTilesToMap; SLUICE_ERROR_TIME_BACKWARDS; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */

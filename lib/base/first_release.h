@@ -21,7 +21,7 @@
 #define SLC_FIRST_SluiceTileLoaderStatistics                                                       \
     SLC_UP_TO(SluiceTileLoaderStatistics, lastFailureOffset)
 #define SLC_FIRST_SluiceStreamedTextureManagerCreateInfo                                           \
-    SLC_UP_TO(SluiceStreamedTextureManagerCreateInfo, pLocked)
+    SLC_UP_TO(SluiceStreamedTextureManagerCreateInfo, log)
 #define SLC_FIRST_SluiceStreamedTextureManagerConfig                                               \
     SLC_UP_TO(SluiceStreamedTextureManagerConfig, noMipBias)
 #define SLC_FIRST_SluiceStreamedTextureLayout SLC_UP_TO(SluiceStreamedTextureLayout, levelFirstTile)

@@ -7,6 +7,7 @@
 #include "core/lookup.h"
 #include "core/minmip.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/reports.h"
 #include "core/texture_tiles.h"
 #include "residency/due.h"
@@ -191,7 +192,7 @@ SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_UPDATE_MAPPING,
                             .texture_id = textureId,
                             .count = tileCount,
@@ -208,7 +209,7 @@ SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {
         .kind = SLC_CALL_REPORT_FAILED,
         .texture_id = textureId,
@@ -227,7 +228,7 @@ SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {
         .kind = SLC_CALL_REPORT_CANCELLED,
         .texture_id = textureId,
@@ -265,7 +266,7 @@ SluiceResult sluiceRetryFailedTiles(SluiceStreamedTextureManager *manager,
     struct slc_managed_texture *scope;
     struct slc_call call = {.kind = SLC_CALL_RETRY_FAILED,
                             .texture_id = textureId,
-                            .result = slc_find_scope(manager, textureId, &scope)};
+                            .result = slc_find_scope(manager, __func__, textureId, &scope)};
     if (call.result == SLUICE_SUCCESS) {
         retry_failed(manager, scope);
         retry_given_up(manager, scope);

@@ -2,6 +2,7 @@
 #include "base/checked.h"
 #include "core/eviction.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/state.h"
 #include "residency/defragment.h"
 
@@ -35,7 +36,7 @@ SluiceResult sluiceEvacuateHeaps(SluiceStreamedTextureManager *manager, uint32_t
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_EVACUATE_HEAPS,
                             .keep_count = maxTileCount,
                             .result = slc_evacuate(&manager->residency, maxTileCount)};

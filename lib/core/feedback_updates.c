@@ -5,8 +5,11 @@
 #include "core/history.h"
 #include "core/lookup.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/wants.h"
 #include "residency/nodes.h"
+
+#include <inttypes.h>
 
 static SluiceResult check_feedback(const slc_manager *m, SluiceTextureId id,
                                    const SluiceFeedbackDesc *f, uint64_t time,
@@ -166,14 +169,14 @@ SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureManager *manag
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     const SluiceFeedbackDesc *feedback = pFeedback;
     SluiceFeedbackDesc given;
     /* No copy if the size is right: the caller has just written the fields one by one, and to read
      * several at once then takes longer than all other work on an unchanged map. */
     if (feedback && feedback->structSize != sizeof given) {
         SluiceResult result =
-            slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, feedback, NULL);
+            slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, feedback, &manager->info.log);
         if (result != SLUICE_SUCCESS)
             return result; /* a recording has no form for it */
         feedback = &given;
@@ -198,7 +201,8 @@ static SluiceResult match(slc_manager *m, SluiceTextureId primary_id, SluiceText
     if (result != SLUICE_SUCCESS)
         return result;
     if (p == t)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse(m, "sluiceMatchPrimaryTexture",
+                          "primaryId and followerId are both %#" PRIx64, primary_id);
     if (slc_time_is_backwards(m, time))
         return SLUICE_ERROR_TIME_BACKWARDS;
     if (p->has_map && (p->nodes || t->nodes)) {
@@ -228,7 +232,7 @@ SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_MATCH_PRIMARY,
                             .texture_id = followerId,
                             .primary_id = primaryId,

@@ -154,6 +154,7 @@ static SluiceResult get_tiles_to_map(slc_manager *m, struct slc_managed_texture 
 SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
                                  uint32_t *pTileCount, SluiceTile *pTiles)
 {
-    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_MAP, textureId, 0, pTileCount, pTiles};
+    const struct slc_list_call call = {
+        __func__, SLC_CALL_GET_TILES_TO_MAP, textureId, 0, pTileCount, pTiles};
     return slc_list_call_make(manager, &call, get_tiles_to_map);
 }

@@ -2,12 +2,13 @@
 
 #include "core/lookup.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 
 static SluiceResult get_list(slc_manager *m, const struct slc_list_call *call,
                              slc_list_function *get)
 {
     struct slc_managed_texture *scope;
-    SluiceResult result = slc_find_scope(m, call->texture_id, &scope);
+    SluiceResult result = slc_find_scope(m, call->function, call->texture_id, &scope);
     return result == SLUICE_SUCCESS ? get(m, scope, call) : result;
 }
 
@@ -17,7 +18,7 @@ SluiceResult slc_list_call_make(slc_manager *m, const struct slc_list_call *call
     if (!m)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(m))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(m, call->function);
     struct slc_call record = {.kind = call->kind,
                               .texture_id = call->texture_id,
                               .retire_value = call->retire_value,

@@ -1,5 +1,7 @@
 #include "core/lookup.h"
 
+#include "core/refusal.h"
+
 SluiceResult slc_find_texture(const slc_manager *m, SluiceTextureId id,
                               struct slc_managed_texture **out)
 {
@@ -15,9 +17,15 @@ SluiceResult slc_find_texture(const slc_manager *m, SluiceTextureId id,
     return SLUICE_SUCCESS;
 }
 
-SluiceResult slc_find_scope(const slc_manager *m, SluiceTextureId id,
+SluiceResult slc_find_scope(const slc_manager *m, const char *function, SluiceTextureId id,
                             struct slc_managed_texture **out)
 {
     *out = NULL;
-    return id == SLUICE_ALL_TEXTURES ? SLUICE_SUCCESS : slc_find_texture(m, id, out);
+    if (id == SLUICE_ALL_TEXTURES)
+        return SLUICE_SUCCESS;
+    if (id == SLUICE_NO_TEXTURE)
+        return slc_refuse(m, function,
+                          "textureId is SLUICE_NO_TEXTURE; for all textures it is "
+                          "SLUICE_ALL_TEXTURES");
+    return slc_find_texture(m, id, out);
 }

@@ -9,6 +9,7 @@
 #include "core/lookup.h"
 #include "core/minmip.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/reports.h"
 #include "core/sets.h"
 #include "core/shape.h"
@@ -16,6 +17,8 @@
 #include "core/visits.h"
 #include "residency/node.h"
 #include "residency/nodes.h"
+
+#include <inttypes.h>
 
 static void heap_push(uint32_t *heap, uint32_t count, uint32_t value)
 {
@@ -144,12 +147,17 @@ SluiceResult sluiceAddStreamedTexture(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_ADD_TEXTURE, .desc = pDesc};
     if (!pDesc || !pTextureId)
         call.result = SLUICE_ERROR_NULL_POINTER;
     else
         call.result = add_texture(manager, pDesc, pTextureId);
+    if (call.result == SLUICE_ERROR_INVALID_ARGUMENT)
+        slc_refuse(manager, __func__,
+                   "%" PRIu32 "x%" PRIu32 " texels, %" PRIu32
+                   " levels: at most %u texels, and the full mip chain",
+                   pDesc->width, pDesc->height, pDesc->mipLevelCount, SLUICE_MAX_TEXTURE_SIZE);
     if (call.result == SLUICE_SUCCESS)
         call.texture_id = *pTextureId;
     slc_notify(manager, &call);
@@ -193,7 +201,7 @@ SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_REMOVE_TEXTURE,
                             .texture_id = textureId,
                             .retire_value = retireValue,

@@ -1,10 +1,13 @@
 #include "base/alloc.h"
+#include "base/log.h"
 #include "base/struct_size.h"
 #include "core/observer.h"
 #include "core/managed_textures.h"
 #include "core/texture_tiles.h"
 #include "residency/create.h"
 #include "residency/standby.h"
+
+#include <inttypes.h>
 
 static void *count_allocate(void *user, size_t size, size_t alignment)
 {
@@ -22,14 +25,23 @@ static void count_free(void *user, void *memory, size_t size)
     m->given.pfnFree(m->given.pUserData, memory, size);
 }
 
+#define MAX_HEAP_CAPACITY (1u << 20)
+
 static SluiceResult check_create_info(const SluiceStreamedTextureManagerCreateInfo *info)
 {
     if (!info->heapAllocator.pfnAllocateHeap || !info->heapAllocator.pfnReleaseHeap)
         return SLUICE_ERROR_NULL_POINTER;
     if (info->heapTileCapacity == 0 || info->tileSize == 0)
         return SLUICE_ERROR_ZERO_HEAP_CAPACITY;
-    if (info->heapTileCapacity > 1u << 20 || !slc_allocator_is_valid(info->pAllocator))
+    if (info->heapTileCapacity > MAX_HEAP_CAPACITY) {
+        slc_log(&info->log, SLUICE_LOG_ERROR, "heapTileCapacity %" PRIu32 " is above %u",
+                info->heapTileCapacity, MAX_HEAP_CAPACITY);
         return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    if (!slc_allocator_is_valid(info->pAllocator)) {
+        slc_log(&info->log, SLUICE_LOG_ERROR, "pAllocator lacks pfnAllocate or pfnFree");
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
     return SLUICE_SUCCESS;
 }
 
@@ -109,8 +121,8 @@ SluiceResult sluiceSetConfig(SluiceStreamedTextureManager *manager,
     if (!pConfig) {
         call.result = SLUICE_ERROR_NULL_POINTER;
     } else {
-        SluiceResult result =
-            slc_struct_read(SLC_STRUCT(SluiceStreamedTextureManagerConfig), &config, pConfig, NULL);
+        SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceStreamedTextureManagerConfig),
+                                              &config, pConfig, &manager->info.log);
         if (result != SLUICE_SUCCESS)
             return result; /* a recording has no form for it */
         manager->config = config;

@@ -3,7 +3,9 @@
 #include "core/lookup.h"
 #include "core/minmip.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 static void copy_rect(const struct slc_managed_texture *t, const SluiceMinMipRect *r,
@@ -48,7 +50,10 @@ SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager *manager,
     uint32_t width = t->shape->min_mip_width, height = t->shape->min_mip_height;
     if (pRect->width == 0 || pRect->height == 0 || pRect->x >= width || pRect->y >= height ||
         pRect->width > width - pRect->x || pRect->height > height - pRect->y)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse(manager, __func__,
+                          "rectangle %" PRIu32 "x%" PRIu32 " at %" PRIu32 ", %" PRIu32
+                          " is empty or leaves the map of %" PRIu32 "x%" PRIu32,
+                          pRect->width, pRect->height, pRect->x, pRect->y, width, height);
     return write_rect(t, pRect, rowPitch, size, pMinMip);
 }
 
@@ -89,7 +94,7 @@ SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *manager, uint3
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_GET_MINMIP_UPDATES, .query = !pRects, .rects = pRects};
     if (!pRectCount) {
         call.result = SLUICE_ERROR_NULL_POINTER;

@@ -2,6 +2,7 @@
 
 #include "core/lookup.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 
 void slc_unfollow(slc_manager *m, struct slc_managed_texture *t)
 {
@@ -29,7 +30,10 @@ static SluiceResult set_primary(slc_manager *m, SluiceTextureId follower_id,
     if (result != SLUICE_SUCCESS)
         return result;
     if (p && (p == t || p->primary != SLC_NONE || t->first_follower != SLC_NONE))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse(m, "sluiceSetPrimaryTexture", "%s",
+                          p == t                   ? "a texture cannot follow itself"
+                          : p->primary != SLC_NONE ? "primaryId follows another texture"
+                                                   : "followerId has followers of its own");
     if (p && t->primary == p->index)
         return SLUICE_SUCCESS;
     slc_unfollow(m, t);
@@ -51,7 +55,7 @@ SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_SET_PRIMARY,
                             .texture_id = followerId,
                             .primary_id = primaryId,

@@ -6,8 +6,8 @@ SluiceResult sluiceGetStatistics(const SluiceStreamedTextureManager *manager,
 {
     if (!manager || !pStatistics)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result =
-        slc_struct_check(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics, NULL);
+    SluiceResult result = slc_struct_check(SLC_STRUCT(SluiceStreamedTextureStatistics), pStatistics,
+                                           &manager->info.log);
     if (result != SLUICE_SUCCESS)
         return result;
     const slc_manager *m = manager;

@@ -1,6 +1,7 @@
 /* Moves that empty heaps, as the application gets them. */
 #include "core/clock.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/texture_tiles.h"
 #include "residency/defragment.h"
 
@@ -45,7 +46,7 @@ SluiceResult sluiceDefragmentTiles(SluiceStreamedTextureManager *manager, uint64
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {
         .kind = SLC_CALL_DEFRAGMENT, .retire_value = retireValue, .moves = pMoves};
     if (!pMoveCount || !pMoves) {

@@ -3,6 +3,7 @@
 #include "core/history.h"
 #include "core/list_call.h"
 #include "core/observer.h"
+#include "core/refusal.h"
 #include "core/texture_tiles.h"
 #include "residency/node.h"
 #include "residency/node_list.h"
@@ -99,8 +100,8 @@ static SluiceResult get_tiles_to_cancel(slc_manager *m, struct slc_managed_textu
 SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,
                                    uint64_t retireValue, uint32_t *pTileCount, SluiceTile *pTiles)
 {
-    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_UNMAP, textureId, retireValue,
-                                       pTileCount, pTiles};
+    const struct slc_list_call call = {
+        __func__, SLC_CALL_GET_TILES_TO_UNMAP, textureId, retireValue, pTileCount, pTiles};
     return slc_list_call_make(manager, &call, get_tiles_to_unmap);
 }
 
@@ -108,8 +109,8 @@ SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *manager,
                                     SluiceTextureId textureId, uint32_t *pTileCount,
                                     SluiceTile *pTiles)
 {
-    const struct slc_list_call call = {SLC_CALL_GET_TILES_TO_CANCEL, textureId, 0, pTileCount,
-                                       pTiles};
+    const struct slc_list_call call = {
+        __func__, SLC_CALL_GET_TILES_TO_CANCEL, textureId, 0, pTileCount, pTiles};
     return slc_list_call_make(manager, &call, get_tiles_to_cancel);
 }
 
@@ -118,7 +119,7 @@ SluiceResult sluiceCompleteRetireValue(SluiceStreamedTextureManager *manager, ui
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_refuse_locked(manager, __func__);
     struct slc_call call = {.kind = SLC_CALL_COMPLETE_RETIRE, .retire_value = retireValue};
     if (retireValue < manager->residency.completed_retire && retireValue != 0) {
         call.result = SLUICE_ERROR_TIME_BACKWARDS;

@@ -389,9 +389,15 @@ SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader, SluiceDemandTe
     uint32_t index;
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    if (textureId == SLUICE_NO_DEMAND_TEXTURE) {
+    if (textureId == SLUICE_ALL_DEMAND_TEXTURES) {
         slc_retries_everything(loader);
         return SLUICE_SUCCESS;
+    }
+    if (textureId == SLUICE_NO_DEMAND_TEXTURE) {
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
+                "sluiceRetryDemandTexture: textureId is SLUICE_NO_DEMAND_TEXTURE; for all textures "
+                "it is SLUICE_ALL_DEMAND_TEXTURES");
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     }
     SluiceResult result = slc_texture_find(loader, textureId, &index);
     if (result != SLUICE_SUCCESS)

@@ -67,8 +67,10 @@ void slc_dump_line(struct slc_dump *dump, const char *format, ...)
 
 static void add_id(struct slc_dump *dump, const char *name, SluiceTextureId id)
 {
-    if (id == SLUICE_ALL_TEXTURES)
+    if (id == SLUICE_NO_TEXTURE)
         add(dump, " %s=none", name);
+    else if (id == SLUICE_ALL_TEXTURES)
+        add(dump, " %s=all", name);
     else
         add(dump, " %s=%" PRIu32 ".%" PRIu32, name, (uint32_t)id, (uint32_t)(id >> 32));
 }
@@ -191,9 +193,7 @@ void slc_dump_inputs(struct slc_dump *dump, const struct slc_call *call)
         return;
     uint32_t fields = slc_call_fields(call->kind);
     add(dump, "%" PRIu64 " %s", dump->event, call_names[call->kind]);
-    if (fields & SLC_FIELD_TEXTURE && call->texture_id == SLUICE_ALL_TEXTURES)
-        add(dump, " texture=all");
-    else if (fields & SLC_FIELD_TEXTURE)
+    if (fields & SLC_FIELD_TEXTURE)
         add_id(dump, "texture", call->texture_id);
     if (fields & SLC_FIELD_PRIMARY)
         add_id(dump, "primary", call->primary_id);

@@ -166,8 +166,10 @@ static SluiceResult report_cancelled(struct frame_loop *loop, const SluiceTile *
 static SluiceResult take_list(struct frame_loop *loop, enum slc_call_kind kind)
 {
     for (;;) {
-        struct slc_call call = {
-            .kind = kind, .retire_value = loop->frame, .room = LIST_ROOM, .query = false};
+        struct slc_call call = {.kind = kind,
+                                .texture_id = SLUICE_ALL_TEXTURES,
+                                .retire_value = loop->frame,
+                                .room = LIST_ROOM};
         SluiceResult result = make_call(loop, &call);
         if (result == SLUICE_SUCCESS && kind == SLC_CALL_GET_TILES_TO_CANCEL)
             result = report_cancelled(loop, call.tiles, call.count);
@@ -182,6 +184,7 @@ static SluiceResult start_loads(struct frame_loop *loop)
     uint64_t room = (uint64_t)loop->tiles_per_frame * ((uint64_t)loop->replay->info->latency + 1);
     room = room > loop->load_count ? room - loop->load_count : 0;
     struct slc_call call = {.kind = SLC_CALL_GET_TILES_TO_MAP,
+                            .texture_id = SLUICE_ALL_TEXTURES,
                             .room = room < UINT32_MAX ? (uint32_t)room : UINT32_MAX};
     SluiceResult result = make_call(loop, &call);
     if (result != SLUICE_SUCCESS || call.count == 0)

@@ -34,6 +34,22 @@ uint32_t slc_call_fields(uint32_t kind)
     return kind < sizeof fields / sizeof *fields ? fields[kind] : 0;
 }
 
+/* Recordings hold 0 for all textures, as they did when 0 was the value. So SLUICE_ALL_TEXTURES and
+ * SLUICE_NO_TEXTURE change places, on the way in and on the way out, in calls that take both. */
+static SluiceTextureId swap_all(uint32_t kind, SluiceTextureId id)
+{
+    switch (kind) {
+    case SLC_CALL_GET_TILES_TO_MAP:
+    case SLC_CALL_GET_TILES_TO_CANCEL:
+    case SLC_CALL_GET_TILES_TO_UNMAP:
+    case SLC_CALL_RETRY_FAILED:
+        return id == SLUICE_ALL_TEXTURES ? SLUICE_NO_TEXTURE
+               : id == SLUICE_NO_TEXTURE ? SLUICE_ALL_TEXTURES
+                                         : id;
+    default: return id;
+    }
+}
+
 static void put_id(struct slc_bytes *out, SluiceTextureId id)
 {
     slc_put_varint(out, (uint32_t)id);
@@ -167,7 +183,7 @@ void slc_put_record(struct slc_bytes *out, const struct slc_call *call, uint64_t
     slc_put_u8(out, (uint8_t)call->kind);
     slc_put_signed(out, call->result);
     if (fields & SLC_FIELD_TEXTURE)
-        put_id(out, call->texture_id);
+        put_id(out, swap_all(call->kind, call->texture_id));
     if (fields & SLC_FIELD_PRIMARY)
         put_id(out, call->primary_id);
     if (fields & SLC_FIELD_TIME)
@@ -333,7 +349,7 @@ void slc_get_record(struct slc_cursor *in, struct slc_record *record)
     call->kind = (enum slc_call_kind)kind;
     call->result = (SluiceResult)slc_get_signed32(in);
     if (fields & SLC_FIELD_TEXTURE)
-        call->texture_id = get_id(in);
+        call->texture_id = swap_all(kind, get_id(in));
     if (fields & SLC_FIELD_PRIMARY)
         call->primary_id = get_id(in);
     if (fields & SLC_FIELD_TIME)

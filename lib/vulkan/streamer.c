@@ -118,6 +118,7 @@ static SluiceResult create_manager(SluiceVulkanStreamer *s)
         .tileSize = SLC_TILE_SIZE,
         .alwaysMapPackedTiles = !s->info.packedLevelsOnDemand,
         .pLocked = &s->manager_locked,
+        .log = s->vk.log,
     };
     SluiceResult result = sluiceCreateStreamedTextureManager(&info, &s->manager);
     if (result != SLUICE_SUCCESS)

@@ -15,6 +15,8 @@ SluiceResult naive_check_list(struct naive_manager *n, const struct call *call,
     *only = NULL;
     if (call->null == NULL_MANAGER || call->null == NULL_FIRST)
         return SLUICE_ERROR_NULL_POINTER;
+    if (call->texture == SLUICE_NO_TEXTURE)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     if (call->texture != SLUICE_ALL_TEXTURES && !(*only = naive_find(n, call->texture, &result)))
         return result;
     return SLUICE_SUCCESS;

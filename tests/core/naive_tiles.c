@@ -199,6 +199,8 @@ SluiceResult naive_retry(struct naive_manager *n, const struct call *call)
     const struct naive_texture *only = NULL;
     if (call->null != NULL_NONE)
         return SLUICE_ERROR_NULL_POINTER;
+    if (call->texture == SLUICE_NO_TEXTURE)
+        return SLUICE_ERROR_INVALID_ARGUMENT;
     if (call->texture != SLUICE_ALL_TEXTURES && !(only = naive_find(n, call->texture, &result)))
         return result;
     uint32_t count;

@@ -105,8 +105,11 @@ static void check_id_refused(struct fixture *f, SluiceTextureId good, SluiceText
     CHECK_RESULT(sluiceWriteMinMipRect(m, &rect, 2, 4, out), expected);
     CHECK_RESULT(sluiceGetTileState(m, bad, 0, NULL, tiles), expected);
     CHECK_RESULT(sluiceSetPrimaryTexture(m, bad, good), expected);
-    if (bad != SLUICE_NO_TEXTURE) { /* there it means none or all */
-        CHECK_RESULT(sluiceSetPrimaryTexture(m, good, bad), expected);
+    CHECK_RESULT(sluiceSetPrimaryTexture(m, good, bad),
+                 bad == SLUICE_NO_TEXTURE ? SLUICE_SUCCESS : expected);
+    if (bad == SLUICE_NO_TEXTURE) /* where all textures are meant, it is no unknown one */
+        expected = SLUICE_ERROR_INVALID_ARGUMENT;
+    if (bad != SLUICE_ALL_TEXTURES) {
         CHECK_RESULT(sluiceGetTilesToMap(m, bad, &count, tiles), expected);
         CHECK_RESULT(sluiceGetTilesToCancel(m, bad, &count, tiles), expected);
         CHECK_RESULT(sluiceGetTilesToUnmap(m, bad, 0, &count, tiles), expected);

@@ -122,7 +122,7 @@ static void a_texture_that_is_said_to_be_well_is_read_at_once(void **state)
         s.outage.is_out = false;
         runner_launch(&s.r);
         assert_int_equal(s.r.requests.missingCount, 0); /* nobody asks */
-        CHECK_OK(sluiceRetryDemandTexture(s.r.loader, all ? SLUICE_NO_DEMAND_TEXTURE : s.id));
+        CHECK_OK(sluiceRetryDemandTexture(s.r.loader, all ? SLUICE_ALL_DEMAND_TEXTURES : s.id));
         assert_true(runner_load(&s.r, 6) < 6);
         check_sharp(&s);
         assert_int_equal(runner_statistics(&s.r).retriedCount, TILES * TILES);
@@ -149,7 +149,7 @@ static void a_texture_that_was_lost_altogether_comes_back(void **state)
     runner_load(&r, 20);
     assert_int_equal(image.closed, 1);
     image.source.fail_at = 0;
-    CHECK_OK(sluiceRetryDemandTexture(r.loader, SLUICE_NO_DEMAND_TEXTURE));
+    CHECK_OK(sluiceRetryDemandTexture(r.loader, SLUICE_ALL_DEMAND_TEXTURES));
     assert_true(runner_load(&r, 12) < 12);
     runner_check_texel(&r, 0, &image, 0, 9, 9);
     runner_finish(&r);
@@ -255,6 +255,8 @@ static void textures_may_go_while_they_wait_to_be_tried_again(void **state)
     runner_check_texel(&s.r, 0, &other, 0, 9, 9);
     CHECK_RESULT(sluiceRetryDemandTexture(s.r.loader, stale), SLUICE_ERROR_STALE_TEXTURE);
     CHECK_RESULT(sluiceRetryDemandTexture(s.r.loader, 99), SLUICE_ERROR_UNKNOWN_TEXTURE);
+    CHECK_RESULT(sluiceRetryDemandTexture(s.r.loader, SLUICE_NO_DEMAND_TEXTURE),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
     CHECK_RESULT(sluiceRetryDemandTexture(NULL, 0), SLUICE_ERROR_NULL_POINTER);
     end_outage(&s);
     runner_image_finish(&other);

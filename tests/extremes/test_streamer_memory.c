@@ -2,7 +2,6 @@
  */
 #include "extremes/gallery.h"
 #include "extremes/note.h"
-#include "support/streamer_manager.h"
 #include "vulkan/fake_vulkan.h"
 
 enum { FRAMES = 24, RECOVERY = 120 };
@@ -187,7 +186,8 @@ static void questions_take_no_memory(void **state)
         const SluiceVulkanDeviceCapabilities caps = {.structSize = sizeof caps, .sparse = true};
         CHECK_OK(sluiceChooseVulkanResidencyMode(&caps, modes[i], 0, &resolved));
         assert_int_equal(resolved, modes[i]);
-        assert_non_null(manager_of(g.streamer));
+        SluiceStreamedTextureManager *manager;
+        CHECK_OK(sluiceGetVulkanStreamerManager(g.streamer, &manager));
         CHECK_OK(sluiceGetVulkanReadStatistics(g.streamer, NULL, &reads));
         CHECK_OK(sluiceRetryVulkanSource(g.streamer, NULL));
         assert_true(gallery_statistics(&g).textureCount == 1);

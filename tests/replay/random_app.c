@@ -79,9 +79,9 @@ static SluiceTextureId some_id(struct random_app *app)
     return app->ids[random_app_below(app, app->id_count)];
 }
 
-static SluiceTextureId id_or_all(struct random_app *app)
+static SluiceTextureId id_or(struct random_app *app, SluiceTextureId other)
 {
-    return one_in(app, 2) ? SLUICE_ALL_TEXTURES : some_id(app);
+    return one_in(app, 2) ? other : some_id(app);
 }
 
 static uint64_t next_time(struct random_app *app)
@@ -174,7 +174,7 @@ static SluiceResult get_tiles_to_map(struct random_app *app)
     SluiceTile tiles[LIST_ROOM];
     uint32_t room = RANDOM_APP_LOADS - app->load_count;
     uint32_t count = room < LIST_ROOM ? room : random_app_below(app, LIST_ROOM + 1);
-    SluiceTextureId id = id_or_all(app);
+    SluiceTextureId id = id_or(app, SLUICE_ALL_TEXTURES);
     if (one_in(app, 10))
         return sluiceGetTilesToMap(app->manager, id, one_in(app, 4) ? NULL : &count, NULL);
     SluiceResult result = sluiceGetTilesToMap(app->manager, id, &count, tiles);
@@ -231,8 +231,8 @@ static SluiceResult get_tiles_to_cancel(struct random_app *app)
 {
     SluiceTile tiles[LIST_ROOM];
     uint32_t count = random_app_below(app, LIST_ROOM);
-    SluiceResult result = sluiceGetTilesToCancel(app->manager, id_or_all(app), &count,
-                                                 one_in(app, 10) ? NULL : tiles);
+    SluiceResult result = sluiceGetTilesToCancel(app->manager, id_or(app, SLUICE_ALL_TEXTURES),
+                                                 &count, one_in(app, 10) ? NULL : tiles);
     return result;
 }
 
@@ -240,8 +240,8 @@ static SluiceResult get_tiles_to_unmap(struct random_app *app)
 {
     SluiceTile tiles[LIST_ROOM];
     uint32_t count = random_app_below(app, LIST_ROOM);
-    return sluiceGetTilesToUnmap(app->manager, id_or_all(app), next_retire(app), &count,
-                                 one_in(app, 10) ? NULL : tiles);
+    return sluiceGetTilesToUnmap(app->manager, id_or(app, SLUICE_ALL_TEXTURES), next_retire(app),
+                                 &count, one_in(app, 10) ? NULL : tiles);
 }
 
 static SluiceResult get_other_list(struct random_app *app, enum slc_call_kind kind)
@@ -304,12 +304,13 @@ static SluiceResult make_call(struct random_app *app, enum slc_call_kind kind)
         return sluiceMatchPrimaryTexture(app->manager, some_id(app), some_id(app), next_time(app),
                                          random_app_below(app, 12));
     case SLC_CALL_SET_PRIMARY:
-        return sluiceSetPrimaryTexture(app->manager, some_id(app), id_or_all(app));
+        return sluiceSetPrimaryTexture(app->manager, some_id(app), id_or(app, SLUICE_NO_TEXTURE));
     case SLC_CALL_GET_TILES_TO_MAP: return get_tiles_to_map(app);
     case SLC_CALL_UPDATE_MAPPING:
     case SLC_CALL_REPORT_FAILED:
     case SLC_CALL_REPORT_CANCELLED: return answer(app, kind);
-    case SLC_CALL_RETRY_FAILED: return sluiceRetryFailedTiles(app->manager, id_or_all(app));
+    case SLC_CALL_RETRY_FAILED:
+        return sluiceRetryFailedTiles(app->manager, id_or(app, SLUICE_ALL_TEXTURES));
     case SLC_CALL_GET_TILES_TO_CANCEL: return get_tiles_to_cancel(app);
     case SLC_CALL_GET_TILES_TO_UNMAP: return get_tiles_to_unmap(app);
     case SLC_CALL_COMPLETE_RETIRE: return complete_retire(app);

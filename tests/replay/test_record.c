@@ -232,11 +232,46 @@ static void unknown_kinds_are_refused(void **state)
     }
 }
 
+static void check_stored_id(enum slc_call_kind kind, SluiceTextureId id, size_t size,
+                            const uint8_t *bytes)
+{
+    SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    const struct slc_call call = {.kind = kind, .texture_id = id};
+    struct slc_bytes out;
+    slc_bytes_init(&out, &cb);
+    slc_put_record(&out, &call, 0);
+    assert_memory_equal(out.data + 2, bytes, size); /* after kind and result */
+    struct slc_cursor in = {out.data, 0, out.size, NULL};
+    struct slc_record back;
+    slc_get_record(&in, &back);
+    assert_true(back.call.texture_id == id);
+    slc_bytes_finish(&out);
+}
+
+static void all_textures_are_stored_as_0(void **state)
+{
+    (void)state;
+    static const uint8_t zero[2] = {0, 0};
+    static const uint8_t ones[10] = {255, 255, 255, 255, 15, 255, 255, 255, 255, 15};
+    static const uint8_t one[2] = {1, 1};
+    static const enum slc_call_kind kinds[] = {SLC_CALL_GET_TILES_TO_MAP, SLC_CALL_RETRY_FAILED,
+                                               SLC_CALL_GET_TILES_TO_CANCEL,
+                                               SLC_CALL_GET_TILES_TO_UNMAP};
+    for (size_t i = 0; i < 4; i++) {
+        check_stored_id(kinds[i], SLUICE_ALL_TEXTURES, 2, zero);
+        check_stored_id(kinds[i], SLUICE_NO_TEXTURE, 10, ones);
+        check_stored_id(kinds[i], 0x100000001, 2, one);
+    }
+    check_stored_id(SLC_CALL_SET_PRIMARY, SLUICE_NO_TEXTURE, 2, zero);
+    check_stored_id(SLC_CALL_UPDATE_MAPPING, UINT64_MAX, 10, ones);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(calls_of_every_kind_come_back),
         cmocka_unit_test(record_cut_anywhere_fails_inside_of_it),
+        cmocka_unit_test(all_textures_are_stored_as_0),
         cmocka_unit_test(unknown_kinds_are_refused),
     };
     return RUN_TESTS(tests);
