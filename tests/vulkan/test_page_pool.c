@@ -256,6 +256,31 @@ static void a_page_that_came_back_is_shared_when_its_copy_is_complete(void **sta
     finish(&r);
 }
 
+/* The place of a user that stood still for long goes to one that has just begun to read a tile. */
+static void a_new_user_is_waited_for_in_the_place_of_an_idle_one(void **state)
+{
+    (void)state;
+    struct rig r;
+    static int source;
+    const struct slc_tile_key key = {(const SluiceImageSource *)(const void *)&source, 0, 1, 2, 3};
+    init(&r, 0);
+    uint32_t idle = r.users[1];
+    slc_page_share_announce(&r.pool, idle, &key);
+    for (uint64_t frame = 1; frame < 20; frame++) {
+        record(&r, 0, frame);
+        timelines[0] = frame;
+    }
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[0], &key), SLC_SHARE_NONE);
+    slc_page_pool_remove_user(&r.pool, idle);
+    CHECK_OK(slc_page_pool_add_user(&r.pool, (VkSemaphore)(uintptr_t)2, 0, NULL, &r.users[1]));
+    assert_int_equal(r.users[1], idle);
+    slc_page_share_announce(&r.pool, r.users[1], &key);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[0], &key), SLC_SHARE_WAIT);
+    record(&r, 0, 20);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[0], &key), SLC_SHARE_WAIT);
+    finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -267,6 +292,7 @@ int main(void)
         cmocka_unit_test(pages_that_others_hold_are_no_capacity),
         cmocka_unit_test(an_abandoned_frame_is_not_waited_for),
         cmocka_unit_test(a_page_that_came_back_is_shared_when_its_copy_is_complete),
+        cmocka_unit_test(a_new_user_is_waited_for_in_the_place_of_an_idle_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
