@@ -70,6 +70,12 @@ static void finish(struct rig *r)
     assert_int_equal(fake.live_objects, 0);
 }
 
+static struct slc_tile_key key_of(uint32_t level)
+{
+    static int source;
+    return (struct slc_tile_key){(const SluiceImageSource *)(const void *)&source, 0, level, 2, 3};
+}
+
 static uint32_t record(struct rig *r, uint32_t user, uint64_t frame)
 {
     layout_count = 0;
@@ -233,8 +239,7 @@ static void a_page_that_came_back_is_shared_when_its_copy_is_complete(void **sta
 {
     (void)state;
     struct rig r;
-    static int source;
-    const struct slc_tile_key key = {(const SluiceImageSource *)(const void *)&source, 0, 1, 2, 3};
+    const struct slc_tile_key key = key_of(1);
     init(&r, 0);
     uint32_t page = slc_page_pool_take(&r.pool, r.users[0], FORMAT);
     slc_page_share_announce(&r.pool, r.users[0], &key);
@@ -261,8 +266,7 @@ static void a_new_user_is_waited_for_in_the_place_of_an_idle_one(void **state)
 {
     (void)state;
     struct rig r;
-    static int source;
-    const struct slc_tile_key key = {(const SluiceImageSource *)(const void *)&source, 0, 1, 2, 3};
+    const struct slc_tile_key key = key_of(1);
     init(&r, 0);
     uint32_t idle = r.users[1];
     slc_page_share_announce(&r.pool, idle, &key);
@@ -281,6 +285,97 @@ static void a_new_user_is_waited_for_in_the_place_of_an_idle_one(void **state)
     finish(&r);
 }
 
+/* User 0 has read the tile and copied it with frame 1. Returns its page. */
+static uint32_t copy_tile(struct rig *r, const struct slc_tile_key *key)
+{
+    uint32_t page = slc_page_pool_take(&r->pool, r->users[0], FORMAT);
+    slc_page_share_announce(&r->pool, r->users[0], key);
+    slc_page_share_place(&r->pool, r->users[0], key, page);
+    record(r, 0, 1);
+    slc_page_share_written(&r->pool, r->users[0], page, 1);
+    timelines[0] = 1;
+    record(r, 1, 1);
+    return page;
+}
+
+static void a_shared_page_is_free_when_no_frame_of_any_reader_is_left(void **state)
+{
+    (void)state;
+    struct rig r;
+    const struct slc_tile_key key = key_of(1);
+    init(&r, 0);
+    uint32_t page = copy_tile(&r, &key);
+    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), page);
+    record(&r, 1, 2);
+    slc_page_pool_give(&r.pool, r.users[1], page, SLC_NO_OWNER); /* frame 2 may read it */
+    slc_page_pool_give(&r.pool, r.users[0], page, 5);
+    assert_false(slc_page_pool_retake(&r.pool, r.users[0], page, 5));
+    for (uint32_t i = 1; i < LAYERS; i++)
+        assert_int_not_equal(slc_page_pool_take(&r.pool, r.users[0], FORMAT), page);
+    record(&r, 0, 2);
+    assert_int_equal(slc_page_pool_free_count(&r.pool, r.users[0], FORMAT), UINT32_MAX);
+    assert_true(slc_page_layer(&r.pool.chunks, page)->held);
+    timelines[1] = 2;
+    record(&r, 0, 3);
+    assert_false(slc_page_layer(&r.pool.chunks, page)->held);
+    assert_int_equal(slc_page_pool_take(&r.pool, r.users[0], FORMAT), page);
+    finish(&r);
+}
+
+/* For another texture of the same source. */
+static void a_user_that_holds_a_shared_page_reads_the_tile_itself(void **state)
+{
+    (void)state;
+    struct rig r;
+    const struct slc_tile_key key = key_of(1);
+    init(&r, 0);
+    uint32_t page = copy_tile(&r, &key);
+    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), page);
+    for (uint32_t i = 0; i < USERS; i++) {
+        assert_int_equal(slc_page_share_look(&r.pool, r.users[i], &key), SLC_SHARE_NONE);
+        assert_int_equal(slc_page_share_take(&r.pool, r.users[i], &key), SLUICE_PAGE_NONE);
+    }
+    assert_int_equal(r.pool.held_count, 1);
+    finish(&r);
+}
+
+static void a_texture_that_goes_takes_no_read_of_others_away(void **state)
+{
+    (void)state;
+    struct rig r;
+    const struct slc_tile_key keys[] = {key_of(1), key_of(2)};
+    init(&r, 0);
+    slc_page_share_announce(&r.pool, r.users[0], &keys[0]);
+    slc_page_share_announce(&r.pool, r.users[1], &keys[1]);
+    slc_page_share_leave(&r.pool, r.users[1], keys[0].source);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &keys[0]), SLC_SHARE_WAIT);
+    assert_int_equal(slc_page_share_look(&r.pool, r.users[0], &keys[1]), SLC_SHARE_NONE);
+    finish(&r);
+}
+
+/* The texels were there before the abandoned frames, unless one of these copied them anew. */
+static void an_abandoned_frame_leaves_the_texels_that_came_back(void **state)
+{
+    (void)state;
+    struct rig r;
+    const struct slc_tile_key key = key_of(1);
+    for (int copied = 0; copied < 2; copied++) {
+        init(&r, 0);
+        uint32_t page = copy_tile(&r, &key);
+        record(&r, 0, 2);
+        slc_page_pool_give(&r.pool, r.users[0], page, 7);
+        assert_true(slc_page_pool_retake(&r.pool, r.users[0], page, 7));
+        slc_page_share_adopt(&r.pool, r.users[0], &key, page);
+        if (copied)
+            slc_page_share_written(&r.pool, r.users[0], page, 2);
+        slc_page_pool_abandon(&r.pool, r.users[0], 2);
+        record(&r, 1, 2);
+        assert_int_equal(slc_page_share_look(&r.pool, r.users[1], &key),
+                         copied ? SLC_SHARE_WAIT : SLC_SHARE_READY);
+        finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -293,6 +388,10 @@ int main(void)
         cmocka_unit_test(an_abandoned_frame_is_not_waited_for),
         cmocka_unit_test(a_page_that_came_back_is_shared_when_its_copy_is_complete),
         cmocka_unit_test(a_new_user_is_waited_for_in_the_place_of_an_idle_one),
+        cmocka_unit_test(a_shared_page_is_free_when_no_frame_of_any_reader_is_left),
+        cmocka_unit_test(a_user_that_holds_a_shared_page_reads_the_tile_itself),
+        cmocka_unit_test(a_texture_that_goes_takes_no_read_of_others_away),
+        cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
