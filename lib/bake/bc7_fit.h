@@ -2,7 +2,7 @@
 #ifndef SLC_BAKE_BC7_FIT_H
 #define SLC_BAKE_BC7_FIT_H
 
-#include "bake/block_lanes.h"
+#include "bake/block_fit.h"
 
 #include <stdbool.h>
 
@@ -16,105 +16,16 @@ struct slc_bc7_precision {
     int index_count; ///< 4, 8 or 16
 };
 
-/** Texels to be fitted: up to four channels of 16 numbers from 0 to 255. */
-struct slc_bc7_points {
-    int channel_count;
-    const slc_floats *channels[4]; ///< [16] each
-    const slc_floats *weights;     ///< [16]: 1 for texels that count, 0 for others; NULL: all 1
-    slc_ints sets_p; ///< -1: p bits must be 1, so that an alpha of 255 is stored as such
-};
-
 struct slc_bc7_fit {
     slc_ints ends[2][4]; ///< codes with their p bits
     slc_ints indices[16];
     slc_floats error; ///< sum of squares over texels and channels
 };
 
-/** Inlined, so that counts and precision are constants. */
-#define SLC_INLINE static inline __attribute__((always_inline))
-
 /* The number that a code stands for. */
 SLC_INLINE slc_floats slc_bc7_value(slc_ints code, int bits)
 {
     return slc_to_floats((code << (8 - bits)) | (code >> (2 * bits - 8)));
-}
-
-/* Sums of products of channels, less those of the means. */
-SLC_INLINE void slc_bc7_covariance(const struct slc_bc7_points *points, slc_floats mean[4],
-                                   slc_floats cov[4][4])
-{
-    slc_floats count = slc_all(points->weights ? 0.0f : 16.0f);
-    for (int i = 0; i < 16 && points->weights; i++)
-        count += points->weights[i];
-    slc_floats inverse = 1.0f / slc_greater(count, slc_all(1.0f));
-    for (int a = 0; a < points->channel_count; a++) {
-        slc_floats sum = slc_all(0.0f), products[4] = {sum, sum, sum, sum};
-        for (int i = 0; i < 16; i++) {
-            slc_floats value = points->channels[a][i];
-            if (points->weights)
-                value *= points->weights[i];
-            sum += value;
-            for (int b = 0; b <= a; b++)
-                products[b] += value * points->channels[b][i];
-        }
-        mean[a] = sum * inverse;
-        for (int b = 0; b <= a; b++)
-            cov[a][b] = cov[b][a] = products[b] - sum * mean[b];
-    }
-}
-
-/* Power iteration from the column of the largest variance. */
-SLC_INLINE void slc_principal_axis(int count, slc_floats cov[4][4], int rounds, slc_floats axis[4])
-{
-    slc_floats largest = cov[0][0], trace = cov[0][0];
-    for (int c = 0; c < count; c++)
-        axis[c] = cov[0][c];
-    for (int a = 1; a < count; a++) {
-        slc_ints larger = cov[a][a] > largest;
-        largest = slc_select(larger, cov[a][a], largest);
-        trace += cov[a][a];
-        for (int c = 0; c < count; c++)
-            axis[c] = slc_select(larger, cov[a][c], axis[c]);
-    }
-    slc_floats scale = 1.0f / (trace + 1e-6f);
-    for (int r = 0; r < rounds; r++) {
-        slc_floats next[4];
-        for (int a = 0; a < count; a++) {
-            next[a] = cov[a][0] * axis[0];
-            for (int b = 1; b < count; b++)
-                next[a] += cov[a][b] * axis[b];
-        }
-        for (int a = 0; a < count; a++)
-            axis[a] = next[a] * scale;
-    }
-}
-
-/* Where the outermost texels lie on the axis through the mean. */
-SLC_INLINE void slc_bc7_first_ends(const struct slc_bc7_points *points, slc_floats ends[2][4])
-{
-    slc_floats mean[4], cov[4][4], axis[4];
-    int count = points->channel_count;
-    slc_bc7_covariance(points, mean, cov);
-    slc_principal_axis(count, cov, 3, axis);
-    slc_floats length = slc_all(0.0f), offset = length, low = length, high = length;
-    for (int c = 0; c < count; c++) {
-        length += axis[c] * axis[c];
-        offset += axis[c] * mean[c];
-    }
-    for (int i = 0; i < 16; i++) {
-        slc_floats t = axis[0] * points->channels[0][i] - offset;
-        for (int c = 1; c < count; c++)
-            t += axis[c] * points->channels[c][i];
-        if (points->weights)
-            t *= points->weights[i];
-        low = slc_lesser(low, t);
-        high = slc_greater(high, t);
-    }
-    slc_floats inverse = 1.0f / slc_greater(length, slc_all(1e-20f));
-    for (int c = 0; c < count; c++) {
-        ends[0][c] = mean[c] + axis[c] * (low * inverse);
-        ends[1][c] = mean[c] + axis[c] * (high * inverse);
-    }
 }
 
 /* Nearest code with the p bit `p`; adds the square of the distance. */
@@ -136,9 +47,9 @@ SLC_INLINE slc_ints slc_bc7_code(slc_floats value, const struct slc_bc7_precisio
     return codes;
 }
 
-SLC_INLINE void slc_bc7_quantize(const struct slc_bc7_points *points,
-                                 const struct slc_bc7_precision *precision, slc_floats ends[2][4],
-                                 slc_ints codes[2][4])
+SLC_INLINE void slc_bc7_quantize(const struct slc_fit_points *points,
+                                 const struct slc_bc7_precision *precision, slc_ints sets_p,
+                                 slc_floats ends[2][4], slc_ints codes[2][4])
 {
     slc_ints other[2][4];
     slc_floats error[2][2] = {{{0}}};
@@ -153,7 +64,7 @@ SLC_INLINE void slc_bc7_quantize(const struct slc_bc7_points *points,
         slc_ints set = error[e][1] < error[e][0];
         if (precision->p_bits == SLC_P_BITS_SHARED)
             set = error[0][1] + error[1][1] < error[0][0] + error[1][0];
-        set |= points->sets_p;
+        set |= sets_p;
         for (int c = 0; c < points->channel_count; c++)
             codes[e][c] = slc_select_ints(set, other[e][c], codes[e][c]);
     }
@@ -167,7 +78,7 @@ SLC_INLINE slc_floats slc_bc7_weight(slc_ints index, int count)
 }
 
 /* Nearest indices and the error of what is decoded from them. */
-SLC_INLINE void slc_bc7_index(const struct slc_bc7_points *points,
+SLC_INLINE void slc_bc7_index(const struct slc_fit_points *points,
                               const struct slc_bc7_precision *precision, struct slc_bc7_fit *fit)
 {
     int count = points->channel_count, last = precision->index_count - 1;
@@ -200,7 +111,7 @@ SLC_INLINE void slc_bc7_index(const struct slc_bc7_points *points,
 }
 
 /* Ends of least squared error for the indices; those of before where all indices are the same. */
-SLC_INLINE void slc_bc7_solve(const struct slc_bc7_points *points,
+SLC_INLINE void slc_bc7_solve(const struct slc_fit_points *points,
                               const struct slc_bc7_precision *precision,
                               const struct slc_bc7_fit *fit, slc_floats ends[2][4])
 {
@@ -231,20 +142,23 @@ SLC_INLINE void slc_bc7_solve(const struct slc_bc7_points *points,
     }
 }
 
-/** Fits texels and improves the ends `rounds` times. */
-SLC_INLINE void slc_bc7_fit_points(const struct slc_bc7_points *points,
-                                   const struct slc_bc7_precision *precision, int rounds,
-                                   struct slc_bc7_fit *best)
+/**
+ * Fits texels and improves the ends `rounds` times. p bits are 1 in lanes where `sets_p` is -1, so
+ * that an alpha of 255 is stored as such.
+ */
+SLC_INLINE void slc_bc7_fit_points(const struct slc_fit_points *points,
+                                   const struct slc_bc7_precision *precision, slc_ints sets_p,
+                                   int rounds, struct slc_bc7_fit *best)
 {
     slc_floats ends[2][4];
     struct slc_bc7_fit fit;
-    slc_bc7_first_ends(points, ends);
-    slc_bc7_quantize(points, precision, ends, best->ends);
+    slc_fit_line(points, ends);
+    slc_bc7_quantize(points, precision, sets_p, ends, best->ends);
     slc_bc7_index(points, precision, best);
     fit = *best;
     for (int r = 0; r < rounds; r++) {
         slc_bc7_solve(points, precision, &fit, ends);
-        slc_bc7_quantize(points, precision, ends, fit.ends);
+        slc_bc7_quantize(points, precision, sets_p, ends, fit.ends);
         slc_bc7_index(points, precision, &fit);
         slc_ints better = fit.error < best->error;
         best->error = slc_select(better, fit.error, best->error);

@@ -1,8 +1,8 @@
 #include "bake/bc7_modes.h"
 
 #include "bake/block_partitions.h"
+#include "bake/block_regions.h"
 
-#include <float.h>
 #include <stddef.h>
 
 static void take_ends(const struct slc_bc7_fit *fit, int lane, int first, int count,
@@ -18,9 +18,9 @@ void slc_bc7_try_mode_6(const struct slc_bc7_texels *texels, int rounds,
 {
     static const struct slc_bc7_precision precision = {8, SLC_P_BITS_OWN, 16};
     const slc_floats(*c)[16] = texels->channels;
-    const struct slc_bc7_points points = {4, {c[0], c[1], c[2], c[3]}, NULL, texels->is_opaque};
+    const struct slc_fit_points points = {4, {c[0], c[1], c[2], c[3]}, NULL};
     struct slc_bc7_fit fit;
-    slc_bc7_fit_points(&points, &precision, rounds, &fit);
+    slc_bc7_fit_points(&points, &precision, texels->is_opaque, rounds, &fit);
     for (int l = 0; l < SLC_LANES; l++) {
         struct slc_bc7_block *block = blocks[l];
         if (fit.error[l] >= block->error)
@@ -32,96 +32,26 @@ void slc_bc7_try_mode_6(const struct slc_bc7_texels *texels, int rounds,
     }
 }
 
-/* Sums over texels of three colors (0 to 2) and their products (3 to 8). */
-struct moments {
-    slc_floats count, sums[9];
-};
-
-/* Sum of squared distances from the line that fits best. */
-static slc_floats line_error(const struct moments *m)
-{
-    static const int at[3][3] = {{3, 4, 5}, {4, 6, 7}, {5, 7, 8}};
-    slc_floats cov[4][4], axis[4], trace = slc_all(0.0f), length = trace, along = trace;
-    slc_floats inverse = 1.0f / slc_greater(m->count, slc_all(1.0f));
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-            cov[a][b] = m->sums[at[a][b]] - m->sums[a] * m->sums[b] * inverse;
-    slc_principal_axis(3, cov, 2, axis);
-    for (int a = 0; a < 3; a++) {
-        slc_floats product = cov[a][0] * axis[0] + cov[a][1] * axis[1] + cov[a][2] * axis[2];
-        trace += cov[a][a];
-        length += axis[a] * axis[a];
-        along += axis[a] * product;
-    }
-    return trace - along / slc_greater(length, slc_all(1e-20f));
-}
-
-/* How far texels are from the two lines of each partition. */
-static void estimate_partitions(const struct slc_bc7_texels *texels, int partitions,
-                                slc_floats estimates[SLC_PARTITION_COUNT])
-{
-    slc_floats products[16][9];
-    struct moments all = {.count = slc_all(16.0f)};
-    for (int i = 0; i < 16; i++) {
-        slc_floats r = texels->channels[0][i], g = texels->channels[1][i];
-        slc_floats b = texels->channels[2][i];
-        const slc_floats own[9] = {r, g, b, r * r, r * g, r * b, g * g, g * b, b * b};
-        for (int k = 0; k < 9; k++) {
-            products[i][k] = own[k];
-            all.sums[k] += own[k];
-        }
-    }
-    for (int p = 0; p < partitions; p++) {
-        struct moments one = {.count = slc_all(0.0f)}, zero = all;
-        for (int i = 0; i < 16; i++) {
-            if (!(slc_partitions[p] >> i & 1))
-                continue;
-            one.count += 1.0f;
-            for (int k = 0; k < 9; k++)
-                one.sums[k] += products[i][k];
-        }
-        zero.count -= one.count;
-        for (int k = 0; k < 9; k++)
-            zero.sums[k] -= one.sums[k];
-        estimates[p] = line_error(&zero) + line_error(&one);
-    }
-}
-
-/* The partition of the least estimate, which is then out of the way. */
-static slc_ints take_partition(slc_floats *estimates, int partitions)
-{
-    slc_floats least = estimates[0];
-    slc_ints chosen = {0};
-    for (int p = 1; p < partitions; p++) {
-        slc_ints less = estimates[p] < least;
-        least = slc_select(less, estimates[p], least);
-        chosen = slc_select_ints(less, (slc_ints){0} + p, chosen);
-    }
-    for (int l = 0; l < SLC_LANES; l++)
-        estimates[chosen[l]][l] = FLT_MAX;
-    return chosen;
-}
-
 static void fit_region(const struct slc_bc7_texels *texels, int rounds, slc_ints mask, int region,
                        struct slc_bc7_fit *fit)
 {
     static const struct slc_bc7_precision precision = {7, SLC_P_BITS_SHARED, 8};
     const slc_floats(*c)[16] = texels->channels;
     slc_floats weights[16];
-    const struct slc_bc7_points points = {3, {c[0], c[1], c[2]}, weights, {0}};
+    const struct slc_fit_points points = {3, {c[0], c[1], c[2]}, weights};
     for (int i = 0; i < 16; i++)
         weights[i] = slc_to_floats(region ? mask >> i & 1 : ~(mask >> i) & 1);
-    slc_bc7_fit_points(&points, &precision, rounds, fit);
+    slc_bc7_fit_points(&points, &precision, (slc_ints){0}, rounds, fit);
 }
 
 void slc_bc7_try_mode_1(const struct slc_bc7_texels *texels, int rounds, int partitions, int tries,
                         struct slc_bc7_block *blocks[SLC_LANES])
 {
     slc_floats estimates[SLC_PARTITION_COUNT];
-    estimate_partitions(texels, partitions, estimates);
+    slc_estimate_regions(texels->channels, partitions, estimates);
     for (int t = 0; t < tries; t++) {
         struct slc_bc7_fit fits[2];
-        slc_ints partition = take_partition(estimates, partitions), mask = {0};
+        slc_ints partition = slc_take_regions(estimates, partitions), mask = {0};
         for (int l = 0; l < SLC_LANES; l++)
             mask[l] = slc_partitions[partition[l]];
         fit_region(texels, rounds, mask, 0, &fits[0]);
@@ -162,11 +92,11 @@ static void take_two(const struct slc_bc7_fit *colors, const struct slc_bc7_fit 
 }
 
 /* Channels of colors and of what is apart: a rotation swaps alpha with a color. */
-static void split(const struct slc_bc7_texels *texels, int rotation, struct slc_bc7_points *colors,
-                  struct slc_bc7_points *alpha)
+static void split(const struct slc_bc7_texels *texels, int rotation, struct slc_fit_points *colors,
+                  struct slc_fit_points *alpha)
 {
-    *colors = (struct slc_bc7_points){.channel_count = 3};
-    *alpha = (struct slc_bc7_points){.channel_count = 1};
+    *colors = (struct slc_fit_points){.channel_count = 3};
+    *alpha = (struct slc_fit_points){.channel_count = 1};
     for (int c = 0; c < 3; c++)
         colors->channels[c] = texels->channels[c + 1 == rotation ? 3 : c];
     alpha->channels[0] = texels->channels[rotation ? rotation - 1 : 3];
@@ -179,18 +109,19 @@ void slc_bc7_try_mode_4(const struct slc_bc7_texels *texels, int rounds, int rot
     static const struct slc_bc7_precision color_8 = {5, SLC_P_BITS_NONE, 8};
     static const struct slc_bc7_precision alpha_4 = {6, SLC_P_BITS_NONE, 4};
     static const struct slc_bc7_precision alpha_8 = {6, SLC_P_BITS_NONE, 8};
-    struct slc_bc7_points colors, alpha;
+    struct slc_fit_points colors, alpha;
     struct slc_bc7_fit color_fit, alpha_fit;
+    const slc_ints none = {0};
     struct slc_bc7_block kind = {.mode = 4, .rotation = (uint8_t)rotation};
     split(texels, rotation, &colors, &alpha);
     colors.channel_count = 3; /* known to be constant where it is used */
     alpha.channel_count = 1;
-    slc_bc7_fit_points(&colors, &color_4, rounds, &color_fit);
-    slc_bc7_fit_points(&alpha, &alpha_8, rounds, &alpha_fit);
+    slc_bc7_fit_points(&colors, &color_4, none, rounds, &color_fit);
+    slc_bc7_fit_points(&alpha, &alpha_8, none, rounds, &alpha_fit);
     take_two(&color_fit, &alpha_fit, &kind, blocks);
     kind.swaps_indices = 1;
-    slc_bc7_fit_points(&colors, &color_8, rounds, &color_fit);
-    slc_bc7_fit_points(&alpha, &alpha_4, rounds, &alpha_fit);
+    slc_bc7_fit_points(&colors, &color_8, none, rounds, &color_fit);
+    slc_bc7_fit_points(&alpha, &alpha_4, none, rounds, &alpha_fit);
     take_two(&color_fit, &alpha_fit, &kind, blocks);
 }
 
@@ -199,13 +130,14 @@ void slc_bc7_try_mode_5(const struct slc_bc7_texels *texels, int rounds, int rot
 {
     static const struct slc_bc7_precision color = {7, SLC_P_BITS_NONE, 4};
     static const struct slc_bc7_precision plain = {8, SLC_P_BITS_NONE, 4};
-    struct slc_bc7_points colors, alpha;
+    struct slc_fit_points colors, alpha;
     struct slc_bc7_fit color_fit, alpha_fit;
+    const slc_ints none = {0};
     const struct slc_bc7_block kind = {.mode = 5, .rotation = (uint8_t)rotation};
     split(texels, rotation, &colors, &alpha);
     colors.channel_count = 3;
     alpha.channel_count = 1;
-    slc_bc7_fit_points(&colors, &color, rounds, &color_fit);
-    slc_bc7_fit_points(&alpha, &plain, rounds, &alpha_fit);
+    slc_bc7_fit_points(&colors, &color, none, rounds, &color_fit);
+    slc_bc7_fit_points(&alpha, &plain, none, rounds, &alpha_fit);
     take_two(&color_fit, &alpha_fit, &kind, blocks);
 }

@@ -80,13 +80,13 @@ static SluiceFormat natural_format(const struct slc_picture *picture, bool norma
                      : SLUICE_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-/* Of texels in memory; blocks are made from RGBA bytes. */
+/* Of texels in memory, which blocks are made from. */
 static SluiceFormat texel_format(SluiceFormat format, bool srgb)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};
     if (sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS || !slc_format_is_compressed(&info))
         return format;
-    return slc_format_twin(SLUICE_FORMAT_R8G8B8A8_UNORM, srgb && has_srgb_twin(format));
+    return slc_format_twin(slc_block_texel_format(format), srgb && has_srgb_twin(format));
 }
 
 static bool is_float32(SluiceFormat format)

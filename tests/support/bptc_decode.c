@@ -1,7 +1,10 @@
 #include "support/bptc_decode.h"
 
+#include "bake/bc6h_modes.h"
 #include "bake/block_partitions.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct reader {
@@ -97,6 +100,89 @@ bool bc7_decode(const uint8_t block[16], uint8_t rgba[64], int *mode)
             rgba[4 * i + 3] = rgba[4 * i + rotation - 1];
             rgba[4 * i + rotation - 1] = alpha;
         }
+    }
+    return reader.at == 128;
+}
+
+static int sign_extend(int value, int bits)
+{
+    return value >> (bits - 1) & 1 ? value - (1 << bits) : value;
+}
+
+/* "rw0-9" and "rw15-10", as bc6h_modes.h writes them. */
+static void take_ends(struct reader *reader, const struct slc_bc6h_mode *mode, int ends[4][3])
+{
+    for (const char *at = mode->layout; at;) {
+        int first, last, used;
+        char channel, end;
+        int found = sscanf(at, "%c%c%d%n", &channel, &end, &first, &used);
+        last = first;
+        if (found == 3 && at[used] == '-')
+            last = atoi(at + used + 1);
+        int *value = &ends[end - 'w'][channel == 'r' ? 0 : channel == 'g' ? 1 : 2];
+        for (int i = 0; i <= abs(last - first); i++)
+            *value |= take(reader, 1) << (last < first ? first - i : first + i);
+        at = strchr(at, ' ');
+        at = at ? at + 1 : NULL;
+    }
+}
+
+static int bc6h_unquantize(int code, int bits, bool is_signed)
+{
+    if (!is_signed)
+        return bits >= 15                ? code
+               : code == 0               ? 0
+               : code == (1 << bits) - 1 ? 0xffff
+                                         : ((code << 16) + 0x8000) >> bits;
+    int sign = code < 0 ? -1 : 1;
+    code *= sign;
+    if (bits >= 16 || code == 0)
+        return sign * code;
+    return sign * (code >= (1 << (bits - 1)) - 1 ? 0x7fff : ((code << 15) + 0x4000) >> (bits - 1));
+}
+
+/* The format's arithmetic on two numbers of 16 bits, to a half. */
+static uint16_t bc6h_mix(int a, int b, int index, int bits, bool is_signed)
+{
+    int value = interpolate(a, b, index, bits);
+    if (!is_signed)
+        return (uint16_t)(value * 31 >> 6);
+    return (uint16_t)(value < 0 ? 0x8000 | (-value * 31 >> 5) : value * 31 >> 5);
+}
+
+bool bc6h_decode(bool is_signed, const uint8_t block[16], uint16_t rgb[48], int *mode)
+{
+    const struct slc_bc6h_mode *m = NULL;
+    int ends[4][3] = {{0}}, indices[16];
+    struct reader reader = {block, 0};
+    for (int i = 0; i < SLC_BC6H_MODE_COUNT; i++)
+        if ((block[0] & ((1 << slc_bc6h_modes[i].value_bits) - 1)) == slc_bc6h_modes[i].value)
+            m = &slc_bc6h_modes[i];
+    if (!m)
+        return false;
+    *mode = m->number;
+    take(&reader, m->value_bits);
+    take_ends(&reader, m, ends);
+    int partition = m->regions == 2 ? take(&reader, 5) : 0;
+    for (int e = 0; e < 2 * m->regions; e++)
+        for (int c = 0; c < 3; c++) {
+            bool is_delta = e > 0 && m->deltas[c];
+            int bits = is_delta ? m->deltas[c] : m->bits;
+            if (is_delta)
+                ends[e][c] = (ends[0][c] + sign_extend(ends[e][c], bits)) & ((1 << m->bits) - 1);
+        }
+    for (int e = 0; e < 2 * m->regions; e++)
+        for (int c = 0; c < 3; c++) {
+            int code = is_signed ? sign_extend(ends[e][c], m->bits) : ends[e][c];
+            ends[e][c] = bc6h_unquantize(code, m->bits, is_signed);
+        }
+    int index_bits = m->regions == 2 ? 3 : 4;
+    take_indices(&reader, index_bits, partition, m->regions, indices);
+    for (int i = 0; i < 16; i++) {
+        int region = m->regions == 2 ? slc_partitions[partition] >> i & 1 : 0;
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + c] = bc6h_mix(ends[2 * region][c], ends[2 * region + 1][c], indices[i],
+                                      index_bits, is_signed);
     }
     return reader.at == 128;
 }

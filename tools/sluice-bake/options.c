@@ -21,7 +21,7 @@ static const char notes[] =
 
 /* In the order of the words of --format, --quality, --filter and --alpha. */
 static const char format_names[] = "auto|r8|rg8|rgba8|r16f|rg16f|rgba16f|r32f|rg32f|rgba32f|"
-                                   "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc7";
+                                   "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc6h|bc7";
 static const SluiceFormat formats[] = {
     SLUICE_FORMAT_UNDEFINED,
     SLUICE_FORMAT_R8_UNORM,
@@ -40,6 +40,7 @@ static const SluiceFormat formats[] = {
     SLUICE_FORMAT_BC3_UNORM_BLOCK,
     SLUICE_FORMAT_BC4_UNORM_BLOCK,
     SLUICE_FORMAT_BC5_UNORM_BLOCK,
+    SLUICE_FORMAT_BC6H_UFLOAT_BLOCK,
     SLUICE_FORMAT_BC7_UNORM_BLOCK,
 };
 static const SluiceBakeQuality qualities[] = {SLUICE_BAKE_QUALITY_FAST, SLUICE_BAKE_QUALITY_NORMAL,
@@ -128,7 +129,8 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_SECTION, .help = "Texels"},
         {OPTION_CHOICE, "format", format_names, "auto", &c.format,
          "format of the texels; auto: by channels, bit depth and meaning."},
-        {OPTION_CHOICE, "quality", "fast|normal|best", "normal", &c.quality, "work spent on bc7"},
+        {OPTION_CHOICE, "quality", "fast|normal|best", "normal", &c.quality,
+         "work spent on bc6h and bc7"},
         {OPTION_FLAG, "srgb", .value = &c.srgb,
          .help = "the numbers are sRGB, as is assumed for integers of two channels or more"},
         {OPTION_FLAG, "linear", .value = &c.linear,
