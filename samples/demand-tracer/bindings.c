@@ -1,80 +1,85 @@
 #include "bindings.h"
 
+#include "../../tools/common/text.h"
+
 #include <string.h>
 
 #define RAY_STAGES                                                                                 \
     (VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |                               \
      VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR)
 
-static bool create_set_layout(const struct gpu *gpu, uint32_t buffer_count,
-                              VkDescriptorType last_type, uint32_t last_count,
-                              VkShaderStageFlags stages, VkDescriptorSetLayout *layout)
+static bool create_set_layout(const struct gpu *gpu, bool has_scene, struct bindings *b)
 {
     VkDescriptorSetLayoutBinding bindings[TRACER_OWN_BUFFERS + 1];
-    for (uint32_t i = 0; i < buffer_count; i++)
+    for (uint32_t i = 0; i < TRACER_OWN_BUFFERS; i++)
         bindings[i] =
             (VkDescriptorSetLayoutBinding){.binding = i,
                                            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                            .descriptorCount = 1,
-                                           .stageFlags = stages};
-    bindings[buffer_count] = (VkDescriptorSetLayoutBinding){.binding = buffer_count,
-                                                            .descriptorType = last_type,
-                                                            .descriptorCount = last_count,
-                                                            .stageFlags = stages};
+                                           .stageFlags = b->stages};
+    bindings[TRACER_OWN_BUFFERS] = (VkDescriptorSetLayoutBinding){
+        .binding = TRACER_BINDING_SCENE,
+        .descriptorType = VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR,
+        .descriptorCount = 1,
+        .stageFlags = b->stages};
     VkDescriptorSetLayoutCreateInfo info = {.sType =
                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = buffer_count + (last_count > 0),
+                                            .bindingCount = TRACER_OWN_BUFFERS + has_scene,
                                             .pBindings = bindings};
-    return gpu_check(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout),
+    return gpu_check(vkCreateDescriptorSetLayout(gpu->device, &info, NULL, &b->own_layout),
                      "vkCreateDescriptorSetLayout");
 }
 
-static bool create_layouts(const struct gpu *gpu, bool has_scene, struct bindings *b)
+static bool create_layouts(const struct gpu *gpu, const struct bindings_request *request,
+                           struct bindings *b)
 {
-    VkPushConstantRange push = {b->stages, 0, sizeof(struct TracerLaunch)};
+    const bool has_scene = request->scene != VK_NULL_HANDLE;
+    VkDescriptorSetLayout demand;
+    SluiceResult result = sluiceGetDemandDescriptorSetLayout(request->loader, &demand);
+    if (result != SLUICE_SUCCESS) {
+        text_say("sluiceGetDemandDescriptorSetLayout: %s", sluiceGetResultName(result));
+        return false;
+    }
+    if (!create_set_layout(gpu, has_scene, b))
+        return false;
+    const VkDescriptorSetLayout layouts[2] = {demand, b->own_layout};
+    const VkPushConstantRange push = {b->stages, 0, sizeof(struct TracerLaunch)};
     VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                        .setLayoutCount = 2,
-                                       .pSetLayouts = b->layouts,
+                                       .pSetLayouts = layouts,
                                        .pushConstantRangeCount = 1,
                                        .pPushConstantRanges = &push};
-    return create_set_layout(gpu, TRACER_DEMAND_BUFFERS, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                             TRACER_PAGE_CHUNKS, b->stages, &b->layouts[0]) &&
-           create_set_layout(gpu, TRACER_OWN_BUFFERS, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR,
-                             has_scene ? 1 : 0, b->stages, &b->layouts[1]) &&
-           gpu_check(vkCreatePipelineLayout(gpu->device, &info, NULL, &b->layout),
+    return gpu_check(vkCreatePipelineLayout(gpu->device, &info, NULL, &b->layout),
                      "vkCreatePipelineLayout");
 }
 
-static bool allocate_sets(const struct gpu *gpu, bool has_scene, struct bindings *b)
+static bool allocate_set(const struct gpu *gpu, bool has_scene, struct bindings *b)
 {
-    const VkDescriptorPoolSize sizes[3] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, TRACER_DEMAND_BUFFERS + TRACER_OWN_BUFFERS},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, TRACER_PAGE_CHUNKS},
-        {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1}};
+    const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, TRACER_OWN_BUFFERS},
+                                           {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = 2,
-                                       .poolSizeCount = has_scene ? 3 : 2,
+                                       .maxSets = 1,
+                                       .poolSizeCount = has_scene ? 2 : 1,
                                        .pPoolSizes = sizes};
     if (!gpu_check(vkCreateDescriptorPool(gpu->device, &pool, NULL, &b->pool),
                    "vkCreateDescriptorPool"))
         return false;
     VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                         .descriptorPool = b->pool,
-                                        .descriptorSetCount = 2,
-                                        .pSetLayouts = b->layouts};
-    return gpu_check(vkAllocateDescriptorSets(gpu->device, &info, b->sets),
+                                        .descriptorSetCount = 1,
+                                        .pSetLayouts = &b->own_layout};
+    return gpu_check(vkAllocateDescriptorSets(gpu->device, &info, &b->own_set),
                      "vkAllocateDescriptorSets");
 }
 
-static void write_buffers(const struct gpu *gpu, VkDescriptorSet set, const VkBuffer *buffers,
-                          uint32_t count)
+static void write_buffers(const struct gpu *gpu, VkDescriptorSet set, const VkBuffer *buffers)
 {
     VkDescriptorBufferInfo infos[TRACER_OWN_BUFFERS];
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = 0; i < TRACER_OWN_BUFFERS; i++)
         infos[i] = (VkDescriptorBufferInfo){buffers[i], 0, VK_WHOLE_SIZE};
     VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                   .dstSet = set,
-                                  .descriptorCount = count,
+                                  .descriptorCount = TRACER_OWN_BUFFERS,
                                   .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                   .pBufferInfo = infos};
     vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
@@ -96,42 +101,16 @@ static void write_scene(const struct gpu *gpu, VkDescriptorSet set,
     vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
 }
 
-void bindings_follow_pages(const struct gpu *gpu, const SluiceDemandLoader *loader,
-                           struct bindings *b)
-{
-    SluiceVulkanPages pages = {.structSize = sizeof pages};
-    sluiceGetDemandPages(loader, &pages);
-    if (pages.generation == b->page_generation)
-        return;
-    b->page_generation = pages.generation;
-    VkDescriptorImageInfo infos[TRACER_PAGE_CHUNKS];
-    for (uint32_t i = 0; i < TRACER_PAGE_CHUNKS; i++)
-        infos[i] = (VkDescriptorImageInfo){pages.sampler, pages.pViews[i], VK_IMAGE_LAYOUT_GENERAL};
-    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                  .dstSet = b->sets[0],
-                                  .dstBinding = TRACER_BINDING_PAGES,
-                                  .descriptorCount = TRACER_PAGE_CHUNKS,
-                                  .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                  .pImageInfo = infos};
-    vkUpdateDescriptorSets(gpu->device, 1, &write, 0, NULL);
-}
-
 bool bindings_create(const struct gpu *gpu, const struct bindings_request *request,
                      struct bindings *b)
 {
     const bool has_scene = request->scene != VK_NULL_HANDLE;
     *b = (struct bindings){.stages = has_scene ? RAY_STAGES : VK_SHADER_STAGE_COMPUTE_BIT};
-    if (!create_layouts(gpu, has_scene, b) || !allocate_sets(gpu, has_scene, b))
+    if (!create_layouts(gpu, request, b) || !allocate_set(gpu, has_scene, b))
         return false;
-    SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
-    sluiceGetDemandBuffers(request->loader, &buffers);
-    const VkBuffer demand[TRACER_DEMAND_BUFFERS] = {
-        buffers.textures, buffers.levels,   buffers.directory, buffers.blocks,
-        buffers.masks,    buffers.requests, buffers.sections};
-    write_buffers(gpu, b->sets[0], demand, TRACER_DEMAND_BUFFERS);
-    write_buffers(gpu, b->sets[1], request->own_buffers, TRACER_OWN_BUFFERS);
+    write_buffers(gpu, b->own_set, request->own_buffers);
     if (has_scene)
-        write_scene(gpu, b->sets[1], request->scene);
+        write_scene(gpu, b->own_set, request->scene);
     return true;
 }
 
@@ -139,14 +118,14 @@ void bindings_destroy(const struct gpu *gpu, struct bindings *b)
 {
     vkDestroyDescriptorPool(gpu->device, b->pool, NULL);
     vkDestroyPipelineLayout(gpu->device, b->layout, NULL);
-    vkDestroyDescriptorSetLayout(gpu->device, b->layouts[0], NULL);
-    vkDestroyDescriptorSetLayout(gpu->device, b->layouts[1], NULL);
+    vkDestroyDescriptorSetLayout(gpu->device, b->own_layout, NULL);
     memset(b, 0, sizeof *b);
 }
 
 void bindings_bind(const struct bindings *b, VkCommandBuffer commands, VkPipelineBindPoint point,
-                   const struct TracerLaunch *launch)
+                   VkDescriptorSet demand_set, const struct TracerLaunch *launch)
 {
-    vkCmdBindDescriptorSets(commands, point, b->layout, 0, 2, b->sets, 0, NULL);
+    const VkDescriptorSet sets[2] = {demand_set, b->own_set};
+    vkCmdBindDescriptorSets(commands, point, b->layout, 0, 2, sets, 0, NULL);
     vkCmdPushConstants(commands, b->layout, b->stages, 0, sizeof *launch, launch);
 }

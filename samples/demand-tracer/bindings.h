@@ -9,12 +9,11 @@
 
 /** Zeroed is empty. */
 struct bindings {
-    VkDescriptorSetLayout layouts[2];
+    VkDescriptorSetLayout own_layout;
     VkPipelineLayout layout;
     VkDescriptorPool pool;
-    VkDescriptorSet sets[2];
+    VkDescriptorSet own_set;
     VkShaderStageFlags stages;
-    uint64_t page_generation; ///< of the tile arrays in set 0
 };
 
 struct bindings_request {
@@ -28,12 +27,9 @@ bool bindings_create(const struct gpu *gpu, const struct bindings_request *reque
                      struct bindings *bindings);
 void bindings_destroy(const struct gpu *gpu, struct bindings *bindings);
 
-/** After sluiceBeginDemandLaunch, when no launch is under way: the tile arrays may be others. */
-void bindings_follow_pages(const struct gpu *gpu, const SluiceDemandLoader *loader,
-                           struct bindings *bindings);
-
-/** Binds both sets and pushes the launch's constants. */
+/** Binds the set of a launch and the scene's, and pushes the launch's constants. */
 void bindings_bind(const struct bindings *bindings, VkCommandBuffer commands,
-                   VkPipelineBindPoint point, const struct TracerLaunch *launch);
+                   VkPipelineBindPoint point, VkDescriptorSet demand_set,
+                   const struct TracerLaunch *launch);
 
 #endif /* TRACER_BINDINGS_H */

@@ -44,7 +44,7 @@ static bool launch_once(struct launches *l, uint32_t sample, SluiceDemandRequest
         return false;
     l->tile_count += launch.tileCount;
     if (l->film->missing_count > 0)
-        renderer_record(l->gpu, l->renderer, l->loader, l->film, sample, l->commands);
+        renderer_record(l->renderer, launch.descriptorSet, l->film, sample, l->commands);
     if (!check(sluiceEndDemandLaunch(l->loader, l->commands), "a launch cannot be ended") ||
         !submit(l, &launch)) {
         sluiceAbandonDemandLaunch(l->loader, &launch); /* the next one copies what it had */

@@ -53,7 +53,6 @@ static bool create_loader(struct tracer *t)
         .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
         .log = {.pfnLog = log_say},
         .loaderThreadCount = o->threads,
-        .maxPageChunkCount = TRACER_PAGE_CHUNKS,
     };
     SluiceDemandLoaderCreateInfo info = {
         .structSize = sizeof info,

@@ -120,19 +120,19 @@ void renderer_destroy(const struct gpu *gpu, struct renderer *r)
     needs_destroy(gpu, &r->needs);
 }
 
-void renderer_record(const struct gpu *gpu, struct renderer *r, const SluiceDemandLoader *loader,
-                     const struct film *film, uint32_t sample, VkCommandBuffer commands)
+void renderer_record(struct renderer *r, VkDescriptorSet demand_set, const struct film *film,
+                     uint32_t sample, VkCommandBuffer commands)
 {
     struct TracerLaunch launch = r->constants;
     launch.count = film->missing_count;
     launch.sampleIndex = sample;
     launch.listIndex = film->list_index;
-    bindings_follow_pages(gpu, loader, &r->bindings);
     if (r->uses_pipeline) {
-        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, &launch);
+        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, demand_set,
+                      &launch);
         ray_pipeline_record(&r->rays, commands, launch.count);
     } else {
-        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_COMPUTE, &launch);
+        bindings_bind(&r->bindings, commands, VK_PIPELINE_BIND_POINT_COMPUTE, demand_set, &launch);
         compute_pipeline_record(r->compute, commands, launch.count);
     }
     film_record_end(commands);

@@ -31,8 +31,7 @@ void renderer_destroy(const struct gpu *gpu, struct renderer *renderer);
 
 /** Between sluiceBeginDemandLaunch and sluiceEndDemandLaunch: traces what the film still misses.
  */
-void renderer_record(const struct gpu *gpu, struct renderer *renderer,
-                     const SluiceDemandLoader *loader, const struct film *film, uint32_t sample,
-                     VkCommandBuffer commands);
+void renderer_record(struct renderer *renderer, VkDescriptorSet demand_set, const struct film *film,
+                     uint32_t sample, VkCommandBuffer commands);
 
 #endif /* TRACER_RENDERER_H */

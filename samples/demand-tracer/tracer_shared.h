@@ -4,13 +4,9 @@
 
 #include "sluice/shared/types.h"
 
-/* Descriptor set 0: what sluice/demand.glsl needs, the tile arrays last. */
-#define TRACER_DEMAND_BUFFERS 7
-#define TRACER_BINDING_PAGES 7
-#define TRACER_PAGE_CHUNKS 64            /* maxPageChunkCount */
 #define TRACER_PAGE_CAPACITY 0x04000000u /* pageCapacity */
 
-/* Descriptor set 1 */
+/* Descriptor set 1; 0 is the demand loader's */
 #define TRACER_BINDING_VERTICES 0
 #define TRACER_BINDING_INDICES 1
 #define TRACER_BINDING_INSTANCES 2
