@@ -29,7 +29,6 @@ struct app {
     VkBuffer answer_buffer;
     VkDeviceMemory answer_memory;
     struct answer *answer; /* mapped */
-    VkSampler sampler;
     VkDescriptorSetLayout set_layout;
     VkDescriptorPool set_pool;
     VkDescriptorSet set;
@@ -130,6 +129,7 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .context = app->context,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_SPARSE,
+                                           .textureArray = SLUICE_TEXTURE_ARRAY_COMBINED,
                                            .ticksPerSecond = 60, /* frames: see draw_frame */
                                            .feedbackTimeoutTicks = 20};
     SLUICE(sluiceCreateVulkanStreamer(&info, &app->streamer));
@@ -166,67 +166,44 @@ static void create_answer(struct app *app)
     VK(vkMapMemory(app->device, app->answer_memory, 0, VK_WHOLE_SIZE, 0, (void **)&app->answer));
 }
 
-static void create_set_layout(struct app *app)
-{
-    VkDescriptorSetLayoutBinding bindings[5];
-    for (uint32_t i = 0; i < 5; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            i,
-            i < 4 ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-            1, VK_SHADER_STAGE_COMPUTE_BIT, NULL};
-    VkDescriptorSetLayoutCreateInfo info = {.sType =
-                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                            .bindingCount = 5,
-                                            .pBindings = bindings};
-    VK(vkCreateDescriptorSetLayout(app->device, &info, NULL, &app->set_layout));
-}
-
+/* The program's own set, for the answer. Sluice has the set of the textures. */
 static void create_set(struct app *app)
 {
-    const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4},
-                                          {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}};
+    const VkDescriptorSetLayoutBinding binding = {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
+                                                  VK_SHADER_STAGE_COMPUTE_BIT, NULL};
+    VkDescriptorSetLayoutCreateInfo layout = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 1,
+        .pBindings = &binding};
+    VK(vkCreateDescriptorSetLayout(app->device, &layout, NULL, &app->set_layout));
+    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = 1,
-                                       .poolSizeCount = 2,
-                                       .pPoolSizes = sizes};
+                                       .poolSizeCount = 1,
+                                       .pPoolSizes = &size};
     VK(vkCreateDescriptorPool(app->device, &pool, NULL, &app->set_pool));
     VkDescriptorSetAllocateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                        .descriptorPool = app->set_pool,
                                        .descriptorSetCount = 1,
                                        .pSetLayouts = &app->set_layout};
     VK(vkAllocateDescriptorSets(app->device, &set, &app->set));
-
-    /* The buffers stay the same, also when textures are added. The image stays in GENERAL. */
-    SluiceVulkanBuffers own = {.structSize = sizeof own};
-    sluiceGetVulkanBuffers(app->streamer, &own);
-    const VkDescriptorBufferInfo buffers[] = {{own.textureTable, 0, VK_WHOLE_SIZE},
-                                              {own.minMip, 0, VK_WHOLE_SIZE},
-                                              {own.feedback, 0, VK_WHOLE_SIZE},
-                                              {app->answer_buffer, 0, VK_WHOLE_SIZE}};
-    const VkDescriptorImageInfo image = {app->sampler, app->texture.imageView,
-                                         VK_IMAGE_LAYOUT_GENERAL};
-    const VkWriteDescriptorSet writes[] = {
-        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-         .dstSet = app->set,
-         .dstBinding = 0,
-         .descriptorCount = 4,
-         .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-         .pBufferInfo = buffers},
-        {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-         .dstSet = app->set,
-         .dstBinding = 4,
-         .descriptorCount = 1,
-         .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-         .pImageInfo = &image}};
-    vkUpdateDescriptorSets(app->device, 2, writes, 0, NULL);
+    const VkDescriptorBufferInfo buffer = {app->answer_buffer, 0, VK_WHOLE_SIZE};
+    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                        .dstSet = app->set,
+                                        .descriptorCount = 1,
+                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                        .pBufferInfo = &buffer};
+    vkUpdateDescriptorSets(app->device, 1, &write, 0, NULL);
 }
 
 static void create_pipeline(struct app *app)
 {
+    VkDescriptorSetLayout sets[2] = {VK_NULL_HANDLE, app->set_layout};
+    SLUICE(sluiceGetVulkanDescriptorSetLayout(app->streamer, &sets[0]));
     const VkPushConstantRange constants = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(uint32_t)};
     VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 1,
-                                         .pSetLayouts = &app->set_layout,
+                                         .setLayoutCount = 2,
+                                         .pSetLayouts = sets,
                                          .pushConstantRangeCount = 1,
                                          .pPushConstantRanges = &constants};
     VK(vkCreatePipelineLayout(app->device, &layout, NULL, &app->pipeline_layout));
@@ -244,18 +221,6 @@ static void create_pipeline(struct app *app)
         .layout = app->pipeline_layout};
     VK(vkCreateComputePipelines(app->device, VK_NULL_HANDLE, 1, &pipeline, NULL, &app->pipeline));
     vkDestroyShaderModule(app->device, module, NULL);
-}
-
-/* What sample.glsl asks of a sampler: no bias of its own, all levels, the texture's address modes.
- */
-static void create_sampler(struct app *app)
-{
-    VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                .magFilter = VK_FILTER_LINEAR,
-                                .minFilter = VK_FILTER_LINEAR,
-                                .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
-                                .maxLod = VK_LOD_CLAMP_NONE};
-    VK(vkCreateSampler(app->device, &info, NULL, &app->sampler));
 }
 
 static void create_commands(struct app *app)
@@ -303,8 +268,9 @@ static void draw_frame(struct app *app, uint64_t time_stamp)
     SLUICE(sluiceBeginStreamingFrame(app->streamer, app->commands, time_stamp, &frame));
 
     vkCmdBindPipeline(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline);
+    const VkDescriptorSet sets[2] = {frame.descriptorSet, app->set};
     vkCmdBindDescriptorSets(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline_layout, 0,
-                            1, &app->set, 0, NULL);
+                            2, sets, 0, NULL);
     vkCmdPushConstants(app->commands, app->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                        sizeof app->texture.tableIndex, &app->texture.tableIndex);
     vkCmdDispatch(app->commands, 8, 8, 1);
@@ -332,7 +298,6 @@ static void destroy(struct app *app)
     vkDestroyPipelineLayout(app->device, app->pipeline_layout, NULL);
     vkDestroyDescriptorPool(app->device, app->set_pool, NULL);
     vkDestroyDescriptorSetLayout(app->device, app->set_layout, NULL);
-    vkDestroySampler(app->device, app->sampler, NULL);
     vkDestroyBuffer(app->device, app->answer_buffer, NULL);
     vkFreeMemory(app->device, app->answer_memory, NULL);
     vkDestroyDevice(app->device, NULL);
@@ -364,8 +329,6 @@ int main(void)
     create_device(&app);
     create_streamer(&app, source);
     create_answer(&app);
-    create_sampler(&app);
-    create_set_layout(&app);
     create_set(&app);
     create_pipeline(&app);
     create_commands(&app);
