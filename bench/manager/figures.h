@@ -42,7 +42,7 @@ void figure_times(const char *name, struct samples *samples);
 /** Prints median, mean and 99th percentile in microseconds. */
 void figure_frames(const char *name, struct samples *samples);
 
-/** Never optimised away: memory at `p` may have been read and written. */
+/** Never optimized away: memory at `p` may have been read and written. */
 static inline void touched(const void *p)
 {
     __asm__ volatile("" : : "r"(p) : "memory");

@@ -13,15 +13,15 @@ static const SluiceStreamedTextureManagerConfig no_standby = {.structSize = size
 /** The calls of a frame in which nothing happens. */
 static void idle_frame(struct rig *rig, SluiceMinMipRect *rects, uint64_t frame)
 {
-    uint32_t cancelled = rig->room, unmapped = rig->room, mapped = rig->room, changed = rig->room;
+    uint32_t canceled = rig->room, unmapped = rig->room, mapped = rig->room, changed = rig->room;
     must(sluiceCompleteRetireValue(rig->manager, frame), "complete");
-    must(sluiceGetTilesToCancel(rig->manager, SLUICE_ALL_TEXTURES, &cancelled, rig->tiles),
+    must(sluiceGetTilesToCancel(rig->manager, SLUICE_ALL_TEXTURES, &canceled, rig->tiles),
          "cancel");
     must(sluiceGetTilesToUnmap(rig->manager, SLUICE_ALL_TEXTURES, frame + 3, &unmapped, rig->tiles),
          "unmap");
     must(sluiceGetTilesToMap(rig->manager, SLUICE_ALL_TEXTURES, &mapped, rig->tiles), "map");
     must(sluiceGetMinMipUpdates(rig->manager, &changed, rects), "MinMip");
-    if (cancelled + unmapped + mapped + changed > 0) {
+    if (canceled + unmapped + mapped + changed > 0) {
         fprintf(stderr, "an idle frame listed something\n");
         exit(1);
     }

@@ -118,14 +118,14 @@ static void bring_followers(struct cut *cut)
 static void read_lists(struct cut *cut)
 {
     struct rig *rig = &cut->rig;
-    uint32_t cancelled = ROOM, unmapped = ROOM;
+    uint32_t canceled = ROOM, unmapped = ROOM;
     cut->listed = ROOM;
-    must(sluiceGetTilesToCancel(rig->manager, SLUICE_ALL_TEXTURES, &cancelled, rig->tiles),
+    must(sluiceGetTilesToCancel(rig->manager, SLUICE_ALL_TEXTURES, &canceled, rig->tiles),
          "cancel");
     must(sluiceGetTilesToUnmap(rig->manager, SLUICE_ALL_TEXTURES, 0, &unmapped, rig->tiles),
          "unmap");
     must(sluiceGetTilesToMap(rig->manager, SLUICE_ALL_TEXTURES, &cut->listed, rig->tiles), "map");
-    if (cut->listed == ROOM || unmapped == ROOM || cancelled > 0)
+    if (cut->listed == ROOM || unmapped == ROOM || canceled > 0)
         must(SLUICE_ERROR_INVALID_ARGUMENT, "lists of a camera cut");
 }
 

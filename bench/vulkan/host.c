@@ -13,7 +13,7 @@
 #define FRAMES 400u
 #define REHEARSALS 2u
 #define TIMEOUT 60u        /* frames: a second */
-#define STEP 0.025f        /* metres per frame: a walk of 1.5 m/s */
+#define STEP 0.025f        /* meters per frame: a walk of 1.5 m/s */
 #define TURN_FRAMES 300.0f /* of a look to the left, to the right and back */
 #define TURN 0.3f          /* radians to each side */
 #define DEFAULT_SHARE 10u

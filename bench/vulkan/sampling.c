@@ -39,7 +39,7 @@ static bool prepare(struct scene *scene, struct variant *variants, uint32_t coun
     return true;
 }
 
-/* In turns, so that clocks and neighbours do the same to all of them. */
+/* In turns, so that clocks and neighbors do the same to all of them. */
 static bool run(struct scene *scene, struct variant *variants, uint32_t count)
 {
     uint32_t frames = options.quick ? LEAST_FRAMES : FRAMES;

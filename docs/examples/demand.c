@@ -340,7 +340,7 @@ int main(void)
            TEXTURE_COUNT, (unsigned)statistics.residentTileCount,
            (double)statistics.tileMemorySize * 1e-6);
     const float *color = app.answer->color;
-    printf("colour %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);
+    printf("color %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);
     bool sharp = requests.missingCount == 0 && app.answer->missing == 0 && color[2] == 0.0f &&
                  statistics.texturesOpened == SAMPLED_COUNT;
     destroy(&app);

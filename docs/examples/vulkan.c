@@ -340,7 +340,7 @@ int main(void)
                app.answer->missing_levels, now.mappedTileCount, (unsigned)now.tileCount);
     }
     const float *color = app.answer->color;
-    printf("colour %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);
+    printf("color %.2f %.2f %.2f\n", (double)color[0], (double)color[1], (double)color[2]);
     bool sharp = app.answer->missing_levels == 0 && color[2] == 0.0f;
     destroy(&app);
     sluiceDestroyImageSource(source);

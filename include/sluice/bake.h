@@ -159,7 +159,7 @@ typedef struct SluiceBakeInfo {
     bool force;
     void *pUserData;
     /** Reports progress on the caller's thread. Return false to stop with
-     *  SLUICE_ERROR_CANCELLED. May be NULL. */
+     *  SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
 } SluiceBakeInfo;
 
@@ -204,7 +204,7 @@ typedef struct SluiceBakeReport {
  *         writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated files and files that
  *         no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels, complex
  *         numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if maxMemory
- *         is too small for the picture; SLUICE_ERROR_CANCELLED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ *         is too small for the picture; SLUICE_ERROR_CANCELED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread, several calls at the same time, but only one per output.
  */
 SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,

@@ -83,7 +83,7 @@ typedef enum SluiceResult {
     SLUICE_ERROR_FILE_NOT_FOUND = -19,
     /** The operating system failed to read or write. */
     SLUICE_ERROR_IO = -20,
-    SLUICE_ERROR_CANCELLED = -21,
+    SLUICE_ERROR_CANCELED = -21,
     /** A Vulkan call failed. The log callback names the call and its VkResult. */
     SLUICE_ERROR_VULKAN = -22,
     SLUICE_ERROR_DEVICE_LOST = -23,

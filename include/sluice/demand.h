@@ -447,7 +447,7 @@ typedef struct SluiceDemandLaunch {
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, if the last
  *         launch was neither ended nor abandoned; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN; SLUICE_ERROR_DEVICE_LOST;
- *         SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
+ *         SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  */
 SLUICE_API SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader,
                                                 VkCommandBuffer commandBuffer,
@@ -506,7 +506,7 @@ typedef struct SluiceDemandRequests {
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a launch that was not ended
  *         or was processed before; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_VULKAN;
- *         SLUICE_ERROR_DEVICE_LOST; SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
+ *         SLUICE_ERROR_DEVICE_LOST; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  */
 SLUICE_API SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
                                                     const SluiceDemandLaunch *pLaunch,
@@ -535,7 +535,7 @@ SLUICE_API SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader,
  *
  * Returns SLUICE_NOT_READY after `timeoutNs`.
  *
- * Errors: as sluiceGetDemandTicketStatus; SLUICE_ERROR_CANCELLED after sluiceAbortDemandLoader.
+ * Errors: as sluiceGetDemandTicketStatus; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader,
@@ -549,7 +549,7 @@ SLUICE_API SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader,
                                                  SluiceDemandTicket ticket);
 /**
  * Cancels all tasks that have not begun, and wakes all waiting threads. From then on launches
- * return SLUICE_ERROR_CANCELLED. The loader can only be destroyed.
+ * return SLUICE_ERROR_CANCELED. The loader can only be destroyed.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader);
@@ -562,7 +562,7 @@ typedef struct SluiceDemandStatistics {
     uint32_t structSize; ///< sizeof(SluiceDemandStatistics).
     uint64_t launchCount;
     uint64_t requestCount, pendingCount, servedCount, restoredCount, refusedCount, postponedCount;
-    uint64_t evictedCount, failedCount, cancelledCount;
+    uint64_t evictedCount, failedCount, canceledCount;
     uint64_t texturesCreated, texturesOpened, texturesFailed;
     uint64_t bytesRead, bytesUploaded;
     uint64_t virtualPageCount;  ///< Virtual pages that have an id.

@@ -164,7 +164,7 @@ typedef struct SluiceExrWriteInfo {
     SluiceLogCallback log;
     void *pUserData;
     /** Reports progress, on one thread at a time. Return false to stop with
-     *  SLUICE_ERROR_CANCELLED. May be NULL. */
+     *  SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTexels, uint64_t totalTexels);
 } SluiceExrWriteInfo;
 
@@ -188,7 +188,7 @@ typedef struct SluiceExrWriteInfo {
  *         texels in width or height; SLUICE_ERROR_LIMIT_EXCEEDED for more than 2^31 tiles;
  *         SLUICE_ERROR_BUSY if another writer has the file open; SLUICE_ERROR_IO, also if `pPath`
  *         is a link, a read-only file or not a regular file (it is kept);
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_CANCELLED; any result but success of the
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_CANCELED; any result but success of the
  *         source, SLUICE_NOT_READY included. No file is left after an error.
  * Thread safety: any thread.
  */

@@ -1,7 +1,7 @@
 /**
  * Reads regions of image sources on worker threads, urgent ones first.
  *
- * Reads can be cancelled. No call blocks the caller on a file. Temporary failures are retried. A
+ * Reads can be canceled. No call blocks the caller on a file. Temporary failures are retried. A
  * source that is slow or does not answer occupies only its share of the threads.
  */
 #ifndef SLUICE_LOADER_H
@@ -47,7 +47,7 @@ typedef struct SluiceTileReadFailure {
 /**
  * Receives failed attempts. Off if `pfnFailed` is NULL.
  *
- * SLUICE_ERROR_CANCELLED is not reported. SLUICE_NOT_READY is reported only if it ends the read.
+ * SLUICE_ERROR_CANCELED is not reported. SLUICE_NOT_READY is reported only if it ends the read.
  * Called on worker threads, several at the same time. The callback may use the source and the
  * loader, except sluiceDestroyTileLoader and sluiceWaitTileLoaderIdle. Never grows.
  */
@@ -110,8 +110,8 @@ typedef struct SluiceTileRead {
 typedef struct SluiceTileReadResult {
     uint64_t ticket;
     uint64_t userValue;
-    /** Result of the last attempt; may be SLUICE_NOT_READY. SLUICE_ERROR_CANCELLED if the read was
-     *  cancelled before its last region, or while waiting for a retry. */
+    /** Result of the last attempt; may be SLUICE_NOT_READY. SLUICE_ERROR_CANCELED if the read was
+     *  canceled before its last region, or while waiting for a retry. */
     SluiceResult result;
     uint64_t size; ///< Bytes of texels read. 0 unless `result` is SLUICE_SUCCESS.
 } SluiceTileReadResult;
@@ -155,9 +155,9 @@ SLUICE_API SluiceResult sluiceSubmitTileReads(SluiceTileLoader *loader, uint32_t
                                               const SluiceTileRead *pReads, uint64_t *pTickets);
 
 /**
- * Asks for a read to be cancelled. The read must still be collected.
+ * Asks for a read to be canceled. The read must still be collected.
  *
- * Its result is SLUICE_ERROR_CANCELLED if it had not begun, had regions left or waited for a retry;
+ * Its result is SLUICE_ERROR_CANCELED if it had not begun, had regions left or waited for a retry;
  * otherwise the cancel has no effect. Unknown and collected tickets are ignored.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER.
@@ -197,10 +197,10 @@ typedef struct SluiceTileLoaderStatistics {
     uint64_t readCount;  ///< Submitted. Reads that none of the next three counts are still open.
     uint64_t succeededCount; ///< Ended with SLUICE_SUCCESS.
     uint64_t givenUpCount;   ///< Ended with an error or SLUICE_NOT_READY.
-    uint64_t cancelledCount; ///< Ended with SLUICE_ERROR_CANCELLED.
+    uint64_t canceledCount;  ///< Ended with SLUICE_ERROR_CANCELED.
     uint64_t byteCount;      ///< Bytes of texels of reads that succeeded.
     uint64_t attemptCount;
-    uint64_t failedCount;   ///< Attempts that failed, except by SLUICE_ERROR_CANCELLED.
+    uint64_t failedCount;   ///< Attempts that failed, except by SLUICE_ERROR_CANCELED.
     uint64_t notReadyCount; ///< Attempts that returned SLUICE_NOT_READY.
     uint64_t retriedCount;  ///< Attempts that were followed by a retry.
     uint64_t delayedCount;  ///< Reads that wait for a retry now.

@@ -10,7 +10,7 @@
  *
  *     sluiceCompleteRetireValue            work that the GPU has finished
  *     sluiceUpdateWithSamplerFeedback      for each map that was read back
- *     sluiceGetTilesToCancel               loads to stop     -> sluiceReportCancelledTiles
+ *     sluiceGetTilesToCancel               loads to stop     -> sluiceReportCanceledTiles
  *     sluiceGetTilesToUnmap                bindings to drop
  *     sluiceGetTilesToMap                  loads to start    -> sluiceUpdateTilesMapping, or
  *                                                               sluiceReportFailedTiles
@@ -22,9 +22,9 @@
  *
  * - A tile is wanted while its texture's feedback requests it.
  * - A REQUESTED tile that is no longer wanted becomes FREE.
- * - An ALLOCATED tile that is no longer wanted becomes CANCELLED. sluiceGetTilesToCancel lists it
+ * - An ALLOCATED tile that is no longer wanted becomes CANCELED. sluiceGetTilesToCancel lists it
  *   once. Its slot is released when the application answers.
- * - A prefetched tile is CANCELLED from the start, and not listed.
+ * - A prefetched tile is CANCELED from the start, and not listed.
  * - A STANDBY tile that is wanted again becomes MAPPED at once.
  * - A tile whose load failed is FAILED until its next try. After too many failures it is GIVEN_UP,
  *   and tried again much later.
@@ -190,7 +190,7 @@ typedef enum SluiceTileState {
     SLUICE_TILE_STATE_ALLOCATED = 2, ///< Has a slot and is being loaded.
     SLUICE_TILE_STATE_MAPPED = 3,    ///< Resident and wanted.
     SLUICE_TILE_STATE_STANDBY = 4,   ///< Resident; not wanted, or evicted to make room.
-    SLUICE_TILE_STATE_CANCELLED = 5, ///< Being loaded, but not wanted. Waits for an answer.
+    SLUICE_TILE_STATE_CANCELED = 5,  ///< Being loaded, but not wanted. Waits for an answer.
     SLUICE_TILE_STATE_FAILED = 6,    ///< Wanted. Its load failed and will be retried.
     SLUICE_TILE_STATE_GIVEN_UP = 7   ///< Its load failed too often. See givenUpRetryDelayTicks.
 } SluiceTileState;
@@ -227,12 +227,12 @@ typedef struct SluiceStreamedTextureStatistics {
     uint32_t textureCount;
     uint64_t tileCount; ///< All tiles of all textures, resident or not.
     uint32_t requestedTileCount, allocatedTileCount, mappedTileCount, standbyTileCount;
-    uint32_t cancelledTileCount, failedTileCount, givenUpTileCount;
+    uint32_t canceledTileCount, failedTileCount, givenUpTileCount;
     uint32_t retiringSlotCount; ///< Slots of unmapped tiles that the GPU may still read.
     uint32_t heapCount, freeSlotCount;
     uint32_t reservedSlotCount; ///< Slots kept free for packed tiles.
     uint32_t globalMipBias;     ///< LOD bias added to every request, in sixteenths of a level.
-    uint64_t handedOutTotal, mappedTotal, unmappedTotal, cancelledTotal, failedTotal;
+    uint64_t handedOutTotal, mappedTotal, unmappedTotal, canceledTotal, failedTotal;
     uint64_t restoredTotal; ///< STANDBY -> MAPPED, without a load.
     uint64_t movedTotal;
     uint64_t hostMemorySize;      ///< Bytes currently allocated from pAllocator.
@@ -327,7 +327,7 @@ SLUICE_API SluiceResult sluiceGetTextureLayout(const SluiceStreamedTextureManage
  * Tiles: a region that requests a level wants every tile of that level that it touches, the parents
  * of those tiles up to the coarsest regular level, and the packed tiles. The parent of tile (x, y)
  * is (x >> 1, y >> 1), clamped to the grid of the coarser level. A tile that becomes wanted is
- * REQUESTED, or MAPPED if it was STANDBY. A tile that is no longer wanted becomes FREE, CANCELLED
+ * REQUESTED, or MAPPED if it was STANDBY. A tile that is no longer wanted becomes FREE, CANCELED
  * or STANDBY.
  *
  * The map is read during the call and not kept. `timeStamp` and `timeout` share any unit you like.
@@ -388,7 +388,7 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
  * Scope: `textureId` restricts the list to one texture. Such a call leaves free slots to coarser
  * requests of other textures, so call it for each texture in turn. SLUICE_ALL_TEXTURES covers all;
  * idle textures cost nothing. If no request is left, such a call may also return tiles to prefetch
- * (prefetchLevels). These are CANCELLED at once and not listed by sluiceGetTilesToCancel.
+ * (prefetchLevels). These are CANCELED at once and not listed by sluiceGetTilesToCancel.
  *
  * Slots: if no slot is free (for regular tiles: no more than reservedSlotCount) the heap allocator
  * is called, and may refuse once per call. If it refuses, the requests wait, and one slot is
@@ -409,7 +409,7 @@ SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *ma
  * docs/manager-specification.md has the exact rules.
  *
  * Answer every returned tile with sluiceUpdateTilesMapping, sluiceReportFailedTiles or
- * sluiceReportCancelledTiles, or remove its texture.
+ * sluiceReportCanceledTiles, or remove its texture.
  *
  * Returns SLUICE_INCOMPLETE if requests are left because `pTiles` is full or because they were all
  * skipped. Returns SLUICE_BUDGET_REACHED if requests are left for lack of slots.
@@ -424,7 +424,7 @@ SLUICE_API SluiceResult sluiceGetTilesToMap(SluiceStreamedTextureManager *manage
 /**
  * Reports that the data of ALLOCATED tiles is in place and may be sampled: they become MAPPED.
  *
- * CANCELLED tiles, including prefetched ones, may be reported as well. They become MAPPED if they
+ * CANCELED tiles, including prefetched ones, may be reported as well. They become MAPPED if they
  * are wanted by now, else STANDBY.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
@@ -436,7 +436,7 @@ SLUICE_API SluiceResult sluiceUpdateTilesMapping(SluiceStreamedTextureManager *m
                                                  const uint32_t *pTileIndices);
 
 /**
- * Reports that loading ALLOCATED or CANCELLED tiles failed and that nothing of them was written.
+ * Reports that loading ALLOCATED or CANCELED tiles failed and that nothing of them was written.
  * Their slots are free at once.
  *
  * Wanted tiles become FAILED. They become REQUESTED again with the first call whose time stamp is
@@ -480,7 +480,7 @@ SLUICE_API SluiceResult sluiceGetGivenUpTiles(SluiceStreamedTextureManager *mana
                                               uint32_t *pTileCount, SluiceTile *pTiles);
 
 /**
- * Returns CANCELLED tiles whose loads can be stopped, each once.
+ * Returns CANCELED tiles whose loads can be stopped, each once.
  *
  * A tile that is wanted again before it is returned becomes ALLOCATED again and is not listed. A
  * tile that is wanted again later becomes REQUESTED when it is answered. Uses `textureId`,
@@ -493,7 +493,7 @@ SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *man
                                                SluiceTile *pTiles);
 
 /**
- * Reports that CANCELLED tiles were not loaded and never mapped. ALLOCATED tiles may be given back
+ * Reports that CANCELED tiles were not loaded and never mapped. ALLOCATED tiles may be given back
  * in the same way; those that are wanted become REQUESTED again.
  *
  * The slots are released once `retireValue` has completed. Pass 0 to release them at once. If a
@@ -502,10 +502,10 @@ SLUICE_API SluiceResult sluiceGetTilesToCancel(SluiceStreamedTextureManager *man
  * Errors: as sluiceUpdateTilesMapping; SLUICE_ERROR_TIME_BACKWARDS;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
-SLUICE_API SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
-                                                   SluiceTextureId textureId, uint32_t tileCount,
-                                                   const uint32_t *pTileIndices,
-                                                   uint64_t retireValue);
+SLUICE_API SluiceResult sluiceReportCanceledTiles(SluiceStreamedTextureManager *manager,
+                                                  SluiceTextureId textureId, uint32_t tileCount,
+                                                  const uint32_t *pTileIndices,
+                                                  uint64_t retireValue);
 
 /**
  * Returns tiles whose bindings are to be dropped: STANDBY tiles beyond numExtraStandbyTiles and

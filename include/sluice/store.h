@@ -386,7 +386,7 @@ typedef struct SluiceStoreVerifyInfo {
     void *pUserData;
     /** Called for every tile that cannot be read. May be NULL. */
     void (*pfnDefect)(void *pUserData, const SluiceStoreDefect *pDefect);
-    /** Reports progress. Return false to stop with SLUICE_ERROR_CANCELLED. May be NULL. */
+    /** Reports progress. Return false to stop with SLUICE_ERROR_CANCELED. May be NULL. */
     bool (*pfnProgress)(void *pUserData, uint64_t doneTiles, uint64_t totalTiles);
 } SluiceStoreVerifyInfo;
 
@@ -406,7 +406,7 @@ typedef struct SluiceStoreReport {
  * Continues after tiles that cannot be read. `pReport` may be NULL.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; errors of sluiceCreateStoreImageSource;
- *         SLUICE_ERROR_CORRUPT_DATA or SLUICE_ERROR_IO of the first defect; SLUICE_ERROR_CANCELLED.
+ *         SLUICE_ERROR_CORRUPT_DATA or SLUICE_ERROR_IO of the first defect; SLUICE_ERROR_CANCELED.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceVerifyStore(const SluiceStoreVerifyInfo *pInfo,

@@ -682,12 +682,12 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint32_t textureCount;
     uint64_t tileCount; ///< All tiles of all textures, resident or not.
     uint32_t requestedTileCount, allocatedTileCount, mappedTileCount, standbyTileCount;
-    uint32_t cancelledTileCount, failedTileCount, givenUpTileCount;
+    uint32_t canceledTileCount, failedTileCount, givenUpTileCount;
     uint32_t retiringSlotCount, heapCount;
     uint32_t globalMipBias; ///< Sixteenths of a level.
     uint64_t bytesRead;     ///< Bytes of texels read from sources.
     uint64_t bytesUploaded; ///< Bytes of texels copied to images.
-    uint64_t tilesMapped, tilesUnmapped, tilesCancelled, tilesFailed;
+    uint64_t tilesMapped, tilesUnmapped, tilesCanceled, tilesFailed;
     uint64_t bindCalls, bindRuns;
     uint64_t unbinds;           ///< Tiles whose memory was unbound.
     uint64_t unbindsSaved;      ///< Unmapped tiles bound again, or removed, before their unbind.

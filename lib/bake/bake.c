@@ -238,7 +238,7 @@ static SluiceResult write_store(struct bake *bake, const SluiceStoreLayout *layo
     if (result == SLUICE_SUCCESS)
         result = sluiceFinishStore(bake->writer);
     sluiceDestroyStoreWriter(bake->writer);
-    if (bake->writer && result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELLED)
+    if (bake->writer && result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELED)
         remove_part_file(bake);
     return result;
 }

@@ -12,7 +12,7 @@ SluiceFormat slc_block_texel_format(SluiceFormat format);
 
 /**
  * Rows of texels, `pitch` bytes apart, to packed rows of blocks. Texels beyond the right and
- * lower edge do not count. Colours of sRGB formats are compared as they are encoded.
+ * lower edge do not count. Colors of sRGB formats are compared as they are encoded.
  */
 void slc_encode_blocks(SluiceFormat format, SluiceBakeQuality quality, const void *texels,
                        size_t pitch, uint32_t width, uint32_t height, void *blocks);

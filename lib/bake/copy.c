@@ -107,7 +107,7 @@ static SluiceResult start(struct run *run, uint32_t layer, uint32_t level, uint3
     slot->y = y;
     slc_bake_jobs_submit(copy->jobs, &slot->base);
     if (x == 0 && copy->progress && !copy->progress(copy->user, done, run->total))
-        return SLUICE_ERROR_CANCELLED;
+        return SLUICE_ERROR_CANCELED;
     return SLUICE_SUCCESS;
 }
 

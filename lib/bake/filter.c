@@ -41,20 +41,20 @@ static double kaiser(double x)
 }
 
 /* The sum of 16 samples inside the texel stands for its integral. */
-static double kaiser_over_texel(const struct slc_axis *axis, double centre, int32_t texel)
+static double kaiser_over_texel(const struct slc_axis *axis, double center, int32_t texel)
 {
     double sum = 0.0;
     for (int s = 0; s < 16; s++)
-        sum += kaiser((texel + (s + 0.5) / 16.0 - centre) / axis_scale(axis));
+        sum += kaiser((texel + (s + 0.5) / 16.0 - center) / axis_scale(axis));
     return sum;
 }
 
 static void kaiser_taps(const struct slc_axis *axis, uint32_t i, struct slc_taps *taps)
 {
-    double centre = (i + 0.5) * axis_scale(axis), sum = 0.0, weights[SLC_MAX_TAPS];
+    double center = (i + 0.5) * axis_scale(axis), sum = 0.0, weights[SLC_MAX_TAPS];
     taps->count = slc_axis_max_taps(axis);
     for (uint32_t t = 0; t < taps->count; t++)
-        sum += weights[t] = kaiser_over_texel(axis, centre, taps->first + (int32_t)t);
+        sum += weights[t] = kaiser_over_texel(axis, center, taps->first + (int32_t)t);
     for (uint32_t t = 0; t < taps->count; t++)
         taps->weights[t] = (float)(weights[t] / sum);
 }

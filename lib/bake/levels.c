@@ -107,7 +107,7 @@ static SluiceResult bake_rows(struct slc_baking *baking)
         baking->done += baking->picture->width;
         if (result == SLUICE_SUCCESS && y % 16 == 0 && baking->progress &&
             !baking->progress(baking->user, baking->done, baking->total))
-            result = SLUICE_ERROR_CANCELLED;
+            result = SLUICE_ERROR_CANCELED;
     }
     return result;
 }

@@ -33,7 +33,7 @@ SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jo
                              const SluiceStoreLayout *layout);
 void slc_baking_finish(struct slc_baking *baking);
 
-/** All levels into the writer. Errors: what reading and writing say; CANCELLED. */
+/** All levels into the writer. Errors: what reading and writing say; CANCELED. */
 SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer);
 
 #endif /* SLC_BAKE_LEVELS_H */

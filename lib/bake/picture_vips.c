@@ -86,7 +86,7 @@ static SluiceResult load(struct vips_picture *picture)
     if (!picture->image)
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
     if (vips_band_format_iscomplex(vips_image_get_format(picture->image)))
-        return unsupported(picture, "complex numbers are no colours");
+        return unsupported(picture, "complex numbers are no colors");
     if (!convert(&picture->image, &picture->base.halves_suffice))
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
     if (vips_image_get_bands(picture->image) > 4)

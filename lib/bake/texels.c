@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What colours count where alpha is 0. */
+/* What colors count where alpha is 0. */
 #define LEAST_WEIGHT 0x1p-24f
 /* What is divided by at least where alpha may ring. */
 #define LEAST_RINGING 0x1p-10f
@@ -42,7 +42,7 @@ static float sample_value(const struct slc_rules *rules, const char *sample)
 }
 
 /* Of R, G or B. */
-static float colour_value(const struct slc_rules *rules, const char *sample)
+static float color_value(const struct slc_rules *rules, const char *sample)
 {
     uint16_t word;
     if (!rules->srgb)
@@ -60,15 +60,15 @@ static float colour_value(const struct slc_rules *rules, const char *sample)
     return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
 }
 
-/* Grey stands for R, G and B. */
+/* Gray stands for R, G and B. */
 static void expand(const struct slc_rules *rules, const char *samples, float *rgba, uint32_t count)
 {
     uint32_t size = slc_sample_size(rules->sample), channels = rules->channels;
-    uint32_t colours = rules->alpha ? channels - 1 : channels;
+    uint32_t colors = rules->alpha ? channels - 1 : channels;
     for (uint32_t i = 0; i < count; i++, samples += size * channels, rgba += 4) {
         for (uint32_t c = 0; c < 3; c++)
-            rgba[c] = c < colours ? colour_value(rules, samples + c * size)
-                                  : (colours == 1 ? rgba[0] : 0.0f);
+            rgba[c] = c < colors ? color_value(rules, samples + c * size)
+                                 : (colors == 1 ? rgba[0] : 0.0f);
         rgba[3] = rules->alpha ? sample_value(rules, samples + (channels - 1) * size) : 1.0f;
     }
 }
@@ -168,7 +168,7 @@ static void unweigh(const struct slc_rules *rules, float *rgba, uint32_t count)
     }
 }
 
-static void normalise(const struct slc_rules *rules, float *rgba, uint32_t count)
+static void normalize(const struct slc_rules *rules, float *rgba, uint32_t count)
 {
     bool is_encoded = rules->sample == SLC_SAMPLE_U8 || rules->sample == SLC_SAMPLE_U16;
     for (uint32_t i = 0; i < count; i++, rgba += 4) {
@@ -212,7 +212,7 @@ static void write_chunk(const struct slc_rules *rules, const float *rgba, float 
         if (rules->straight)
             unweigh(rules, own, count);
         if (rules->normals)
-            normalise(rules, own, count);
+            normalize(rules, own, count);
         if (alpha_scale != 1.0f)
             scale_alpha(rules, alpha_scale, own, count);
         if (rules->sample == SLC_SAMPLE_F32)

@@ -14,10 +14,10 @@ enum slc_sample { SLC_SAMPLE_U8, SLC_SAMPLE_U16, SLC_SAMPLE_F16, SLC_SAMPLE_F32 
 /** How a picture is understood and what becomes of it. */
 struct slc_rules {
     enum slc_sample sample;
-    uint32_t channels;   ///< of the picture, 1 to 4: grey, grey and alpha (or RG), RGB, RGBA
+    uint32_t channels;   ///< of the picture, 1 to 4: gray, gray and alpha (or RG), RGB, RGBA
     bool alpha;          ///< the last of 2 or 4 channels is alpha
     bool srgb;           ///< R, G and B are encoded
-    bool straight;       ///< colours are to be weighted by alpha
+    bool straight;       ///< colors are to be weighted by alpha
     bool normals;        ///< R, G and B are a vector; of two channels, B is the rest of its length
     bool rings;          ///< the filter has negative lobes
     SluiceFormat format; ///< of texels: not compressed

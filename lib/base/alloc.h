@@ -10,7 +10,7 @@ SluiceAllocationCallbacks slc_allocator(const SluiceAllocationCallbacks *given);
 /** NULL is fine; otherwise both functions must be there. */
 bool slc_allocator_is_valid(const SluiceAllocationCallbacks *given);
 
-/** `count` elements of `size` bytes at `alignment`, uninitialised; NULL if that is 0 bytes,
+/** `count` elements of `size` bytes at `alignment`, uninitialized; NULL if that is 0 bytes,
  *  overflows or there is no memory. */
 void *slc_alloc_aligned(const SluiceAllocationCallbacks *cb, size_t count, size_t size,
                         size_t alignment);

@@ -76,7 +76,7 @@ SluiceFormat slc_dds_format(const struct slc_dds_pixel_format *given, unsigned *
         if (!(given->flags & known->kind) || given->bit_count != known->bit_count ||
             given->masks[0] != known->masks[0] || alpha != known->masks[3])
             continue;
-        /* Grey has one mask; some writers give it three times. */
+        /* Gray has one mask; some writers give it three times. */
         if (known->kind == DDPF_RGB &&
             (given->masks[1] != known->masks[1] || given->masks[2] != known->masks[2]))
             continue;

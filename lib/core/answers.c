@@ -22,7 +22,7 @@
 
 static bool is_in_flight(const struct slc_node *n)
 {
-    return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELLED;
+    return n->state == SLUICE_TILE_STATE_ALLOCATED || n->state == SLUICE_TILE_STATE_CANCELED;
 }
 
 /** Marks a tile that was handed out, and was not marked before. */
@@ -115,7 +115,7 @@ static void answer_failed(slc_manager *m, uint32_t node, uint64_t time)
 }
 
 /** The slot retires; a wanted tile gets a node of its own again, which the caller reserved. */
-static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
+static void answer_canceled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     bool wanted = is_wanted(slc_node_at(&m->residency, node));
     uint32_t tile = slc_node_at(&m->residency, node)->tile,
@@ -123,7 +123,7 @@ static void answer_cancelled(slc_manager *m, uint32_t node, uint64_t retire_valu
     uint32_t failures = slc_node_at(&m->residency, node)->failures;
     struct slc_managed_texture *t = slc_texture_at(m, slc_node_at(&m->residency, node)->owner);
     slc_node_retire(&m->residency, node, retire_value);
-    m->cancelled_total++;
+    m->canceled_total++;
     if (!wanted)
         return;
     slc_tile_wanted(m, t, slc_node_cell(t, tile), tile, level);
@@ -162,8 +162,8 @@ static SluiceResult report_failed(slc_manager *m, SluiceTextureId id, uint32_t c
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_t count,
-                                     const uint32_t *tiles, uint64_t retire_value)
+static SluiceResult report_canceled(slc_manager *m, SluiceTextureId id, uint32_t count,
+                                    const uint32_t *tiles, uint64_t retire_value)
 {
     struct slc_managed_texture *t;
     SluiceResult result = check_answer(m, id, count, tiles, &t);
@@ -180,7 +180,7 @@ static SluiceResult report_cancelled(slc_manager *m, SluiceTextureId id, uint32_
     if (retire_value)
         m->last_retire = retire_value;
     for (uint32_t i = 0; i < count; i++)
-        answer_cancelled(m, slc_find_node(t, tiles[i]), retire_value);
+        answer_canceled(m, slc_find_node(t, tiles[i]), retire_value);
     slc_state_release(m, t);
     return SLUICE_SUCCESS;
 }
@@ -221,21 +221,21 @@ SluiceResult sluiceReportFailedTiles(SluiceStreamedTextureManager *manager,
     return call.result;
 }
 
-SluiceResult sluiceReportCancelledTiles(SluiceStreamedTextureManager *manager,
-                                        SluiceTextureId textureId, uint32_t tileCount,
-                                        const uint32_t *pTileIndices, uint64_t retireValue)
+SluiceResult sluiceReportCanceledTiles(SluiceStreamedTextureManager *manager,
+                                       SluiceTextureId textureId, uint32_t tileCount,
+                                       const uint32_t *pTileIndices, uint64_t retireValue)
 {
     if (!manager)
         return SLUICE_ERROR_NULL_POINTER;
     if (slc_is_locked(manager))
         return slc_refuse_locked(manager, __func__);
     struct slc_call call = {
-        .kind = SLC_CALL_REPORT_CANCELLED,
+        .kind = SLC_CALL_REPORT_CANCELED,
         .texture_id = textureId,
         .count = tileCount,
         .tile_indices = pTileIndices,
         .retire_value = retireValue,
-        .result = report_cancelled(manager, textureId, tileCount, pTileIndices, retireValue)};
+        .result = report_canceled(manager, textureId, tileCount, pTileIndices, retireValue)};
     slc_notify(manager, &call);
     return call.result;
 }

@@ -18,7 +18,7 @@ enum slc_call_kind {
     SLC_CALL_RETRY_FAILED = 10,
     SLC_CALL_GET_GIVEN_UP = 11,
     SLC_CALL_GET_TILES_TO_CANCEL = 12,
-    SLC_CALL_REPORT_CANCELLED = 13,
+    SLC_CALL_REPORT_CANCELED = 13,
     SLC_CALL_GET_TILES_TO_UNMAP = 14,
     SLC_CALL_COMPLETE_RETIRE = 15,
     SLC_CALL_TRIM_STANDBY = 16,
@@ -51,7 +51,7 @@ struct slc_call {
     uint32_t room;       ///< of the list calls: *pCount on entry
     bool query;          ///< of the list calls: the array was NULL
     uint32_t count;      ///< list calls: *pCount on return; answers: number of tile_indices
-    const uint32_t *tile_indices;  ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELLED
+    const uint32_t *tile_indices;  ///< UPDATE_MAPPING, REPORT_FAILED, REPORT_CANCELED
     const SluiceTile *tiles;       ///< out: GET_TILES_TO_*, GET_GIVEN_UP
     const SluiceTileMove *moves;   ///< out: DEFRAGMENT
     const SluiceMinMipRect *rects; ///< out: GET_MINMIP_UPDATES

@@ -14,7 +14,7 @@
 
 static bool has_slot(uint8_t state)
 {
-    return state == SLUICE_TILE_STATE_ALLOCATED || state == SLUICE_TILE_STATE_CANCELLED ||
+    return state == SLUICE_TILE_STATE_ALLOCATED || state == SLUICE_TILE_STATE_CANCELED ||
            state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY ||
            state == SLC_NODE_RETIRING;
 }
@@ -61,7 +61,7 @@ static const char *check_lists(const slc_manager *m)
     } lists[] = {
         {&m->residency.standby, SLUICE_TILE_STATE_STANDBY},
         {&m->residency.evicted, SLUICE_TILE_STATE_STANDBY},
-        {&m->residency.cancelled, SLUICE_TILE_STATE_CANCELLED},
+        {&m->residency.canceled, SLUICE_TILE_STATE_CANCELED},
         {&m->residency.given_up, SLUICE_TILE_STATE_GIVEN_UP},
         {&m->residency.retiring, SLC_NODE_RETIRING},
     };
@@ -114,7 +114,7 @@ static const char *check_node(const slc_manager *m, const struct slc_managed_tex
     REQUIRE(has_slot(n->state) == (n->heap != SLC_NONE));
     if (n->heap != SLC_NONE)
         REQUIRE(m->residency.heaps.heaps[n->heap].nodes[n->slot] == node);
-    bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELLED;
+    bool wanted = n->state != SLUICE_TILE_STATE_STANDBY && n->state != SLUICE_TILE_STATE_CANCELED;
     if (n->flags & SLC_NODE_WANTED)
         wanted = true;
     if (n->tile < t->shape->regular_tile_count)

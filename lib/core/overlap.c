@@ -53,7 +53,7 @@ static uint8_t least_in(const uint8_t *values, uint32_t columns, uint32_t x0, ui
 }
 
 /*
- * Neighbours that overlap the same cells share one answer. Without that, thin cells of one grid
+ * Neighbors that overlap the same cells share one answer. Without that, thin cells of one grid
  * under thick ones of the other would cost the product of their counts.
  */
 void slc_least_overlapped(const struct slc_grid *from, const uint8_t *values,

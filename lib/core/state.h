@@ -223,7 +223,7 @@ struct SluiceStreamedTextureManager {
     bool has_time;
     uint64_t time;
     uint64_t last_retire;
-    uint64_t handed_out_total, mapped_total, unmapped_total, cancelled_total, failed_total;
+    uint64_t handed_out_total, mapped_total, unmapped_total, canceled_total, failed_total;
     uint64_t moved_total, given_up_retried_total;
 };
 

@@ -70,10 +70,10 @@ static bool take_unmapped(slc_manager *m, uint32_t node, uint64_t retire_value)
     return true;
 }
 
-static bool take_cancelled(slc_manager *m, uint32_t node, uint64_t retire_value)
+static bool take_canceled(slc_manager *m, uint32_t node, uint64_t retire_value)
 {
     (void)retire_value;
-    slc_list_remove(&m->residency, &m->residency.cancelled, node);
+    slc_list_remove(&m->residency, &m->residency.canceled, node);
     slc_node_at(&m->residency, node)->flags |= SLC_NODE_LISTED;
     return true;
 }
@@ -93,8 +93,7 @@ static SluiceResult get_tiles_to_unmap(slc_manager *m, struct slc_managed_textur
 static SluiceResult get_tiles_to_cancel(slc_manager *m, struct slc_managed_texture *scope,
                                         const struct slc_list_call *call)
 {
-    return take_list(m, &m->residency.cancelled, scope, 0, take_cancelled, call->count,
-                     call->tiles);
+    return take_list(m, &m->residency.canceled, scope, 0, take_canceled, call->count, call->tiles);
 }
 
 SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *manager, SluiceTextureId textureId,

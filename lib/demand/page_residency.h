@@ -41,7 +41,7 @@
  * Each use and request takes constant time on average, and a launch none beyond these; changes are
  * sorted, and pages that may be evicted once for each launch that used them last. Memory follows
  * the most pages that were ever loading, resident, refused or changed at a time, about 150 bytes
- * each. Externally synchronised.
+ * each. Externally synchronized.
  */
 #ifndef SLC_DEMAND_PAGE_RESIDENCY_H
 #define SLC_DEMAND_PAGE_RESIDENCY_H

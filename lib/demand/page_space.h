@@ -6,7 +6,7 @@
  * one, smaller ones lie within one. What is freed is used again, by any rank where a section is
  * free as a whole, once the launches that may still name it are over. Ranges are found in
  * logarithmic time; memory is 40 bytes per section at most, and 16 per range. Knows nothing of
- * textures, devices or time. Externally synchronised.
+ * textures, devices or time. Externally synchronized.
  */
 #ifndef SLC_DEMAND_PAGE_SPACE_H
 #define SLC_DEMAND_PAGE_SPACE_H

@@ -20,7 +20,7 @@ static void from_565(uint32_t color, float rgb[3])
     rgb[2] = (float)(color & 31) / 31;
 }
 
-/* The first texel of a BC1 block; `four`: as in BC2 and BC3, never three colours. */
+/* The first texel of a BC1 block; `four`: as in BC2 and BC3, never three colors. */
 static void bc1_texel(const uint8_t block[8], bool four, bool alpha, float rgba[4])
 {
     uint32_t c0 = little(block, 2), c1 = little(block + 2, 2), index = block[4] & 3;

@@ -77,7 +77,7 @@ static void free_slot(SluiceDemandLoader *loader, struct slc_demand_image *image
     loader->free_image = image->slot;
 }
 
-/* Reads the base colour, and before that opens the image if it is not open. */
+/* Reads the base color, and before that opens the image if it is not open. */
 static SluiceResult submit_opening(SluiceDemandLoader *loader, struct slc_demand_image *image,
                                    SluiceDemandTicket ticket)
 {
@@ -330,7 +330,7 @@ void slc_images_refresh(SluiceDemandLoader *loader)
     for (uint32_t slot = loader->first_refresh; slot != SLC_NONE; slot = next) {
         struct slc_demand_image *image = loader->images[slot];
         next = image->next;
-        /* One at a time writes the colour. */
+        /* One at a time writes the color. */
         image->refresh = image->job_count || submit_opening(loader, image, 0) != SLUICE_SUCCESS;
         if (!image->refresh)
             continue;

@@ -43,7 +43,7 @@ static void on_end(void *user, uint64_t index, SluiceResult result)
     uint64_t us = (slc_monotonic_time() - job->start) / 1000;
     uint32_t bucket = us >> 31 ? 31 : us ? slc_log2_u32((uint32_t)us) + 1 : 0;
     pthread_mutex_lock(&tickets->mutex);
-    if (result != SLUICE_ERROR_CANCELLED)
+    if (result != SLUICE_ERROR_CANCELED)
         tickets->latency[slc_min_u32(bucket, 23)]++;
     job->running = false;
     slc_ticket_task_ends(tickets, job->ticket, result != SLUICE_SUCCESS);
@@ -175,14 +175,14 @@ static void begin_task(SluiceDemandLoader *loader, struct slc_demand_job *job,
     slc_ticket_task_begins(&loader->tickets, ticket);
 }
 
-/* With the lock held, once the tile loader has the read. True: it was cancelled meanwhile. */
+/* With the lock held, once the tile loader has the read. True: it was canceled meanwhile. */
 static bool note_read(SluiceDemandLoader *loader, struct slc_demand_job *job,
                       SluiceDemandTicket ticket, uint64_t number)
 {
     bool known;
     const struct slc_ticket *found = slc_ticket_find(&loader->tickets, ticket, &known);
     job->read = number;
-    return loader->tickets.aborted || (found && found->cancelled);
+    return loader->tickets.aborted || (found && found->canceled);
 }
 
 static SluiceResult submit_alone(SluiceDemandLoader *loader, struct slc_demand_job *job,
@@ -190,20 +190,20 @@ static SluiceResult submit_alone(SluiceDemandLoader *loader, struct slc_demand_j
 {
     struct slc_tickets *tickets = &loader->tickets;
     uint64_t number = 0;
-    bool cancelled = false;
+    bool canceled = false;
     pthread_mutex_lock(&tickets->mutex);
     begin_task(loader, job, ticket);
     pthread_mutex_unlock(&tickets->mutex);
     SluiceResult result = sluiceSubmitTileRead(loader->reader, read, &number);
     pthread_mutex_lock(&tickets->mutex);
     if (result == SLUICE_SUCCESS) {
-        cancelled = note_read(loader, job, ticket, number);
+        canceled = note_read(loader, job, ticket, number);
     } else {
         job->running = false;
         slc_ticket_task_withdraw(tickets, ticket);
     }
     pthread_mutex_unlock(&tickets->mutex);
-    if (cancelled)
+    if (canceled)
         sluiceCancelTileRead(loader->reader, number);
     return result;
 }
@@ -213,7 +213,7 @@ static void submit_batch(SluiceDemandLoader *loader)
     struct slc_job_batch *batch = &loader->batch;
     struct slc_tickets *tickets = &loader->tickets;
     uint64_t numbers[SLC_BATCH_JOBS];
-    uint32_t cancelled = 0;
+    uint32_t canceled = 0;
     if (batch->count == 0)
         return;
     pthread_mutex_lock(&tickets->mutex);
@@ -227,9 +227,9 @@ static void submit_batch(SluiceDemandLoader *loader)
     pthread_mutex_lock(&tickets->mutex);
     for (uint32_t i = 0; i < batch->count; i++)
         if (note_read(loader, batch->jobs[i], batch->tickets[i], numbers[i]))
-            numbers[cancelled++] = numbers[i];
+            numbers[canceled++] = numbers[i];
     pthread_mutex_unlock(&tickets->mutex);
-    for (uint32_t i = 0; i < cancelled; i++)
+    for (uint32_t i = 0; i < canceled; i++)
         sluiceCancelTileRead(loader->reader, numbers[i]);
     batch->count = 0;
 }
@@ -276,8 +276,8 @@ void slc_jobs_end_batch(SluiceDemandLoader *loader)
 static void job_back(SluiceDemandLoader *loader, const SluiceTileReadResult *read)
 {
     struct slc_demand_job *job = &loader->jobs[read->userValue];
-    if (read->result == SLUICE_ERROR_CANCELLED)
-        loader->counts.cancelledCount++;
+    if (read->result == SLUICE_ERROR_CANCELED)
+        loader->counts.canceledCount++;
     else if (read->result != SLUICE_SUCCESS)
         loader->counts.failedCount++;
     if (job->kind == SLC_JOB_TILE) {
@@ -362,7 +362,7 @@ SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader, SluiceDemandTi
     pthread_mutex_lock(&loader->tickets.mutex);
     struct slc_ticket *found = slc_ticket_find(&loader->tickets, ticket, &known);
     if (found)
-        found->cancelled = true;
+        found->canceled = true;
     pthread_mutex_unlock(&loader->tickets.mutex);
     if (found)
         cancel_jobs(loader, ticket);

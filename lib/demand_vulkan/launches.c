@@ -25,7 +25,7 @@ static uint32_t slot_of(const SluiceDemandLoader *loader, uint64_t launch)
 
 static bool is_aborted(SluiceDemandLoader *loader)
 {
-    return slc_ticket_is_cancelled(&loader->tickets, 0);
+    return slc_ticket_is_canceled(&loader->tickets, 0);
 }
 
 static void complete_forgotten(SluiceDemandLoader *loader)
@@ -209,7 +209,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
     if (is_aborted(loader))
-        return SLUICE_ERROR_CANCELLED;
+        return SLUICE_ERROR_CANCELED;
     if (loader->launch - loader->processed >= loader->info.launchesInFlight)
         return SLUICE_NOT_READY;
     uint64_t launch = loader->launch + 1;
@@ -362,7 +362,7 @@ SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
     if (given.launchIndex <= loader->processed || given.launchIndex > loader->ended)
         return SLUICE_ERROR_INVALID_ARGUMENT;
     if (is_aborted(loader))
-        return SLUICE_ERROR_CANCELLED;
+        return SLUICE_ERROR_CANCELED;
     result = wait_for(loader, given.launchIndex, timeoutNs);
     if (result != SLUICE_SUCCESS)
         return result;

@@ -66,7 +66,7 @@ enum slc_image_state {
 struct slc_demand_image {
     enum slc_image_state state;
     uint32_t slot, texture;
-    uint32_t next; ///< FREE, BURIED, or waiting for a job that reads the base colour again
+    uint32_t next; ///< FREE, BURIED, or waiting for a job that reads the base color again
     bool refresh;  ///< it is in that list
     uint32_t job_count;
     uint64_t launch;          ///< BURIED: the last that may name its pages
@@ -249,7 +249,7 @@ struct SluiceDemandLoader {
     uint32_t first_refresh;
     uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
     uint32_t tail_block_count, tail_block_capacity;
-    SluiceImageSource opener; ///< an image whose texels are base colours
+    SluiceImageSource opener; ///< an image whose texels are base colors
 
     struct slc_demand_resource **resources; ///< owned, by index
     uint32_t resource_high, resource_capacity, free_resource;
@@ -286,7 +286,7 @@ struct SluiceDemandLoader {
 /** A read that ended so may well succeed when shaders ask again. */
 static inline bool slc_result_may_pass(SluiceResult result)
 {
-    return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELLED ||
+    return result == SLUICE_NOT_READY || result == SLUICE_ERROR_CANCELED ||
            result == SLUICE_ERROR_OUT_OF_HOST_MEMORY;
 }
 
@@ -338,7 +338,7 @@ const char *slc_retries_words(const SluiceDemandLoader *loader, char *words, siz
 void slc_retries_finish(SluiceDemandLoader *loader);
 
 /* grids.c */
-/** Cells that name the texture show their grid's own colour. */
+/** Cells that name the texture show their grid's own color. */
 void slc_grids_leave(SluiceDemandLoader *loader, uint32_t index);
 /** The grid names nothing any more; its cells stay what they are for launches under way. */
 void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture *grid);
@@ -347,7 +347,7 @@ void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture 
 /** Begins to open the image of a texture, unless that is done. */
 enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
                                           SluiceDemandTicket ticket, SluiceResult *result);
-/** The job that opens it, or reads its base colour again, is over. */
+/** The job that opens it, or reads its base color again, is over. */
 void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *image,
                         const struct slc_demand_job *job, SluiceResult result);
 /** A job of it is over, of whatever kind. */

@@ -1,5 +1,5 @@
 /*
- * On worker threads: the image source "opener" is read at one texel, which is the base colour of
+ * On worker threads: the image source "opener" is read at one texel, which is the base color of
  * the image that the texel's memory is part of. So opening is a read like others.
  */
 #include "demand_vulkan/opening.h"

@@ -8,8 +8,8 @@
 /** Largest width and height of images. */
 
 /**
- * The colour of the last level of a texture: its first texel, in linear light. Of BC6H, which takes
- * a decoder, a mid grey: such a texture has to be less than a pixel to show it. `texel`: a block of
+ * The color of the last level of a texture: its first texel, in linear light. Of BC6H, which takes
+ * a decoder, a mid gray: such a texture has to be less than a pixel to show it. `texel`: a block of
  * compressed formats.
  */
 void slc_base_color(SluiceFormat format, const void *texel, float rgba[4]);

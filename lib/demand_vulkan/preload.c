@@ -55,10 +55,9 @@ static struct slc_demand_image *find_image(SluiceDemandLoader *loader, struct sl
 {
     uint32_t index;
     SluiceResult result;
-    *over = preload->detached ||
-            slc_texture_find(loader, preload->texture, &index) != SLUICE_SUCCESS ||
-            slc_ticket_is_cancelled(&loader->tickets, preload->ticket) ||
-            loader->textures[index].failed;
+    *over =
+        preload->detached || slc_texture_find(loader, preload->texture, &index) != SLUICE_SUCCESS ||
+        slc_ticket_is_canceled(&loader->tickets, preload->ticket) || loader->textures[index].failed;
     if (*over)
         return NULL;
     const struct slc_demand_texture *texture = &loader->textures[index];

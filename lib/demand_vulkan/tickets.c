@@ -171,13 +171,13 @@ void slc_ticket_drop(struct slc_tickets *tickets, SluiceDemandTicket ticket, uin
     pthread_mutex_unlock(&tickets->mutex);
 }
 
-bool slc_ticket_is_cancelled(struct slc_tickets *tickets, SluiceDemandTicket ticket)
+bool slc_ticket_is_canceled(struct slc_tickets *tickets, SluiceDemandTicket ticket)
 {
     pthread_mutex_lock(&tickets->mutex);
     struct slc_ticket *found = find(tickets, ticket);
-    bool cancelled = tickets->aborted || (found && found->cancelled);
+    bool canceled = tickets->aborted || (found && found->canceled);
     pthread_mutex_unlock(&tickets->mutex);
-    return cancelled;
+    return canceled;
 }
 
 void slc_ticket_task_begins(struct slc_tickets *tickets, SluiceDemandTicket ticket)
@@ -249,7 +249,7 @@ static SluiceResult look(struct slc_tickets *tickets, SluiceDemandTicket ticket,
         return SLUICE_ERROR_INVALID_ARGUMENT;
     write_status(found, status);
     if (tickets->aborted)
-        return SLUICE_ERROR_CANCELLED;
+        return SLUICE_ERROR_CANCELED;
     return found && found->running ? SLUICE_NOT_READY : SLUICE_SUCCESS;
 }
 

@@ -15,7 +15,7 @@ struct slc_ticket {
     uint32_t task_count, remaining, failed;
     uint32_t running; ///< of those that remain: begun, and not over
     uint32_t owners;  ///< who may add tasks yet
-    bool cancelled;
+    bool canceled;
     uint32_t next; ///< done: in the list of those, the longest done first
 };
 
@@ -46,7 +46,7 @@ SluiceDemandTicket slc_ticket_close(struct slc_tickets *tickets, SluiceDemandTic
 void slc_ticket_add(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count);
 /** Tasks that were added and turned out to be none. */
 void slc_ticket_drop(struct slc_tickets *tickets, SluiceDemandTicket ticket, uint32_t count);
-bool slc_ticket_is_cancelled(struct slc_tickets *tickets, SluiceDemandTicket ticket);
+bool slc_ticket_is_canceled(struct slc_tickets *tickets, SluiceDemandTicket ticket);
 
 /** With the lock held: another task is there and begins; it is over; it did not begin after all. */
 void slc_ticket_task_begins(struct slc_tickets *tickets, SluiceDemandTicket ticket);

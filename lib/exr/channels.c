@@ -26,7 +26,7 @@ static bool has_channel(const exr_attr_chlist_t *list, const char *name)
 }
 
 /*
- * The letters of the channels that are read: "RGBA" if there is a color, else "YA" for grey. A file
+ * The letters of the channels that are read: "RGBA" if there is a color, else "YA" for gray. A file
  * may have any number of other channels beside them, such as depth or layers. NULL: nothing to
  * read.
  */

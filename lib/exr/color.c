@@ -54,7 +54,7 @@ SluiceResult slc_exr_read_primaries(struct slc_exr_file *file)
     tell_luminance(file);
     read_chromaticities(file);
     if (!has_color(file))
-        return SLUICE_SUCCESS; /* grey is the same in all primaries */
+        return SLUICE_SUCCESS; /* gray is the same in all primaries */
     bool is_adopted = find_attribute(file, "adoptedNeutral", EXR_ATTR_V2F, &attribute);
     if (is_adopted) {
         neutral[0] = (double)attribute->v2f->x;

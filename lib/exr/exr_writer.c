@@ -261,7 +261,7 @@ static bool take_tile(struct writer *writer, struct tile *tile)
     return true;
 }
 
-/* Holding the mutex. Tiles go to the file in order, so that readers find neighbours together. */
+/* Holding the mutex. Tiles go to the file in order, so that readers find neighbors together. */
 static SluiceResult put_tile(struct writer *writer, const struct tile *tile, const void *bytes,
                              uint64_t size)
 {
@@ -275,7 +275,7 @@ static SluiceResult put_tile(struct writer *writer, const struct tile *tile, con
     if (writer->info.pfnProgress &&
         !writer->info.pfnProgress(writer->info.pUserData, writer->written_texels,
                                   writer->texel_count))
-        return SLUICE_ERROR_CANCELLED;
+        return SLUICE_ERROR_CANCELED;
     return SLUICE_SUCCESS;
 }
 

@@ -40,7 +40,7 @@ static SluiceResult read_regions(struct slc_read *read, SluiceImageInfo *info,
     }
     for (; read->done_count < read->region_count; read->done_count++) {
         if (is_dropped(read))
-            return SLUICE_ERROR_CANCELLED;
+            return SLUICE_ERROR_CANCELED;
         const SluiceImageRegion *region = &read->regions[read->done_count];
         result = sluiceReadImageRegionLocated(
             source, region, read->texels[read->done_count],
@@ -68,7 +68,7 @@ static void report_failure(const SluiceTileLoader *loader, const struct slc_read
                            const struct attempt *attempt, bool will_retry, uint64_t delay)
 {
     bool is_failure = attempt->result != SLUICE_SUCCESS &&
-                      attempt->result != SLUICE_ERROR_CANCELLED &&
+                      attempt->result != SLUICE_ERROR_CANCELED &&
                       (attempt->result != SLUICE_NOT_READY || !will_retry);
     if (!is_failure || !loader->failure.pfnFailed)
         return;
@@ -117,7 +117,7 @@ static void run(SluiceTileLoader *loader, struct slc_read *read)
     if (!will_retry) {
         slc_loader_end_read(loader, read, attempt.result);
     } else if (is_dropped(read)) {
-        slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELLED);
+        slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     } else {
         uint64_t now = nanoseconds();
         slc_read_queue_delay(&loader->queue, read,
@@ -147,7 +147,7 @@ static void wait_for_work(struct slc_read_pool *pool)
     else
         pthread_cond_timedwait(&pool->work, &pool->mutex, &until);
     pool->waiting_count--;
-    pool->signalled_count -= pool->signalled_count > 0;
+    pool->signaled_count -= pool->signaled_count > 0;
 }
 
 /*
@@ -156,9 +156,9 @@ static void wait_for_work(struct slc_read_pool *pool)
  */
 void slc_read_pool_signal(struct slc_read_pool *pool)
 {
-    if (pool->waiting_count == 0 || pool->signalled_count > 0)
+    if (pool->waiting_count == 0 || pool->signaled_count > 0)
         return;
-    pool->signalled_count++;
+    pool->signaled_count++;
     pthread_cond_signal(&pool->work);
 }
 
@@ -225,7 +225,7 @@ static uint32_t default_thread_count(void)
     return processors > 3 ? (uint32_t)processors - 1 : 2;
 }
 
-static void init_synchronisation(struct slc_read_pool *pool)
+static void init_synchronization(struct slc_read_pool *pool)
 {
     pthread_condattr_t attributes;
     pthread_condattr_init(&attributes);
@@ -278,7 +278,7 @@ SluiceResult slc_read_pool_create(const SluiceTileLoaderCreateInfo *info,
         slc_free(&cb, pool, 1, sizeof *pool);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     }
-    init_synchronisation(pool);
+    init_synchronization(pool);
     while (pool->thread_count < wanted &&
            pthread_create(&pool->threads[pool->thread_count], NULL, worker_main, pool) == 0)
         pool->thread_count++;

@@ -1,7 +1,7 @@
 /**
  * The bookkeeping of a loader without its threads and without a clock: a fixed number of reads,
  * each free, queued by priority, delayed until another attempt, running or finished. Not
- * synchronised; the loader holds a lock around every call.
+ * synchronized; the loader holds a lock around every call.
  */
 #ifndef SLC_IMAGE_READ_QUEUE_H
 #define SLC_IMAGE_READ_QUEUE_H
@@ -21,7 +21,7 @@ enum slc_read_state {
 
 struct slc_read {
     enum slc_read_state state;
-    uint64_t generation;       ///< of the slot, so that old tickets are recognised
+    uint64_t generation;       ///< of the slot, so that old tickets are recognized
     uint64_t order;            ///< of submission
     struct slc_heap_node node; ///< among its source's queued reads, or among the delayed ones
     uint64_t due;              ///< while delayed

@@ -1,7 +1,7 @@
 /**
  * The sources that a loader has been given reads of, found by their address: a fixed number, of
  * which those without reads give way to new ones, the one longest without first. Tables that are
- * shared find each other's records of a source. Not synchronised.
+ * shared find each other's records of a source. Not synchronized.
  */
 #ifndef SLC_IMAGE_READ_SOURCES_H
 #define SLC_IMAGE_READ_SOURCES_H

@@ -17,7 +17,7 @@ void slc_read_statistics_add_attempt(struct slc_read_statistics *statistics, Slu
     counts->attemptCount++;
     if (result == SLUICE_NOT_READY) {
         counts->notReadyCount++;
-    } else if (result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELLED) {
+    } else if (result != SLUICE_SUCCESS && result != SLUICE_ERROR_CANCELED) {
         counts->failedCount++;
         counts->lastFailure = result;
         counts->lastFailureOffset = offset;
@@ -33,8 +33,8 @@ void slc_read_statistics_add_end(struct slc_read_statistics *statistics, SluiceR
                                  uint64_t size)
 {
     SluiceTileLoaderStatistics *counts = &statistics->counts;
-    if (result == SLUICE_ERROR_CANCELLED) {
-        counts->cancelledCount++;
+    if (result == SLUICE_ERROR_CANCELED) {
+        counts->canceledCount++;
     } else if (result != SLUICE_SUCCESS) {
         counts->givenUpCount++;
     } else {

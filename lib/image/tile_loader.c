@@ -89,7 +89,7 @@ SluiceResult sluiceCreateTileLoader(const SluiceTileLoaderCreateInfo *pCreateInf
 static void drop_read(SluiceTileLoader *loader, struct slc_read *read)
 {
     if (read->state == SLC_READ_QUEUED || read->state == SLC_READ_DELAYED)
-        slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELLED);
+        slc_loader_end_read(loader, read, SLUICE_ERROR_CANCELED);
     else if (read->state == SLC_READ_RUNNING)
         atomic_store_explicit(&read->dropped, true, memory_order_relaxed);
 }

@@ -20,7 +20,7 @@ struct flip {
     struct slc_metric_picture pictures[2];
     struct slc_flip_kernels kernels;
     struct slc_window windows[2];
-    double *rows; ///< [2][RESULT_COUNT][padded]; in add_row: colours, then opponents, padded
+    double *rows; ///< [2][RESULT_COUNT][padded]; in add_row: colors, then opponents, padded
     double *map_row;
     size_t padded, count;
     struct slc_flip_curve curve;
@@ -137,14 +137,14 @@ static double feature_error(const struct flip *flip, uint32_t x)
 
 static double error_at(const struct flip *flip, uint32_t x)
 {
-    double colours[2][3], narrow = flip->kernels.share_narrow;
+    double colors[2][3], narrow = flip->kernels.share_narrow;
     for (int i = 0; i < 2; i++) {
-        colours[i][0] = result_at(flip, i, 0, x);
-        colours[i][1] = result_at(flip, i, RED_GREEN, x);
-        colours[i][2] =
+        colors[i][0] = result_at(flip, i, 0, x);
+        colors[i][1] = result_at(flip, i, RED_GREEN, x);
+        colors[i][2] =
             narrow * result_at(flip, i, NARROW, x) + (1 - narrow) * result_at(flip, i, WIDE, x);
     }
-    return slc_flip_error(&flip->curve, colours[0], colours[1], feature_error(flip, x));
+    return slc_flip_error(&flip->curve, colors[0], colors[1], feature_error(flip, x));
 }
 
 /** Fills map_row with the errors of row y and returns their sum. */

@@ -65,7 +65,7 @@ static double lightness_curve(double value)
                                          : value / (3 * delta * delta) + 4.0 / 29;
 }
 
-/** L*a*b*, its a* and b* scaled by L* / 100 (Hunt: dark colours look less colourful). */
+/** L*a*b*, its a* and b* scaled by L* / 100 (Hunt: dark colors look less colorful). */
 static void hunt_lab_from_linear(const double rgb[3], double lab[3])
 {
     double xyz[3];
@@ -77,7 +77,7 @@ static void hunt_lab_from_linear(const double rgb[3], double lab[3])
     lab[2] = 0.01 * lab[0] * 200 * (xyz[1] - xyz[2]);
 }
 
-/** HyAB: city block between lightness and the plane of colours. */
+/** HyAB: city block between lightness and the plane of colors. */
 static double distance(const double rgb_a[3], const double rgb_b[3])
 {
     double a[3], b[3];

@@ -1,4 +1,4 @@
-/** Colours of FLIP: opponents, which are filtered, and how far two filtered ones are apart. */
+/** Colors of FLIP: opponents, which are filtered, and how far two filtered ones are apart. */
 #ifndef SLC_METRICS_FLIP_COLOR_H
 #define SLC_METRICS_FLIP_COLOR_H
 
@@ -18,7 +18,7 @@ struct slc_flip_curve {
 void slc_flip_curve_init(struct slc_flip_curve *curve);
 
 /**
- * The error of two filtered colours, in [0, 1]: brought into the cube of RGB, in L*a*b* with Hunt's
+ * The error of two filtered colors, in [0, 1]: brought into the cube of RGB, in L*a*b* with Hunt's
  * adjustment, apart by HyAB, compressed; and raised by the error of features, `feature` in [0, 1].
  */
 double slc_flip_error(const struct slc_flip_curve *curve, const double a[3], const double b[3],

@@ -56,16 +56,16 @@ static void fill_features(double *smooth, double *edge, double *point, uint32_t 
     balance(point, radius);
 }
 
-static void fill_kernels(struct slc_flip_kernels *kernels, double *weights[], uint32_t colour,
+static void fill_kernels(struct slc_flip_kernels *kernels, double *weights[], uint32_t color,
                          uint32_t feature, double pixels_per_degree, double feature_deviation)
 {
     double scale = pixels_per_degree;
-    fill_gaussian(weights[SLC_FLIP_LUMINANCE], colour, scale * deviation_of(luminance_b));
-    fill_gaussian(weights[SLC_FLIP_RED_GREEN], colour, scale * deviation_of(red_green_b));
+    fill_gaussian(weights[SLC_FLIP_LUMINANCE], color, scale * deviation_of(luminance_b));
+    fill_gaussian(weights[SLC_FLIP_RED_GREEN], color, scale * deviation_of(red_green_b));
     double narrow =
-        fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_NARROW], colour, scale * deviation_of(narrow_b));
+        fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_NARROW], color, scale * deviation_of(narrow_b));
     double wide =
-        fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_WIDE], colour, scale * deviation_of(wide_b));
+        fill_gaussian(weights[SLC_FLIP_BLUE_YELLOW_WIDE], color, scale * deviation_of(wide_b));
     /* the sum of both is what has the sum 1 */
     narrow *= narrow * narrow_a * sqrt(PI / narrow_b);
     wide *= wide * wide_a * sqrt(PI / wide_b);
@@ -79,9 +79,9 @@ bool slc_flip_kernels_init(struct slc_flip_kernels *kernels,
 {
     /* edges are 0.082 degrees wide; filters end at three deviations of the widest */
     double deviation = 0.5 * 0.082 * pixels_per_degree;
-    uint32_t colour = (uint32_t)ceil(3 * deviation_of(wide_b) * pixels_per_degree);
+    uint32_t color = (uint32_t)ceil(3 * deviation_of(wide_b) * pixels_per_degree);
     uint32_t feature = (uint32_t)ceil(3 * deviation);
-    uint32_t radius = colour > feature ? colour : feature;
+    uint32_t radius = color > feature ? color : feature;
     double *filters[SLC_FLIP_FILTER_COUNT];
     kernels->radius = radius;
     kernels->count = SLC_FLIP_FILTER_COUNT * (2 * (size_t)radius + 1);
@@ -91,9 +91,9 @@ bool slc_flip_kernels_init(struct slc_flip_kernels *kernels,
     for (int i = 0; i < SLC_FLIP_FILTER_COUNT; i++) {
         filters[i] = kernels->weights + i * (2 * (size_t)radius + 1);
         kernels->filters[i] =
-            (struct slc_kernel){filters[i], i < SLC_FLIP_SMOOTH ? colour : feature};
+            (struct slc_kernel){filters[i], i < SLC_FLIP_SMOOTH ? color : feature};
     }
-    fill_kernels(kernels, filters, colour, feature, pixels_per_degree, deviation);
+    fill_kernels(kernels, filters, color, feature, pixels_per_degree, deviation);
     return true;
 }
 

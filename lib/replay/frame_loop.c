@@ -144,11 +144,11 @@ static void drop_load(struct frame_loop *loop, SluiceTextureId texture_id, uint3
     }
 }
 
-static SluiceResult report_cancelled(struct frame_loop *loop, const SluiceTile *tiles,
-                                     uint32_t count)
+static SluiceResult report_canceled(struct frame_loop *loop, const SluiceTile *tiles,
+                                    uint32_t count)
 {
     for (uint32_t i = 0; i < count;) {
-        struct slc_call call = {.kind = SLC_CALL_REPORT_CANCELLED,
+        struct slc_call call = {.kind = SLC_CALL_REPORT_CANCELED,
                                 .texture_id = tiles[i].textureId,
                                 .tile_indices = loop->batch};
         for (; i < count && tiles[i].textureId == call.texture_id; i++) {
@@ -172,7 +172,7 @@ static SluiceResult take_list(struct frame_loop *loop, enum slc_call_kind kind)
                                 .room = LIST_ROOM};
         SluiceResult result = make_call(loop, &call);
         if (result == SLUICE_SUCCESS && kind == SLC_CALL_GET_TILES_TO_CANCEL)
-            result = report_cancelled(loop, call.tiles, call.count);
+            result = report_canceled(loop, call.tiles, call.count);
         if (result != SLUICE_SUCCESS || call.result != SLUICE_INCOMPLETE || call.count == 0)
             return result;
     }
@@ -204,7 +204,7 @@ static SluiceResult start_loads(struct frame_loop *loop)
     return SLUICE_SUCCESS;
 }
 
-/* The loads that are due, oldest first; neighbours of one texture in one call. */
+/* The loads that are due, oldest first; neighbors of one texture in one call. */
 static SluiceResult answer_loads(struct frame_loop *loop)
 {
     uint64_t latency = loop->replay->info->latency;

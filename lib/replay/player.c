@@ -107,7 +107,7 @@ static uint64_t most_entries(const struct slc_player *player, enum slc_call_kind
         return 0;
     switch (kind) {
     case SLC_CALL_GET_TILES_TO_MAP: return s.requestedTileCount + most_prefetched(player, &s);
-    case SLC_CALL_GET_TILES_TO_CANCEL: return s.cancelledTileCount;
+    case SLC_CALL_GET_TILES_TO_CANCEL: return s.canceledTileCount;
     case SLC_CALL_GET_TILES_TO_UNMAP: return s.standbyTileCount;
     case SLC_CALL_GET_GIVEN_UP: return s.failedTotal; /* some may have been tried again since */
     case SLC_CALL_GET_MINMIP_UPDATES: return s.textureCount;
@@ -183,9 +183,9 @@ static SluiceResult make_simple_call(struct slc_player *player, struct slc_call 
         return sluiceUpdateTilesMapping(m, id, call->count, call->tile_indices);
     case SLC_CALL_REPORT_FAILED:
         return sluiceReportFailedTiles(m, id, call->count, call->tile_indices, call->time_stamp);
-    case SLC_CALL_REPORT_CANCELLED:
-        return sluiceReportCancelledTiles(m, id, call->count, call->tile_indices,
-                                          call->retire_value);
+    case SLC_CALL_REPORT_CANCELED:
+        return sluiceReportCanceledTiles(m, id, call->count, call->tile_indices,
+                                         call->retire_value);
     case SLC_CALL_RETRY_FAILED: return sluiceRetryFailedTiles(m, id);
     case SLC_CALL_COMPLETE_RETIRE: return sluiceCompleteRetireValue(m, call->retire_value);
     case SLC_CALL_EVACUATE_HEAPS: return sluiceEvacuateHeaps(m, call->keep_count);

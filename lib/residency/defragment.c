@@ -28,7 +28,7 @@ static bool has_only_movable_tiles(const struct slc_machine *r, uint32_t heap)
 {
     const struct slc_tile_heap *h = &r->heaps.heaps[heap];
     if (r->state_counts[SLUICE_TILE_STATE_ALLOCATED] +
-            r->state_counts[SLUICE_TILE_STATE_CANCELLED] ==
+            r->state_counts[SLUICE_TILE_STATE_CANCELED] ==
         0)
         return true;
     for (uint32_t slot = 0; slot < r->heaps.capacity; slot++)

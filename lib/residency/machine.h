@@ -19,8 +19,8 @@
 #include <assert.h>
 
 enum slc_node_flags {
-    SLC_NODE_LISTED = 1, ///< CANCELLED: handed out as such; STANDBY: evicted
-    SLC_NODE_WANTED = 2, ///< CANCELLED and handed out: wanted again; STANDBY and evicted: wanted
+    SLC_NODE_LISTED = 1, ///< CANCELED: handed out as such; STANDBY: evicted
+    SLC_NODE_WANTED = 2, ///< CANCELED and handed out: wanted again; STANDBY and evicted: wanted
 };
 
 /** A slot whose tile was unmapped and that the GPU may still read; beside SluiceTileState. */
@@ -101,7 +101,7 @@ struct slc_machine {
     uint32_t node_end, free_node, free_node_count;
     uint32_t state_counts[8]; ///< nodes by SluiceTileState
     struct slc_requests requests;
-    struct slc_list standby, evicted, cancelled, given_up, retiring;
+    struct slc_list standby, evicted, canceled, given_up, retiring;
     struct slc_due_tree failed;
     /** MAPPED tiles by level, oldest first. Those of SLC_PACKED_CLASS are in none. */
     struct slc_list mapped[SLUICE_MAX_MIP_LEVELS];

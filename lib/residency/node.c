@@ -42,9 +42,9 @@ static void leave_list(struct slc_machine *r, uint32_t node)
         r->evicted_wanted -= (n->flags & SLC_NODE_WANTED) != 0;
         slc_list_remove(r, n->flags & SLC_NODE_LISTED ? &r->evicted : &r->standby, node);
         break;
-    case SLUICE_TILE_STATE_CANCELLED:
+    case SLUICE_TILE_STATE_CANCELED:
         if (!(n->flags & SLC_NODE_LISTED))
-            slc_list_remove(r, &r->cancelled, node);
+            slc_list_remove(r, &r->canceled, node);
         break;
     case SLUICE_TILE_STATE_FAILED: slc_due_remove(r, node); break;
     case SLUICE_TILE_STATE_GIVEN_UP: leave_given_up(r, node); break;
@@ -64,7 +64,7 @@ static void enter_list(struct slc_machine *r, uint32_t node)
         break;
     case SLUICE_TILE_STATE_REQUESTED: slc_request_append(r, node); break;
     case SLUICE_TILE_STATE_STANDBY: slc_list_append(r, &r->standby, node); break;
-    case SLUICE_TILE_STATE_CANCELLED: slc_list_append(r, &r->cancelled, node); break;
+    case SLUICE_TILE_STATE_CANCELED: slc_list_append(r, &r->canceled, node); break;
     case SLUICE_TILE_STATE_FAILED: slc_due_insert(r, node); break;
     case SLUICE_TILE_STATE_GIVEN_UP: enter_given_up(r, node); break;
     }
@@ -216,7 +216,7 @@ void slc_node_wanted(struct slc_machine *r, uint32_t node)
     if (n->state == SLUICE_TILE_STATE_STANDBY) {
         restore(r, node);
     } else {
-        assert(n->state == SLUICE_TILE_STATE_CANCELLED);
+        assert(n->state == SLUICE_TILE_STATE_CANCELED);
         if (n->flags & SLC_NODE_LISTED)
             n->flags |= SLC_NODE_WANTED;
         else
@@ -226,7 +226,7 @@ void slc_node_wanted(struct slc_machine *r, uint32_t node)
 
 uint32_t slc_node_prefetch(struct slc_machine *r, uint32_t owner, uint32_t tile, uint32_t level)
 {
-    uint32_t node = take_node(r, owner, tile, level, SLUICE_TILE_STATE_CANCELLED);
+    uint32_t node = take_node(r, owner, tile, level, SLUICE_TILE_STATE_CANCELED);
     slc_node_at(r, node)->flags = SLC_NODE_LISTED;
     return node;
 }
@@ -237,14 +237,14 @@ void slc_node_unwanted(struct slc_machine *r, uint32_t node)
     switch (slc_node_at(r, node)->state) {
     case SLUICE_TILE_STATE_ALLOCATED:
         slc_node_at(r, node)->failures = 0;
-        slc_node_set_state(r, node, SLUICE_TILE_STATE_CANCELLED);
+        slc_node_set_state(r, node, SLUICE_TILE_STATE_CANCELED);
         break;
     case SLUICE_TILE_STATE_MAPPED: park(r, node); break;
     case SLUICE_TILE_STATE_STANDBY:
         slc_node_at(r, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
         r->evicted_wanted--;
         break;
-    case SLUICE_TILE_STATE_CANCELLED:
+    case SLUICE_TILE_STATE_CANCELED:
         slc_node_at(r, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
         break;
     default: slc_node_release(r, node); break; /* REQUESTED, FAILED, GIVEN_UP */

@@ -9,7 +9,7 @@ uint32_t slc_node_request(struct slc_machine *r, uint32_t owner, uint32_t tile, 
                           uint32_t need);
 /** A FREE tile gets a node as if it had been handed out and then no longer wanted. */
 uint32_t slc_node_prefetch(struct slc_machine *r, uint32_t owner, uint32_t tile, uint32_t level);
-/** A STANDBY or CANCELLED tile is wanted again. */
+/** A STANDBY or CANCELED tile is wanted again. */
 void slc_node_wanted(struct slc_machine *r, uint32_t node);
 /** A tile is no longer wanted; REQUESTED, FAILED and GIVEN_UP ones become FREE. */
 void slc_node_unwanted(struct slc_machine *r, uint32_t node);

@@ -1,5 +1,5 @@
 /*
- * Runs: neighbours in one list that go to the end of another one are moved as a piece. An owner
+ * Runs: neighbors in one list that go to the end of another one are moved as a piece. An owner
  * that comes into view or leaves it makes long ones.
  */
 #include "residency/tile_runs.h"

@@ -172,7 +172,7 @@ static SluiceResult read_choices(struct slc_store_header *header, const unsigned
         {AT_ADDRESS_V, SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_BORDER,
          SLUICE_STORE_ADDRESS_MODE_CLAMP_TO_EDGE}};
     uint32_t values[sizeof choices / sizeof choices[0]];
-    *message = "colour space, meaning or address mode has a value that this version does not have";
+    *message = "color space, meaning or address mode has a value that this version does not have";
     for (size_t i = 0; i < sizeof choices / sizeof choices[0]; i++) {
         *offset = choices[i].at;
         values[i] = slc_get_u32(bytes + choices[i].at);

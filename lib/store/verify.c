@@ -57,7 +57,7 @@ static SluiceResult verify_chunks(struct verifier *verifier, struct slc_store_re
     for (uint64_t number = 0; number < count; number++) {
         if (info->pfnProgress && number % STEP == 0 &&
             !info->pfnProgress(info->pUserData, number, count))
-            return SLUICE_ERROR_CANCELLED;
+            return SLUICE_ERROR_CANCELED;
         SluiceResult result = verify_chunk(verifier, number, bench);
         if (result != SLUICE_SUCCESS)
             return result;

@@ -1,6 +1,6 @@
 /**
  * The sparse binds and unbinds that go into one batch: one final state per tile, in an order in
- * which row neighbours with consecutive pages become one bind.
+ * which row neighbors with consecutive pages become one bind.
  *
  * A range that occurs twice in a batch is an error that no validation layer sees and that real
  * drivers resolve the wrong way round, so the merge happens here. Knows nothing of Vulkan handles.

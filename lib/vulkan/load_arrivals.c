@@ -63,10 +63,10 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
     struct slc_unit *unit = &s->units[index];
     struct slc_texture *texture = &s->textures[unit->texture];
     SluiceResult result;
-    if (unit->cancelled) {
-        result = sluiceReportCancelledTiles(s->manager, texture->id, 1, &unit->tile.tileIndex, 0);
-        slc_streamer_check(s, result, "sluiceReportCancelledTiles");
-        s->counts.tilesCancelled++;
+    if (unit->canceled) {
+        result = sluiceReportCanceledTiles(s->manager, texture->id, 1, &unit->tile.tileIndex, 0);
+        slc_streamer_check(s, result, "sluiceReportCanceledTiles");
+        s->counts.tilesCanceled++;
     } else if (answer != SLUICE_SUCCESS) {
         result = sluiceReportFailedTiles(s->manager, texture->id, 1, &unit->tile.tileIndex,
                                          s->manager_time);
@@ -104,7 +104,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
         return SLUICE_SUCCESS;
     }
     SluiceResult answer = read->result;
-    if (answer == SLUICE_NOT_READY && !unit->cancelled && can_wait(s)) {
+    if (answer == SLUICE_NOT_READY && !unit->canceled && can_wait(s)) {
         answer = slc_unit_submit(s, index);
         if (answer == SLUICE_SUCCESS)
             return SLUICE_SUCCESS;

@@ -2,7 +2,7 @@
  * From texels that have arrived to the residency, and units that frames have read.
  *
  * A tile is bound when its texels have arrived, not when its load begins: a load that fails or is
- * cancelled is then never bound
+ * canceled is then never bound
  * (docs/decisions/0020-tiles-are-bound-when-their-texels-arrive.md).
  */
 #ifndef SLC_VULKAN_LOAD_BINDS_H

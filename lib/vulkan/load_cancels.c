@@ -46,7 +46,7 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
             /* What has arrived goes on to standby: its read is paid for already. */
             if (unit == SLC_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
                 continue;
-            s->units[unit].cancelled = true;
+            s->units[unit].canceled = true;
             sluiceCancelTileRead(s->loader, s->units[unit].ticket);
         }
         if (count < BATCH)

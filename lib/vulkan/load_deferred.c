@@ -6,10 +6,9 @@
 static SluiceResult wait_in(SluiceVulkanStreamer *s, struct slc_deferred_tiles *list,
                             uint32_t texture, const SluiceTile *tile)
 {
-    SluiceTileState state = SLUICE_TILE_STATE_CANCELLED;
+    SluiceTileState state = SLUICE_TILE_STATE_CANCELED;
     sluiceGetTileState(s->manager, s->textures[texture].id, tile->tileIndex, &state, NULL);
-    if (state == SLUICE_TILE_STATE_CANCELLED ||
-        !slc_deferred_tiles_add(list, &s->cb, texture, tile))
+    if (state == SLUICE_TILE_STATE_CANCELED || !slc_deferred_tiles_add(list, &s->cb, texture, tile))
         return slc_load_give_back(s, texture, tile);
     return SLUICE_SUCCESS;
 }
@@ -88,8 +87,8 @@ SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s)
 
 SluiceResult slc_load_give_back(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
-    s->counts.tilesCancelled++;
+    s->counts.tilesCanceled++;
     return slc_streamer_check(
-        s, sluiceReportCancelledTiles(s->manager, s->textures[texture].id, 1, &tile->tileIndex, 0),
-        "sluiceReportCancelledTiles");
+        s, sluiceReportCanceledTiles(s->manager, s->textures[texture].id, 1, &tile->tileIndex, 0),
+        "sluiceReportCanceledTiles");
 }

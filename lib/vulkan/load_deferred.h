@@ -7,9 +7,9 @@
 /** The manager knows of slots alone. If pages are short, evicts standby tiles for those that wait.
  *  Before tiles are unmapped. */
 SluiceResult slc_loads_make_room(SluiceVulkanStreamer *s);
-/** Lets the tile wait for a page; gives it back if the manager has cancelled it. */
+/** Lets the tile wait for a page; gives it back if the manager has canceled it. */
 SluiceResult slc_load_defer(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
-/** Lets the tile wait for another front end; gives it back if the manager has cancelled it. */
+/** Lets the tile wait for another front end; gives it back if the manager has canceled it. */
 SluiceResult slc_load_await(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
 /** Tells the manager that the tile is not loaded. */
 SluiceResult slc_load_give_back(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);

@@ -1,5 +1,5 @@
 /*
- * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signalling a
+ * Residency by sparse binding: one vkQueueBindSparse with one batch per frame, signaling a
  * timeline semaphore that is only ever polled. Tiles that are unmapped keep their bindings until
  * their pages are needed (sparse_bindings.h).
  */
@@ -208,7 +208,7 @@ static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
         s->images[image].last_value = s->submitted_value + 1;
         heap->value = s->submitted_value + 1;
     }
-    /* The last ones may have been unbound along with neighbours from other heaps, just now. */
+    /* The last ones may have been unbound along with neighbors from other heaps, just now. */
     if (!heap->unbound && last_value(s) > heap->value)
         heap->value = last_value(s);
     heap->unbound = true;

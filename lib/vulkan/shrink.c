@@ -27,7 +27,7 @@ static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
                              const SluiceStreamedTextureStatistics *stats)
 {
     uint64_t tiles = (uint64_t)stats->mappedTileCount + stats->allocatedTileCount +
-                     stats->requestedTileCount + stats->cancelledTileCount +
+                     stats->requestedTileCount + stats->canceledTileCount +
                      stats->reservedSlotCount;
     return div_up(tiles, s->info.heapTileCapacity);
 }

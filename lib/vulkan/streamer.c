@@ -497,7 +497,7 @@ static void take_manager_counts(const SluiceStreamedTextureManager *manager,
     out->allocatedTileCount = s.allocatedTileCount;
     out->mappedTileCount = s.mappedTileCount;
     out->standbyTileCount = s.standbyTileCount;
-    out->cancelledTileCount = s.cancelledTileCount;
+    out->canceledTileCount = s.canceledTileCount;
     out->failedTileCount = s.failedTileCount;
     out->givenUpTileCount = s.givenUpTileCount;
     out->retiringSlotCount = s.retiringSlotCount;

@@ -100,7 +100,7 @@ struct slc_unit {
     uint32_t texture;
     SluiceTile tile;
     uint32_t packed_unit; ///< SLC_NONE for a tile
-    bool cancelled;
+    bool canceled;
     bool published; ///< the manager counts it as mapped: copied by a frame that was abandoned
     bool dropped;   ///< its tile was unmapped, and is not in tile_units; what it copied is no use
     uint64_t ticket;

@@ -41,7 +41,7 @@ void report_row(struct report *report, const char *name, const char *value, cons
 void report_end_table(struct report *report);
 void report_plot(struct report *report, const struct report_plot *plot);
 
-/** A bar as long as its value beside the largest; the first part of it is in another colour. */
+/** A bar as long as its value beside the largest; the first part of it is in another color. */
 struct report_bar {
     const char *name;
     double value;     ///< NaN: the bar is left out

@@ -19,7 +19,7 @@ static void scale(float rgb[3], float factor)
         rgb[i] = noise_clamp(rgb[i] * factor, 0.0f, 1.0f);
 }
 
-/** What a field of the three colours looks like from afar, where fields of it are chosen evenly. */
+/** What a field of the three colors looks like from afar, where fields of it are chosen evenly. */
 static void mix_mean(const struct pattern *p, float rgb[3], float share)
 {
     for (int i = 0; i < 3; i++) {
@@ -108,7 +108,7 @@ static float stripe(float x, float at, float half_width, float footprint)
     return noise_line(fminf(distance, 1.0f - distance), half_width, footprint);
 }
 
-/* A tartan of threads over and under each other, each of them of fibres. */
+/* A tartan of threads over and under each other, each of them of fibers. */
 static void cloth(const struct pattern *p, float u, float v, float footprint, float rgb[3])
 {
     const float threads = 384.0f;
@@ -121,8 +121,8 @@ static void cloth(const struct pattern *p, float u, float v, float footprint, fl
     mix_into(rgb, p->colors[1], (1.0f - warp) * stripe(y, 0.25f, 0.11f, size));
     mix_into(rgb, p->colors[2], warp * stripe(x, 0.75f, 0.025f, size));
     mix_into(rgb, p->colors[2], (1.0f - warp) * stripe(y, 0.75f, 0.025f, size));
-    float fibres = periodic_octaves(u, v, 1024, 1024, 3, 0.7f, footprint, p->seed);
-    scale(rgb, (0.92f + 0.16f * fabsf(over) * soft) * (1.0f + 0.16f * fibres));
+    float fibers = periodic_octaves(u, v, 1024, 1024, 3, 0.7f, footprint, p->seed);
+    scale(rgb, (0.92f + 0.16f * fabsf(over) * soft) * (1.0f + 0.16f * fibers));
 }
 
 /* Land and sea from far above. */

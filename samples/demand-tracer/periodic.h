@@ -35,7 +35,7 @@ static inline float periodic_octaves(float u, float v, int32_t period_x, int32_t
     return sum;
 }
 
-/** The two nearest of one centre per cell of a grid of `period` x `period` cells. */
+/** The two nearest of one center per cell of a grid of `period` x `period` cells. */
 struct periodic_cell {
     float nearest, second; ///< distances, in cells
     uint32_t id;           ///< of the nearest

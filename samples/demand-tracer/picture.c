@@ -112,22 +112,22 @@ static bool write_numbered(const struct picture_place *place, const char *kind, 
     return png_file_write(path, rgba, pair->width, pair->height);
 }
 
-/** FLIP, and its map in colours. */
+/** FLIP, and its map in colors. */
 static bool compare_flip(const SluicePicturePair *pair, const struct picture_place *place,
                          double *flip)
 {
     const size_t count = (size_t)pair->width * pair->height;
     float *errors = malloc(count * sizeof *errors);
-    uint8_t *colours = malloc(count * 4);
+    uint8_t *colors = malloc(count * 4);
     const SluiceMetricMap map = {.pValues = errors};
-    bool done = errors && colours &&
+    bool done = errors && colors &&
                 sluiceComputeFlip(pair, 0.0f, &map, NULL, flip) == SLUICE_SUCCESS &&
-                sluiceColorMagma(errors, count, colours) == SLUICE_SUCCESS;
+                sluiceColorMagma(errors, count, colors) == SLUICE_SUCCESS;
     if (!done)
         fprintf(stderr, "out of memory\n");
-    done = done && write_numbered(place, "flip", colours, pair);
+    done = done && write_numbered(place, "flip", colors, pair);
     free(errors);
-    free(colours);
+    free(colors);
     return done;
 }
 

@@ -8,7 +8,7 @@
 #include "../common/noise.h"
 
 #define PLANTS_PER_TEXTURE 4u
-#define SITE_SPACING 1.25f ///< metres
+#define SITE_SPACING 1.25f ///< meters
 #define GOLDEN_ANGLE 2.3999632f
 
 /** Where an instance stands: scaled, then turned around y, then moved. */

@@ -27,9 +27,9 @@ enum shape_kind {
     SHAPE_COUNT
 };
 
-#define GROUND_EXTENT 70.0f ///< metres from the middle to an edge
+#define GROUND_EXTENT 70.0f ///< meters from the middle to an edge
 
-/** Metres above 0 at (x, z). */
+/** Meters above 0 at (x, z). */
 float ground_height(float x, float z);
 
 /** Appends a shape's triangles; false when out of memory, with the mesh as it was. */

@@ -17,8 +17,8 @@ def read_png(path):
         elif kind == b"IDAT":
             packed += data[at + 8 : at + 8 + size]
         at += size + 12
-    width, height, depth, colour = header[:4]
-    step = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
+    width, height, depth, color = header[:4]
+    step = {0: 1, 2: 3, 4: 2, 6: 4}[color]
     assert depth == 8 and header[6] == 0
     raw, rows = zlib.decompress(packed), []
     before = bytearray(width * step)

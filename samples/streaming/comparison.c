@@ -162,10 +162,10 @@ static bool write_picture(const struct settings *settings, const char *kind, uin
 static bool write_errors(const struct pass *pass, uint32_t frame, const float *errors)
 {
     size_t count = pixel_count(pass->comparison);
-    uint8_t *colours = malloc(4 * count);
-    bool written = colours && check(sluiceColorMagma(errors, count, colours), frame) &&
-                   write_picture(&pass->comparison->gallery->settings, "flip", frame, colours);
-    free(colours);
+    uint8_t *colors = malloc(4 * count);
+    bool written = colors && check(sluiceColorMagma(errors, count, colors), frame) &&
+                   write_picture(&pass->comparison->gallery->settings, "flip", frame, colors);
+    free(colors);
     return written;
 }
 

@@ -85,7 +85,7 @@ vec3 lightSurface(vec3 albedo, vec3 position, vec3 normal, float shine)
     return albedo * diffuse + specular;
 }
 
-/** A film-like curve, and sRGB encoding. Whatever comes in, the result is a colour. */
+/** A film-like curve, and sRGB encoding. Whatever comes in, the result is a color. */
 vec3 develop(vec3 color)
 {
     color = mix(color, vec3(0.0), isnan(color));

@@ -10,7 +10,7 @@
 #define GALLERY_PAGE_CHUNKS 64 /* descriptors of page images */
 
 /* Draw flags. */
-#define GALLERY_GREY 1u    /* one channel, shown as grey */
+#define GALLERY_GRAY 1u    /* one channel, shown as gray */
 #define GALLERY_PAINTED 2u /* has a relief, and varnish that shines */
 #define GALLERY_GLOWING 4u /* not lit: gives light itself */
 
@@ -29,7 +29,7 @@ struct GalleryFrame {
     float eye[3];
     float feedbackProbability;
     float
-        roomSize[3]; /* width, height, length; the room is centred in x, from 0 up, from 0 to -z */
+        roomSize[3]; /* width, height, length; the room is centered in x, from 0 up, from 0 to -z */
     float lodBias;
     float maxAnisotropy;
     uint feedbackSeed;

@@ -14,7 +14,7 @@ struct pattern_image {
     uint32_t supersamples; ///< per axis below level 0, for patterns that do not filter themselves
 };
 
-/** Linear colours of `format`, full chain. */
+/** Linear colors of `format`, full chain. */
 SluiceResult pattern_create_source(const struct pattern_image *image, SluiceFormat format,
                                    SluiceImageSource **source);
 

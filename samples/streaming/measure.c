@@ -90,7 +90,7 @@ struct metric_summary {
     double lowest, highest;
 };
 
-static struct metric_summary summarise(const struct measure *measure, size_t offset)
+static struct metric_summary summarize(const struct measure *measure, size_t offset)
 {
     struct metric_summary summary = {0, NAN, NAN};
     uint32_t count = 0, every = measure->settings->metrics_every;
@@ -208,8 +208,8 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
         if (record->statistics.tileMemorySize > peak_memory)
             peak_memory = record->statistics.tileMemorySize;
     }
-    struct metric_summary ssim = summarise(measure, offsetof(struct frame_record, ssim));
-    struct metric_summary flip = summarise(measure, offsetof(struct frame_record, flip));
+    struct metric_summary ssim = summarize(measure, offsetof(struct frame_record, ssim));
+    struct metric_summary flip = summarize(measure, offsetof(struct frame_record, flip));
     const struct figure list[] = {
         {"pictures", measure->picture_count, "pictures", "that hang in the gallery"},
         {"pictures_left_out", measure->refused_count, "pictures", "that could not be opened"},
@@ -242,7 +242,7 @@ uint32_t measure_figures(const struct measure *measure, struct figure figures[ME
          "that these reads were looked for in"},
         {"tiles_mapped", (double)statistics->tilesMapped, "tiles", "in all, with their texels"},
         {"tiles_unmapped", (double)statistics->tilesUnmapped, "tiles", "in all"},
-        {"tiles_cancelled", (double)statistics->tilesCancelled, "tiles",
+        {"tiles_canceled", (double)statistics->tilesCanceled, "tiles",
          "wanted no longer before they were loaded"},
         {"tiles_failed", (double)statistics->tilesFailed, "tiles", "failed reads"},
         {"bytes_uploaded", (double)statistics->bytesUploaded, "bytes", "copied to images"},

@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* What is less than this in all is standing still. */
-#define STILL_METRES 0.004f
+#define STILL_METERS 0.004f
 #define STILL_RADIANS 0.004f
 
 #define MOST_SPEEDING_UP 1.0f ///< times the way that the speed of now makes
@@ -111,7 +111,7 @@ bool motion_look_ahead(const struct motion *motion, double seconds, struct camer
         eyes[i] = camera->eye;
         directions[i] = vec3_normalize(vec3_sub(camera->target, camera->eye));
     }
-    struct vec3 way = way_ahead(eyes, motion->times, (float)seconds, STILL_METRES);
+    struct vec3 way = way_ahead(eyes, motion->times, (float)seconds, STILL_METERS);
     struct vec3 arc = way_ahead(directions, motion->times, (float)seconds, STILL_RADIANS);
     float distance = length_of(vec3_sub(ahead->target, ahead->eye));
     ahead->eye = vec3_add(eyes[NEWEST], way);

@@ -15,7 +15,7 @@
 
 #define MOTION_FRAMES 5 ///< that are looked at
 
-/** Zero-initialise. */
+/** Zero-initialize. */
 struct motion {
     struct camera past[MOTION_FRAMES]; ///< oldest first; the last `count` of them
     double times[MOTION_FRAMES];       ///< seconds

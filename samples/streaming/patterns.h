@@ -6,7 +6,7 @@
 #define SAMPLES_STREAMING_PATTERNS_H
 
 /**
- * Linear colour at (u, v), where v goes from 0 on top to 1 at the bottom and u has the same scale.
+ * Linear color at (u, v), where v goes from 0 on top to 1 at the bottom and u has the same scale.
  * `footprint` is the size of a texel in that scale: what is finer is averaged away.
  */
 typedef void (*pattern_fn)(float u, float v, float footprint, float rgb[3]);

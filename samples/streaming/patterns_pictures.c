@@ -11,7 +11,7 @@ static void mix_into(float rgb[3], const float other[3], float share)
         rgb[i] += (other[i] - rgb[i]) * share;
 }
 
-/* An archipelago from above: warped noise as height, coloured by height, lit from the north-west.
+/* An archipelago from above: warped noise as height, colored by height, lit from the north-west.
  */
 void pattern_coast(float u, float v, float footprint, float rgb[3])
 {
@@ -146,7 +146,7 @@ void pattern_chart(float u, float v, float footprint, float rgb[3])
 }
 
 struct pane {
-    float nearest, second; ///< distances to the two nearest centres
+    float nearest, second; ///< distances to the two nearest centers
     uint32_t id;
 };
 
@@ -238,7 +238,7 @@ void pattern_nebula(float u, float v, float footprint, float rgb[3])
     }
 }
 
-/** Lines r = const, bent by petals around a centre; grey where they are too fine to be seen. */
+/** Lines r = const, bent by petals around a center; gray where they are too fine to be seen. */
 static float engraved_lines(float dx, float dy, float petals, float bend, float lines,
                             float footprint)
 {
@@ -256,10 +256,10 @@ void pattern_guilloche(float u, float v, float footprint, float rgb[3])
 {
     static const float inks[3][3] = {
         {0.02f, 0.19f, 0.15f}, {0.38f, 0.04f, 0.07f}, {0.03f, 0.07f, 0.35f}};
-    static const float centres[3][2] = {{0.5f, 0.5f}, {1.0f, 0.5f}, {1.5f, 0.5f}};
+    static const float centers[3][2] = {{0.5f, 0.5f}, {1.0f, 0.5f}, {1.5f, 0.5f}};
     rgb[0] = 0.72f, rgb[1] = 0.68f, rgb[2] = 0.54f;
     for (int layer = 0; layer < 3; layer++) {
-        float dx = u - centres[layer][0], dy = v - centres[layer][1];
+        float dx = u - centers[layer][0], dy = v - centers[layer][1];
         float line = engraved_lines(dx, dy, 8.0f + 4.0f * (float)layer, 0.16f, 26.0f, footprint);
         float fine = engraved_lines(dy, dx, 36.0f, 0.04f, 300.0f, footprint);
         float fade = 1.0f - noise_smoothstep(0.2f, 0.8f, sqrtf(dx * dx + dy * dy));

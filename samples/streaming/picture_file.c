@@ -127,7 +127,7 @@ static SluiceResult open_store(const char *path, SluiceStoreReadPool *pool,
 }
 
 #ifdef HAVE_CONTAINER
-/* Headers without DXGI formats cannot say sRGB, and the colours of pictures are. */
+/* Headers without DXGI formats cannot say sRGB, and the colors of pictures are. */
 static SluiceFormat dds_color_format(const char *path, SluiceFormat format)
 {
     char bytes[88] = {0};

@@ -37,7 +37,7 @@ static bool fits(const char *path, const SluiceImageInfo *info, const struct pic
     return true;
 }
 
-static bool is_grey(SluiceFormat format)
+static bool is_gray(SluiceFormat format)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};
     return sluiceGetFormatInfo(format, &info) == SLUICE_SUCCESS && info.channelCount == 1;
@@ -57,7 +57,7 @@ static SluiceResult open_picture(const struct picture_path *path,
         result = SLUICE_ERROR_UNSUPPORTED;
     if (result == SLUICE_SUCCESS)
         result = exposure_measure(picture->color, &picture->info, &picture->exposure);
-    picture->grey = is_grey(picture->info.format);
+    picture->gray = is_gray(picture->info.format);
     return result;
 }
 

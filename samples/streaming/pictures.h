@@ -13,7 +13,7 @@ struct picture {
     SluiceImageSource *color; ///< owned
     SluiceImageInfo info;
     float exposure;            ///< factor that brings the picture to a middle brightness
-    bool grey;                 ///< one channel, to be shown as grey
+    bool gray;                 ///< one channel, to be shown as gray
     SluiceImageSource *relief; ///< owned; height of canvas and paint, half the picture's size
     struct pattern_image relief_pattern;
 };

@@ -1,4 +1,4 @@
-/* Frames, ceiling, benches: a colour and light. */
+/* Frames, ceiling, benches: a color and light. */
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -34,7 +34,7 @@ struct renderer_surface {
     uint32_t color_index, relief_index; ///< in the texture table
     bool relief_feedback;               ///< writes feedback of its own
     float exposure, relief_scale;
-    bool grey, painted;
+    bool gray, painted;
     bool missing; ///< left out: drawn like a plain part
 };
 
@@ -51,7 +51,7 @@ void renderer_write_frame_set(const struct renderer *renderer, VkDescriptorSet s
 /** The pages in set 0, as they are now. */
 void renderer_write_pages(const struct renderer *renderer, VkDescriptorSet set,
                           const SluiceVulkanPages *pages);
-/** Descriptors of set 1; without a relief, pass the colour's view twice. */
+/** Descriptors of set 1; without a relief, pass the color's view twice. */
 void renderer_write_texture_set(const struct renderer *renderer, VkDescriptorSet set,
                                 VkImageView color, VkImageView relief, bool repeat);
 

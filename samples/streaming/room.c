@@ -213,7 +213,7 @@ static struct GalleryLight place_light(const struct room_place *place)
                                  cosf(angle * 0.92f)};
 }
 
-/** The lamps of a bay on one side and of its neighbours on the same wall. */
+/** The lamps of a bay on one side and of its neighbors on the same wall. */
 static void set_wall_lights(const struct room *room, struct room_part *part, int32_t bay, bool left)
 {
     for (int32_t i = 0; i < GALLERY_LIGHTS_PER_DRAW; i++) {

@@ -1,4 +1,4 @@
-/** The gallery as triangles, lamps and a list of what to draw. Metres; y is up. */
+/** The gallery as triangles, lamps and a list of what to draw. Meters; y is up. */
 #ifndef SAMPLES_STREAMING_ROOM_H
 #define SAMPLES_STREAMING_ROOM_H
 
@@ -43,7 +43,7 @@ struct room {
     bool out_of_memory;
 };
 
-#define ROOM_FLOOR_REPEAT 3.2f ///< metres that the floor's texture covers
+#define ROOM_FLOOR_REPEAT 3.2f ///< meters that the floor's texture covers
 #define ROOM_WALL_REPEAT 1.8f
 
 /** False if out of memory. */

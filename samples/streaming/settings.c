@@ -79,7 +79,7 @@ enum option_outcome settings_parse(int argc, char **argv, struct settings *s)
         {OPTION_FLAG, "generate-only", .value = &s->generate_only,
          .help = "end after generating, or baking, the pictures"},
         {OPTION_CHOICE, "format", "auto|rgba16f|rgba8", "auto", &s->format,
-         "texels on the GPU; auto: half floats of OpenEXR files, one channel if they are grey, "
+         "texels on the GPU; auto: half floats of OpenEXR files, one channel if they are gray, "
          "else sRGB bytes; stores, DDS and KTX2 files keep their format"},
 
         {OPTION_SECTION, .help = "Frames"},

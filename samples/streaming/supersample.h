@@ -13,7 +13,7 @@ void supersample_init(struct supersample *tables);
 
 /**
  * Each pixel of `small` [height][width] is the mean of factor x factor of `large`, [height *
- * factor][width * factor]; RGBA, colours sRGB, alpha linear. `factor` from 1 to 16.
+ * factor][width * factor]; RGBA, colors sRGB, alpha linear. `factor` from 1 to 16.
  */
 void supersample_average(const struct supersample *tables, const uint8_t *large, uint32_t factor,
                          uint32_t width, uint32_t height, uint8_t *small);

@@ -56,7 +56,7 @@ void main()
     uint missing, reliefMissing = 0u;
     vec4 texel = sluiceSample(colorTexture, draw.colorTexture, uv, frame.lodBias,
                               frame.maxAnisotropy, missing);
-    vec3 albedo = ((draw.flags & GALLERY_GREY) != 0u ? texel.rrr : texel.rgb) * draw.exposure;
+    vec3 albedo = ((draw.flags & GALLERY_GRAY) != 0u ? texel.rrr : texel.rgb) * draw.exposure;
 
     vec3 bent = normal;
     float shine = 0.0;

@@ -23,7 +23,7 @@ sums() { find "$1" -name '*.store' -exec sha256sum {} + | sort; }
 [ $? -ne 77 ] || { echo "1..0 # SKIP there is no Vulkan device that streams"; exit 0; }
 
 mkdir -p in/sub
-"$make" rgb 700 500 1 in/a.png && "$make" rgb 640 800 2 in/sub/b.jpg && "$make" grey 300 200 3 in/c.tif &&
+"$make" rgb 700 500 1 in/a.png && "$make" rgb 640 800 2 in/sub/b.jpg && "$make" gray 300 200 3 in/c.tif &&
     cp "$root/tests/exr/data/mip_zip.exr" in/tiled.exr && cp "$root/tests/exr/data/scan_piz.exr" in/lines.exr &&
     head -c 2000 in/sub/b.jpg >in/broken.jpg && echo "no picture" >in/notes.txt && ln -s . in/circle &&
     mkfifo in/pipe.png

@@ -193,8 +193,8 @@ static SluiceResult create_picture_surface(struct view *view, const struct pictu
     surface->relief_index = relief.tableIndex;
     surface->relief_feedback = !sets;
     surface->exposure = picture->exposure;
-    surface->relief_scale = 0.0012f; /* metres from the deepest to the highest paint */
-    surface->grey = picture->grey;
+    surface->relief_scale = 0.0012f; /* meters from the deepest to the highest paint */
+    surface->gray = picture->gray;
     surface->painted = true;
     renderer_write_texture_set(view->request.renderer, surface->textures, color.imageView,
                                relief.imageView, false);

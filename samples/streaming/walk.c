@@ -13,7 +13,7 @@ static const struct room_place *place_of(const struct room *room, uint32_t index
     return &room->places[index < room->place_count ? index : room->place_count - 1];
 }
 
-/** Before a picture: x and y in units of its half size, z in metres from the wall. */
+/** Before a picture: x and y in units of its half size, z in meters from the wall. */
 static struct vec3 spot(const struct room_place *place, float x, float y, float z)
 {
     struct vec3 p = vec3_add(place->center, vec3_scale(place->right, 0.5f * x * place->width));

@@ -94,7 +94,7 @@ sanitizer_stage() {
     stage_title "$stage"
     if ! sanitizer_works "$sanitizers"; then
         if disable_aslr='setarch -R' && sanitizer_works "$sanitizers"; then
-            say "This kernel's address layout does not suit the sanitizer; running without randomisation."
+            say "This kernel's address layout does not suit the sanitizer; running without randomization."
         elif disable_aslr='' && ASAN_OPTIONS=detect_leaks=0 sanitizer_works "$sanitizers"; then
             say "Leaks cannot be looked for here (no ptrace); everything else is checked."
             local -x ASAN_OPTIONS=detect_leaks=0

@@ -75,7 +75,7 @@ void stage(inout Cursor cursor, uint windowFirst)
     }
 }
 
-/* Neighbours write neighbours: words that go to the host one by one are as slow as lines of them. */
+/* Neighbors write neighbors: words that go to the host one by one are as slow as lines of them. */
 void writeWindow(uint first, uint end)
 {
     for (uint at = first + gl_LocalInvocationIndex; at < end; at += SLUICE_SCAN_GROUP_SIZE) {

@@ -1,4 +1,4 @@
-/* Four neighbouring regions of a segment, for the passes that read feedback. */
+/* Four neighboring regions of a segment, for the passes that read feedback. */
 #include "resolve.glsl"
 
 /* One of the two is used, by the encoding; both begin with region 0. */

@@ -1,7 +1,7 @@
 /*
  * One workgroup, as large as the device allows: counts of segments become places of segments, and
- * each item gets its place among the results or, where the room ends, none. Neighbours take
- * neighbours, all at once, then as many again.
+ * each item gets its place among the results or, where the room ends, none. Neighbors take
+ * neighbors, all at once, then as many again.
  */
 #version 460
 #extension GL_GOOGLE_include_directive : require

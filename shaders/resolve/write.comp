@@ -10,7 +10,7 @@ layout(std430, binding = 4) writeonly buffer Readback { uint words[]; } readback
 
 shared uint changes[SLUICE_RESOLVE_SEGMENT_SIZE];
 
-/* Neighbours write neighbours: words that go to the host one by one are as slow as lines of them. */
+/* Neighbors write neighbors: words that go to the host one by one are as slow as lines of them. */
 void writeChanges(SluiceQuad quad, uint region, uint to, uint count)
 {
     uvec4 levels = sluiceUnpackLevels(quad.levels);

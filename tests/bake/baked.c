@@ -119,10 +119,10 @@ void write_png(const char *path, const void *samples, uint32_t width, uint32_t h
         vips_image_new_from_memory(samples, size, (int)width, (int)height, (int)channels,
                                    wide ? VIPS_FORMAT_USHORT : VIPS_FORMAT_UCHAR);
     assert_non_null(image);
-    VipsInterpretation colour = wide ? VIPS_INTERPRETATION_RGB16 : VIPS_INTERPRETATION_sRGB;
-    VipsInterpretation grey = wide ? VIPS_INTERPRETATION_GREY16 : VIPS_INTERPRETATION_B_W;
+    VipsInterpretation color = wide ? VIPS_INTERPRETATION_RGB16 : VIPS_INTERPRETATION_sRGB;
+    VipsInterpretation gray = wide ? VIPS_INTERPRETATION_GREY16 : VIPS_INTERPRETATION_B_W;
     VipsImage *named;
-    assert_int_equal(vips_copy(image, &named, "interpretation", channels > 2 ? colour : grey, NULL),
+    assert_int_equal(vips_copy(image, &named, "interpretation", channels > 2 ? color : gray, NULL),
                      0);
     assert_int_equal(vips_image_write_to_file(named, path, NULL), 0);
     g_object_unref(named);

@@ -1,5 +1,5 @@
-/* make_picture KIND WIDTH HEIGHT SEED FILE: a picture of smooth colours and noise, "plain" of one
- * colour. */
+/* make_picture KIND WIDTH HEIGHT SEED FILE: a picture of smooth colors and noise, "plain" of one
+ * color. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 static int channels_of(const char *kind)
 {
-    return strcmp(kind, "grey") == 0 ? 1 : strcmp(kind, "rgba") == 0 ? 4 : 3;
+    return strcmp(kind, "gray") == 0 ? 1 : strcmp(kind, "rgba") == 0 ? 4 : 3;
 }
 
 static VipsImage *make_noisy(int width, int height, int channels, uint32_t seed)
@@ -32,14 +32,14 @@ static VipsImage *make_noisy(int width, int height, int channels, uint32_t seed)
 /* Made as it is written, so that it can be larger than memory. */
 static VipsImage *make_plain(int width, int height)
 {
-    VipsImage *black = NULL, *colour = NULL, *bytes = NULL;
+    VipsImage *black = NULL, *color = NULL, *bytes = NULL;
     double factors[] = {1, 1, 1}, values[] = {40, 90, 200};
     if (vips_black(&black, width, height, "bands", 3, NULL) != 0 ||
-        vips_linear(black, &colour, factors, values, 3, "uchar", TRUE, NULL) != 0 ||
-        vips_copy(colour, &bytes, "interpretation", VIPS_INTERPRETATION_sRGB, NULL) != 0)
+        vips_linear(black, &color, factors, values, 3, "uchar", TRUE, NULL) != 0 ||
+        vips_copy(color, &bytes, "interpretation", VIPS_INTERPRETATION_sRGB, NULL) != 0)
         return NULL;
     g_object_unref(black);
-    g_object_unref(colour);
+    g_object_unref(color);
     return bytes;
 }
 

@@ -22,7 +22,7 @@ static const struct kind kinds[] = {
     {0, SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, 8, 3, 36},
 };
 
-/* Smooth colours with some noise; opaque for BC1, because it knows one alpha only. */
+/* Smooth colors with some noise; opaque for BC1, because it knows one alpha only. */
 static uint8_t *make_picture(uint32_t width, uint32_t height, bool opaque)
 {
     uint8_t *rgba = malloc(4 * (size_t)width * height);

@@ -111,7 +111,7 @@ static bool stop_at_half(void *user, uint64_t done, uint64_t total)
     return done < total / 2;
 }
 
-static void a_cancelled_bake_is_gone_on_with(void **state)
+static void a_canceled_bake_is_gone_on_with(void **state)
 {
     (void)state;
     struct bake_folder folder;
@@ -127,7 +127,7 @@ static void a_cancelled_bake_is_gone_on_with(void **state)
                            .pInputPath = picture,
                            .pOutputPath = path,
                            .pfnProgress = stop_at_half};
-    CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(bake(1, 0, &info, NULL), SLUICE_ERROR_CANCELED);
     assert_int_equal(access(path, F_OK), -1);
     info.pfnProgress = NULL;
     CHECK_OK(bake(1, 0, &info, &report));
@@ -317,7 +317,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(strips_and_threads_do_not_matter),
         cmocka_unit_test(sources_that_fail_leave_nothing),
-        cmocka_unit_test(a_cancelled_bake_is_gone_on_with),
+        cmocka_unit_test(a_canceled_bake_is_gone_on_with),
         cmocka_unit_test(what_is_up_to_date_is_skipped_until_something_changes),
         cmocka_unit_test(too_little_memory_is_refused_and_the_rest_is_kept_to),
         cmocka_unit_test(no_memory_is_an_ordinary_result),

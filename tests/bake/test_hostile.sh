@@ -57,7 +57,7 @@ first=$?
 [ $((first + second)) -le 1 ] && run 0 --verify twice.store && [ ! -e twice.store.sluice-part ]
 fact two_bakes_of_one_file_do_not_mix
 
-"$make" rgb 1 1 1 one.png && "$make" grey 1 65536 1 tall.png && "$make" rgba 65536 1 1 wide.png &&
+"$make" rgb 1 1 1 one.png && "$make" gray 1 65536 1 tall.png && "$make" rgba 65536 1 1 wide.png &&
     run 0 one.png tall.png wide.png -o sizes.d --filter kaiser --wrap repeat && run 0 --verify sizes.d/*.store
 fact pictures_of_one_texel_in_a_direction_are_baked
 

@@ -8,7 +8,7 @@ info=$(realpath "$1") bake=$(realpath "$2") make=$(realpath "$3") compare=$(real
 # shellcheck disable=SC2034 # it is what run runs
 tool=$info
 
-"$make" rgba 300 200 1 a.png && "$make" grey 70 30 2 b.png &&
+"$make" rgba 300 200 1 a.png && "$make" gray 70 30 2 b.png &&
     "$bake" a.png b.png -o . --wrap repeat,mirror >out 2>err
 fact stores_can_be_made
 
@@ -39,8 +39,8 @@ fact a_picture_is_written_in_as_low_strips_as_the_memory_asks_for
 run 0 a.store --tile 2,1 --png tile.png && "$compare" a.png tile.png 256 128
 fact a_tile_is_a_part_of_it
 
-run 0 b.store --png grey.png && "$compare" b.png grey.png
-fact one_channel_is_grey
+run 0 b.store --png gray.png && "$compare" b.png gray.png
+fact one_channel_is_gray
 
 run 0 a.store --level 8 --png one.png && [ -s one.png ]
 fact the_last_level_is_a_texel

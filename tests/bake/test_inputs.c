@@ -54,8 +54,8 @@ static void check_exr(const char *path)
     bake_folder_finish(&folder);
 }
 
-static void colour(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                   uint32_t height, float rgba[4])
+static void color(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
 {
     (void)user, (void)level;
     rgba[0] = (float)x / (float)width;
@@ -69,7 +69,7 @@ static void tiled_files_are_read_in_strips(void **state)
     (void)state;
     struct bake_folder folder;
     char path[256];
-    SluiceProceduralImage image = {NULL, colour};
+    SluiceProceduralImage image = {NULL, color};
     SluiceImageInfo info = {.structSize = sizeof info,
                             .width = 300,
                             .height = 517,

@@ -83,7 +83,7 @@ static double same(double v)
     return v;
 }
 
-static void colours_are_averaged_as_light(void **state)
+static void colors_are_averaged_as_light(void **state)
 {
     (void)state;
     struct fixture f;
@@ -169,7 +169,7 @@ static void words_of_the_picture_are_kept_as_far_as_floats_hold_them(void **stat
     bake_folder_finish(&f.folder);
 }
 
-/* Colour of level 1 is weighted by alpha; without alpha it is the plain mean. */
+/* Color of level 1 is weighted by alpha; without alpha it is the plain mean. */
 static void check_weighted(const float *texels, const float *level, uint32_t width, uint32_t height)
 {
     for (uint32_t y = 0; y < height / 2; y++)
@@ -202,7 +202,7 @@ static float *random_floats(size_t count, uint32_t seed)
     return floats;
 }
 
-static void colours_count_as_much_as_they_cover(void **state)
+static void colors_count_as_much_as_they_cover(void **state)
 {
     (void)state;
     struct fixture f;
@@ -224,7 +224,7 @@ static void colours_count_as_much_as_they_cover(void **state)
     bake_folder_finish(&f.folder);
 }
 
-static void premultiplied_colours_are_averaged_as_they_are(void **state)
+static void premultiplied_colors_are_averaged_as_they_are(void **state)
 {
     (void)state;
     struct fixture f;
@@ -445,12 +445,12 @@ static void finite_floats_are_kept_and_averaged_over_their_whole_range(void **st
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_are_averaged_as_light),
+        cmocka_unit_test(colors_are_averaged_as_light),
         cmocka_unit_test(data_are_averaged_as_they_are),
         cmocka_unit_test(bytes_of_the_picture_are_kept),
         cmocka_unit_test(words_of_the_picture_are_kept_as_far_as_floats_hold_them),
-        cmocka_unit_test(colours_count_as_much_as_they_cover),
-        cmocka_unit_test(premultiplied_colours_are_averaged_as_they_are),
+        cmocka_unit_test(colors_count_as_much_as_they_cover),
+        cmocka_unit_test(premultiplied_colors_are_averaged_as_they_are),
         cmocka_unit_test(normals_keep_their_length),
         cmocka_unit_test(normals_that_cancel_point_up),
         cmocka_unit_test(numbers_that_are_none_become_some),

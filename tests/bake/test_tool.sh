@@ -10,7 +10,7 @@ count() { grep -c -- "$1" "$2"; }
 
 mkdir -p in/sub/deep
 "$make" rgb 300 200 1 in/a.png && "$make" rgba 129 77 2 in/sub/b.png &&
-    "$make" grey 64 512 3 in/sub/deep/c.tif && "$make" rgb 200 100 4 in/d.jpg &&
+    "$make" gray 64 512 3 in/sub/deep/c.tif && "$make" rgb 200 100 4 in/d.jpg &&
     "$make" rgb 333 111 5 in/sub/e.webp
 fact pictures_can_be_made
 

@@ -13,7 +13,7 @@ static void product_that_overflows_is_refused(void **state)
     assert_null(slc_alloc(&cb, 0, 3));
 }
 
-static void default_allocator_honours_large_alignments(void **state)
+static void default_allocator_honors_large_alignments(void **state)
 {
     (void)state;
     SluiceAllocationCallbacks cb = slc_allocator(NULL);
@@ -59,7 +59,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(product_that_overflows_is_refused),
-        cmocka_unit_test(default_allocator_honours_large_alignments),
+        cmocka_unit_test(default_allocator_honors_large_alignments),
         cmocka_unit_test(regrow_that_fails_keeps_the_old_memory),
         cmocka_unit_test(checked_arithmetic_is_right_at_its_ends),
     };

@@ -34,7 +34,7 @@ static void expand_565(unsigned packed, int rgb[3])
     rgb[2] = (int)((packed & 31) * 255 / 31);
 }
 
-/* The colour of a texel of a BC1 block, or of the second half of a BC3 one. */
+/* The color of a texel of a BC1 block, or of the second half of a BC3 one. */
 static void decode_color(const uint8_t *block, uint32_t x, uint32_t y, bool is_bc3, uint8_t rgba[4])
 {
     int a[3], b[3];
@@ -91,7 +91,7 @@ static void check_level(SluiceImageSource *source, const SluiceImageInfo *info, 
     assert_non_null(texels);
     CHECK_OK(sluiceReadImageRegion(source, &region, texels,
                                    sluiceGetFormatRegionSize(info->format, width, 1)));
-    /* A block has four colours on the line that its texels cover: a sixth of it is lost. */
+    /* A block has four colors on the line that its texels cover: a sixth of it is lost. */
     double covered = (8.0 / width + 4.0 / height) / 3;
     double limit = SMALL_ERROR, squares = 0;
     if (sluiceGetFormatTexelSize(info->format) == 0)

@@ -117,7 +117,7 @@ void app_read_cancel_list(struct app_model *a)
         assert_int_equal(t->tiles[tile->tileIndex], APP_LOADING); /* under way, not listed yet */
         assert_true(t->heap[tile->tileIndex] == tile->heapId);
         assert_true(t->slot[tile->tileIndex] == tile->slot);
-        t->tiles[tile->tileIndex] = APP_CANCELLING;
+        t->tiles[tile->tileIndex] = APP_CANCELING;
     }
 }
 
@@ -147,9 +147,9 @@ static void answer_tile(struct app_model *a, struct app_texture *t, uint32_t til
     if (dice == 0) {
         SOUND(&a->f, sluiceReportFailedTiles(m, t->id, 1, &tile, a->time));
         drop_tile(a, t, tile, 0);
-    } else if (dice == 1 || t->tiles[tile] == APP_CANCELLING) {
+    } else if (dice == 1 || t->tiles[tile] == APP_CANCELING) {
         retire = any_retire(a);
-        SOUND(&a->f, sluiceReportCancelledTiles(m, t->id, 1, &tile, retire));
+        SOUND(&a->f, sluiceReportCanceledTiles(m, t->id, 1, &tile, retire));
         drop_tile(a, t, tile, retire);
     } else {
         SOUND(&a->f, sluiceUpdateTilesMapping(m, t->id, 1, &tile));
@@ -165,7 +165,7 @@ static void answer_wrongly(struct app_model *a, struct app_texture *t, uint32_t 
     const SluiceResult refused = SLUICE_ERROR_INVALID_TILE_STATE;
     CHECK_RESULT(sluiceUpdateTilesMapping(m, t->id, 1, &tile), refused);
     CHECK_RESULT(sluiceReportFailedTiles(m, t->id, 1, &tile, a->time), refused);
-    CHECK_RESULT(sluiceReportCancelledTiles(m, t->id, 1, &tile, a->retire), refused);
+    CHECK_RESULT(sluiceReportCanceledTiles(m, t->id, 1, &tile, a->retire), refused);
     CHECK_SOUND(&a->f);
 }
 
@@ -174,7 +174,7 @@ void app_answer(struct app_model *a, uint32_t one_in)
     for (uint32_t i = 0; i < APP_TEXTURES; i++) {
         struct app_texture *t = &a->textures[i];
         for (uint32_t tile = 0; tile < t->tile_count; tile++) {
-            bool asked = t->tiles[tile] == APP_LOADING || t->tiles[tile] == APP_CANCELLING;
+            bool asked = t->tiles[tile] == APP_LOADING || t->tiles[tile] == APP_CANCELING;
             if (asked && below(a, one_in) == 0)
                 answer_tile(a, t, tile);
             else if (!asked && below(a, 40) == 0)
@@ -187,7 +187,7 @@ static void remove_texture(struct app_model *a, struct app_texture *t, uint64_t 
 {
     SOUND(&a->f, sluiceRemoveStreamedTexture(a->f.manager, t->id, retire));
     for (uint32_t tile = 0; tile < t->tile_count; tile++) {
-        bool asked = t->tiles[tile] == APP_LOADING || t->tiles[tile] == APP_CANCELLING;
+        bool asked = t->tiles[tile] == APP_LOADING || t->tiles[tile] == APP_CANCELING;
         if (asked) /* its load ends later than its texture */
             CHECK_RESULT(sluiceUpdateTilesMapping(a->f.manager, t->id, 1, &tile),
                          SLUICE_ERROR_STALE_TEXTURE);
@@ -254,9 +254,9 @@ static void check_tile(const struct app_model *a, const struct app_texture *t, u
                     s == SLUICE_TILE_STATE_FAILED || s == SLUICE_TILE_STATE_GIVEN_UP);
         return;
     case APP_LOADING:
-        assert_true(s == SLUICE_TILE_STATE_ALLOCATED || s == SLUICE_TILE_STATE_CANCELLED);
+        assert_true(s == SLUICE_TILE_STATE_ALLOCATED || s == SLUICE_TILE_STATE_CANCELED);
         break;
-    case APP_CANCELLING: assert_int_equal(s, SLUICE_TILE_STATE_CANCELLED); break;
+    case APP_CANCELING: assert_int_equal(s, SLUICE_TILE_STATE_CANCELED); break;
     case APP_BOUND:
         assert_true(s == SLUICE_TILE_STATE_MAPPED || s == SLUICE_TILE_STATE_STANDBY);
         break;

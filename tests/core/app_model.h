@@ -9,7 +9,7 @@
 
 enum { APP_TEXTURES = 4, APP_TILES = 64, APP_CAPACITY = 8, APP_HEAPS = 16 };
 
-enum app_tile { APP_NOTHING, APP_LOADING, APP_CANCELLING, APP_BOUND };
+enum app_tile { APP_NOTHING, APP_LOADING, APP_CANCELING, APP_BOUND };
 
 /** 0: free; else held by a tile or retiring. */
 struct app_slot {

@@ -14,7 +14,7 @@ static const char *const names[CALL_KIND_COUNT] = {
     [CALL_TILES_TO_MAP] = "GetTilesToMap",
     [CALL_MAPPED] = "UpdateTilesMapping",
     [CALL_FAILED] = "ReportFailedTiles",
-    [CALL_CANCELLED] = "ReportCancelledTiles",
+    [CALL_CANCELED] = "ReportCanceledTiles",
     [CALL_RETRY] = "RetryFailedTiles",
     [CALL_GIVEN_UP] = "GetGivenUpTiles",
     [CALL_TILES_TO_CANCEL] = "GetTilesToCancel",
@@ -84,7 +84,7 @@ static SluiceResult make_answer(SluiceStreamedTextureManager *m, const struct ca
     else if (c->kind == CALL_FAILED)
         result = sluiceReportFailedTiles(m, c->texture, c->count, indices, c->time);
     else
-        result = sluiceReportCancelledTiles(m, c->texture, c->count, indices, c->retire);
+        result = sluiceReportCanceledTiles(m, c->texture, c->count, indices, c->retire);
     free(copy);
     return result;
 }
@@ -134,7 +134,7 @@ static SluiceResult make(SluiceStreamedTextureManager *m, const struct call *c, 
     case CALL_SET_PRIMARY: return sluiceSetPrimaryTexture(m, c->texture, c->primary);
     case CALL_MAPPED:
     case CALL_FAILED:
-    case CALL_CANCELLED: return make_answer(m, c);
+    case CALL_CANCELED: return make_answer(m, c);
     case CALL_RETRY: return sluiceRetryFailedTiles(m, c->texture);
     case CALL_TILES_TO_MAP:
     case CALL_GIVEN_UP:
@@ -226,7 +226,7 @@ void call_print(FILE *file, const struct call *c)
                 c->size);
     if (c->refuse_after != UINT64_MAX)
         fprintf(file, " refuse after %" PRIu64, c->refuse_after);
-    if (c->kind == CALL_MAPPED || c->kind == CALL_FAILED || c->kind == CALL_CANCELLED) {
+    if (c->kind == CALL_MAPPED || c->kind == CALL_FAILED || c->kind == CALL_CANCELED) {
         fprintf(file, " tiles");
         for (uint32_t i = 0; i < c->count; i++)
             fprintf(file, " %" PRIu32, c->indices[i]);

@@ -15,7 +15,7 @@ static const uint32_t base_weights[CALL_KIND_COUNT] = {
     [CALL_TILES_TO_MAP] = 30,
     [CALL_MAPPED] = 25,
     [CALL_FAILED] = 8,
-    [CALL_CANCELLED] = 8,
+    [CALL_CANCELED] = 8,
     [CALL_RETRY] = 2,
     [CALL_GIVEN_UP] = 4,
     [CALL_TILES_TO_CANCEL] = 10,
@@ -40,7 +40,7 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
     [CALL_REMOVE_TEXTURE] = NULL_MANAGER, [CALL_FEEDBACK] = NULL_FIRST,
     [CALL_MATCH_PRIMARY] = NULL_MANAGER,  [CALL_SET_PRIMARY] = NULL_MANAGER,
     [CALL_TILES_TO_MAP] = NULL_SECOND,    [CALL_MAPPED] = NULL_FIRST,
-    [CALL_FAILED] = NULL_FIRST,           [CALL_CANCELLED] = NULL_FIRST,
+    [CALL_FAILED] = NULL_FIRST,           [CALL_CANCELED] = NULL_FIRST,
     [CALL_RETRY] = NULL_MANAGER,          [CALL_GIVEN_UP] = NULL_SECOND,
     [CALL_TILES_TO_CANCEL] = NULL_SECOND, [CALL_TILES_TO_UNMAP] = NULL_SECOND,
     [CALL_COMPLETE] = NULL_MANAGER,       [CALL_TRIM] = NULL_MANAGER,
@@ -66,14 +66,14 @@ void call_sequence_start(struct call_sequence *s, struct choice choice)
     s->configured = choice_once_in(c, 2);
     s->visibility = choice_range(c, 1, 16);
     s->wandering = choice_range(c, 10, 150);
-    s->favouring = choice_below(c, 5);
+    s->favoring = choice_below(c, 5);
     s->always_packed = choice_once_in(c, 2);
     for (int k = 0; k < CALL_KIND_COUNT; k++)
         s->weights[k] = base_weights[k] * (1 + choice_below(c, 4));
     if (choice_once_in(c, 4)) /* a bad day: most loads fail */
         s->weights[CALL_FAILED] *= 6;
-    if (choice_once_in(c, 4)) /* a fast camera: most loads are cancelled */
-        s->weights[CALL_CANCELLED] *= 4;
+    if (choice_once_in(c, 4)) /* a fast camera: most loads are canceled */
+        s->weights[CALL_CANCELED] *= 4;
     s->mistakes = choice_once_in(c, 4) ? 0 : choice_range(c, 8, 60);
     s->starving = choice_once_in(c, 2) ? 0 : choice_range(c, 3, 30);
     s->refusing = choice_once_in(c, 3) ? 0 : choice_range(c, 1, 8);
@@ -284,11 +284,11 @@ static void make_answer(struct call_sequence *s, struct naive_manager *n, struct
     if (t && call->texture != t->id && !mistake(s))
         call->texture = t->id;
     const uint32_t some = choice_once_in(c, 2) ? 1 : choice_range(c, 1, 5);
-    const bool only_cancelled = call->kind == CALL_CANCELLED && !choice_once_in(c, 4);
+    const bool only_canceled = call->kind == CALL_CANCELED && !choice_once_in(c, 4);
     for (uint32_t i = 0; t && i < t->layout.tileCount; i++) {
         SluiceTileState state = t->tiles[i].state;
-        if ((state == SLUICE_TILE_STATE_CANCELLED ||
-             (state == SLUICE_TILE_STATE_ALLOCATED && !only_cancelled)) &&
+        if ((state == SLUICE_TILE_STATE_CANCELED ||
+             (state == SLUICE_TILE_STATE_ALLOCATED && !only_canceled)) &&
             choice_below(c, some) == 0)
             call->indices[call->count++] = i;
     }
@@ -389,8 +389,8 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
     struct choice *c = &s->choice;
     SluiceResult ignored;
     call->texture = any_id(s, n);
-    if (choice_below(c, 4) < s->favouring && naive_find(n, s->favourite, &ignored))
-        call->texture = s->favourite;
+    if (choice_below(c, 4) < s->favoring && naive_find(n, s->favorite, &ignored))
+        call->texture = s->favorite;
     const struct naive_texture *head = usual_primary(s, n);
     if (head)
         call->texture = head->id;
@@ -457,7 +457,7 @@ static void fill_in(struct call_sequence *s, struct naive_manager *n, struct cal
         break;
     case CALL_MAPPED:
     case CALL_FAILED:
-    case CALL_CANCELLED: make_answer(s, n, call); break;
+    case CALL_CANCELED: make_answer(s, n, call); break;
     case CALL_WRITE_MINMIP:
     case CALL_WRITE_RECT: make_write(s, n, call); break;
     case CALL_RELEASE_HEAP: make_heap(s, n, call); break;
@@ -495,7 +495,7 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
         call->kind = CALL_ADD_TEXTURE;
     if (choice_once_in(c, s->wandering)) {
         s->camera++;
-        s->favourite = any_id(s, n);
+        s->favorite = any_id(s, n);
     }
     if (s->configured) {
         s->configured = false;
@@ -511,7 +511,7 @@ void call_sequence_next(struct call_sequence *s, struct naive_manager *n, struct
         call->null = (enum call_null)choice_range(c, 1, last_pointer[call->kind]);
     if (call->kind == CALL_LAYOUT && call->null == NULL_MANAGER) /* it has none */
         call->null = NULL_NONE;
-    if (call->null == NULL_FIRST && call->kind >= CALL_MAPPED && call->kind <= CALL_CANCELLED &&
+    if (call->null == NULL_FIRST && call->kind >= CALL_MAPPED && call->kind <= CALL_CANCELED &&
         call->count == 0)
         call->indices[call->count++] = 0; /* NULL is allowed for no tiles */
 }

@@ -18,8 +18,8 @@ struct call_sequence {
     uint32_t max_textures;
     uint32_t visibility; ///< of 16 regions in view so many are sampled in a map
     uint32_t wandering;  ///< the camera moves on once in so many calls
-    uint32_t favouring;  ///< so many in 4 maps are of one texture, until the camera moves on
-    uint64_t camera, favourite;
+    uint32_t favoring;   ///< so many in 4 maps are of one texture, until the camera moves on
+    uint64_t camera, favorite;
     bool sets;        ///< most textures have one shape and follow the first one
     bool configured;  ///< config comes first
     bool small_rooms; ///< lists are mostly read in small pieces

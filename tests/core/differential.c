@@ -178,7 +178,7 @@ static void compare_statistics(struct differential *d, const SluiceStreamedTextu
     COMPARE(allocatedTileCount);
     COMPARE(mappedTileCount);
     COMPARE(standbyTileCount);
-    COMPARE(cancelledTileCount);
+    COMPARE(canceledTileCount);
     COMPARE(failedTileCount);
     COMPARE(givenUpTileCount);
     COMPARE(retiringSlotCount);
@@ -189,7 +189,7 @@ static void compare_statistics(struct differential *d, const SluiceStreamedTextu
     COMPARE(handedOutTotal);
     COMPARE(mappedTotal);
     COMPARE(unmappedTotal);
-    COMPARE(cancelledTotal);
+    COMPARE(canceledTotal);
     COMPARE(failedTotal);
     COMPARE(restoredTotal);
     COMPARE(movedTotal);
@@ -241,7 +241,7 @@ static void compare_outcomes(struct differential *d)
 static const char *state_name(SluiceTileState state)
 {
     static const char *const names[] = {"FREE",    "REQUESTED", "ALLOCATED", "MAPPED",
-                                        "STANDBY", "CANCELLED", "FAILED",    "GIVEN_UP"};
+                                        "STANDBY", "CANCELED",  "FAILED",    "GIVEN_UP"};
     return (unsigned)state < 8 ? names[state] : "unknown";
 }
 

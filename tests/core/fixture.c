@@ -237,7 +237,7 @@ void check_state(const struct fixture *f, SluiceTextureId id, uint32_t tile,
                  SluiceTileState expected, int line)
 {
     static const char *const names[] = {"FREE",    "REQUESTED", "ALLOCATED", "MAPPED",
-                                        "STANDBY", "CANCELLED", "FAILED",    "GIVEN_UP"};
+                                        "STANDBY", "CANCELED",  "FAILED",    "GIVEN_UP"};
     SluiceTileState state = fixture_state(f, id, tile);
     if (state != expected)
         fail_msg("line %d: tile %u is %s, not %s", line, (unsigned)tile,
@@ -262,7 +262,7 @@ static void hash_texture(uint64_t *h, const struct fixture *f, SluiceTextureId i
     for (uint32_t i = 0; i < layout.tileCount; i++) {
         SluiceTileState state = fixture_state(f, id, i);
         hash_number(h, state);
-        if (state >= SLUICE_TILE_STATE_ALLOCATED && state <= SLUICE_TILE_STATE_CANCELLED) {
+        if (state >= SLUICE_TILE_STATE_ALLOCATED && state <= SLUICE_TILE_STATE_CANCELED) {
             SluiceTile tile = fixture_tile(f, id, i);
             hash_number(h, (uint64_t)tile.heapId << 32 | tile.slot);
         }
@@ -299,9 +299,9 @@ uint64_t fixture_digest(const struct fixture *f, uint32_t id_count, const Sluice
     SluiceStreamedTextureStatistics s = fixture_statistics(f);
     const uint64_t numbers[] = {
         s.textureCount,     s.tileCount,        s.requestedTileCount, s.allocatedTileCount,
-        s.mappedTileCount,  s.standbyTileCount, s.cancelledTileCount, s.failedTileCount,
+        s.mappedTileCount,  s.standbyTileCount, s.canceledTileCount,  s.failedTileCount,
         s.givenUpTileCount, s.heapCount,        s.retiringSlotCount,  s.freeSlotCount,
-        s.handedOutTotal,   s.mappedTotal,      s.unmappedTotal,      s.cancelledTotal,
+        s.handedOutTotal,   s.mappedTotal,      s.unmappedTotal,      s.canceledTotal,
         s.failedTotal,      s.restoredTotal,    s.movedTotal,         f->heaps.living_count,
     };
     uint64_t h = 0xcbf29ce484222325u;

@@ -5,7 +5,7 @@
 
 static bool accepts(const struct naive_tile *tile)
 {
-    return tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_CANCELLED;
+    return tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_CANCELED;
 }
 
 static SluiceResult check_tiles(const struct naive_texture *t, const struct call *call)
@@ -72,10 +72,10 @@ static void answer_failed(struct naive_manager *n, struct naive_texture *t, stru
     n->given_up[n->given_up_count++] = (struct naive_given_up){t->id, (uint32_t)(tile - t->tiles)};
 }
 
-static void answer_cancelled(struct naive_manager *n, struct naive_tile *tile, uint64_t retire)
+static void answer_canceled(struct naive_manager *n, struct naive_tile *tile, uint64_t retire)
 {
     naive_retire_slot(n, tile, retire);
-    n->totals.cancelledTotal++;
+    n->totals.canceledTotal++;
     if (tile->wanted)
         naive_request(n, tile, 0);
     else
@@ -100,7 +100,7 @@ SluiceResult naive_answer(struct naive_manager *n, const struct call *call)
         n->time = call->time;
         naive_retry_due(n, call->time);
     }
-    if (call->kind == CALL_CANCELLED) {
+    if (call->kind == CALL_CANCELED) {
         if (call->retire != 0 && call->retire < n->last_retire)
             return SLUICE_ERROR_TIME_BACKWARDS;
         if (call->retire != 0)
@@ -111,7 +111,7 @@ SluiceResult naive_answer(struct naive_manager *n, const struct call *call)
         switch (call->kind) {
         case CALL_MAPPED: answer_mapped(n, t, tile); break;
         case CALL_FAILED: answer_failed(n, t, tile, call->time); break;
-        case CALL_CANCELLED: answer_cancelled(n, tile, call->retire); break;
+        case CALL_CANCELED: answer_canceled(n, tile, call->retire); break;
         default: abort();
         }
     }

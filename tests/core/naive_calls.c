@@ -287,7 +287,7 @@ static SluiceResult dispatch(struct naive_manager *n, const struct call *call,
     case CALL_TILES_TO_MAP: return naive_tiles_to_map(n, call, seen, out);
     case CALL_MAPPED:
     case CALL_FAILED:
-    case CALL_CANCELLED: return naive_answer(n, call);
+    case CALL_CANCELED: return naive_answer(n, call);
     case CALL_RETRY: return naive_retry(n, call);
     case CALL_GIVEN_UP: return naive_given_up_tiles(n, call, out);
     case CALL_TILES_TO_CANCEL: return naive_tiles_to_cancel(n, call, out);

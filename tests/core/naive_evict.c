@@ -37,7 +37,7 @@ static struct naive_tile *finest_mapped(const struct naive_manager *n, uint32_t 
     return NULL;
 }
 
-static bool are_neighbours(uint32_t a, uint32_t b)
+static bool are_neighbors(uint32_t a, uint32_t b)
 {
     return a == b || a + 1 == b || b + 1 == a;
 }
@@ -49,8 +49,8 @@ static bool is_seen(const struct naive_manager *n, const struct naive_ref *ref)
         return true;
     for (uint32_t i = 0; i < t->layout.regularTileCount; i++) {
         const struct naive_tile *tile = &t->tiles[i];
-        if (tile->level == ref->tile->level && are_neighbours(tile->x, ref->tile->x) &&
-            are_neighbours(tile->y, ref->tile->y) && t->last_wishes[i] <= tile->level)
+        if (tile->level == ref->tile->level && are_neighbors(tile->x, ref->tile->x) &&
+            are_neighbors(tile->y, ref->tile->y) && t->last_wishes[i] <= tile->level)
             return true;
     }
     return false;

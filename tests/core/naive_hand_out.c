@@ -275,11 +275,11 @@ static bool hand_out_requests(struct naive_manager *n, const struct call *call,
 static bool may_prefetch(struct naive_manager *n, const struct call *call,
                          const struct outcome *seen, const struct outcome *out, bool *cut_short)
 {
-    uint32_t listed, unlisted, cancelled;
+    uint32_t listed, unlisted, canceled;
     naive_count_standby(n, &listed, &unlisted);
-    free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELLED, &cancelled));
+    free(naive_collect(n, NULL, SLUICE_TILE_STATE_CANCELED, &canceled));
     *cut_short = out->count == call->room;
-    if (*cut_short || unlisted + cancelled >= n->config.numExtraStandbyTiles || !slot_for(n, false))
+    if (*cut_short || unlisted + canceled >= n->config.numExtraStandbyTiles || !slot_for(n, false))
         return false;
     *cut_short = seen->memory_refused && out->count == seen->count;
     return !*cut_short;
@@ -297,7 +297,7 @@ static bool prefetch_level(struct naive_manager *n, struct naive_texture *t,
             continue;
         if (!may_prefetch(n, call, seen, out, cut_short))
             return false;
-        tile->state = SLUICE_TILE_STATE_CANCELLED;
+        tile->state = SLUICE_TILE_STATE_CANCELED;
         tile->cancel_handed_out = true;
         if (!hand_out(n, t, tile, seen, out))
             return false;

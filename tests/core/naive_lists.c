@@ -49,12 +49,12 @@ SluiceResult naive_tiles_to_cancel(struct naive_manager *n, const struct call *c
     SluiceResult result = naive_check_list(n, call, &only);
     if (result != SLUICE_SUCCESS)
         return result;
-    uint32_t cancelled, count = 0;
-    struct naive_ref *refs = naive_collect(n, only, SLUICE_TILE_STATE_CANCELLED, &cancelled);
-    for (uint32_t i = 0; i < cancelled; i++)
+    uint32_t canceled, count = 0;
+    struct naive_ref *refs = naive_collect(n, only, SLUICE_TILE_STATE_CANCELED, &canceled);
+    for (uint32_t i = 0; i < canceled; i++)
         if (!refs[i].tile->cancel_handed_out) {
             refs[count] = refs[i];
-            refs[count++].key[0] = refs[i].tile->cancelled_at;
+            refs[count++].key[0] = refs[i].tile->canceled_at;
         }
     naive_sort(refs, count);
     out->count = call->null == NULL_SECOND ? count : min_u32(call->room, count);

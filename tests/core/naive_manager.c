@@ -121,7 +121,7 @@ void naive_statistics(const struct naive_manager *n, SluiceStreamedTextureStatis
         [SLUICE_TILE_STATE_ALLOCATED] = &out->allocatedTileCount,
         [SLUICE_TILE_STATE_MAPPED] = &out->mappedTileCount,
         [SLUICE_TILE_STATE_STANDBY] = &out->standbyTileCount,
-        [SLUICE_TILE_STATE_CANCELLED] = &out->cancelledTileCount,
+        [SLUICE_TILE_STATE_CANCELED] = &out->canceledTileCount,
         [SLUICE_TILE_STATE_FAILED] = &out->failedTileCount,
         [SLUICE_TILE_STATE_GIVEN_UP] = &out->givenUpTileCount,
     };

@@ -24,7 +24,7 @@ struct naive_tile {
     uint32_t heap, slot;
     uint64_t due;
     /* Stamps of one counter say who came first. */
-    uint64_t requested_at, cancelled_at, mapped_at, standby_at, listed_at, failed_at, given_up_at;
+    uint64_t requested_at, canceled_at, mapped_at, standby_at, listed_at, failed_at, given_up_at;
 };
 
 #define NAIVE_MAX_SPANS 6

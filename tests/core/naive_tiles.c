@@ -6,7 +6,7 @@
 bool naive_has_slot(const struct naive_tile *tile)
 {
     return tile->state == SLUICE_TILE_STATE_ALLOCATED || tile->state == SLUICE_TILE_STATE_MAPPED ||
-           tile->state == SLUICE_TILE_STATE_STANDBY || tile->state == SLUICE_TILE_STATE_CANCELLED;
+           tile->state == SLUICE_TILE_STATE_STANDBY || tile->state == SLUICE_TILE_STATE_CANCELED;
 }
 
 SluiceTile naive_tile_info(const struct naive_texture *t, uint32_t index)
@@ -101,7 +101,7 @@ void naive_become_wanted(struct naive_manager *n, struct naive_tile *tile, uint3
         tile->listed = false;
         n->totals.restoredTotal++;
         break;
-    case SLUICE_TILE_STATE_CANCELLED:
+    case SLUICE_TILE_STATE_CANCELED:
         if (!tile->cancel_handed_out)
             tile->state = SLUICE_TILE_STATE_ALLOCATED;
         break;
@@ -138,12 +138,12 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
     case SLUICE_TILE_STATE_FAILED:
     case SLUICE_TILE_STATE_GIVEN_UP: tile->state = SLUICE_TILE_STATE_FREE; break;
     case SLUICE_TILE_STATE_ALLOCATED:
-        tile->state = SLUICE_TILE_STATE_CANCELLED;
+        tile->state = SLUICE_TILE_STATE_CANCELED;
         tile->cancel_handed_out = false;
-        tile->cancelled_at = ++n->stamp;
+        tile->canceled_at = ++n->stamp;
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
-    case SLUICE_TILE_STATE_CANCELLED: break;
+    case SLUICE_TILE_STATE_CANCELED: break;
     case SLUICE_TILE_STATE_STANDBY: /* a evicted one stays listed */
         n->events[NAIVE_EVICTED_UNWANTED]++;
         break;

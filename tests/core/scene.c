@@ -166,7 +166,7 @@ static void cancel(struct scene *s)
     CHECK_OK(fixture_to_cancel(&s->f, SLUICE_ALL_TEXTURES));
     for (uint32_t i = 0; i < s->f.count; i++) {
         const SluiceTile *tile = &s->f.tiles[i];
-        CHECK_OK(sluiceReportCancelledTiles(s->f.manager, tile->textureId, 1, &tile->tileIndex, 0));
+        CHECK_OK(sluiceReportCanceledTiles(s->f.manager, tile->textureId, 1, &tile->tileIndex, 0));
         uint32_t at = 0;
         while (s->loads[at].id != tile->textureId || s->loads[at].tile != tile->tileIndex)
             assert_true(++at < s->load_count);

@@ -10,7 +10,7 @@ void check_sound(const struct fixture *f, int line)
     SluiceStreamedTextureStatistics s = fixture_statistics(f);
     uint64_t capacity = f->heaps.size / SLUICE_DEFAULT_TILE_SIZE; /* 0 before the first heap */
     uint64_t held = (uint64_t)s.allocatedTileCount + s.mappedTileCount + s.standbyTileCount +
-                    s.cancelledTileCount;
+                    s.canceledTileCount;
     if (held + s.retiringSlotCount + s.freeSlotCount != s.heapCount * capacity)
         fail_msg("line %d: %u held, %u retiring and %u free slots in %u heaps of %u", line,
                  (unsigned)held, (unsigned)s.retiringSlotCount, (unsigned)s.freeSlotCount,

@@ -15,13 +15,13 @@ static SluiceResult say_failed(SluiceStreamedTextureManager *m, SluiceTextureId 
     return sluiceReportFailedTiles(m, id, count, tiles, 1000);
 }
 
-static SluiceResult say_cancelled(SluiceStreamedTextureManager *m, SluiceTextureId id,
-                                  uint32_t count, const uint32_t *tiles)
+static SluiceResult say_canceled(SluiceStreamedTextureManager *m, SluiceTextureId id,
+                                 uint32_t count, const uint32_t *tiles)
 {
-    return sluiceReportCancelledTiles(m, id, count, tiles, 0);
+    return sluiceReportCanceledTiles(m, id, count, tiles, 0);
 }
 
-static const answer answers[] = {say_mapped, say_failed, say_cancelled};
+static const answer answers[] = {say_mapped, say_failed, say_canceled};
 
 static void check_answer_refused(struct fixture *f, SluiceTextureId id, uint32_t count,
                                  const uint32_t *tiles, SluiceResult expected)
@@ -75,8 +75,8 @@ static void a_tile_is_answered_once(void **state)
     check_answer_refused(&f, id, 1, &tile, SLUICE_ERROR_INVALID_TILE_STATE); /* given up */
     fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1, 0);
     tile = 3;
-    CHECK_OK(say_cancelled(f.manager, id, 1, &tile));
-    check_answer_refused(&f, id, 1, &tile, SLUICE_ERROR_INVALID_TILE_STATE); /* cancelled, free */
+    CHECK_OK(say_canceled(f.manager, id, 1, &tile));
+    check_answer_refused(&f, id, 1, &tile, SLUICE_ERROR_INVALID_TILE_STATE); /* canceled, free */
     tile = 0;
     check_answer_refused(&f, id, 1, &tile, SLUICE_ERROR_INVALID_TILE_STATE); /* standby */
     fixture_close(&f);
@@ -110,7 +110,7 @@ static void a_tile_twice_in_a_list_refuses_the_whole_list(void **state)
         check_answer_refused(&f, id, 4, lists[i], SLUICE_ERROR_INVALID_TILE_STATE);
     for (uint32_t i = 0; i < 6; i++)
         CHECK_STATE(&f, id, i, ALLOCATED);
-    fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1, 0); /* the same of cancelled ones */
+    fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1, 0); /* the same of canceled ones */
     for (uint32_t i = 0; i < 4; i++)
         check_answer_refused(&f, id, 4, lists[i], SLUICE_ERROR_INVALID_TILE_STATE);
     fixture_close(&f);
@@ -144,7 +144,7 @@ static SluiceTextureId reach(struct fixture *f, SluiceTileState state)
         CHECK_OK(sluiceReportFailedTiles(f->manager, id, 6, all, 0));
     if (state == SLUICE_TILE_STATE_MAPPED || state == SLUICE_TILE_STATE_STANDBY)
         CHECK_OK(say_mapped(f->manager, id, 6, all));
-    if (state == SLUICE_TILE_STATE_STANDBY || state == SLUICE_TILE_STATE_CANCELLED)
+    if (state == SLUICE_TILE_STATE_STANDBY || state == SLUICE_TILE_STATE_CANCELED)
         fixture_feed(f, id, SLUICE_MIP_UNTOUCHED, 0, 0);
     return id;
 }
@@ -175,7 +175,7 @@ static void removal_is_right_in_every_state(void **state)
         SluiceTextureId id = reach(&f, s);
         for (uint32_t i = 0; i < 6; i++)
             assert_int_equal(fixture_state(&f, id, i), s);
-        bool holds = s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELLED;
+        bool holds = s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELED;
         bool heap = s > SLUICE_TILE_STATE_REQUESTED;
         CHECK_OK(sluiceRemoveStreamedTexture(f.manager, id, 7));
         SluiceStreamedTextureStatistics now = fixture_statistics(&f);
@@ -183,7 +183,7 @@ static void removal_is_right_in_every_state(void **state)
         assert_int_equal(now.freeSlotCount, (heap ? 16 : 0) - (holds ? 6 : 0));
         assert_int_equal(now.textureCount + now.tileCount, 0);
         assert_int_equal(now.requestedTileCount + now.allocatedTileCount + now.mappedTileCount +
-                             now.standbyTileCount + now.cancelledTileCount + now.failedTileCount +
+                             now.standbyTileCount + now.canceledTileCount + now.failedTileCount +
                              now.givenUpTileCount,
                          0);
         check_nothing_listed(&f);

@@ -302,7 +302,7 @@ static void a_slot_is_not_used_again_before_its_value_completed(void **state)
     fixture_close(&f);
 }
 
-static void slots_of_cancelled_loads_and_removed_textures_retire_too(void **state)
+static void slots_of_canceled_loads_and_removed_textures_retire_too(void **state)
 {
     (void)state;
     struct fixture f;
@@ -310,7 +310,7 @@ static void slots_of_cancelled_loads_and_removed_textures_retire_too(void **stat
     fixture_feed(&f, id, 0, 1, 0);
     CHECK_OK(fixture_to_map(&f, id));
     const uint32_t loads[] = {1, 3};
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 2, loads, 5));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 2, loads, 5));
     CHECK_OK(sluiceRemoveStreamedTexture(f.manager, full, 6));
     CHECK_OK(sluiceRemoveStreamedTexture(f.manager, id, 8));
     assert_int_equal(fixture_statistics(&f).retiringSlotCount, 12);
@@ -355,13 +355,13 @@ static void retire_values_going_backwards_are_refused(void **state)
     uint32_t tile = 0, moves = 1;
     SluiceTileMove move;
     CHECK_RESULT(fixture_to_unmap(&f, full, 9), SLUICE_ERROR_TIME_BACKWARDS);
-    CHECK_RESULT(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 9),
+    CHECK_RESULT(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 9),
                  SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceRemoveStreamedTexture(f.manager, id, 9), SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceDefragmentTiles(f.manager, 9, &moves, &move), SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceCompleteRetireValue(f.manager, 4), SLUICE_ERROR_TIME_BACKWARDS);
     assert_true(fixture_digest(&f, 2, ids) == digest);
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0)); /* 0 says none is needed */
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0)); /* 0 says none is needed */
     CHECK_OK(fixture_to_unmap(&f, full, 10));
     assert_int_equal(f.count, 5);
     fixture_close(&f);
@@ -403,7 +403,7 @@ int main(void)
         cmocka_unit_test(a_thousand_wants_take_no_more_than_what_is_finer),
         cmocka_unit_test(wants_last_for_the_whole_timeout_while_slots_are_short),
         cmocka_unit_test(a_slot_is_not_used_again_before_its_value_completed),
-        cmocka_unit_test(slots_of_cancelled_loads_and_removed_textures_retire_too),
+        cmocka_unit_test(slots_of_canceled_loads_and_removed_textures_retire_too),
         cmocka_unit_test(values_that_completed_already_free_at_once),
         cmocka_unit_test(retire_values_going_backwards_are_refused),
     };

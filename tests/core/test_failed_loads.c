@@ -452,7 +452,7 @@ static void another_tile_that_comes_is_a_sign_that_the_source_is_well(void **sta
         uint32_t left = fixture_statistics(&f).givenUpTileCount;
         assert_true(time == 125 ? left == 0 : left > 0); /* an eighth of 1000 */
         for (uint32_t i = 1; time == 124 && i < f.count; i++)
-            CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &f.tiles[i].tileIndex, 0));
+            CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &f.tiles[i].tileIndex, 0));
     }
     fixture_close(&f);
 }

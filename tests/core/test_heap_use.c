@@ -23,19 +23,19 @@ static void a_heap_is_in_use_in_every_state_that_holds_a_slot(void **state)
     fixture_configure(&f, 1, 0, 0, 0);
     SluiceTextureId id = fixture_add_small(&f);
     const uint32_t packed = 5;
-    for (uint32_t answer = 0; answer < 2; answer++) { /* after a load, after a cancelled one */
+    for (uint32_t answer = 0; answer < 2; answer++) { /* after a load, after a canceled one */
         uint64_t time = answer, retire = answer + 1;
         sound_feed(&f, id, 7, time, 0);
         SOUND(&f, fixture_to_map(&f, id));
         assert_int_equal(f.count, 1);
         check_in_use(&f, id, 0); /* allocated */
         sound_feed(&f, id, SLUICE_MIP_UNTOUCHED, time, 0);
-        CHECK_STATE(&f, id, packed, CANCELLED);
+        CHECK_STATE(&f, id, packed, CANCELED);
         check_in_use(&f, id, 0);
         SOUND(&f, fixture_to_cancel(&f, id));
-        check_in_use(&f, id, 0); /* listed as cancelled */
+        check_in_use(&f, id, 0); /* listed as canceled */
         if (answer == 1) {
-            SOUND(&f, sluiceReportCancelledTiles(f.manager, id, 1, &packed, retire));
+            SOUND(&f, sluiceReportCanceledTiles(f.manager, id, 1, &packed, retire));
         } else {
             SOUND(&f, sluiceUpdateTilesMapping(f.manager, id, 1, &packed));
             CHECK_STATE(&f, id, packed, STANDBY);
@@ -67,7 +67,7 @@ static uint32_t used_heaps(const struct fixture *f, uint32_t count, const Sluice
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t tile = 0; tile < fixture_layout(f, ids[i]).tileCount; tile++) {
             SluiceTileState s = fixture_state(f, ids[i], tile);
-            if (s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELLED)
+            if (s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELED)
                 used[fixture_tile(f, ids[i], tile).heapId] = true;
         }
     for (uint32_t heap = 0; heap < FIXTURE_HEAPS; heap++)

@@ -31,7 +31,7 @@ static void count_slots(const struct fixture *f, uint32_t id_count, const Sluice
         uint32_t count = fixture_layout(f, ids[i]).tileCount;
         for (uint32_t tile = 0; tile < count; tile++) {
             SluiceTileState s = fixture_state(f, ids[i], tile);
-            if (s < SLUICE_TILE_STATE_ALLOCATED || s > SLUICE_TILE_STATE_CANCELLED)
+            if (s < SLUICE_TILE_STATE_ALLOCATED || s > SLUICE_TILE_STATE_CANCELED)
                 continue;
             SluiceTile place = fixture_tile(f, ids[i], tile);
             assert_true(place.heapId < FIXTURE_HEAPS && f->heaps.living[place.heapId]);

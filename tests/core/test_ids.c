@@ -100,7 +100,7 @@ static void check_id_refused(struct fixture *f, SluiceTextureId good, SluiceText
     CHECK_RESULT(sluiceMatchPrimaryTexture(m, good, bad, 5, 5), expected);
     CHECK_RESULT(sluiceUpdateTilesMapping(m, bad, 1, &tile), expected);
     CHECK_RESULT(sluiceReportFailedTiles(m, bad, 1, &tile, 5), expected);
-    CHECK_RESULT(sluiceReportCancelledTiles(m, bad, 1, &tile, 0), expected);
+    CHECK_RESULT(sluiceReportCanceledTiles(m, bad, 1, &tile, 0), expected);
     CHECK_RESULT(sluiceWriteMinMipData(m, bad, 2, 4, out), expected);
     CHECK_RESULT(sluiceWriteMinMipRect(m, &rect, 2, 4, out), expected);
     CHECK_RESULT(sluiceGetTileState(m, bad, 0, NULL, tiles), expected);
@@ -236,7 +236,7 @@ static void null_managers_are_refused(void **state)
         sluiceRetryFailedTiles(NULL, id),
         sluiceGetGivenUpTiles(NULL, &n, &tile),
         sluiceGetTilesToCancel(NULL, id, &n, &tile),
-        sluiceReportCancelledTiles(NULL, id, 1, &n, 0),
+        sluiceReportCanceledTiles(NULL, id, 1, &n, 0),
         sluiceGetTilesToUnmap(NULL, id, 0, &n, &tile),
         sluiceCompleteRetireValue(NULL, 0),
         sluiceTrimStandbyTiles(NULL, 0),
@@ -283,7 +283,7 @@ static void null_arguments_are_refused_and_change_nothing(void **state)
         sluiceReportFailedTiles(m, id, 1, NULL, 5),
         sluiceGetGivenUpTiles(m, NULL, &tile),
         sluiceGetTilesToCancel(m, id, NULL, &tile),
-        sluiceReportCancelledTiles(m, id, 1, NULL, 0),
+        sluiceReportCanceledTiles(m, id, 1, NULL, 0),
         sluiceGetTilesToUnmap(m, id, 0, NULL, &tile),
         sluiceDefragmentTiles(m, 0, NULL, &move),
         sluiceDefragmentTiles(m, 0, &n, NULL),
@@ -312,7 +312,7 @@ static void errors_are_named_in_the_documented_order(void **state)
     remove_texture(&f, stale);
     fixture_feed(&f, id, 0, 100, 10);
     CHECK_OK(fixture_to_map(&f, id));
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &(uint32_t){0}, 50));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &(uint32_t){0}, 50));
     const uint8_t map[4] = {0};
     const SluiceFeedbackDesc none = {sizeof none, NULL, 7, 7, 0, 0},
                              wrong = {sizeof wrong, map, 2, 1, 0, 0};
@@ -327,8 +327,8 @@ static void errors_are_named_in_the_documented_order(void **state)
     CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, beyond, 1), SLUICE_ERROR_UNKNOWN_TILE);
     CHECK_RESULT(sluiceReportFailedTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
     CHECK_RESULT(sluiceReportFailedTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
-    CHECK_RESULT(sluiceReportCancelledTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
-    CHECK_RESULT(sluiceReportCancelledTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
+    CHECK_RESULT(sluiceReportCanceledTiles(m, id, 2, twice, 1), SLUICE_ERROR_INVALID_TILE_STATE);
+    CHECK_RESULT(sluiceReportCanceledTiles(m, id, 1, twice, 1), SLUICE_ERROR_TIME_BACKWARDS);
     CHECK_RESULT(sluiceRemoveStreamedTexture(m, stale, 1), SLUICE_ERROR_STALE_TEXTURE);
     SluiceStreamedTextureDesc desc = {.width = 1u << 21, .mipLevelCount = 3, .regularMipCount = 4};
     SluiceTextureId out;

@@ -45,17 +45,17 @@ static void nothing_is_lost_however_late_the_lists_are_read(void **state)
         {1, 1, 1, 12, 40, 45, 6, 4}, /* slow loads and a GPU far behind */
     };
     for (size_t i = 0; i < sizeof late / sizeof *late; i++) {
-        uint64_t mapped = 0, unmapped = 0, cancelled = 0, failed = 0;
+        uint64_t mapped = 0, unmapped = 0, canceled = 0, failed = 0;
         for (uint64_t seed = 1; seed <= 4; seed++) {
             SluiceStreamedTextureStatistics last = {.structSize = sizeof last};
             run(&late[i], seed, 300, &last);
             mapped += last.mappedTotal;
             unmapped += last.unmappedTotal;
-            cancelled += last.cancelledTotal;
+            canceled += last.canceledTotal;
             failed += last.failedTotal;
         }
         /* Else the runs would say little. */
-        assert_true(mapped > 100 && unmapped > 20 && cancelled > 50 && failed > 50);
+        assert_true(mapped > 100 && unmapped > 20 && canceled > 50 && failed > 50);
     }
 }
 
@@ -63,7 +63,7 @@ static void nothing_is_lost_if_a_list_is_never_read(void **state)
 {
     (void)state;
     static const struct habits never[] = {
-        {1, 0, 1, 1, 1, 20, 9, 9}, /* cancelled loads are answered without being listed */
+        {1, 0, 1, 1, 1, 20, 9, 9}, /* canceled loads are answered without being listed */
         {1, 1, 0, 1, 1, 20, 9, 9}, /* nothing is unmapped */
         {1, 0, 0, 1, 0, 0, 9, 9},  /* nor does the GPU end, nor a texture go */
         {1, 1, 1, 0, 1, 20, 9, 9}, /* no load ends but by removal */

@@ -110,7 +110,7 @@ static SluiceResult apply(struct fixture *f, const struct op *op, uint64_t *out)
     case 13:
     case 14: return sluiceUpdateTilesMapping(m, op->a, op->count, op->tiles);
     case 15: return sluiceReportFailedTiles(m, op->a, op->count, op->tiles, op->time);
-    case 16: return sluiceReportCancelledTiles(m, op->a, op->count, op->tiles, op->retire);
+    case 16: return sluiceReportCanceledTiles(m, op->a, op->count, op->tiles, op->retire);
     case 17:
         if (op->number % 3 == 0)
             return sluiceSetPrimaryTexture(m, op->a, op->number % 2 ? op->b : SLUICE_NO_TEXTURE);
@@ -130,7 +130,7 @@ static void choose_answers(const struct fixture *f, struct op *op, uint64_t *ran
     uint32_t count = fixture_layout(f, op->a).tileCount;
     for (uint32_t i = 0; i < count && op->count < 16; i++) {
         SluiceTileState s = fixture_state(f, op->a, i);
-        if ((s == SLUICE_TILE_STATE_ALLOCATED || s == SLUICE_TILE_STATE_CANCELLED) &&
+        if ((s == SLUICE_TILE_STATE_ALLOCATED || s == SLUICE_TILE_STATE_CANCELED) &&
             next_random(random) % 4)
             op->tiles[op->count++] = i;
     }

@@ -22,20 +22,20 @@ static void check_totals(void)
 {
     SluiceStreamedTextureStatistics now = fixture_statistics(&s.f);
     assert_int_equal(now.handedOutTotal, s.uploads);
-    assert_int_equal(now.handedOutTotal, now.mappedTotal + s.load_count + now.cancelledTotal);
-    assert_int_equal(now.allocatedTileCount + now.cancelledTileCount, s.load_count);
+    assert_int_equal(now.handedOutTotal, now.mappedTotal + s.load_count + now.canceledTotal);
+    assert_int_equal(now.allocatedTileCount + now.canceledTileCount, s.load_count);
     assert_int_equal(now.mappedTileCount + now.standbyTileCount,
                      now.mappedTotal - now.unmappedTotal);
     assert_int_equal(now.unmappedTotal, s.unmapped);
 }
 
-/* What a list holds beside what was requested is CANCELLED at once: no one waits for it. */
+/* What a list holds beside what was requested is CANCELED at once: no one waits for it. */
 static uint32_t prefetched(void)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < s.f.count; i++)
         count += fixture_state(&s.f, s.f.tiles[i].textureId, s.f.tiles[i].tileIndex) ==
-                 SLUICE_TILE_STATE_CANCELLED;
+                 SLUICE_TILE_STATE_CANCELED;
     return count;
 }
 
@@ -92,7 +92,7 @@ static void the_coarsest_level_of_all_comes_before_the_next_of_any(void **state)
             continue;
         for (uint32_t i = 0; i < s.f.count; i++) {
             if (fixture_state(&s.f, s.f.tiles[i].textureId, s.f.tiles[i].tileIndex) !=
-                SLUICE_TILE_STATE_CANCELLED)
+                SLUICE_TILE_STATE_CANCELED)
                 continue;
             assert_true(s.f.tiles[i].mipLevel <= level);
             level = s.f.tiles[i].mipLevel;
@@ -119,7 +119,7 @@ static void check_busy(uint32_t heaps, uint32_t standby)
         count += here;
         assert_true(here == 0 || now.requestedTileCount == 0);
         assert_true(here == 0 || now.freeSlotCount >= now.reservedSlotCount);
-        assert_true(here == 0 || now.standbyTileCount + now.cancelledTileCount <= standby);
+        assert_true(here == 0 || now.standbyTileCount + now.canceledTileCount <= standby);
         check_totals();
     }
     assert_true(count > 0);

@@ -8,9 +8,9 @@ enum stage {
     LAPSED, /* sampled once, FREE again */
     QUEUED,
     IN_FLIGHT,
-    CANCELLED,
-    CANCELLED_AND_LISTED,
-    CANCELLED_AND_WANTED_AGAIN,
+    CANCELED,
+    CANCELED_AND_LISTED,
+    CANCELED_AND_WANTED_AGAIN,
     MAPPED,
     STANDBY,
     STANDBY_AND_LISTED,
@@ -26,9 +26,9 @@ static const SluiceTileState states[STAGE_COUNT] = {
     [LAPSED] = SLUICE_TILE_STATE_FREE,
     [QUEUED] = SLUICE_TILE_STATE_REQUESTED,
     [IN_FLIGHT] = SLUICE_TILE_STATE_ALLOCATED,
-    [CANCELLED] = SLUICE_TILE_STATE_CANCELLED,
-    [CANCELLED_AND_LISTED] = SLUICE_TILE_STATE_CANCELLED,
-    [CANCELLED_AND_WANTED_AGAIN] = SLUICE_TILE_STATE_CANCELLED,
+    [CANCELED] = SLUICE_TILE_STATE_CANCELED,
+    [CANCELED_AND_LISTED] = SLUICE_TILE_STATE_CANCELED,
+    [CANCELED_AND_WANTED_AGAIN] = SLUICE_TILE_STATE_CANCELED,
     [MAPPED] = SLUICE_TILE_STATE_MAPPED,
     [STANDBY] = SLUICE_TILE_STATE_STANDBY,
     [STANDBY_AND_LISTED] = SLUICE_TILE_STATE_STANDBY,
@@ -94,11 +94,11 @@ static void load_until(struct bench *b, SluiceTextureId id, enum stage stage)
     if (stage == MAPPED)
         return;
     feed(b, id, SLUICE_MIP_UNTOUCHED);
-    if (stage == CANCELLED_AND_LISTED || stage == CANCELLED_AND_WANTED_AGAIN)
+    if (stage == CANCELED_AND_LISTED || stage == CANCELED_AND_WANTED_AGAIN)
         SOUND(&b->f, fixture_to_cancel(&b->f, id));
     if (stage == STANDBY_AND_LISTED || stage == RESTORED)
         SOUND(&b->f, sluiceTrimStandbyTiles(b->f.manager, 0));
-    if (stage == CANCELLED_AND_WANTED_AGAIN || stage == RESTORED)
+    if (stage == CANCELED_AND_WANTED_AGAIN || stage == RESTORED)
         feed(b, id, 0);
 }
 
@@ -154,7 +154,7 @@ static void check_id_is_stale(struct bench *b, SluiceTextureId id, uint32_t coun
     for (uint32_t i = 0; i < 6; i++) {
         CHECK_RESULT(sluiceUpdateTilesMapping(m, id, 1, &all_tiles[i]), stale);
         CHECK_RESULT(sluiceReportFailedTiles(m, id, 1, &all_tiles[i], late), stale);
-        CHECK_RESULT(sluiceReportCancelledTiles(m, id, 1, &all_tiles[i], 0), stale);
+        CHECK_RESULT(sluiceReportCanceledTiles(m, id, 1, &all_tiles[i], 0), stale);
         CHECK_RESULT(sluiceGetTileState(m, id, i, NULL, tiles), stale);
     }
     CHECK_RESULT(sluiceUpdateTilesMapping(m, id, 6, all_tiles), stale);
@@ -177,7 +177,7 @@ static void remove_texture(struct bench *b, SluiceTextureId id)
     uint32_t held = 0;
     for (uint32_t i = 0; i < 6; i++) {
         SluiceTileState s = fixture_state(&b->f, id, i);
-        held += s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELLED;
+        held += s >= SLUICE_TILE_STATE_ALLOCATED && s <= SLUICE_TILE_STATE_CANCELED;
     }
     SOUND(&b->f, sluiceRemoveStreamedTexture(b->f.manager, id, ++b->retire));
     SluiceStreamedTextureStatistics now = fixture_statistics(&b->f);
@@ -186,7 +186,7 @@ static void remove_texture(struct bench *b, SluiceTextureId id)
     assert_int_equal(now.textureCount, before.textureCount - 1);
     assert_int_equal(now.mappedTileCount, 6); /* the bystander's: nobody else is there */
     assert_int_equal(now.requestedTileCount + now.allocatedTileCount + now.standbyTileCount +
-                         now.cancelledTileCount + now.failedTileCount + now.givenUpTileCount,
+                         now.canceledTileCount + now.failedTileCount + now.givenUpTileCount,
                      0);
 }
 

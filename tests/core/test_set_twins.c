@@ -217,8 +217,8 @@ static void take_back(struct twins *t)
     struct fixture *both[2] = {&t->set, &t->lone};
     for (uint32_t i = 0; i < t->set.count; i++)
         for (uint32_t k = 0; k < 2; k++)
-            CHECK_OK(sluiceReportCancelledTiles(both[k]->manager, t->set.tiles[i].textureId, 1,
-                                                &t->set.tiles[i].tileIndex, t->retire));
+            CHECK_OK(sluiceReportCanceledTiles(both[k]->manager, t->set.tiles[i].textureId, 1,
+                                               &t->set.tiles[i].tileIndex, t->retire));
 }
 
 static void step(struct twins *t)

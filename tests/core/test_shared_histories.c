@@ -40,7 +40,7 @@ static void an_empty_map_of_a_prefetched_primary_is_none_for_a_follower_without_
         feed_all(&f, 2, kept, 2, 1000);
         set_config(&f, 1);
         assert_int_equal(bias_after_handing_out(&f), 0);
-        CHECK_STATE(&f, primary, 4, CANCELLED); /* prefetched, so it has a state */
+        CHECK_STATE(&f, primary, 4, CANCELED); /* prefetched, so it has a state */
         set_config(&f, 0);
         SluiceTextureId follower = fixture_add_small(&f);
         CHECK_OK(sluiceSetPrimaryTexture(f.manager, follower, primary));

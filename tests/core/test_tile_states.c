@@ -30,7 +30,7 @@ static void a_request_no_longer_wanted_is_free_again(void **state)
     fixture_close(&f);
 }
 
-static void a_cancelled_load_is_never_mapped_and_its_memory_comes_back(void **state)
+static void a_canceled_load_is_never_mapped_and_its_memory_comes_back(void **state)
 {
     (void)state;
     struct fixture f;
@@ -42,18 +42,18 @@ static void a_cancelled_load_is_never_mapped_and_its_memory_comes_back(void **st
     assert_int_equal(fixture_statistics(&f).freeSlotCount, 10);
     pass(&f, id, 1);
     for (uint32_t i = 0; i < 6; i++)
-        CHECK_STATE(&f, id, i, CANCELLED);
+        CHECK_STATE(&f, id, i, CANCELED);
     CHECK_OK(fixture_to_cancel(&f, id));
     /* of the level held each region drops its tile; the parent closes with the last; then packed */
     assert_true(LISTED(&f, id, 0, 1, 2, 3, 4, 5));
     CHECK_OK(fixture_to_cancel(&f, id));
     assert_int_equal(f.count, 0); /* each once */
     const uint32_t all[] = {0, 1, 2, 3, 4, 5};
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 6, all, 0));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 6, all, 0));
     SluiceStreamedTextureStatistics s = fixture_statistics(&f);
     assert_int_equal(s.freeSlotCount, 16);
     assert_int_equal(s.mappedTotal, 0);
-    assert_int_equal(s.cancelledTotal, 6);
+    assert_int_equal(s.canceledTotal, 6);
     for (uint32_t i = 0; i < 6; i++)
         CHECK_STATE(&f, id, i, FREE);
     fixture_close(&f);
@@ -81,7 +81,7 @@ static void wanted_again_before_the_cancel_list_is_read_goes_on_loading(void **s
     fixture_close(&f);
 }
 
-/* Tile 0 was listed for cancelling and is wanted again; takes three units of time. */
+/* Tile 0 was listed for canceling and is wanted again; takes three units of time. */
 static SluiceTextureId cancel_and_want_again(struct fixture *f, uint64_t time)
 {
     SluiceTextureId id = fixture_add_small(f);
@@ -91,7 +91,7 @@ static SluiceTextureId cancel_and_want_again(struct fixture *f, uint64_t time)
     CHECK_OK(fixture_to_cancel(f, id));
     assert_int_equal(f->count, 3);
     fixture_feed_region(f, id, 0, 0, time + 2, 0);
-    CHECK_STATE(f, id, 0, CANCELLED);
+    CHECK_STATE(f, id, 0, CANCELED);
     CHECK_OK(fixture_to_cancel(f, id));
     assert_int_equal(f->count, 0);
     return id;
@@ -104,7 +104,7 @@ static void wanted_again_after_the_listing_waits_for_the_answer(void **state)
     uint32_t tile = 0;
     fixture_open(&f, 16, false);
     SluiceTextureId id = cancel_and_want_again(&f, 0);
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0));
     CHECK_STATE(&f, id, 0, REQUESTED);
     id = cancel_and_want_again(&f, 10); /* answered as mapped: it came in time */
     map_one(&f, id, tile);
@@ -116,12 +116,12 @@ static void wanted_again_after_the_listing_waits_for_the_answer(void **state)
     pass(&f, id, 33);
     CHECK_OK(fixture_to_cancel(&f, id));
     assert_int_equal(f.count, 0);
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0));
     CHECK_STATE(&f, id, 0, FREE);
     fixture_close(&f);
 }
 
-static void a_cancelled_tile_whose_data_arrived_is_standby(void **state)
+static void a_canceled_tile_whose_data_arrived_is_standby(void **state)
 {
     (void)state;
     struct fixture f;
@@ -143,7 +143,7 @@ static void a_cancelled_tile_whose_data_arrived_is_standby(void **state)
     fixture_close(&f);
 }
 
-static void allocated_tiles_may_be_answered_as_cancelled(void **state)
+static void allocated_tiles_may_be_answered_as_canceled(void **state)
 {
     (void)state;
     struct fixture f;
@@ -152,7 +152,7 @@ static void allocated_tiles_may_be_answered_as_cancelled(void **state)
     fixture_feed_region(&f, id, 0, 0, 0, 0);
     CHECK_OK(fixture_to_map(&f, id));
     uint32_t tile = 0;
-    CHECK_OK(sluiceReportCancelledTiles(f.manager, id, 1, &tile, 0));
+    CHECK_OK(sluiceReportCanceledTiles(f.manager, id, 1, &tile, 0));
     CHECK_STATE(&f, id, 0, REQUESTED); /* still wanted */
     CHECK_OK(fixture_to_map(&f, id));
     assert_true(LISTED(&f, id, 0));
@@ -282,7 +282,7 @@ static void lists_hand_out_what_there_is_room_for(void **state)
     assert_int_equal(count, 2);
     fixture_feed(&f, id, 0, 2, 0);
     CHECK_RESULT(fixture_to_map_at_most(&f, id, 5), SLUICE_INCOMPLETE);
-    pass(&f, id, 3); /* the sixth is free again, five are cancelled */
+    pass(&f, id, 3); /* the sixth is free again, five are canceled */
     count = 3;
     CHECK_RESULT(sluiceGetTilesToCancel(f.manager, id, &count, tiles), SLUICE_INCOMPLETE);
     assert_int_equal(count, 3);
@@ -295,11 +295,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_request_no_longer_wanted_is_free_again),
-        cmocka_unit_test(a_cancelled_load_is_never_mapped_and_its_memory_comes_back),
+        cmocka_unit_test(a_canceled_load_is_never_mapped_and_its_memory_comes_back),
         cmocka_unit_test(wanted_again_before_the_cancel_list_is_read_goes_on_loading),
         cmocka_unit_test(wanted_again_after_the_listing_waits_for_the_answer),
-        cmocka_unit_test(a_cancelled_tile_whose_data_arrived_is_standby),
-        cmocka_unit_test(allocated_tiles_may_be_answered_as_cancelled),
+        cmocka_unit_test(a_canceled_tile_whose_data_arrived_is_standby),
+        cmocka_unit_test(allocated_tiles_may_be_answered_as_canceled),
         cmocka_unit_test(standby_is_restored_without_a_load),
         cmocka_unit_test(standby_beyond_the_extra_is_listed_oldest_first),
         cmocka_unit_test(standby_ages_by_when_it_was_last_wanted),

@@ -235,7 +235,7 @@ static uint64_t hash_list(uint64_t h, const struct fixture *f)
     return h;
 }
 
-/* Loads that were started a frame ago end in one of three ways, cancelled or not. */
+/* Loads that were started a frame ago end in one of three ways, canceled or not. */
 static void answer_at_random(struct fixture *f, uint32_t count, const SluiceTile *tiles,
                              uint64_t time, uint64_t *random)
 {
@@ -245,7 +245,7 @@ static void answer_at_random(struct fixture *f, uint32_t count, const SluiceTile
         if (dice == 0)
             CHECK_OK(sluiceReportFailedTiles(f->manager, id, 1, &tile, time));
         else if (dice == 1)
-            CHECK_OK(sluiceReportCancelledTiles(f->manager, id, 1, &tile, 0));
+            CHECK_OK(sluiceReportCanceledTiles(f->manager, id, 1, &tile, 0));
         else
             CHECK_OK(sluiceUpdateTilesMapping(f->manager, id, 1, &tile));
     }
@@ -282,7 +282,7 @@ static uint64_t run_from(uint64_t start, uint64_t unit)
         h ^= fixture_digest(&f, 3, ids);
     }
     SluiceStreamedTextureStatistics s = fixture_statistics(&f);
-    assert_true(s.failedTotal && s.cancelledTotal && s.restoredTotal && s.unmappedTotal);
+    assert_true(s.failedTotal && s.canceledTotal && s.restoredTotal && s.unmappedTotal);
     fixture_close(&f);
     return h;
 }

@@ -55,7 +55,7 @@ static void feed(struct app *a, SluiceTextureId id, uint32_t frame, uint64_t tim
     CHECK_SOUND(&a->f);
 }
 
-/* Loads take a frame; some fail, some of the cancelled ones arrive all the same. */
+/* Loads take a frame; some fail, some of the canceled ones arrive all the same. */
 static void answer(struct app *a, uint64_t time)
 {
     for (uint32_t i = 0; i < a->loading; i++) {
@@ -64,7 +64,7 @@ static void answer(struct app *a, uint64_t time)
         if (dice == 0)
             SOUND(&a->f, sluiceReportFailedTiles(a->f.manager, id, 1, &tile, time));
         else if (dice == 1)
-            SOUND(&a->f, sluiceReportCancelledTiles(a->f.manager, id, 1, &tile, 0));
+            SOUND(&a->f, sluiceReportCanceledTiles(a->f.manager, id, 1, &tile, 0));
         else
             SOUND(&a->f, sluiceUpdateTilesMapping(a->f.manager, id, 1, &tile));
     }
@@ -100,11 +100,11 @@ static void run_from(uint64_t start, struct record *out)
 
 static void print(const char *name, const SluiceStreamedTextureStatistics *s)
 {
-    print_error("%s: %u requested, %u allocated, %u mapped, %u standby, %u cancelled, %u failed, "
+    print_error("%s: %u requested, %u allocated, %u mapped, %u standby, %u canceled, %u failed, "
                 "%u given up, %u retiring, %u free, %" PRIu64 " handed out\n",
                 name, (unsigned)s->requestedTileCount, (unsigned)s->allocatedTileCount,
                 (unsigned)s->mappedTileCount, (unsigned)s->standbyTileCount,
-                (unsigned)s->cancelledTileCount, (unsigned)s->failedTileCount,
+                (unsigned)s->canceledTileCount, (unsigned)s->failedTileCount,
                 (unsigned)s->givenUpTileCount, (unsigned)s->retiringSlotCount,
                 (unsigned)s->freeSlotCount, s->handedOutTotal);
 }
@@ -116,12 +116,12 @@ static bool same_counts(const SluiceStreamedTextureStatistics *a,
            a->requestedTileCount == b->requestedTileCount &&
            a->allocatedTileCount == b->allocatedTileCount &&
            a->mappedTileCount == b->mappedTileCount && a->standbyTileCount == b->standbyTileCount &&
-           a->cancelledTileCount == b->cancelledTileCount &&
+           a->canceledTileCount == b->canceledTileCount &&
            a->failedTileCount == b->failedTileCount && a->givenUpTileCount == b->givenUpTileCount &&
            a->retiringSlotCount == b->retiringSlotCount && a->heapCount == b->heapCount &&
            a->freeSlotCount == b->freeSlotCount && a->handedOutTotal == b->handedOutTotal &&
            a->mappedTotal == b->mappedTotal && a->unmappedTotal == b->unmappedTotal &&
-           a->cancelledTotal == b->cancelledTotal && a->failedTotal == b->failedTotal &&
+           a->canceledTotal == b->canceledTotal && a->failedTotal == b->failedTotal &&
            a->restoredTotal == b->restoredTotal && a->movedTotal == b->movedTotal;
 }
 
@@ -145,7 +145,7 @@ static const struct record *from_zero(void)
     run_from(0, &record);
     const SluiceStreamedTextureStatistics *last = &record.frames[FRAMES - 1];
     /* Else the comparison would say little. */
-    assert_true(last->failedTotal > 20 && last->cancelledTotal > 20 && last->restoredTotal > 2 &&
+    assert_true(last->failedTotal > 20 && last->canceledTotal > 20 && last->restoredTotal > 2 &&
                 last->unmappedTotal > 100 && last->mappedTotal > 200);
     return &record;
 }

@@ -11,7 +11,7 @@ struct array_scene {
     SluiceImageSource *layers[ARRAY_LAYERS], *source;
 };
 
-/** The pattern of a layer: neighbours differ. */
+/** The pattern of a layer: neighbors differ. */
 enum pattern_kind array_scene_kind(uint32_t layer);
 
 /**

@@ -1,5 +1,5 @@
 /*
- * Both endpoints of a block are equal and all indices 0, so the colour follows from the format's
+ * Both endpoints of a block are equal and all indices 0, so the color follows from the format's
  * definition without an encoder. Source: Khronos Data Format Specification, "S3TC", "RGTC", "BPTC".
  */
 #include "device/blocks.h"
@@ -37,7 +37,7 @@ static bool is_signed(SluiceFormat format)
            format == SLUICE_FORMAT_BC6H_SFLOAT_BLOCK;
 }
 
-static void put_colour(uint8_t *block, uint32_t seed)
+static void put_color(uint8_t *block, uint32_t seed)
 {
     uint32_t rgb565 = (seed & 31) << 11 | (seed >> 8 & 63) << 5 | (seed >> 16 & 31);
     put_bits(block, 0, 16, rgb565);
@@ -82,14 +82,14 @@ static void put_block(SluiceFormat format, uint32_t seed, uint8_t block[16])
 {
     memset(block, 0, 16);
     if (format <= SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK) {
-        put_colour(block, seed);
+        put_color(block, seed);
     } else if (format <= SLUICE_FORMAT_BC2_SRGB_BLOCK) {
         for (uint32_t i = 0; i < 16; i++)
             put_bits(block, 4 * i, 4, seed >> 24 & 15);
-        put_colour(block + 8, seed);
+        put_color(block + 8, seed);
     } else if (format <= SLUICE_FORMAT_BC3_SRGB_BLOCK) {
         put_channel(block, seed >> 24);
-        put_colour(block + 8, seed);
+        put_color(block + 8, seed);
     } else if (format <= SLUICE_FORMAT_BC4_SNORM_BLOCK) {
         put_channel(block, channel_value(format, seed));
     } else if (format <= SLUICE_FORMAT_BC5_SNORM_BLOCK) {
@@ -132,7 +132,7 @@ static void set_code(struct block_range *range, uint32_t channel, uint32_t code,
     range->high[channel] = fmaxf(fraction, widened);
 }
 
-static void set_colour(uint32_t seed, struct block_range *range)
+static void set_color(uint32_t seed, struct block_range *range)
 {
     set_code(range, 0, seed & 31, 5);
     set_code(range, 1, seed >> 8 & 63, 6);
@@ -155,7 +155,7 @@ static void decode_range(struct block_range *range)
 
 static void set_bc1_to_3(SluiceFormat format, uint32_t seed, struct block_range *range)
 {
-    set_colour(seed, range);
+    set_color(seed, range);
     if (format >= SLUICE_FORMAT_BC3_UNORM_BLOCK)
         set_exact(range, 3, (float)(seed >> 24) / 255.0f);
     else if (format >= SLUICE_FORMAT_BC2_UNORM_BLOCK)

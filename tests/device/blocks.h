@@ -1,4 +1,4 @@
-/** Textures of compressed blocks, each of one colour that says where it is. */
+/** Textures of compressed blocks, each of one color that says where it is. */
 #ifndef TESTS_DEVICE_BLOCKS_H
 #define TESTS_DEVICE_BLOCKS_H
 
@@ -8,7 +8,7 @@
 SluiceImageSource *block_source(uint32_t width, uint32_t height, SluiceFormat format);
 
 /**
- * What decoders may make of a texel, with linear colour: endpoints as fractions or widened to 8
+ * What decoders may make of a texel, with linear color: endpoints as fractions or widened to 8
  * bits first, sRGB decoded to within half a step of its 8 bits.
  */
 struct block_range {

@@ -179,7 +179,7 @@ static struct axis_texels filter_axis(const struct SluiceDemandTexture *t, int a
         mode == SLUICE_ADDRESS_MODE_REPEAT || mode == SLUICE_ADDRESS_MODE_MIRRORED_REPEAT;
     double reach = periodic ? 4 : fmin(fabs((double)coordinate) + 2, 64);
     double blur = (tap->nearest ? 1e-6 : STEP / 2) + reach * FLOAT_STEP * size;
-    /* beyond, all is edge or border; and neighbours must differ */
+    /* beyond, all is edge or border; and neighbors must differ */
     coordinate = fminl(fmaxl(coordinate, -1e9L), 1e9L);
     long double place = coordinate * size - 0.5L, low = floorl(place);
     struct axis_texels a;

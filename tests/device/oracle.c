@@ -155,7 +155,7 @@ static uint32_t tap_tiles(double coordinate, uint32_t size, uint32_t tile, uint3
         int64_t t = address(texel, size, mode);
         if (t >= 0)
             out[count++] = (uint32_t)t / tile;
-        if (texel + 1 == texel) /* beyond 2^53 there are no neighbours */
+        if (texel + 1 == texel) /* beyond 2^53 there are no neighbors */
             break;
     }
     return count;

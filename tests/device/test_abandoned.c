@@ -113,7 +113,7 @@ static void a_walk_with_frames_given_up_ends_as_one_without(void **state)
     free(given_up);
 }
 
-/* As while a window is minimised: more frames than may be in flight, from the first one on. */
+/* As while a window is minimized: more frames than may be in flight, from the first one on. */
 static void any_number_of_frames_in_a_row_can_be_given_up(void **state)
 {
     struct harness *h = *state;

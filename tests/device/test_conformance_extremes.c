@@ -24,8 +24,8 @@ static struct SluiceTextureEntry entry_of(uint32_t i)
                  : conform_entry(300, 700, 64, 32, suite_modes[i / 2 % SUITE_MODES]);
 }
 
-/* Ordinary neighbours of what is special. */
-static void add_neighbours(struct suite *s, struct SluiceTextureEntry e, uint32_t count)
+/* Ordinary neighbors of what is special. */
+static void add_neighbors(struct suite *s, struct SluiceTextureEntry e, uint32_t count)
 {
     for (uint32_t i = 1; i < count; i++)
         suite_add(s, e, suite_level_input(&e, i), 0.3 + 0.07 * i, 0.6);
@@ -43,7 +43,7 @@ static void coordinates_of_any_value_mark_inside_the_map(void **state)
                 in.mode = i % 2 ? CONFORM_GRAD : CONFORM_LOD;
                 in.lod = (float)((i + j) % 4);
                 suite_add(s, e, in, (double)specials[i], (double)specials[j]);
-                add_neighbours(s, e, lanes[(i + j) / 8 % 2]);
+                add_neighbors(s, e, lanes[(i + j) / 8 % 2]);
             }
     suite_end(s, "special_uv");
 }
@@ -61,7 +61,7 @@ static void derivatives_of_any_value_mark_inside_the_map(void **state)
                 *slots[(k + 1 + k / 4) % 4] = specials[j];
                 in.maxAnisotropy = (i + j + k) % 2 ? 1 : 16;
                 suite_add(s, e, in, 0.4, 0.7);
-                add_neighbours(s, e, lanes[(i + j) / 8 % 2]);
+                add_neighbors(s, e, lanes[(i + j) / 8 % 2]);
             }
     suite_end(s, "special_derivatives");
 }
@@ -80,7 +80,7 @@ static void biases_anisotropies_and_levels_of_any_value_mark_inside_the_map(void
                 in.lod = specials[i];
                 in.mode = k == 3 ? CONFORM_LOD : CONFORM_GRAD;
                 suite_add(s, e, in, 0.4, 0.7);
-                add_neighbours(s, e, lanes[(i + j) / 8 % 2]);
+                add_neighbors(s, e, lanes[(i + j) / 8 % 2]);
             }
     suite_end(s, "special_bias");
 }

@@ -84,7 +84,7 @@ static double draw(void)
     return (double)roll() / ROLL_MAX;
 }
 
-/* No borders: their colour would look like texels that are not resident. */
+/* No borders: their color would look like texels that are not resident. */
 static VkSamplerAddressMode address_mode(const struct harness *h)
 {
     const VkSamplerAddressMode modes[] = {

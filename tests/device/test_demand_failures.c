@@ -33,7 +33,7 @@ static void check_failed(const struct runner *r, uint32_t sample)
     assert_true(out.resident && out.color[0] == 1 && out.color[1] == 0 && out.color[2] == 1);
 }
 
-static void an_image_that_cannot_be_opened_shows_its_failure_colour(void **state)
+static void an_image_that_cannot_be_opened_shows_its_failure_color(void **state)
 {
     (void)state;
     static const SluiceResult results[] = {SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_IO,
@@ -171,7 +171,7 @@ static void a_tile_that_cannot_be_read_is_shown_by_coarser_ones(void **state)
     const SluiceDemandLoaderCreateInfo info = quick_retries(&told);
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 1);
-    image.source.fail_at = 2; /* after the colour of the last level */
+    image.source.fail_at = 2; /* after the color of the last level */
     image.source.fails_on = true;
     image.source.failure = SLUICE_ERROR_UNSUPPORTED;
     image.source.is_short = true;
@@ -316,7 +316,7 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_image_that_cannot_be_opened_shows_its_failure_colour),
+        cmocka_unit_test(an_image_that_cannot_be_opened_shows_its_failure_color),
         cmocka_unit_test(a_failure_names_the_image_that_was_never_open),
         cmocka_unit_test(images_that_no_shader_could_sample_are_refused),
         cmocka_unit_test(a_tile_that_cannot_be_read_is_shown_by_coarser_ones),

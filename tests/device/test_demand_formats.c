@@ -1,4 +1,4 @@
-/* Every format: tiles, tails, cut blocks, and the colour of the last level. */
+/* Every format: tiles, tails, cut blocks, and the color of the last level. */
 #include "device/blocks.h"
 #include "device/demand_runner.h"
 
@@ -78,9 +78,9 @@ static void check(const struct runner *r, uint32_t sample, SluiceImageSource *so
 {
     struct RunnerOutput out = runner_output(r, sample);
     struct block_range range = expected(source, format, level, x, y);
-    bool grey = level == LEVELS - 1 && !is_decoded(format);
+    bool gray = level == LEVELS - 1 && !is_decoded(format);
     for (uint32_t i = 0; i < 4; i++) {
-        if (grey) {
+        if (gray) {
             range.low[i] = range.high[i] = i < 3 ? 0.5f : 1;
         }
         if (!out.resident || !(out.color[i] >= range.low[i] - 1e-5f) ||
@@ -167,7 +167,7 @@ static void destroy_block(SluiceImageSource *source)
 
 /*
  * What Direct3D allows between end points: a step, and 3 % of their distance, which is up to 2 with
- * a sign; there devices may interpolate from -128, too. Encoded colours are up to 2.3 times as far
+ * a sign; there devices may interpolate from -128, too. Encoded colors are up to 2.3 times as far
  * apart when they are decoded.
  */
 static float decoding_slack(SluiceFormat format)
@@ -176,7 +176,7 @@ static float decoding_slack(SluiceFormat format)
     return is_signed(format) ? 2.0f / 127 + 0.06f : (1.0f / 255 + 0.03f) * (encoded ? 2.3f : 1);
 }
 
-static void the_colour_of_a_block_is_what_the_device_decodes(void **state)
+static void the_color_of_a_block_is_what_the_device_decodes(void **state)
 {
     (void)state;
     enum { COUNT = 256, FIRST = SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK };
@@ -228,7 +228,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_shows_what_is_in_the_image),
-        cmocka_unit_test(the_colour_of_a_block_is_what_the_device_decodes),
+        cmocka_unit_test(the_color_of_a_block_is_what_the_device_decodes),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

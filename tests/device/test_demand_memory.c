@@ -136,7 +136,7 @@ static void without_a_bias_some_tiles_stay_away_and_coarser_ones_are_shown_there
         runner_image_texel(&image, 0, i % TILES * TILE + 7, i / TILES * TILE + 9, rgba);
         sharp += fabsf(out.color[0] - rgba[0]) < 1e-6f && fabsf(out.color[1] - rgba[1]) < 1e-6f;
     }
-    assert_in_range(sharp, 32, info.memoryBudget / 65536 + 4); /* few colours are twice there */
+    assert_in_range(sharp, 32, info.memoryBudget / 65536 + 4); /* few colors are twice there */
     runner_finish(&r);
     runner_image_finish(&image);
 }

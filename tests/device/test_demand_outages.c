@@ -131,7 +131,7 @@ static void a_texture_that_is_said_to_be_well_is_read_at_once(void **state)
     h.quiet = false;
 }
 
-/* The tail, too: the texture shows its failure colour meanwhile. */
+/* The tail, too: the texture shows its failure color meanwhile. */
 static void a_texture_that_was_lost_altogether_comes_back(void **state)
 {
     (void)state;
@@ -142,7 +142,7 @@ static void a_texture_that_was_lost_altogether_comes_back(void **state)
     h.quiet = true;
     runner_init(&r, &h, &info);
     runner_image_init(&image, SLUICE_FORMAT_R8G8B8A8_UNORM, 512, 512, 1);
-    image.source.fail_at = 2; /* after the colour of the last level */
+    image.source.fail_at = 2; /* after the color of the last level */
     image.source.fails_on = true;
     image.source.failure = SLUICE_ERROR_IO;
     runner_add_texel(&r, runner_add_texture(&r, &image), 512, 512, 0, 9, 9);

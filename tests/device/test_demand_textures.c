@@ -48,7 +48,7 @@ static uint32_t check_all_levels(struct runner *r, struct runner_image *image, u
     return sample;
 }
 
-static void colours_are_the_images_own_when_nothing_is_missing(void **state)
+static void colors_are_the_images_own_when_nothing_is_missing(void **state)
 {
     (void)state;
     static const struct size sizes[] = {{1, 1},     {64, 64},    {65, 64},   {1000, 700},
@@ -99,7 +99,7 @@ static void only_what_is_sampled_is_opened_and_only_its_tiles_are_read(void **st
     assert_true(runner_all_resident(&r));
     assert_int_equal(images[0].opened + images[2].opened, 0);
     assert_int_equal(images[0].source.info_count + images[2].source.info_count, 0);
-    assert_int_equal(images[1].source.read_count, 1 + 4); /* the colour of the last level first */
+    assert_int_equal(images[1].source.read_count, 1 + 4); /* the color of the last level first */
     SluiceDemandStatistics statistics = runner_statistics(&r);
     assert_int_equal(statistics.residentTileCount, 4);
     assert_int_equal(statistics.texturesCreated, 3);
@@ -312,7 +312,7 @@ static void texels_that_changed_are_read_again(void **state)
     runner_load(&r, 9);
     runner_check_texel(&r, 0, &image, 0, 400, 400);
     runner_check_texel(&r, 1, &image, 5, 3, 3);
-    /* The colour of the last level comes on its own. */
+    /* The color of the last level comes on its own. */
     float rgba[4];
     runner_image_texel(&image, 8, 0, 0, rgba);
     for (uint32_t i = 0; i < 10000 && runner_output(&r, 2).color[0] != rgba[0]; i++) {
@@ -465,7 +465,7 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_are_the_images_own_when_nothing_is_missing),
+        cmocka_unit_test(colors_are_the_images_own_when_nothing_is_missing),
         cmocka_unit_test(only_what_is_sampled_is_opened_and_only_its_tiles_are_read),
         cmocka_unit_test(a_texture_smaller_than_a_pixel_needs_no_tile),
         cmocka_unit_test(a_variant_shares_tiles_and_not_the_sampler),

@@ -47,7 +47,7 @@ static void check_status(const struct held *held, SluiceDemandTicket ticket, uin
     assert_int_equal(status.failedCount, failed);
 }
 
-static void a_cancelled_ticket_ends_with_what_is_under_way(void **state)
+static void a_canceled_ticket_ends_with_what_is_under_way(void **state)
 {
     (void)state;
     struct held held;
@@ -64,7 +64,7 @@ static void a_cancelled_ticket_ends_with_what_is_under_way(void **state)
     assert_in_range(runner_load(&held.r, 9), 2, 3);
     assert_true(runner_all_resident(&held.r));
     assert_int_equal(held.image.source.read_count, 1 + 8);
-    assert_int_equal(runner_statistics(&held.r).cancelledCount, 6);
+    assert_int_equal(runner_statistics(&held.r).canceledCount, 6);
     teardown(&held);
 }
 
@@ -174,14 +174,14 @@ static void an_abort_wakes_all_though_reads_are_stuck(void **state)
         begin(&waiters[w], &held, wait_for_ever);
     begin(&end, &held, end_all);
     CHECK_RESULT(sluiceWaitDemandTicket(held.r.loader, held.r.ticket, UINT64_MAX, NULL),
-                 SLUICE_ERROR_CANCELLED);
+                 SLUICE_ERROR_CANCELED);
     for (uint32_t w = 0; w < 3; w++) {
         assert_int_equal(pthread_join(waiters[w].thread, NULL), 0);
-        CHECK_RESULT(waiters[w].result, SLUICE_ERROR_CANCELLED);
+        CHECK_RESULT(waiters[w].result, SLUICE_ERROR_CANCELED);
     }
     assert_int_equal(pthread_join(end.thread, NULL), 0);
     CHECK_OK(end.result);
-    CHECK_RESULT(runner_submit(&held.r), SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(runner_submit(&held.r), SLUICE_ERROR_CANCELED);
     CHECK_RESULT(
         sluiceProcessDemandRequests(held.r.loader, &held.r.launch, 0, &held.r.requests, NULL),
         SLUICE_ERROR_INVALID_ARGUMENT); /* this one was */
@@ -231,7 +231,7 @@ int main(void)
     if (status)
         return status;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cancelled_ticket_ends_with_what_is_under_way),
+        cmocka_unit_test(a_canceled_ticket_ends_with_what_is_under_way),
         cmocka_unit_test(a_wait_ends_when_its_time_is_over),
         cmocka_unit_test(tickets_that_were_never_given_are_refused),
         cmocka_unit_test(another_thread_may_cancel_what_this_one_waits_for),

@@ -70,7 +70,7 @@ static bool make_special(struct ProbeInput *in, uint32_t lane, uint32_t round)
 static void describe(const char *what, const struct ProbeInput *in, const struct ProbeOutput *out,
                      uint32_t texture)
 {
-    fail_msg("%s: texture %u, uv %g %g dx %g %g dy %g %g bias %g anisotropy %g; colour %g %g %g "
+    fail_msg("%s: texture %u, uv %g %g dx %g %g dy %g %g bias %g anisotropy %g; color %g %g %g "
              "%g, lod %g, level %u",
              what, texture, (double)in->uv[0], (double)in->uv[1], (double)in->dx[0],
              (double)in->dx[1], (double)in->dy[0], (double)in->dy[1], (double)in->lodBias,
@@ -86,7 +86,7 @@ static void check_special(const struct scene *scene, uint32_t t, uint32_t i)
     bool bordered = scene->textures[t].u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     for (uint32_t c = 0; c < 4; c++)
         if (!(out->color[c] >= 0 && out->color[c] <= 1.001f))
-            describe("not a colour of the texture", in, out, t);
+            describe("not a color of the texture", in, out, t);
     if (!bordered && !(out->color[3] > 0.99f))
         describe("texels that are not resident", in, out, t);
     if (!bordered && !(pattern_level(out->color) >= (float)out->level - PATTERN_LEVEL_ERROR))

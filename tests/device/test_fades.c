@@ -71,7 +71,7 @@ static uint32_t fading(const struct scene *scene)
     return stats.fadingTextures;
 }
 
-/* Where a footprint that was widened gets narrower it leaves a coarser neighbour behind: a few. */
+/* Where a footprint that was widened gets narrower it leaves a coarser neighbor behind: a few. */
 static uint32_t jumps;
 
 /* From what was shown to what is shown; true if it is another level. */

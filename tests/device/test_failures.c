@@ -170,7 +170,7 @@ static void texture_can_be_removed_after_any_number_of_frames(void **state)
     scene_finish(&scene);
 }
 
-static void loads_nobody_wants_any_more_are_cancelled(void **state)
+static void loads_nobody_wants_any_more_are_canceled(void **state)
 {
     struct harness *h = *state;
     struct faulty f;
@@ -194,8 +194,8 @@ static void loads_nobody_wants_any_more_are_cancelled(void **state)
     scene_settle(&f.scene, 14);
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     sluiceGetVulkanStreamerStatistics(f.scene.streamer, &stats);
-    assert_true(stats.tilesCancelled > 0);
-    assert_int_equal(stats.cancelledTileCount, 0);
+    assert_true(stats.tilesCanceled > 0);
+    assert_int_equal(stats.canceledTileCount, 0);
     assert_int_equal(scene_missing(&f.scene), 0);
     assert_int_equal(scene_non_resident(&f.scene), 0);
     faulty_finish(&f);
@@ -470,7 +470,7 @@ int main(void)
         cmocka_unit_test(source_that_is_not_ready_is_asked_again),
         cmocka_unit_test(texture_removed_while_it_loads_leaves_the_others_alone),
         cmocka_unit_test(texture_can_be_removed_after_any_number_of_frames),
-        cmocka_unit_test(loads_nobody_wants_any_more_are_cancelled),
+        cmocka_unit_test(loads_nobody_wants_any_more_are_canceled),
         cmocka_unit_test(working_set_beyond_the_heaps_is_coarser_but_right),
         cmocka_unit_test(heap_that_the_device_cannot_have_is_an_empty_budget),
         cmocka_unit_test(creation_survives_every_allocation_failure),

@@ -198,7 +198,7 @@ static void extremes_stay_inside_the_map(void **state)
             for (int c = 0; c < 4; c++)
                 if (!(out->color[c] >= 0 && out->color[c] <= 1)) {
                     const struct ProbeInput *in = &prober_inputs(&scene.prober)[i];
-                    fail_msg("colour %g for uv %g %g dx %g %g dy %g %g bias %g anisotropy %g",
+                    fail_msg("color %g for uv %g %g dx %g %g dy %g %g bias %g anisotropy %g",
                              (double)out->color[c], (double)in->uv[0], (double)in->uv[1],
                              (double)in->dx[0], (double)in->dx[1], (double)in->dy[0],
                              (double)in->dy[1], (double)in->lodBias, (double)in->maxAnisotropy);

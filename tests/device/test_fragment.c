@@ -1,4 +1,4 @@
-/* The path of a rasteriser: implicit derivatives, a few selected pixels write feedback. */
+/* The path of a rasterizer: implicit derivatives, a few selected pixels write feedback. */
 #include "device/painter.h"
 #include "device/scene.h"
 

@@ -34,7 +34,7 @@ static uint32_t add_random(struct scene *scene, float anisotropy)
     const uint32_t sizes[][2] = {{1024, 1024}, {1000, 1500}, {2048, 300}, {129, 2000}, {700, 700}};
     const SluiceFormat formats[] = {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R16G16B16A16_SFLOAT,
                                     SLUICE_FORMAT_R32_SFLOAT, SLUICE_FORMAT_R32G32B32A32_SFLOAT};
-    /* no border: its colour would look like texels that are not resident */
+    /* no border: its color would look like texels that are not resident */
     const VkSamplerAddressMode modes[] = {
         VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,

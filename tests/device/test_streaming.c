@@ -39,7 +39,7 @@ static void settled_sample_shows_the_level_that_was_wanted(void **state)
     scene_finish(&scene);
 }
 
-/* Before anything has come the fallback colour, then coarse levels, and never a step back. */
+/* Before anything has come the fallback color, then coarse levels, and never a step back. */
 static void picture_gets_sharper_frame_by_frame(void **state)
 {
     struct scene scene;
@@ -155,7 +155,7 @@ static void every_texel_is_where_the_source_has_it(void **state)
 }
 
 /* The same samples with everything resident: the same bits. */
-static void settled_colours_are_those_of_a_resident_texture(void **state)
+static void settled_colors_are_those_of_a_resident_texture(void **state)
 {
     static struct ProbeOutput truth[PROBE_CAPACITY];
     for (int streamed = 0; streamed < 2; streamed++) {
@@ -258,7 +258,7 @@ int main(void)
         cmocka_unit_test(settled_sample_shows_the_level_that_was_wanted),
         cmocka_unit_test(picture_gets_sharper_frame_by_frame),
         cmocka_unit_test(every_texel_is_where_the_source_has_it),
-        cmocka_unit_test(settled_colours_are_those_of_a_resident_texture),
+        cmocka_unit_test(settled_colors_are_those_of_a_resident_texture),
         cmocka_unit_test(tiles_nobody_wants_any_more_are_unmapped_and_come_back_right),
         cmocka_unit_test(followers_get_what_their_primary_wants),
     };

@@ -228,13 +228,13 @@ static void other_formats_hold_the_converted_colors(void **state)
     sluiceDestroyImageSource(red);
 }
 
-/* Primaries that are Rec. 709's already or that make no sense, grey, and what is to be kept. */
+/* Primaries that are Rec. 709's already or that make no sense, gray, and what is to be kept. */
 static void other_files_keep_their_bits(void **state)
 {
     (void)state;
     static const struct {
         const char *name;
-        bool keep, is_grey;
+        bool keep, is_gray;
     } cases[] = {{"scan_rec709.exr", false, false},
                  {"scan_no_primaries.exr", false, false},
                  {"scan_rec2020_grey.exr", false, true},
@@ -249,9 +249,9 @@ static void other_files_keep_their_bits(void **state)
         SluiceImageRegion region = level_region(0);
         CHECK_OK(sluiceReadImageRegion(source, &region, texels, 16 * WIDTH));
         for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
-            for (uint32_t c = 0; c < (cases[f].is_grey ? 3u : 4u); c++)
+            for (uint32_t c = 0; c < (cases[f].is_gray ? 3u : 4u); c++)
                 assert_true((real)texels[i][c] ==
-                            formula(0, i % WIDTH, i / WIDTH, cases[f].is_grey ? 4 : c));
+                            formula(0, i % WIDTH, i / WIDTH, cases[f].is_gray ? 4 : c));
         sluiceDestroyImageSource(source);
     }
 }

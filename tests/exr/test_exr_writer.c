@@ -51,8 +51,8 @@ static void folder_finish(struct folder *folder)
     assert_int_equal(rmdir(folder->path), 0);
 }
 
-static void colour(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                   uint32_t height, float rgba[4])
+static void color(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                  uint32_t height, float rgba[4])
 {
     (void)user;
     uint32_t hash = (x * 73856093u) ^ (y * 19349663u) ^ (level * 83492791u) ^ (width + height);
@@ -62,8 +62,8 @@ static void colour(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t 
     rgba[3] = (float)(hash >> 16 & 255) / 255.0f;
 }
 
-static void wild_colour(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
-                        uint32_t height, float rgba[4])
+static void wild_color(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
+                       uint32_t height, float rgba[4])
 {
     static const float values[] = {1e30f, -1e30f, 65504.0f, -65519.0f, 1e-8f, -0.0f, 3.0f};
     (void)user, (void)level, (void)width, (void)height;
@@ -74,7 +74,7 @@ static void wild_colour(void *user, uint32_t level, uint32_t x, uint32_t y, uint
 static SluiceImageSource *create_source(uint32_t width, uint32_t height, SluiceFormat format,
                                         bool is_wild)
 {
-    SluiceProceduralImage image = {NULL, is_wild ? wild_colour : colour};
+    SluiceProceduralImage image = {NULL, is_wild ? wild_color : color};
     SluiceImageInfo info = {sizeof info, width, height, 0, format, "writer test"};
     SluiceImageSource *source = NULL;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
@@ -277,7 +277,7 @@ static void stopping_leaves_what_was_there_before(void **state)
                                    .threadCount = threads,
                                    .pUserData = &progress,
                                    .pfnProgress = on_progress};
-        CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_CANCELLED);
+        CHECK_RESULT(sluiceWriteExrFile(&info, source), SLUICE_ERROR_CANCELED);
         assert_int_equal(count_files(&folder), 1);
     }
     char text[8] = {0};

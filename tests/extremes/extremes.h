@@ -46,7 +46,7 @@ extern const float extremes_specials[EXTREMES_SPECIALS];
 uint32_t extremes_random(uint64_t number);
 
 /** Float `i` of a series: in 512 of them each exponent with both signs, NaN and infinities among
- *  them; of mantissas the smallest, its neighbours and the largest first, then any. */
+ *  them; of mantissas the smallest, its neighbors and the largest first, then any. */
 float extremes_float(uint64_t i);
 
 float extremes_float_of(uint32_t bits);

@@ -217,7 +217,7 @@ static const struct conversion conversions[] = {
 };
 
 /* Numbers from all of float, and as many from 0 to 1, where most steps are. */
-static void make_colour(uint64_t i, float rgba[4])
+static void make_color(uint64_t i, float rgba[4])
 {
     for (uint64_t c = 0; c < 4; c++) {
         rgba[c] = extremes_float(i * 4 + c);
@@ -240,7 +240,7 @@ static void every_format_rounds_to_the_nearest(void **state)
         for (uint64_t i = 0; i < count; i++) {
             float rgba[4], got[4];
             char texel[16];
-            make_colour(i, rgba);
+            make_color(i, rgba);
             slc_texels_from_rgba(c->format, rgba, texel, 1);
             slc_texels_to_rgba(c->format, texel, got, 1);
             extremes_add(&row, c->error(rgba, got), "%a %a %a", (double)rgba[0], (double)rgba[1],

@@ -37,7 +37,7 @@ static void add_texture(struct soak *s, uint32_t texture)
 {
     SluiceStreamedTextureDesc desc = shape_of(texture);
     s->ids[texture] = fixture_add(&s->f, &desc);
-    if (texture % 8 == 7) /* its own neighbour's follower */
+    if (texture % 8 == 7) /* its own neighbor's follower */
         CHECK_OK(sluiceSetPrimaryTexture(s->f.manager, s->ids[texture], s->ids[texture - 1]));
 }
 
@@ -105,7 +105,7 @@ static void answer(struct soak *s)
         if (dice == 0)
             CHECK_OK(sluiceReportFailedTiles(s->f.manager, id, 1, &tile, s->frame * frame_time));
         else if (dice < 3)
-            CHECK_OK(sluiceReportCancelledTiles(s->f.manager, id, 1, &tile, s->frame + 1));
+            CHECK_OK(sluiceReportCanceledTiles(s->f.manager, id, 1, &tile, s->frame + 1));
         else
             CHECK_OK(sluiceUpdateTilesMapping(s->f.manager, id, 1, &tile));
         drop_load(s, i);
@@ -184,7 +184,7 @@ static void check_activity(const struct fixture *f)
     SluiceStreamedTextureStatistics s = fixture_statistics(f);
     assert_true(s.mappedTotal > frame_count && s.unmappedTotal > frame_count);
     assert_true(s.failedTotal > frame_count / 100 && s.restoredTotal > frame_count / 100);
-    assert_true(s.cancelledTotal > frame_count / 1000);
+    assert_true(s.canceledTotal > frame_count / 1000);
     assert_true(f->heaps.refused > 0);
 }
 

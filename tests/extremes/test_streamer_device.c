@@ -102,9 +102,8 @@ static void what_waits_for_memory_ends_with_the_wish_for_it(void **state)
             CHECK_OK(run_frames(10));
         }
         s = gallery_statistics(&g);
-        assert_int_equal(s.requestedTileCount + s.allocatedTileCount + s.cancelledTileCount +
-                             s.loadsInFlight,
-                         0);
+        assert_int_equal(
+            s.requestedTileCount + s.allocatedTileCount + s.canceledTileCount + s.loadsInFlight, 0);
         g.fake.memory_limit = 0;
         g.is_looked_at = true;
         for (uint32_t t = 0; t < GALLERY_TEXTURES && i % 2 == 0; t++)

@@ -28,10 +28,10 @@ const struct value values[VALUES_COUNT] = {
     {"-infinity", 0xFC00, -INFINITY, -65504, -FAR, 0},
     {"NaN", 0x7E00, NAN, 0, 0, 0},
     {"-NaN", 0xFE01, NAN, 0, 0, 0},
-    {"signalling NaN", 0x7C01, NAN, 0, 0, 0},
+    {"signaling NaN", 0x7C01, NAN, 0, 0, 0},
 };
 
-/* Neighbours differ, and each value has many neighbours. */
+/* Neighbors differ, and each value has many neighbors. */
 uint32_t value_at(uint32_t level, uint32_t x, uint32_t y)
 {
     return (x * (1 + y % 7) + y * 5 + level * 3) % VALUES_COUNT;

@@ -17,7 +17,7 @@ struct loader_fixture {
     uint32_t failure_count;
     SluiceTileReadFailure failures[MAX_FAILURES];
     bool cancels;
-    uint64_t ticket; ///< what is cancelled then
+    uint64_t ticket; ///< what is canceled then
 };
 
 /** One thread and delays that are no delays, unless `create` says otherwise. */

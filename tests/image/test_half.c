@@ -88,7 +88,7 @@ static void floats_of_every_exponent_round_to_nearest_even(void **state)
         }
 }
 
-static void ties_and_their_neighbours_round_right(void **state)
+static void ties_and_their_neighbors_round_right(void **state)
 {
     (void)state;
     for (uint32_t h = 0; h < 0x7BFF; h++) {
@@ -122,7 +122,7 @@ int main(void)
         cmocka_unit_test(every_half_widens_exactly),
         cmocka_unit_test(every_half_survives_a_round_trip),
         cmocka_unit_test(floats_of_every_exponent_round_to_nearest_even),
-        cmocka_unit_test(ties_and_their_neighbours_round_right),
+        cmocka_unit_test(ties_and_their_neighbors_round_right),
         cmocka_unit_test(the_ends_saturate_and_nan_becomes_zero),
     };
     return RUN_TESTS(tests);

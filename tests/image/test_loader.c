@@ -119,7 +119,7 @@ static void urgent_reads_go_first_and_equal_ones_in_order(void **state)
     teardown(&f);
 }
 
-static void a_queued_read_that_is_cancelled_is_never_begun(void **state)
+static void a_queued_read_that_is_canceled_is_never_begun(void **state)
 {
     (void)state;
     struct fixture f;
@@ -134,7 +134,7 @@ static void a_queued_read_that_is_cancelled_is_never_begun(void **state)
     SluiceTileReadResult result = collect_one(&f);
     assert_int_equal(result.ticket, dropped);
     assert_int_equal(result.size, 0);
-    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELED);
     fault_source_release(&f.source);
     sluiceWaitTileLoaderIdle(f.loader);
     CHECK_OK(collect_one(&f).result);
@@ -144,7 +144,7 @@ static void a_queued_read_that_is_cancelled_is_never_begun(void **state)
     teardown(&f);
 }
 
-static void a_running_read_that_is_cancelled_stops_between_regions(void **state)
+static void a_running_read_that_is_canceled_stops_between_regions(void **state)
 {
     (void)state;
     struct fixture f;
@@ -159,7 +159,7 @@ static void a_running_read_that_is_cancelled_stops_between_regions(void **state)
     sluiceCancelTileRead(f.loader, ticket);
     fault_source_release(&f.source);
     SluiceTileReadResult result = collect_one(&f);
-    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELED);
     assert_int_equal(result.size, 0);
     assert_int_equal(f.source.read_count, 1);
     assert_true(texels[1] == -1);
@@ -212,7 +212,7 @@ static void every_end_of_a_read_is_told_once_with_its_result(void **state)
         CHECK_RESULT(ends.results[i], result.result);
     }
     assert_int_equal(ends.values[0], 8);
-    CHECK_RESULT(ends.results[0], SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(ends.results[0], SLUICE_ERROR_CANCELED);
     CHECK_OK(ends.results[2]);
     teardown(&f);
 }
@@ -370,7 +370,7 @@ static void collect_some(struct storm *storm)
         if (results[i].result == SLUICE_SUCCESS &&
             storm->texels[who][which] == (float)(which % SIZE))
             atomic_fetch_add(&storm->succeeded, 1);
-        else if (results[i].result != SLUICE_ERROR_CANCELLED)
+        else if (results[i].result != SLUICE_ERROR_CANCELED)
             atomic_fetch_add(&storm->finished, 1000000); /* seen at the end */
         atomic_fetch_add(&storm->finished, 1);
     }
@@ -469,8 +469,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_regions_of_a_read_are_delivered),
         cmocka_unit_test(urgent_reads_go_first_and_equal_ones_in_order),
-        cmocka_unit_test(a_queued_read_that_is_cancelled_is_never_begun),
-        cmocka_unit_test(a_running_read_that_is_cancelled_stops_between_regions),
+        cmocka_unit_test(a_queued_read_that_is_canceled_is_never_begun),
+        cmocka_unit_test(a_running_read_that_is_canceled_stops_between_regions),
         cmocka_unit_test(every_end_of_a_read_is_told_once_with_its_result),
         cmocka_unit_test(a_read_in_its_last_region_ends_as_if_nothing_had_been_said),
         cmocka_unit_test(capacity_counts_what_is_not_collected),

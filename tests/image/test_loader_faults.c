@@ -46,7 +46,7 @@ static void check_story(const struct story *story)
         assert_int_equal(s.succeededCount, succeeded);
         assert_int_equal(s.givenUpCount, !succeeded);
         assert_int_equal(s.byteCount, succeeded ? 4 : 0);
-        assert_true(s.delayedCount == 0 && s.cancelledCount == 0);
+        assert_true(s.delayedCount == 0 && s.canceledCount == 0);
         assert_true(s.meanLatencyNs <= s.maxLatencyNs && s.medianLatencyNs <= s.latency99Ns &&
                     s.latency99Ns <= s.maxLatencyNs);
     }

@@ -1,4 +1,4 @@
-/* Sources that stall, bounds on what is under way, cancelling and destroying meanwhile. */
+/* Sources that stall, bounds on what is under way, canceling and destroying meanwhile. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <sluice/loader.h>
@@ -122,7 +122,7 @@ static void wait_until_delayed(struct loader_fixture *f, uint64_t count)
         sched_yield();
 }
 
-static void a_read_that_waits_for_another_attempt_can_be_cancelled(void **state)
+static void a_read_that_waits_for_another_attempt_can_be_canceled(void **state)
 {
     (void)state;
     struct loader_fixture f;
@@ -139,16 +139,16 @@ static void a_read_that_waits_for_another_attempt_can_be_cancelled(void **state)
     sluiceCancelTileRead(f.loader, ticket);
     SluiceTileReadResult result = fixture_collect(&f);
     assert_int_equal(result.ticket, ticket);
-    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(result.result, SLUICE_ERROR_CANCELED);
     sluiceWaitTileLoaderIdle(f.loader);
     assert_int_equal(f.source.read_count, 2);
     SluiceTileLoaderStatistics s = fixture_statistics(&f, &f.source);
-    assert_true(s.cancelledCount == 1 && s.delayedCount == 0 && s.retriedCount == 1);
+    assert_true(s.canceledCount == 1 && s.delayedCount == 0 && s.retriedCount == 1);
     assert_true(s.givenUpCount == 0 && s.succeededCount == 1);
     fixture_finish(&f);
 }
 
-static void a_read_that_is_cancelled_while_it_fails_is_not_tried_again(void **state)
+static void a_read_that_is_canceled_while_it_fails_is_not_tried_again(void **state)
 {
     (void)state;
     struct loader_fixture f;
@@ -164,10 +164,10 @@ static void a_read_that_is_cancelled_while_it_fails_is_not_tried_again(void **st
     f.ticket = fixture_submit(&f, &f.source, 1, &texel, 0);
     pthread_mutex_unlock(&f.mutex);
     fault_source_release(&f.source);
-    CHECK_RESULT(fixture_collect(&f).result, SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(fixture_collect(&f).result, SLUICE_ERROR_CANCELED);
     assert_int_equal(f.source.read_count, 1);
     SluiceTileLoaderStatistics s = fixture_statistics(&f, NULL);
-    assert_true(s.failedCount == 1 && s.retriedCount == 0 && s.cancelledCount == 1);
+    assert_true(s.failedCount == 1 && s.retriedCount == 0 && s.canceledCount == 1);
     fixture_finish(&f);
 }
 
@@ -201,7 +201,7 @@ static void hold_until_dropped(void *user, const SluiceTileReadFailure *failure)
     pthread_mutex_unlock(&f->mutex);
     SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     assert_true(failure->willRetry);
-    while (s.cancelledCount != failure->userValue) {
+    while (s.canceledCount != failure->userValue) {
         CHECK_OK(sluiceGetTileLoaderStatistics(loader, NULL, &s));
         sched_yield();
     }
@@ -241,8 +241,8 @@ int main(void)
         cmocka_unit_test(a_stalled_source_does_not_stop_a_loader_with_default_threads),
         cmocka_unit_test(bytes_in_flight_are_bounded),
         cmocka_unit_test(a_read_beyond_the_bound_is_made_alone),
-        cmocka_unit_test(a_read_that_waits_for_another_attempt_can_be_cancelled),
-        cmocka_unit_test(a_read_that_is_cancelled_while_it_fails_is_not_tried_again),
+        cmocka_unit_test(a_read_that_waits_for_another_attempt_can_be_canceled),
+        cmocka_unit_test(a_read_that_is_canceled_while_it_fails_is_not_tried_again),
         cmocka_unit_test(destroying_does_not_wait_for_other_attempts),
         cmocka_unit_test(destroying_drops_all_but_what_is_under_way),
     };

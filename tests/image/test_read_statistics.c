@@ -63,15 +63,15 @@ static void attempts_and_ends_are_counted_by_their_results(void **state)
     (void)state;
     struct slc_read_statistics statistics = {0};
     static const SluiceResult attempts[] = {
-        SLUICE_SUCCESS,  SLUICE_NOT_READY,          SLUICE_NOT_READY,      SLUICE_ERROR_IO,
-        SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA, SLUICE_ERROR_CANCELLED};
+        SLUICE_SUCCESS,  SLUICE_NOT_READY,          SLUICE_NOT_READY,     SLUICE_ERROR_IO,
+        SLUICE_ERROR_IO, SLUICE_ERROR_CORRUPT_DATA, SLUICE_ERROR_CANCELED};
     for (size_t i = 0; i < sizeof attempts / sizeof attempts[0]; i++)
         slc_read_statistics_add_attempt(&statistics, attempts[i], 1000 + i, 0);
     slc_read_statistics_add_end(&statistics, SLUICE_SUCCESS, 100);
     slc_read_statistics_add_end(&statistics, SLUICE_SUCCESS, 11);
     slc_read_statistics_add_end(&statistics, SLUICE_ERROR_IO, 0);
     slc_read_statistics_add_end(&statistics, SLUICE_NOT_READY, 0);
-    slc_read_statistics_add_end(&statistics, SLUICE_ERROR_CANCELLED, 0);
+    slc_read_statistics_add_end(&statistics, SLUICE_ERROR_CANCELED, 0);
     SluiceTileLoaderStatistics s = {.structSize = sizeof s};
     slc_read_statistics_write(&statistics, &s);
     assert_int_equal(s.attemptCount, 7);
@@ -80,7 +80,7 @@ static void attempts_and_ends_are_counted_by_their_results(void **state)
     assert_int_equal(s.succeededCount, 2);
     assert_int_equal(s.byteCount, 111);
     assert_int_equal(s.givenUpCount, 2);
-    assert_int_equal(s.cancelledCount, 1);
+    assert_int_equal(s.canceledCount, 1);
     CHECK_RESULT(s.lastFailure, SLUICE_ERROR_CORRUPT_DATA);
     assert_int_equal(s.lastFailureOffset, 1005);
 }

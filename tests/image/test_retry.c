@@ -37,7 +37,7 @@ static void what_will_not_pass_is_not_tried_again(void **state)
 {
     (void)state;
     static const SluiceResult results[] = {
-        SLUICE_SUCCESS,           SLUICE_ERROR_CANCELLED,      SLUICE_ERROR_INVALID_ARGUMENT,
+        SLUICE_SUCCESS,           SLUICE_ERROR_CANCELED,       SLUICE_ERROR_INVALID_ARGUMENT,
         SLUICE_ERROR_UNSUPPORTED, SLUICE_ERROR_FILE_NOT_FOUND, SLUICE_ERROR_NULL_POINTER};
     struct slc_attempts attempts = {1, 0};
     uint64_t delay;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tells where it was asked: every texel of every level has its own colour. */
+/* Tells where it was asked: every texel of every level has its own color. */
 static void mark(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
                  uint32_t height, float rgba[4])
 {

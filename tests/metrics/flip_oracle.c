@@ -83,7 +83,7 @@ double flip_oracle_largest(void)
     return pow(hyab(a, b), 0.7);
 }
 
-/** Hunt's L*a*b* of a filtered colour. */
+/** Hunt's L*a*b* of a filtered color. */
 static void filtered_lab(double m[3][3], const double ycxcz[3], double lab[3])
 {
     double y = (ycxcz[0] + 16) / 116, rgb[3];
@@ -94,7 +94,7 @@ static void filtered_lab(double m[3][3], const double ycxcz[3], double lab[3])
     hunt_lab(m, rgb, lab);
 }
 
-/** Contrast sensitivity in space, of one channel, `z` degrees squared from the centre. */
+/** Contrast sensitivity in space, of one channel, `z` degrees squared from the center. */
 static double sensitivity(int channel, double z)
 {
     static const double table[3][4] = {
@@ -104,7 +104,7 @@ static double sensitivity(int channel, double z)
            t[2] * sqrt(pi / t[3]) * exp(-pi * pi * z / t[3]);
 }
 
-/** Kernels in two dimensions: three of colour, then edge along x and y, point along x and y. */
+/** Kernels in two dimensions: three of color, then edge along x and y, point along x and y. */
 static double kernel_value(int kernel, int x, int y, double pixels_per_degree)
 {
     double s = 0.5 * 0.082 * pixels_per_degree, r2 = x * x + y * y;
@@ -164,13 +164,13 @@ static void filter_picture(double m[3][3], const uint8_t *pixels, int width, int
 {
     static double channels[4][MAX_PIXELS];
     for (int i = 0; i < width * height; i++) {
-        double xyz[3] = {0}, colour[3];
+        double xyz[3] = {0}, color[3];
         for (int k = 0; k < 9; k++)
             xyz[k / 3] += m[k / 3][k % 3] * light_of(pixels[4 * i + k % 3] / 255.0);
-        opponents(xyz, colour);
+        opponents(xyz, color);
         for (int k = 0; k < 3; k++)
-            channels[k][i] = colour[k];
-        channels[3][i] = (colour[0] + 16) / 116;
+            channels[k][i] = color[k];
+        channels[3][i] = (color[0] + 16) / 116;
     }
     for (int k = 0; k < 7; k++)
         convolve(channels[k < 3 ? k : 3], planes[k], width, height, k, pixels_per_degree);
@@ -193,15 +193,15 @@ void flip_oracle(const uint8_t *a, const uint8_t *b, int width, int height,
     for (int i = 0; i < width * height; i++) {
         double lab[2][3];
         for (int k = 0; k < 2; k++) {
-            double colour[3] = {planes[k][0][i], planes[k][1][i], planes[k][2][i]};
-            filtered_lab(m, colour, lab[k]);
+            double color[3] = {planes[k][0][i], planes[k][1][i], planes[k][2][i]};
+            filtered_lab(m, color, lab[k]);
         }
         double distance = pow(hyab(lab[0], lab[1]), 0.7), knee = 0.4 * largest;
-        double colour_error = distance < knee
-                                  ? distance * 0.95 / knee
-                                  : 0.95 + (distance - knee) / (largest - knee) * (1 - 0.95);
+        double color_error = distance < knee
+                                 ? distance * 0.95 / knee
+                                 : 0.95 + (distance - knee) / (largest - knee) * (1 - 0.95);
         double feature = fmax(length_difference(planes[0], planes[1], 3, i),
                               length_difference(planes[0], planes[1], 5, i));
-        errors[i] = pow(colour_error, 1 - sqrt(feature / sqrt(2)));
+        errors[i] = pow(color_error, 1 - sqrt(feature / sqrt(2)));
     }
 }

@@ -11,8 +11,8 @@
 
 enum { SIZE = 64, MAX_PIXELS = SIZE * SIZE };
 
-/** Two pictures of one colour each, 24x24. */
-static double flip_of_colours(const uint8_t first[3], const uint8_t second[3])
+/** Two pictures of one color each, 24x24. */
+static double flip_of_colors(const uint8_t first[3], const uint8_t second[3])
 {
     static uint8_t a[24 * 24 * 4], b[24 * 24 * 4];
     double mean;
@@ -95,19 +95,19 @@ static void equal_pictures_have_exactly_none(void **state)
         assert_true(values[i] == 0);
 }
 
-static void greys_follow_the_difference_of_lightness(void **state)
+static void grays_follow_the_difference_of_lightness(void **state)
 {
     (void)state;
     const uint8_t black[3] = {0};
     double largest = flip_oracle_largest();
     for (int value = 5; value < 256; value += 50) {
-        const uint8_t grey[3] = {(uint8_t)value, (uint8_t)value, (uint8_t)value};
+        const uint8_t gray[3] = {(uint8_t)value, (uint8_t)value, (uint8_t)value};
         double light = light_of(value / 255.0);
         double lightness = light > 216.0 / 24389 ? 116 * cbrt(light) - 16 : light * 24389 / 27;
         double share = pow(lightness, 0.7) / largest;
         double expected = share < 0.4 ? share * 0.95 / 0.4 : 0.95 + (share - 0.4) * 0.05 / 0.6;
         /* features of a plain picture are rounding errors, but their square root counts */
-        assert_true(fabs(flip_of_colours(black, grey) - expected) < 1e-7);
+        assert_true(fabs(flip_of_colors(black, gray) - expected) < 1e-7);
     }
 }
 
@@ -115,7 +115,7 @@ static void blue_against_green_is_the_largest(void **state)
 {
     (void)state;
     const uint8_t green[3] = {0, 255, 0}, blue[3] = {0, 0, 255};
-    double largest = flip_of_colours(green, blue);
+    double largest = flip_of_colors(green, blue);
     assert_true(fabs(largest - 1) < 1e-9 && largest <= 1);
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < i; j++) {
@@ -123,7 +123,7 @@ static void blue_against_green_is_the_largest(void **state)
                                   (uint8_t)(i & 4 ? 255 : 0)};
             const uint8_t b[3] = {(uint8_t)(j & 1 ? 255 : 0), (uint8_t)(j & 2 ? 255 : 0),
                                   (uint8_t)(j & 4 ? 255 : 0)};
-            double error = flip_of_colours(a, b);
+            double error = flip_of_colors(a, b);
             assert_true(error > 0.5 && error <= largest);
         }
 }
@@ -132,7 +132,7 @@ static void black_against_white_is_near_one(void **state)
 {
     (void)state;
     const uint8_t black[3] = {0}, white[3] = {255, 255, 255};
-    assert_true(fabs(flip_of_colours(black, white) - 0.967) < 5e-4);
+    assert_true(fabs(flip_of_colors(black, white) - 0.967) < 5e-4);
 }
 
 static void the_order_of_the_two_does_not_matter(void **state)
@@ -198,7 +198,7 @@ int main(void)
         cmocka_unit_test(small_pictures_agree_with_direct_convolution),
         cmocka_unit_test(one_pixel_is_seen_as_far_as_filters_reach),
         cmocka_unit_test(equal_pictures_have_exactly_none),
-        cmocka_unit_test(greys_follow_the_difference_of_lightness),
+        cmocka_unit_test(grays_follow_the_difference_of_lightness),
         cmocka_unit_test(blue_against_green_is_the_largest),
         cmocka_unit_test(black_against_white_is_near_one),
         cmocka_unit_test(the_order_of_the_two_does_not_matter),

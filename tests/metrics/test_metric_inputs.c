@@ -40,17 +40,17 @@ static void fill_wild(float *wild, float *tame)
 static void floats_are_clamped_and_nan_is_zero(void **state)
 {
     (void)state;
-    static float wild[PIXELS * 4], tame[PIXELS * 4], grey[PIXELS * 4];
+    static float wild[PIXELS * 4], tame[PIXELS * 4], gray[PIXELS * 4];
     fill_wild(wild, tame);
     for (int i = 0; i < PIXELS * 4; i++)
-        grey[i] = 1;
+        gray[i] = 1;
     for (int flip = 0; flip < 2; flip++)
         for (int format = 1; format <= 2; format++) {
             double same, of_wild, of_tame;
             SluicePicturePair pair = float_pair(wild, tame, (SluicePixelFormat)format, 4);
             CHECK_OK(compute(flip, &pair, NULL, NULL, &same));
             assert_true(same == (flip ? 0 : 1));
-            pair.pB = grey;
+            pair.pB = gray;
             CHECK_OK(compute(flip, &pair, NULL, NULL, &of_wild));
             pair.pA = tame;
             CHECK_OK(compute(flip, &pair, NULL, NULL, &of_tame));
@@ -233,11 +233,11 @@ static void magma_goes_from_black_to_pale_yellow(void **state)
     static const uint8_t expected[8][4] = {
         {0, 0, 4, 255}, {252, 253, 191, 255}, {181, 54, 122, 255},  {14, 8, 36, 255},
         {0, 0, 4, 255}, {0, 0, 4, 255},       {252, 253, 191, 255}, {252, 253, 191, 255}};
-    uint8_t colours[8][4];
-    CHECK_OK(sluiceColorMagma(values, 8, colours[0]));
-    assert_memory_equal(colours, expected, sizeof expected);
+    uint8_t colors[8][4];
+    CHECK_OK(sluiceColorMagma(values, 8, colors[0]));
+    assert_memory_equal(colors, expected, sizeof expected);
     CHECK_OK(sluiceColorMagma(NULL, 0, NULL));
-    CHECK_RESULT(sluiceColorMagma(NULL, 1, colours[0]), SLUICE_ERROR_NULL_POINTER);
+    CHECK_RESULT(sluiceColorMagma(NULL, 1, colors[0]), SLUICE_ERROR_NULL_POINTER);
     CHECK_RESULT(sluiceColorMagma(values, 1, NULL), SLUICE_ERROR_NULL_POINTER);
 }
 

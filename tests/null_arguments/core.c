@@ -58,7 +58,7 @@ sluiceGetTilesToMap(f->manager, f->id, one(f), ?f->out.tiles)
 sluiceRetryFailedTiles(f->manager, f->id)
 sluiceGetGivenUpTiles(f->manager, one(f), ?f->out.tiles)
 sluiceGetTilesToCancel(f->manager, f->id, one(f), ?f->out.tiles)
-!sluiceReportCancelledTiles(f->manager, f->id, 1, f->indices, 1)
+!sluiceReportCanceledTiles(f->manager, f->id, 1, f->indices, 1)
 sluiceGetTilesToUnmap(f->manager, f->id, 1, one(f), ?f->out.tiles)
 sluiceCompleteRetireValue(f->manager, 1)
 sluiceTrimStandbyTiles(f->manager, 1)
@@ -212,7 +212,7 @@ static void fixture_init(struct fixture *f, void **state)
                                 .width = 256,
                                 .height = 256,
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                .pName = "grey"};
+                                .pName = "gray"};
     CHECK_OK(sluiceCreateProceduralImageSource(&f->image, &f->info, NULL, &f->source));
     f->region = (SluiceImageRegion){.width = 4, .height = 4};
     f->loader_info = (SluiceTileLoaderCreateInfo){.structSize = sizeof(SluiceTileLoaderCreateInfo),

@@ -197,7 +197,7 @@ static void fixture_init(struct fixture *f, void **state)
                                 .width = 64,
                                 .height = 64,
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                .pName = "grey"};
+                                .pName = "gray"};
     const SluiceProceduralImage image = {NULL, texel};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &f->info, NULL, &f->source));
     f->context_info = harness_context_info(&h);

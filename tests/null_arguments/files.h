@@ -1,4 +1,4 @@
-/** A folder of our own under the system's for temporary files, and a grey image. */
+/** A folder of our own under the system's for temporary files, and a gray image. */
 #ifndef TESTS_NULL_ARGUMENTS_FILES_H
 #define TESTS_NULL_ARGUMENTS_FILES_H
 
@@ -29,7 +29,7 @@ static inline void files_init(struct files *files)
                                   .width = 16,
                                   .height = 16,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .pName = "grey"};
+                                  .pName = "gray"};
     snprintf(files->folder, sizeof files->folder, "/tmp/sluice-null-XXXXXX");
     assert_non_null(mkdtemp(files->folder));
     snprintf(files->input, sizeof files->input, "%s/in", files->folder);

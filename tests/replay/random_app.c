@@ -216,7 +216,7 @@ static SluiceResult answer(struct random_app *app, enum slc_call_kind kind)
     else if (kind == SLC_CALL_REPORT_FAILED)
         result = sluiceReportFailedTiles(app->manager, id, count, given, next_time(app));
     else
-        result = sluiceReportCancelledTiles(app->manager, id, count, given, next_retire(app));
+        result = sluiceReportCanceledTiles(app->manager, id, count, given, next_retire(app));
     /* Refused ones are still to be answered, unless the texture is gone. */
     for (uint32_t i = 0; result < SLUICE_SUCCESS && result != SLUICE_ERROR_STALE_TEXTURE &&
                          i < count && app->load_count < RANDOM_APP_LOADS;
@@ -308,7 +308,7 @@ static SluiceResult make_call(struct random_app *app, enum slc_call_kind kind)
     case SLC_CALL_GET_TILES_TO_MAP: return get_tiles_to_map(app);
     case SLC_CALL_UPDATE_MAPPING:
     case SLC_CALL_REPORT_FAILED:
-    case SLC_CALL_REPORT_CANCELLED: return answer(app, kind);
+    case SLC_CALL_REPORT_CANCELED: return answer(app, kind);
     case SLC_CALL_RETRY_FAILED:
         return sluiceRetryFailedTiles(app->manager, id_or(app, SLUICE_ALL_TEXTURES));
     case SLC_CALL_GET_TILES_TO_CANCEL: return get_tiles_to_cancel(app);
@@ -328,7 +328,7 @@ static enum slc_call_kind some_kind(struct random_app *app)
         SLC_CALL_UPDATE_FEEDBACK,     SLC_CALL_UPDATE_FEEDBACK,    SLC_CALL_UPDATE_FEEDBACK,
         SLC_CALL_GET_TILES_TO_MAP,    SLC_CALL_GET_TILES_TO_MAP,   SLC_CALL_GET_TILES_TO_MAP,
         SLC_CALL_UPDATE_MAPPING,      SLC_CALL_UPDATE_MAPPING,     SLC_CALL_UPDATE_MAPPING,
-        SLC_CALL_GET_TILES_TO_CANCEL, SLC_CALL_REPORT_CANCELLED,   SLC_CALL_GET_TILES_TO_UNMAP,
+        SLC_CALL_GET_TILES_TO_CANCEL, SLC_CALL_REPORT_CANCELED,    SLC_CALL_GET_TILES_TO_UNMAP,
         SLC_CALL_COMPLETE_RETIRE,     SLC_CALL_GET_MINMIP_UPDATES, SLC_CALL_MATCH_PRIMARY,
     };
     uint32_t i = random_app_below(app, sizeof kinds + SLC_CALL_GET_MINMIP_UPDATES / 3);
@@ -363,7 +363,7 @@ void check_same_statistics(const SluiceStreamedTextureManager *manager,
     assert_int_equal(a.allocatedTileCount, b->allocatedTileCount);
     assert_int_equal(a.mappedTileCount, b->mappedTileCount);
     assert_int_equal(a.standbyTileCount, b->standbyTileCount);
-    assert_int_equal(a.cancelledTileCount, b->cancelledTileCount);
+    assert_int_equal(a.canceledTileCount, b->canceledTileCount);
     assert_int_equal(a.failedTileCount, b->failedTileCount);
     assert_int_equal(a.givenUpTileCount, b->givenUpTileCount);
     assert_int_equal(a.retiringSlotCount, b->retiringSlotCount);
@@ -372,7 +372,7 @@ void check_same_statistics(const SluiceStreamedTextureManager *manager,
     assert_int_equal(a.handedOutTotal, b->handedOutTotal);
     assert_int_equal(a.mappedTotal, b->mappedTotal);
     assert_int_equal(a.unmappedTotal, b->unmappedTotal);
-    assert_int_equal(a.cancelledTotal, b->cancelledTotal);
+    assert_int_equal(a.canceledTotal, b->canceledTotal);
     assert_int_equal(a.failedTotal, b->failedTotal);
     assert_int_equal(a.restoredTotal, b->restoredTotal);
     assert_int_equal(a.movedTotal, b->movedTotal);

@@ -35,7 +35,7 @@ static void feedback_that_stands_still_ends_with_what_it_wants(void **state)
     const SluiceStreamedTextureStatistics *s = &statistics;
     assert_int_equal(s->textureCount, 3);
     assert_int_equal(s->tileCount, 16 + 4 + 1 + 1 + 64 + 16 + 4 + 1 + 1 + 4 + 1 + 1);
-    assert_int_equal(s->requestedTileCount + s->allocatedTileCount + s->cancelledTileCount, 0);
+    assert_int_equal(s->requestedTileCount + s->allocatedTileCount + s->canceledTileCount, 0);
     /* The bottom row of 0: 4 + 2 + 1 + packed. Its follower is twice as large, so level 0 asks for
      * the follower's level 1: 4 + 2 + 1 + packed. Of 2 only the packed tile is left. */
     assert_int_equal(s->mappedTileCount, 8 + 8 + 1);

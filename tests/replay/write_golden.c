@@ -119,11 +119,11 @@ static void play_cancel(struct scene *scene)
     give_feedback(scene, id, 0, 1);
     get_tiles(scene, 64);
     give_feedback(scene, id, SLUICE_MIP_UNTOUCHED, 20);
-    SluiceTile cancelled[64];
+    SluiceTile canceled[64];
     uint32_t count = 3;
-    assert_true(sluiceGetTilesToCancel(scene->manager, id, &count, cancelled) >= SLUICE_SUCCESS);
+    assert_true(sluiceGetTilesToCancel(scene->manager, id, &count, canceled) >= SLUICE_SUCCESS);
     for (uint32_t i = 0; i < count; i++)
-        CHECK_OK(sluiceReportCancelledTiles(scene->manager, id, 1, &cancelled[i].tileIndex, 5));
+        CHECK_OK(sluiceReportCanceledTiles(scene->manager, id, 1, &canceled[i].tileIndex, 5));
     give_feedback(scene, id, 0, 21);
     CHECK_OK(sluiceCompleteRetireValue(scene->manager, 5));
     get_tiles(scene, 64);

@@ -16,7 +16,7 @@
 
 static struct supersample tables;
 
-static void average_of_a_plain_square_is_its_colour(void **state)
+static void average_of_a_plain_square_is_its_color(void **state)
 {
     (void)state;
     for (uint32_t factor = 1; factor <= 4; factor++)
@@ -290,7 +290,7 @@ static void text_of_somebody_else_is_told_apart(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(average_of_a_plain_square_is_its_colour),
+        cmocka_unit_test(average_of_a_plain_square_is_its_color),
         cmocka_unit_test(averages_are_of_light_and_alpha_of_itself),
         cmocka_unit_test(each_pixel_has_its_own_square),
         cmocka_unit_test_setup_teardown(frames_come_back_in_any_order, set_up, tear_down),

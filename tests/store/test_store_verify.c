@@ -146,7 +146,7 @@ static void verifying_stops_when_it_is_told_to(void **state)
     write_picture(&scratch, PICTURE_SMOOTH, 3);
     struct found found = {.stop_at = 3};
     SluiceStoreReport report = {.structSize = sizeof report};
-    CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CANCELLED);
+    CHECK_RESULT(verify(scratch.path, &found, &report), SLUICE_ERROR_CANCELED);
     assert_int_equal(report.tileCount, found.last_done);
     scratch_finish(&scratch);
 }

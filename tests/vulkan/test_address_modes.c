@@ -63,13 +63,13 @@ static void the_source_decides_unless_the_caller_does_and_a_mismatch_is_logged_o
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const struct mode_case *c = &cases[i];
         SluiceProceduralImage image = {NULL, texel};
-        SluiceImageInfo grey = {.structSize = sizeof grey,
+        SluiceImageInfo gray = {.structSize = sizeof gray,
                                 .width = 64,
                                 .height = 64,
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
                                 .addressModeU = c->recorded[0],
                                 .addressModeV = c->recorded[1]};
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &sources[i]));
+        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &sources[i]));
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create,
                                                 .source = sources[i],
                                                 .addressModeU = c->given[0],

@@ -80,12 +80,12 @@ static void walk_init(struct walk *w, SluiceResidencyMode mode, uint32_t share)
                        .allocations = {.callbacks = {&w->allocations, allocate, release}}};
     SluiceProceduralImage image = {NULL, texel};
     for (uint32_t i = 0; i < SHAPES; i++) {
-        SluiceImageInfo grey = {.structSize = sizeof grey,
+        SluiceImageInfo gray = {.structSize = sizeof gray,
                                 .width = sizes[i][0],
                                 .height = sizes[i][1],
                                 .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                .pName = "grey"};
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &w->sources[i]));
+                                .pName = "gray"};
+        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &w->sources[i]));
     }
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .maxTextureCount = TEXTURES,

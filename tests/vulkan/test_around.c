@@ -1,4 +1,4 @@
-/* What lies around each region of a MinMip map, against a look at every neighbour. */
+/* What lies around each region of a MinMip map, against a look at every neighbor. */
 #include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/around.h"

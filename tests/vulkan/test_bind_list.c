@@ -55,7 +55,7 @@ static void tile_put_twice_keeps_its_last_state(void **state)
     assert_int_equal(list->runs[0].heap_id, SLC_UNBIND);
 }
 
-static void row_neighbours_with_consecutive_slots_are_one_run(void **state)
+static void row_neighbors_with_consecutive_slots_are_one_run(void **state)
 {
     struct slc_bind_list *list = &((struct fixture *)*state)->list;
     slc_bind_list_put(list, 0, place(0, 6, 2), 1, 12);
@@ -169,7 +169,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(tile_put_twice_keeps_its_last_state, setup, teardown),
-        cmocka_unit_test_setup_teardown(row_neighbours_with_consecutive_slots_are_one_run, setup,
+        cmocka_unit_test_setup_teardown(row_neighbors_with_consecutive_slots_are_one_run, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(run_ends_where_slot_heap_row_level_or_image_changes, setup,
                                         teardown),

@@ -369,13 +369,13 @@ static void two_streamers_stay_within_one_budget(void **state)
                                                 SLUICE_RESIDENCY_MODE_PAGED};
     const uint64_t mib = 1 << 20, budget = 40 * mib;
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 4096,
                             .height = 4096,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceImageSource *source;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &source));
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &source));
     for (int m = 1; m < 4; m++) { /* one sparse streamer at most: the fake has one such queue */
         SluiceVulkanContext *context;
         SluiceVulkanStreamer *streamers[2];

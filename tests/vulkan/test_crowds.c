@@ -56,13 +56,13 @@ static void a_texture_beyond_the_tiles_of_the_device_is_refused_and_others_go_on
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 64,
                             .height = 64,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &create.source));
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < BEARABLE; i++)
         CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
@@ -106,13 +106,13 @@ static void a_lack_of_page_chunks_is_logged_once_and_counted(void **state)
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 2048,
                             .height = 2048,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &create.source));
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &create.source));
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
@@ -152,18 +152,18 @@ static void standby_tiles_give_their_pages_to_tiles_that_are_wanted(void **state
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 2048,
                             .height = 2048,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceImageSource *sources[2];
     SluiceVulkanTexture texture;
     for (uint32_t i = 0; i < 2; i++) {
-        CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &sources[i]));
+        CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &sources[i]));
         SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = sources[i]};
         CHECK_OK(sluiceAddVulkanTexture(streamer, &create, &texture));
-        grey.width = grey.height = 1024;
+        gray.width = gray.height = 1024;
     }
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
     for (uint64_t time = 1; time < 60; time++)

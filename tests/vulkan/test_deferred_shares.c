@@ -60,12 +60,12 @@ static void init(struct stage *s)
 {
     *s = (struct stage){.fake = {.want = want, .user = s, .layer_size = 65536}};
     const SluiceProceduralImage image = {NULL, texel};
-    const SluiceImageInfo grey = {.structSize = sizeof grey,
+    const SluiceImageInfo gray = {.structSize = sizeof gray,
                                   .width = SIZE,
                                   .height = SIZE,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s->source));
+                                  .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s->source));
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                            .maxTextureCount = 1,

@@ -45,12 +45,12 @@ static struct stage *stage_of_streamer(SluiceResidencyMode mode)
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .want = want_all, .user = &s}};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 1024,
                             .height = 1024,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = {
         .structSize = sizeof info, .maxRegionCount = 1 << 10, .maxTextureCount = 4};
     s.fake.log = (SluiceLogCallback){&s, count_warnings};

@@ -30,14 +30,14 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
     rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
-static SluiceImageSource *grey_source(void)
+static SluiceImageSource *gray_source(void)
 {
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo info = {.structSize = sizeof info,
                             .width = 512,
                             .height = 512,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
@@ -89,7 +89,7 @@ static void adding_survives(uint64_t objects_per_texture)
     fake = (struct fake_vulkan){.tail_page_count = 1};
     SluiceVulkanStreamer *streamer;
     CHECK_OK(create(&fake, &streamer));
-    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = grey_source()};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = gray_source()};
     SluiceVulkanTexture texture;
     uint64_t objects = fake.live_objects;
     for (size_t f = 0; f < FAILURES; f++)
@@ -115,7 +115,7 @@ static void adding_survives(uint64_t objects_per_texture)
 static void adding_arrays_survives(uint64_t objects_per_array, bool metadata)
 {
     static struct fake_vulkan fake; /* large */
-    SluiceImageSource *layer = grey_source(), *array;
+    SluiceImageSource *layer = gray_source(), *array;
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .source = array};
@@ -198,7 +198,7 @@ static void frames_survive(uint32_t packed_count, uint32_t harmless_calls)
             SluiceVulkanStreamer *streamer;
             CHECK_OK(create(&fake, &streamer));
             SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info,
-                                                  .source = grey_source()};
+                                                  .source = gray_source()};
             SluiceVulkanTexture texture;
             CHECK_OK(sluiceAddVulkanTexture(streamer, &info, &texture));
             fake.calls = 0;

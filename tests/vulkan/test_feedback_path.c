@@ -1,4 +1,4 @@
-/* Feedback from a device that damages it, and settings that no device can fulfil. */
+/* Feedback from a device that damages it, and settings that no device can fulfill. */
 #include "vulkan/fake_vulkan.h"
 
 #include "support/test.h"
@@ -16,14 +16,14 @@ static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t w
     rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0.5f;
 }
 
-static SluiceImageSource *grey_source(void)
+static SluiceImageSource *gray_source(void)
 {
     SluiceProceduralImage image = {NULL, texel};
     SluiceImageInfo info = {.structSize = sizeof info,
                             .width = 512,
                             .height = 512,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     SluiceImageSource *source;
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
     return source;
@@ -70,7 +70,7 @@ static void damaged_feedback_is_dropped_and_asked_for_as_a_whole(void **state)
     SluiceVulkanStreamer *streamer;
     CHECK_OK(fake_vulkan_create(&fake, &info, &streamer));
     SluiceVulkanTextureCreateInfo texture_info = {.structSize = sizeof texture_info,
-                                                  .source = grey_source()};
+                                                  .source = gray_source()};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &texture_info, &texture));
     for (uint64_t time = 1; time <= 5; time++) /* the first map comes with frame 2 */

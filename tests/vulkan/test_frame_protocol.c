@@ -85,7 +85,7 @@ static void model_add(struct model *m)
                             .width = size[0],
                             .height = size[1],
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
+                            .pName = "gray"};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
     CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
@@ -563,9 +563,9 @@ static void layers_of_an_array_bind_tails_and_metadata_of_their_own(void **state
     struct model window = {.window = 1};
     fake.user = &window;
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {sizeof grey, 300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "grey"};
+    SluiceImageInfo gray = {sizeof gray, 300, 200, 0, SLUICE_FORMAT_R8G8B8A8_UNORM, "gray"};
     SluiceImageSource *layer, *array;
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &layer));
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &layer));
     CHECK_OK(sluiceCreateArrayImageSource((SluiceImageSource *[]){layer, layer, layer}, 3, NULL,
                                           &array));
     SluiceVulkanStreamerCreateInfo info = {

@@ -49,12 +49,12 @@ static struct stage *stage_init_with(SluiceResidencyMode mode, uint64_t min_stag
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .layer_size = MIB, .want = want, .user = &s}};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = SIZE,
                             .height = SIZE,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info, .feedbackTimeoutTicks = 2};
     fake_vulkan_fill(&info);
     info.residencyMode = mode;

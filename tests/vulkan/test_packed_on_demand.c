@@ -44,12 +44,12 @@ static struct stage *stage_init(SluiceResidencyMode mode, SluiceVulkanStreamerCr
                        .seed = 1,
                        .regions = SIZE / FAKE_TILE * (SIZE / FAKE_TILE)};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = SIZE,
                             .height = SIZE,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
     info.packedLevelsOnDemand = true;
     info.feedbackTimeoutTicks = 2;
     info.maxTextureCount = 4;

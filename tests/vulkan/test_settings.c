@@ -50,12 +50,12 @@ static struct stage *stage_init(const SluiceVulkanStreamerCreateInfo *settings)
     s.fake.log = (SluiceLogCallback){&s, keep_message};
     s.fake.pAllocator = &s.memory.callbacks;
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 1024,
                             .height = 1024,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
     SluiceVulkanStreamerCreateInfo info = *settings;
     info.maxTextureCount = TEXTURES;
     info.maxRegionCount = 1 << 10;

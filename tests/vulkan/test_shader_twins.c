@@ -225,7 +225,7 @@ static double random_coordinate(uint32_t size, uint32_t tile)
     case 1: u = (roll() % (int)(size / tile + 2)) * (double)tile / size; break; /* tile border */
     case 2: u = roll() % 2; break;                                              /* image border */
     case 3: u = draw() * 6 - 3; break;
-    default: u = (roll() % (int)size + 0.5) / size; break; /* texel centre */
+    default: u = (roll() % (int)size + 0.5) / size; break; /* texel center */
     }
     return u + (draw() - 0.5) * (roll() % 3) / size;
 }

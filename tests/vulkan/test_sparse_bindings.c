@@ -75,7 +75,7 @@ static void page_that_was_given_up_is_taken_from_its_tile_when_another_gets_it(v
     assert_int_equal(f->bindings.unbinds_saved, 0);
 }
 
-static void neighbours_that_were_given_up_are_unbound_in_the_same_run(void **state)
+static void neighbors_that_were_given_up_are_unbound_in_the_same_run(void **state)
 {
     struct fixture *f = *state;
     for (uint32_t x = 0; x < 7; x++)
@@ -327,7 +327,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(page_that_was_given_up_is_taken_from_its_tile_when_another_gets_it),
-        TEST(neighbours_that_were_given_up_are_unbound_in_the_same_run),
+        TEST(neighbors_that_were_given_up_are_unbound_in_the_same_run),
         TEST(pages_of_a_tail_are_unbound_one_by_one),
         TEST(tile_that_gets_another_page_is_bound_over),
         TEST(tile_that_gets_its_page_again_needs_no_bind),

@@ -48,12 +48,12 @@ static struct stage *stage_init(SluiceVulkanStreamerCreateInfo info, uint64_t st
     static struct stage s; /* large */
     s = (struct stage){.fake = {.tail_page_count = 1, .want = want, .user = &s}, .step = step};
     SluiceProceduralImage image = {NULL, texel};
-    SluiceImageInfo grey = {.structSize = sizeof grey,
+    SluiceImageInfo gray = {.structSize = sizeof gray,
                             .width = 512,
                             .height = 512,
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                            .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &s.source));
+                            .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &s.source));
     const SluiceVulkanStreamerCreateInfo asked = info;
     fake_vulkan_fill(&info);
     info.ticksPerSecond = asked.ticksPerSecond;

@@ -371,7 +371,7 @@ static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
     CHECK_RESULT(sluiceGetTilesToCancel(manager, id, &count, tiles), refused);
     CHECK_RESULT(sluiceUpdateTilesMapping(manager, id, 1, &tile), refused);
     CHECK_RESULT(sluiceReportFailedTiles(manager, id, 1, &tile, 1), refused);
-    CHECK_RESULT(sluiceReportCancelledTiles(manager, id, 1, &tile, 1), refused);
+    CHECK_RESULT(sluiceReportCanceledTiles(manager, id, 1, &tile, 1), refused);
     CHECK_RESULT(sluiceCompleteRetireValue(manager, 1), refused);
     CHECK_RESULT(sluiceDefragmentTiles(manager, 1, &count, moves), refused);
     CHECK_RESULT(sluiceGetMinMipUpdates(manager, &count, rects), refused);

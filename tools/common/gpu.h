@@ -82,7 +82,7 @@ void gpu_destroy_buffer(const struct gpu *gpu, struct gpu_buffer *buffer);
 bool gpu_create_image(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                       VkSampleCountFlagBits samples, VkImageUsageFlags usage,
                       VkImageAspectFlags aspect, struct gpu_image *image);
-/** A colour image of several levels to be copied to and sampled; the view shows them all. */
+/** A color image of several levels to be copied to and sampled; the view shows them all. */
 bool gpu_create_texture(const struct gpu *gpu, VkFormat format, uint32_t width, uint32_t height,
                         uint32_t levels, struct gpu_image *image);
 void gpu_destroy_image(const struct gpu *gpu, struct gpu_image *image);

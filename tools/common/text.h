@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 /**
- * For people: \n, \t, \x1b and \u202e stand for characters that move the cursor, change colours or
+ * For people: \n, \t, \x1b and \u202e stand for characters that move the cursor, change colors or
  * turn the direction of writing, \xff for a byte that is no UTF-8. Nothing else is changed.
  */
 void text_write(FILE *out, const char *text);

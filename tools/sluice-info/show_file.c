@@ -48,7 +48,7 @@ static const char *name_of(const char *const *names, unsigned count, unsigned va
 #ifdef HAVE_STORE
 static const char *const spaces[] = {"undefined", "sRGB", "linear sRGB", "linear Rec. 2020",
                                      "ACEScg"};
-static const char *const meanings[] = {"colour", "colour, straight alpha", "colour, premultiplied",
+static const char *const meanings[] = {"color", "color, straight alpha", "color, premultiplied",
                                        "normals", "data"};
 static const char *const modes[] = {"repeat", "mirrored repeat", "clamp to edge",
                                     "clamp to border"};
@@ -78,7 +78,7 @@ static void print_store(const SluiceStoreInfo *s)
 {
     printf("  version                 %u.%u\n", s->versionMajor, s->versionMinor);
     printf("  meaning                 %s\n", name_of(meanings, 5, s->meaning));
-    printf("  colour space            %s\n", name_of(spaces, 5, s->colorSpace));
+    printf("  color space            %s\n", name_of(spaces, 5, s->colorSpace));
     printf("  beyond the edges        %s, %s\n", name_of(modes, 4, s->addressModeU),
            name_of(modes, 4, s->addressModeV));
     printf("  made from               ");

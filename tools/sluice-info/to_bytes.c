@@ -36,7 +36,7 @@ static double half_value(uint16_t half)
     return half & 0x8000 ? -value : value;
 }
 
-static uint8_t quantise(double value, bool encode)
+static uint8_t quantize(double value, bool encode)
 {
     if (!(value > 0.0))
         return 0;
@@ -55,8 +55,8 @@ static uint8_t half_to_byte(uint16_t half, bool is_alpha)
 {
     static struct half_bytes table;
     for (uint32_t i = 0; !table.is_filled && i < 65536; i++) {
-        table.bytes[0][i] = quantise(half_value((uint16_t)i), true);
-        table.bytes[1][i] = quantise(half_value((uint16_t)i), false);
+        table.bytes[0][i] = quantize(half_value((uint16_t)i), true);
+        table.bytes[1][i] = quantize(half_value((uint16_t)i), false);
     }
     table.is_filled = true;
     return table.bytes[is_alpha][half];
@@ -73,7 +73,7 @@ static uint8_t channel_to_byte(uint32_t size, const char *channel, bool is_alpha
         return half_to_byte(half, is_alpha);
     }
     memcpy(&value, channel, 4);
-    return quantise((double)value, !is_alpha);
+    return quantize((double)value, !is_alpha);
 }
 
 void texels_to_bytes(SluiceFormat format, const void *texels, uint8_t *rgba, size_t count)

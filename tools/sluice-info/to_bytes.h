@@ -8,7 +8,7 @@
 bool can_become_bytes(SluiceFormat format);
 
 /**
- * Bytes stay as they are, floats are clamped to [0, 1] and sRGB-encoded. One channel becomes grey.
+ * Bytes stay as they are, floats are clamped to [0, 1] and sRGB-encoded. One channel becomes gray.
  */
 void texels_to_bytes(SluiceFormat format, const void *texels, uint8_t *rgba, size_t count);
 

@@ -28,7 +28,7 @@ void play_print_figure(const struct play_printer *p, const char *name, double va
 
 /** Of all frames. */
 struct sums {
-    double touched, missing, levels, wrong, loaded, stale, unmapped, cancelled;
+    double touched, missing, levels, wrong, loaded, stale, unmapped, canceled;
     double resident_peak, heaps_peak;
 };
 
@@ -44,7 +44,7 @@ static struct sums sum_up(const struct play_loop *l)
         s.loaded += f->loaded_tiles;
         s.stale += f->stale_tiles;
         s.unmapped += f->unmapped_tiles;
-        s.cancelled += f->cancelled_tiles;
+        s.canceled += f->canceled_tiles;
         s.resident_peak = fmax(s.resident_peak, f->resident_tiles);
         s.heaps_peak = fmax(s.heaps_peak, f->heaps);
     }
@@ -97,7 +97,7 @@ static void print_tiles(const struct play_printer *p, const struct play_loop *l,
     play_print_figure(p, "loaded_per_needed", needed > 0 ? s->loaded / needed : NAN, "");
     play_print_figure(p, "stale_percent", s->loaded > 0 ? 100 * s->stale / s->loaded : 0, "%");
     play_print_figure(p, "tiles_unmapped", s->unmapped, "tiles");
-    play_print_figure(p, "tiles_cancelled", s->cancelled, "tiles");
+    play_print_figure(p, "tiles_canceled", s->canceled, "tiles");
 }
 
 static void print_quality(const struct play_printer *p, const struct play_loop *l,
@@ -168,7 +168,7 @@ static bool make_folders(const char *folder)
 static void write_rows(const struct play_loop *l, FILE *file)
 {
     fputs("frame,time_us,maps,touched_regions,missing_regions,levels_too_coarse,wrong_evictions,"
-          "needed_tiles,loaded_tiles,stale_tiles,unmapped_tiles,cancelled_tiles,requested_tiles,"
+          "needed_tiles,loaded_tiles,stale_tiles,unmapped_tiles,canceled_tiles,requested_tiles,"
           "tiles_in_flight,resident_tiles,heaps,core_us\n",
           file);
     for (uint32_t i = 0; i < l->trace->frame_count; i++) {
@@ -180,7 +180,7 @@ static void write_rows(const struct play_loop *l, FILE *file)
             (unsigned long long)f->view.missing_regions, (double)f->view.missing_levels / touched,
             (unsigned long long)f->view.wrong_evictions, (unsigned long long)f->view.needed_tiles);
         fprintf(file, ",%u,%u,%u,%u,%u,%u,%u,%u,%.2f\n", f->loaded_tiles, f->stale_tiles,
-                f->unmapped_tiles, f->cancelled_tiles, f->requested_tiles, f->tiles_in_flight,
+                f->unmapped_tiles, f->canceled_tiles, f->requested_tiles, f->tiles_in_flight,
                 f->resident_tiles, f->heaps, f->core_us);
     }
 }

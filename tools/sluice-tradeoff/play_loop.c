@@ -189,10 +189,10 @@ static bool stop_loads(struct play_loop *l)
                 drop_load(l, &l->tiles[i]);
                 l->batch[batch++] = l->tiles[i].tileIndex;
             }
-            if (!CORE(l, sluiceReportCancelledTiles, id, batch, l->batch, 0))
+            if (!CORE(l, sluiceReportCanceledTiles, id, batch, l->batch, 0))
                 return false;
         }
-        l->now.cancelled_tiles += count;
+        l->now.canceled_tiles += count;
     } while (count == LIST_ROOM);
     return true;
 }

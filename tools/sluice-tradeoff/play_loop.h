@@ -11,7 +11,7 @@ struct play_frame {
     uint64_t time; ///< us, as in the trace
     uint32_t map_count;
     struct view_counts view; ///< before the frame's maps were processed
-    uint32_t loaded_tiles, stale_tiles, unmapped_tiles, cancelled_tiles;
+    uint32_t loaded_tiles, stale_tiles, unmapped_tiles, canceled_tiles;
     /* at the end of the frame */
     uint32_t requested_tiles, tiles_in_flight, resident_tiles, heaps;
     double core_us; ///< in calls of the manager, those left out that only look at it

@@ -45,7 +45,7 @@ struct BenchParams {
     uint seed;
     float probability;
     float cameraAngle;
-    float camera[2]; /* metres */
+    float camera[2]; /* meters */
     float textureSize[2];
     uint patchSize[2]; /* regions */
     uint tableIndex;   /* of the scene's texture */

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 
-/* The floor on which textures lie: metres. */
+/* The floor on which textures lie: meters. */
 const float extent = 2.0;
 const float spacing = 2.5;
 const uint columns = 40u;
@@ -32,7 +32,7 @@ uint randomLevel(uint id)
 }
 
 /* Untouched where the camera does not look, or where no pixel of the region was selected. */
-uint viewLevel(uint id, uint texture, vec2 uv, float regionExtent, float texelsPerMetre)
+uint viewLevel(uint id, uint texture, vec2 uv, float regionExtent, float texelsPerMeter)
 {
     vec2 at = vec2(texture % columns, texture / columns) * spacing + uv * extent -
               vec2(params.camera[0], params.camera[1]);
@@ -46,7 +46,7 @@ uint viewLevel(uint id, uint texture, vec2 uv, float regionExtent, float texelsP
     float chance = 1.0 - pow(1.0 - min(params.probability, 0.999999), max(pixels, 1.0));
     if (float(draw(id) >> 8u) / 16777216.0 >= chance)
         return SLUICE_MIP_UNTOUCHED;
-    return uint(max(log2(texelsPerMetre * distance / focal), 0.0));
+    return uint(max(log2(texelsPerMeter * distance / focal), 0.0));
 }
 
 /* 8x8 samples a region, not so near its edge that others are touched. */

@@ -116,7 +116,7 @@ void endSunRay(inout Path path, bool isFree, uint bounces)
     continuePath(path, bounces);
 }
 
-/** Through thin things it shines, in another colour. */
+/** Through thin things it shines, in another color. */
 vec3 sunOn(Surface s, vec3 direction, float fresnel)
 {
     float facing = dot(s.normal, SUN_DIRECTION);

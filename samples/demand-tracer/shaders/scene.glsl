@@ -19,7 +19,7 @@ layout(std430, set = 1, binding = TRACER_BINDING_INSTANCES) readonly buffer Inst
 
 /** A cone around a ray: what a pixel covers. */
 struct Cone {
-    float width;  /* metres, where the ray begins */
+    float width;  /* meters, where the ray begins */
     float spread; /* radians */
 };
 
@@ -39,7 +39,7 @@ struct Surface {
 struct Patch {
     vec3 normal, face; /* of length 1, as the triangle has them */
     vec2 uv;
-    vec3 edge1, edge2; /* metres */
+    vec3 edge1, edge2; /* meters */
     vec2 uv1, uv2;     /* along the edges */
 };
 
@@ -109,7 +109,7 @@ vec2 uvAlong(Patch p, vec3 along)
 }
 
 /**
- * The axes, in uv, of the ellipse that a cone of `width` metres around `direction` cuts out of the
+ * The axes, in uv, of the ellipse that a cone of `width` meters around `direction` cuts out of the
  * triangle's plane. Akenine-Moeller et al., "Improved Shader and Texture Level of Detail Using Ray
  * Cones", JCGT 10(1), 2021.
  */

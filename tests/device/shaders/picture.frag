@@ -1,5 +1,5 @@
 /*
- * A textured floor up to the horizon, sampled with the fragments' own derivatives. Colours and
+ * A textured floor up to the horizon, sampled with the fragments' own derivatives. Colors and
  * checks go to a buffer, so that no rounding hides a difference.
  */
 #version 450
