@@ -1,8 +1,6 @@
 #include "replay/recorder.h"
 
 #include "base/alloc.h"
-#include "base/log.h"
-#include "base/struct_size.h"
 #include "replay/decisions.h"
 #include "replay/record.h"
 
@@ -92,19 +90,11 @@ SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *manager,
         *pRecorder = NULL;
     if (!manager || !pInfo || !pInfo->pPath || !pRecorder)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceFileRecordingInfo info = {.structSize = sizeof info};
+    SluiceFileRecordingInfo info;
     SluiceResult result =
-        slc_struct_read(SLC_STRUCT(SluiceFileRecordingInfo), &info, pInfo, &pInfo->log);
+        slc_recorder_read_info(pInfo, "manager", slc_manager_is_used(manager), &info);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (!slc_allocator_is_valid(info.pAllocator))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (slc_manager_is_used(manager)) {
-        slc_log(&info.log, SLUICE_LOG_ERROR,
-                "%s: cannot record: the manager was used before or is being recorded already",
-                info.pPath);
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     SluiceRecorder *recorder = slc_recorder_create(&cb, manager, stop);
     if (!recorder)

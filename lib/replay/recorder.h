@@ -34,6 +34,11 @@ struct SluiceRecorder {
 /** NULL without memory. */
 SluiceRecorder *slc_recorder_create(const SluiceAllocationCallbacks *cb, void *source,
                                     void (*stop)(void *source));
+/** Reads what a recording to a file is begun with. `name` is what is recorded, and `used`: it was
+ *  used before, so that a trace could not be played. Errors, with a message: INVALID_ARGUMENT;
+ *  those of slc_struct_read. */
+SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *name,
+                                    bool used, SluiceFileRecordingInfo *info);
 /** The file becomes the writer. After an error the recorder is gone. */
 SluiceResult slc_recorder_open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info);
 void slc_recorder_write_header(SluiceRecorder *recorder, const char magic[8], uint32_t version,

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/log.h"
+#include "base/struct_size.h"
 #include "replay/hash.h"
 
 #include <sluice/version.h>
@@ -94,6 +95,24 @@ static SluiceResult write_to_file(void *user, const void *data, size_t size)
 {
     SluiceRecorder *recorder = user;
     return slc_part_file_append(&recorder->file, data, size);
+}
+
+SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *name,
+                                    bool used, SluiceFileRecordingInfo *info)
+{
+    *info = (SluiceFileRecordingInfo){.structSize = sizeof *info};
+    SluiceResult result =
+        slc_struct_read(SLC_STRUCT(SluiceFileRecordingInfo), info, given, &given->log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (!slc_allocator_is_valid(info->pAllocator))
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (!used)
+        return SLUICE_SUCCESS;
+    slc_log(&info->log, SLUICE_LOG_ERROR,
+            "%s: cannot record: the %s was used before or is being recorded already", info->pPath,
+            name);
+    return SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
 SluiceResult slc_recorder_open_file(SluiceRecorder *recorder, const SluiceFileRecordingInfo *info)
