@@ -1,5 +1,7 @@
 #include "passes.h"
 
+#include "../common/draw_pipeline.h"
+
 #include "reflections_comp.h" /* SPIR-V */
 #include "room_frag.h"
 #include "room_vert.h"
@@ -76,78 +78,23 @@ static bool create_pipeline_layout(const struct gpu *gpu, VkDescriptorSetLayout 
     return gpu_check(vkCreatePipelineLayout(gpu->device, &info, NULL, out), "pipeline layout");
 }
 
-static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits bit, VkShaderModule module)
-{
-    return (VkPipelineShaderStageCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-        .stage = bit,
-        .module = module,
-        .pName = "main"};
-}
-
-static VkResult create_room(struct passes *p, VkShaderModule vertex, VkShaderModule fragment)
-{
-    const VkPipelineShaderStageCreateInfo stages[2] = {
-        stage(VK_SHADER_STAGE_VERTEX_BIT, vertex), stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-    const VkPipelineVertexInputStateCreateInfo no_input = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    const VkPipelineInputAssemblyStateCreateInfo triangles = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1,
-        .scissorCount = 1};
-    const VkPipelineRasterizationStateCreateInfo raster = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1};
-    const VkPipelineMultisampleStateCreateInfo samples = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = p->target.samples};
-    const VkPipelineDepthStencilStateCreateInfo depth = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
-        .depthCompareOp = VK_COMPARE_OP_LESS};
-    const VkPipelineColorBlendAttachmentState opaque = {.colorWriteMask = 0xF};
-    const VkPipelineColorBlendStateCreateInfo blend = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 1,
-        .pAttachments = &opaque};
-    const VkDynamicState states[2] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    const VkPipelineDynamicStateCreateInfo dynamic = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-        .dynamicStateCount = 2,
-        .pDynamicStates = states};
-    const VkGraphicsPipelineCreateInfo info = {.sType =
-                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                               .stageCount = 2,
-                                               .pStages = stages,
-                                               .pVertexInputState = &no_input,
-                                               .pInputAssemblyState = &triangles,
-                                               .pViewportState = &viewport,
-                                               .pRasterizationState = &raster,
-                                               .pMultisampleState = &samples,
-                                               .pDepthStencilState = &depth,
-                                               .pColorBlendState = &blend,
-                                               .pDynamicState = &dynamic,
-                                               .layout = p->room_layout,
-                                               .renderPass = p->target.pass};
-    return vkCreateGraphicsPipelines(p->gpu->device, VK_NULL_HANDLE, 1, &info, NULL, &p->room);
-}
-
 static bool create_pipelines(struct passes *p)
 {
     VkDevice device = p->gpu->device;
     VkShaderModule vertex = gpu_create_shader(p->gpu, room_vert, sizeof room_vert);
     VkShaderModule fragment = gpu_create_shader(p->gpu, room_frag, sizeof room_frag);
     VkShaderModule compute = gpu_create_shader(p->gpu, reflections_comp, sizeof reflections_comp);
-    const VkComputePipelineCreateInfo info = {.sType =
-                                                  VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                              .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, compute),
-                                              .layout = p->reflections_layout};
-    bool created = vertex && fragment && compute &&
-                   gpu_check(create_room(p, vertex, fragment), "pipeline") &&
-                   gpu_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, NULL,
+    const struct draw_pipeline_info room = {
+        .target = &p->target, .layout = p->room_layout, .vertex = vertex, .fragment = fragment};
+    const VkComputePipelineCreateInfo reflections = {
+        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                  .module = compute,
+                  .pName = "main"},
+        .layout = p->reflections_layout};
+    bool created = vertex && fragment && compute && draw_pipeline_create(p->gpu, &room, &p->room) &&
+                   gpu_check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &reflections, NULL,
                                                       &p->reflections_pipeline),
                              "pipeline");
     vkDestroyShaderModule(device, vertex, NULL);

@@ -1,5 +1,7 @@
 #include "renderer.h"
 
+#include "../common/draw_pipeline.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -105,71 +107,20 @@ static const VkVertexInputAttributeDescription vertex_attributes[] = {
 bool renderer_create_pipeline(const struct renderer *renderer, const struct target *target,
                               VkShaderModule fragment, bool writes_color, VkPipeline *pipeline)
 {
-    const VkPipelineShaderStageCreateInfo stages[] = {
-        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-         .stage = VK_SHADER_STAGE_VERTEX_BIT,
-         .module = renderer->vertex,
-         .pName = "main"},
-        {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-         .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
-         .module = fragment,
-         .pName = "main"},
-    };
     const VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
         .vertexBindingDescriptionCount = 1,
         .pVertexBindingDescriptions = &vertex_binding,
         .vertexAttributeDescriptionCount = 4,
         .pVertexAttributeDescriptions = vertex_attributes};
-    const VkPipelineInputAssemblyStateCreateInfo assembly = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-        .viewportCount = 1,
-        .scissorCount = 1};
-    const VkPipelineRasterizationStateCreateInfo raster = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-        .cullMode = VK_CULL_MODE_BACK_BIT,
-        .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
-        .lineWidth = 1.0f};
-    const VkPipelineMultisampleStateCreateInfo multisample = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = target->samples};
-    const VkPipelineDepthStencilStateCreateInfo depth = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE,
-        .depthWriteEnable = VK_TRUE,
-        .depthCompareOp = VK_COMPARE_OP_LESS};
-    const VkPipelineColorBlendAttachmentState attachment = {.colorWriteMask =
-                                                                writes_color ? 0xf : 0};
-    const VkPipelineColorBlendStateCreateInfo blend = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = 1,
-        .pAttachments = &attachment};
-    static const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT,
-                                                    VK_DYNAMIC_STATE_SCISSOR};
-    const VkPipelineDynamicStateCreateInfo dynamic = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-        .dynamicStateCount = 2,
-        .pDynamicStates = dynamic_states};
-    const VkGraphicsPipelineCreateInfo info = {.sType =
-                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                               .stageCount = fragment ? 2 : 1,
-                                               .pStages = stages,
-                                               .pVertexInputState = &input,
-                                               .pInputAssemblyState = &assembly,
-                                               .pViewportState = &viewport,
-                                               .pRasterizationState = &raster,
-                                               .pMultisampleState = &multisample,
-                                               .pDepthStencilState = &depth,
-                                               .pColorBlendState = &blend,
-                                               .pDynamicState = &dynamic,
-                                               .layout = renderer->pipeline_layout,
-                                               .renderPass = target->pass};
-    return gpu_check(
-        vkCreateGraphicsPipelines(renderer->gpu->device, VK_NULL_HANDLE, 1, &info, NULL, pipeline),
-        "vkCreateGraphicsPipelines");
+    const struct draw_pipeline_info info = {.target = target,
+                                            .layout = renderer->pipeline_layout,
+                                            .vertex = renderer->vertex,
+                                            .fragment = fragment,
+                                            .input = &input,
+                                            .culled = VK_CULL_MODE_BACK_BIT,
+                                            .no_color = !writes_color};
+    return draw_pipeline_create(renderer->gpu, &info, pipeline);
 }
 
 static bool create_pipelines(struct renderer *renderer, const struct target *target, bool counting,
