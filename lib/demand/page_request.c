@@ -6,6 +6,8 @@
 
 #include <assert.h>
 
+#define MOST_OTHERS 32u /* pages of other kinds that go for one */
+
 /* The launch needs a resident page: it is not evicted before the next one. */
 static void touch(struct slc_demand_residency *r, uint32_t index)
 {
@@ -94,6 +96,16 @@ static bool retake(struct slc_demand_residency *r, const struct slc_page_memory 
     return answer;
 }
 
+/* Pages of other kinds, of which several may have to go before their memory is of use: byte pages
+ * are smaller than what changes its kind. */
+static bool evict_others(struct slc_demand_residency *r, uint32_t class_index)
+{
+    uint32_t count = 0, most = class_index == SLC_TILES ? 1 : MOST_OTHERS;
+    while (count < most && slc_residency_evict(r, class_index, SLC_NO_LRU))
+        count++;
+    return count > 0;
+}
+
 /* There may be memory for one kind and not for another: places of the same kind help at once,
  * others when all that lies beside them is free, too. */
 static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uint32_t lru,
@@ -107,7 +119,7 @@ static bool take_place(struct slc_demand_residency *r, uint32_t class_index, uin
     *place = take(r, memory, r->lrus[lru].kind);
     if (*place != SLC_NO_PLACE)
         return true;
-    if (slc_residency_evict(r, class_index, lru) || slc_residency_evict(r, class_index, SLC_NO_LRU))
+    if (slc_residency_evict(r, class_index, lru) || evict_others(r, class_index))
         *place = take(r, memory, r->lrus[lru].kind);
     else if (class_index == SLC_TILES && c->held < r->use.full_at)
         r->use.full_at = c->held;

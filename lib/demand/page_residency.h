@@ -21,8 +21,10 @@
  * and begin are for pages that no launch asked for (preloading).
  *
  * What goes first: pages whose last use is oldest, of these the finest rank, of these the lowest
- * id. Never: pages that the launch used or asked for, pinned ones, and those that no launch that is
- * over could have used. An evicted page keeps its place in mind, and has it back if nobody took it.
+ * id. Where no page of a kind can go, pages of other kinds do: one tile, or 32 pages of any other
+ * class. Never: pages that the launch used or asked for, pinned ones, and those that no launch that
+ * is over could have used. An evicted page keeps its place in mind, and has it back if nobody took
+ * it.
  *
  * Tiles that need more places than there are. If what a launch used and missed exceeds the
  * limit, or there is no memory for it, the LOD bias rises by as many quarters of a level as

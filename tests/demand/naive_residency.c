@@ -120,8 +120,13 @@ static bool find_place(struct naive_residency *n, const struct slc_page_request 
     if (!has_memory(n, request->class_index))
         return true;
     *place = memory->take(memory->user, request->kind);
-    if (*place == SLC_NO_PLACE &&
-        (evict(n, request->class_index, &request->kind) || evict(n, request->class_index, NULL)))
+    if (*place != SLC_NO_PLACE)
+        return true;
+    bool evicted = evict(n, request->class_index, &request->kind);
+    if (!evicted) /* one tile, or up to 32 byte pages */
+        for (int i = request->class_index ? 32 : 1; i > 0; i--)
+            evicted |= evict(n, request->class_index, NULL);
+    if (evicted)
         *place = memory->take(memory->user, request->kind);
     return *place != SLC_NO_PLACE;
 }
