@@ -41,7 +41,9 @@ typedef enum SluiceDeviceMemoryPurpose {
     /** Mapped buffers that the host writes and the GPU reads. */
     SLUICE_DEVICE_MEMORY_PURPOSE_STAGING = 4,
     /** Mapped buffers that the GPU writes and the host reads. */
-    SLUICE_DEVICE_MEMORY_PURPOSE_READBACK = 5
+    SLUICE_DEVICE_MEMORY_PURPOSE_READBACK = 5,
+    /** Buffers whose slots hold byte pages: demand loading. */
+    SLUICE_DEVICE_MEMORY_PURPOSE_BYTES = 6
 } SluiceDeviceMemoryPurpose;
 
 /** Block of device memory that is requested from the application. */
@@ -54,6 +56,9 @@ typedef struct SluiceDeviceMemoryRequest {
     bool mapped;              ///< Map it until it is freed. Its type is host-visible and coherent.
     bool images; ///< For images of VK_IMAGE_TILING_OPTIMAL, else for a buffer or for sparse binds.
     const char *pName; ///< For debuggers. Valid during the call.
+    /** Allocate with VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT: shaders get the address of the buffer.
+     *  Only for loaders with bufferDeviceAddress. */
+    bool deviceAddress;
 } SluiceDeviceMemoryRequest;
 
 /** Block of device memory. Never grows. */
@@ -207,6 +212,7 @@ typedef struct SluiceVulkanContextStatistics {
     uint64_t stagingMemorySize;  ///< SLUICE_DEVICE_MEMORY_PURPOSE_STAGING
     uint64_t readbackMemorySize; ///< SLUICE_DEVICE_MEMORY_PURPOSE_READBACK
     uint64_t refusedBlockCount;  ///< Blocks that did not fit into the budget, since creation.
+    uint64_t byteMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_BYTES. Part of tileMemorySize.
 } SluiceVulkanContextStatistics;
 
 /**

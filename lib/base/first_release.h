@@ -81,10 +81,10 @@
 #define SLC_FIRST_SluiceStreamingFrame SLC_UP_TO(SluiceStreamingFrame, descriptorSet)
 #define SLC_FIRST_SluiceVulkanStreamerStatistics                                                   \
     SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesShared)
-#define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, pName)
+#define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, deviceAddress)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minStagingSize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
-    SLC_UP_TO(SluiceVulkanContextStatistics, refusedBlockCount)
+    SLC_UP_TO(SluiceVulkanContextStatistics, byteMemorySize)
 
 #endif /* SLC_BASE_FIRST_RELEASE_H */

@@ -86,6 +86,12 @@ static void take_descriptor_limits(struct slc_caps *caps, const VkPhysicalDevice
                                                         limits->maxDescriptorSetSamplers));
 }
 
+static void take_buffer_limits(struct slc_caps *caps, const VkPhysicalDeviceLimits *limits)
+{
+    caps->max_stage_storage_buffers = slc_min_u32(limits->maxPerStageDescriptorStorageBuffers,
+                                                  limits->maxDescriptorSetStorageBuffers);
+}
+
 static uint64_t largest_local_heap(const VkPhysicalDeviceMemoryProperties *memory)
 {
     uint64_t size = 0;
@@ -119,6 +125,8 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     out->nonUniformIndexing = features12.shaderSampledImageArrayNonUniformIndexing;
     out->runtimeDescriptorArrays = features12.runtimeDescriptorArray;
     take_descriptor_limits(caps, &properties.properties.limits);
+    take_buffer_limits(caps, &properties.properties.limits);
+    caps->buffer_device_address = features12.bufferDeviceAddress;
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
     caps->max_image_array_layers = out->maxImageArrayLayers;
     caps->max_storage_buffer_range = out->maxStorageBufferRange;

@@ -104,8 +104,10 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
 {
     struct slc_descriptors *d = descriptors;
     assert(info->buffer_count <= SLC_DESCRIPTOR_BUFFERS && info->set_count <= SLC_DESCRIPTOR_SETS);
+    assert(info->array_count <= SLC_DESCRIPTOR_ARRAY && !(info->array_count && info->textures));
     *d = (struct slc_descriptors){.page_binding = info->buffer_count,
-                                  .page_count = info->page_count};
+                                  .page_count = info->page_count,
+                                  .array_count = info->array_count};
     if (info->textures && info->textures->count) {
         SluiceResult result = check_limits(vk, caps, info);
         if (result != SLUICE_SUCCESS)
@@ -122,6 +124,10 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
     count++;
     if (info->textures)
         count += slc_texture_array_bindings(info->textures, count, &bindings[count]);
+    if (info->array_count) {
+        bindings[count] = binding_of(count, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, info->array_count);
+        count++;
+    }
     SluiceResult result = create_layout(d, vk, bindings, count);
     if (result == SLUICE_SUCCESS)
         result = create_pool(d, vk, bindings, count, info->set_count);
@@ -186,6 +192,25 @@ VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, cons
         set->texture_generation = textures->generation;
     }
     return set->set;
+}
+
+void slc_descriptors_update_array(struct slc_descriptors *descriptors, const struct slc_vk *vk,
+                                  uint32_t index, const struct slc_buffer_array *array)
+{
+    struct slc_descriptor_set *set = &descriptors->sets[index];
+    VkDescriptorBufferInfo buffers[SLC_DESCRIPTOR_ARRAY];
+    if (!set->set || !descriptors->array_count || set->array_generation == array->generation)
+        return;
+    for (uint32_t i = 0; i < descriptors->array_count; i++)
+        buffers[i] = (VkDescriptorBufferInfo){array->buffers[i], 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = set->set,
+                                  .dstBinding = descriptors->page_binding + 1,
+                                  .descriptorCount = descriptors->array_count,
+                                  .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                  .pBufferInfo = buffers};
+    vk->UpdateDescriptorSets(vk->device, 1, &write, 0, NULL);
+    set->array_generation = array->generation;
 }
 
 SluiceResult slc_descriptors_get_layout(const struct slc_descriptors *descriptors,

@@ -2,8 +2,8 @@
  * Descriptor sets that the application's shaders bind: one per frame or launch in flight, written
  * as that begins, when no earlier one uses the set any more. So no binding flags are required.
  *
- * Bindings in this order: storage buffers, the array of pages, the array of textures if there is
- * one. shared/bindings.h has the numbers.
+ * Bindings in this order: storage buffers, the array of pages, the array of textures or the array
+ * of storage buffers if there is one. shared/bindings.h has the numbers.
  */
 #ifndef SLC_VULKAN_DESCRIPTORS_H
 #define SLC_VULKAN_DESCRIPTORS_H
@@ -20,19 +20,29 @@ struct slc_descriptors_create_info {
     uint32_t buffer_count;
     uint32_t page_count;                      ///< elements of the array of pages
     const struct slc_texture_array *textures; ///< NULL: none
-    uint32_t set_count;                       ///< at most SLC_DESCRIPTOR_SETS
+    uint32_t array_count; ///< elements of the array of storage buffers; 0: none. Without textures
+    uint32_t set_count;   ///< at most SLC_DESCRIPTOR_SETS
+};
+
+#define SLC_DESCRIPTOR_ARRAY 16u
+
+/** All elements of the array of storage buffers. */
+struct slc_buffer_array {
+    VkBuffer buffers[SLC_DESCRIPTOR_ARRAY];
+    uint64_t generation; ///< from 1 on; another one for other buffers
 };
 
 struct slc_descriptor_set {
     VkDescriptorSet set;
-    uint64_t page_generation, texture_generation; ///< of what it holds; 0: nothing yet
+    /** Of what it holds; 0: nothing yet. */
+    uint64_t page_generation, texture_generation, array_generation;
 };
 
 /** A zeroed one has no layout and no sets, and is finished with nothing to do. */
 struct slc_descriptors {
     VkDescriptorSetLayout layout;
     VkDescriptorPool pool;
-    uint32_t page_binding, page_count;
+    uint32_t page_binding, page_count, array_count;
     struct slc_descriptor_set sets[SLC_DESCRIPTOR_SETS];
 };
 
@@ -54,6 +64,10 @@ VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, cons
                                        uint32_t index, struct slc_page_pool *pages,
                                        uint32_t page_user,
                                        const struct slc_texture_array *textures);
+
+/** The array of storage buffers of set `index`, which no commands in progress use. */
+void slc_descriptors_update_array(struct slc_descriptors *descriptors, const struct slc_vk *vk,
+                                  uint32_t index, const struct slc_buffer_array *array);
 
 /** The layout for the application. Errors: UNSUPPORTED, with a log message, if there are no sets.
  */

@@ -9,7 +9,10 @@ static VkResult allocate_by_vulkan(const struct slc_vk *vk,
                                    const struct slc_memory_request *request,
                                    struct slc_memory *memory)
 {
+    const VkMemoryAllocateFlagsInfo flags = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                             .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
     const VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                       .pNext = request->device_address ? &flags : NULL,
                                        .allocationSize = request->size,
                                        .memoryTypeIndex = request->type};
     VkResult result = vk->AllocateMemory(vk->device, &info, NULL, &memory->memory);
@@ -51,6 +54,7 @@ static VkResult allocate_by_callback(const struct slc_vk *vk,
                                              .memoryTypeIndex = request->type,
                                              .mapped = request->mapped,
                                              .images = request->images,
+                                             .deviceAddress = request->device_address,
                                              .pName = request->name};
     SluiceDeviceMemory answer = {0};
     VkResult result = callbacks->pfnAllocate(callbacks->pUserData, &asked, &answer);

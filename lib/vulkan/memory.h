@@ -10,7 +10,8 @@ struct slc_memory_request {
     uint32_t type;            ///< memory type index
     SluiceDeviceMemoryPurpose purpose;
     bool mapped, images;
-    const char *name; ///< for debuggers
+    bool device_address; ///< of a buffer with VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
+    const char *name;    ///< for debuggers
 };
 
 /** Part of a VkDeviceMemory, or all of it. Zeroed: none. */

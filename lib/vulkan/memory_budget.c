@@ -6,7 +6,8 @@ bool slc_memory_is_for_tiles(SluiceDeviceMemoryPurpose purpose)
 {
     return purpose == SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE ||
            purpose == SLUICE_DEVICE_MEMORY_PURPOSE_HEAP ||
-           purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES;
+           purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES ||
+           purpose == SLUICE_DEVICE_MEMORY_PURPOSE_BYTES;
 }
 
 SluiceResult slc_memory_budget_init(struct slc_memory_budget *budget)
@@ -46,7 +47,8 @@ static uint64_t tile_memory(const struct slc_memory_budget *budget)
 {
     return budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE] +
            budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_HEAP] +
-           budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_PAGES];
+           budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_PAGES] +
+           budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_BYTES];
 }
 
 void slc_memory_budget_get(struct slc_memory_budget *budget,
@@ -58,6 +60,7 @@ void slc_memory_budget_get(struct slc_memory_budget *budget,
     s->tileMemorySize = tile_memory(budget);
     s->heapMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_HEAP];
     s->pageMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_PAGES];
+    s->byteMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_BYTES];
     s->imageMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE];
     s->tableMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_TABLE];
     s->stagingMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_STAGING];

@@ -13,7 +13,7 @@
 
 #include <pthread.h>
 
-#define SLC_MEMORY_PURPOSES 6u
+#define SLC_MEMORY_PURPOSES 7u
 #define SLC_NO_MEMORY_LIMIT UINT64_MAX
 
 struct slc_memory_client;

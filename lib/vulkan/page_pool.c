@@ -84,6 +84,14 @@ SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore sema
     return result;
 }
 
+void slc_page_pool_set_max_size(struct slc_page_pool *pool, uint32_t user, uint64_t max_size)
+{
+    pthread_mutex_lock(&pool->mutex);
+    pool->users[user].max_size = max_size;
+    sum_limits(pool);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
 bool slc_page_pool_is_refused(struct slc_page_pool *pool)
 {
     pthread_mutex_lock(&pool->mutex);

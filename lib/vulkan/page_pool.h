@@ -62,6 +62,8 @@ void slc_page_pool_finish(struct slc_page_pool *pool);
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
                                     uint64_t max_size, struct slc_memory_client *client,
                                     uint32_t *user);
+/** As at slc_page_pool_add_user. Nothing that is allocated is freed by this. */
+void slc_page_pool_set_max_size(struct slc_page_pool *pool, uint32_t user, uint64_t max_size);
 /** The user's frames are complete. Pages that it still holds are given back. */
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
 
