@@ -61,17 +61,29 @@ typedef struct SluiceDemandLoaderCreateInfo {
      */
     uint32_t maxRequestsPerLaunch;
     /**
-     * Bytes of device memory for tiles. Hard limit. At most the tiles that the context's
-     * maxPageChunkCount images hold are used: 7.4 GiB for 64 images of one format. Default: half of
-     * the device's memory.
+     * Bytes of device memory for tiles and byte pages. Hard limit. At most the tiles that the
+     * context's maxPageChunkCount images hold are used: 7.4 GiB for 64 images of one format.
+     * Default: half of the device's memory.
      */
     uint64_t memoryBudget;
     /**
-     * Most tiles of 64 KiB being read or waiting to be copied. At most 2^16. Default: 1024. The
+     * Most tiles of 64 KiB and byte pages of at most 64 KiB being read or waiting to be copied. At
+     * most 2^16. Default: 1024. A sixteenth of it, at least 4, is allowed of larger byte pages. The
      * same number of openings and fills is allowed in addition, including those that wait for a
      * retry.
      */
     uint32_t maxTilesInFlight;
+    /**
+     * Bytes of memoryBudget for byte pages, in multiples of 2 MiB. Tiles get the rest from when the
+     * first resource of byte pages is added. Hard limit. At least 2 MiB. Default: a quarter of
+     * memoryBudget. Tiles need at least 4 MiB of the rest.
+     */
+    uint64_t byteMemoryBudget;
+    /**
+     * The device has the feature bufferDeviceAddress enabled. Values of byte pages are then
+     * addresses.
+     */
+    bool bufferDeviceAddress;
     /** Never evict, and do not track which pages shaders use. Slightly faster. */
     bool noEviction;
     /**
@@ -320,34 +332,60 @@ SLUICE_API SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader,
 
 /**
  * Resource: pages with data of the application, such as vertices, acceleration structures,
- * materials.
+ * materials. A page is a value of 64 bits that pfnFill computes, or pageSize bytes in GPU memory
+ * that pfnRead writes (a byte page).
  */
 typedef struct SluiceDemandResourceCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceDemandResourceCreateInfo).
     uint32_t pageCount;  ///< At least 1.
     uint32_t rank;       ///< Priority, 0 to 15. Lower ranks are served first.
-    /** Most resident pages. The least recently used ones are evicted. Default: all pages. */
+    /**
+     * Most resident pages. The least recently used ones are evicted. Default: all pages. Byte pages
+     * are also evicted when byteMemoryBudget is exhausted, by pages of all resources that have no
+     * limit of their own.
+     */
     uint32_t maxResidentPageCount;
     void *pUserData;
     /**
-     * Computes the value that shaders get for a page, 0 to pageCount - 1. Called on worker threads,
-     * several at the same time. SLUICE_NOT_READY: called again (readRetry), and later when a shader
-     * next misses the page. After other failures: called again when failureRetryDelayNs has passed.
+     * Computes the value that shaders get for a page, 0 to pageCount - 1. Required if pageSize is
+     * 0, else NULL. Called on worker threads, several at the same time. SLUICE_NOT_READY: called
+     * again (readRetry), and later when a shader next misses the page. After other failures: called
+     * again when failureRetryDelayNs has passed.
      */
     SluiceResult (*pfnFill)(void *pUserData, uint32_t page, uint64_t *pValue);
     /**
      * Releases a value that no launch reads any more. May be NULL. Called on any thread that uses
-     * the loader.
+     * the loader. NULL if pageSize is not 0.
      */
     void (*pfnEvict)(void *pUserData, uint32_t page, uint64_t value);
+    /**
+     * Bytes of a page, at most 2^20. 0: pages are values. Pages begin at multiples of 16 bytes in
+     * memory. Pages above 64 KiB occupy 1 MiB of staging memory each while they are read.
+     */
+    uint32_t pageSize;
+    /**
+     * Shaders get the place of a byte page as offset and buffer even if the loader has
+     * bufferDeviceAddress: the low 32 bits of the value are the byte offset, the high 32 bits the
+     * index of the buffer (sluiceGetDemandByteBuffers). Without bufferDeviceAddress they always do.
+     */
+    bool byteOffsets;
+    /**
+     * Writes all `size` bytes of a page, pageSize of them, into staging memory. Required if
+     * pageSize is not 0, else NULL. Threads and errors as for pfnFill. The memory is write-only:
+     * reading it back is slow.
+     */
+    SluiceResult (*pfnRead)(void *pUserData, uint32_t page, uint32_t size, void *pBytes);
 } SluiceDemandResourceCreateInfo;
 
 /**
- * Creates a resource. Shaders address its pages as `*pFirstPage` + page.
+ * Creates a resource. Shaders address its pages as `*pFirstPage` + page, with the functions of
+ * shaders/include/sluice/demand_pages.glsl and demand_bytes.glsl.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT; SLUICE_ERROR_LIMIT_EXCEEDED
- *         above pageCapacity, or for more than 254 resources with maxResidentPageCount;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for values
+ *         out of range or a callback of the other kind of page; SLUICE_ERROR_LIMIT_EXCEEDED above
+ *         pageCapacity, or for more than 253 resources with maxResidentPageCount;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. For a pageSize above 64 KiB also
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY and SLUICE_ERROR_VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
                                                 const SluiceDemandResourceCreateInfo *pCreateInfo,
@@ -404,6 +442,28 @@ SLUICE_API SluiceResult sluiceGetDemandBuffers(const SluiceDemandLoader *loader,
 SLUICE_API SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader,
                                              SluiceVulkanPages *pPages);
 
+/** Buffers that hold byte pages. */
+typedef struct SluiceDemandByteBuffers {
+    uint32_t structSize;      ///< sizeof(SluiceDemandByteBuffers).
+    uint32_t bufferCount;     ///< SLUICE_DEMAND_BYTE_CHUNKS (shared/bindings.h): 16.
+    const VkBuffer *pBuffers; ///< Owned by the loader. Valid during its life; elements change.
+    uint64_t generation;      ///< Differs after elements have changed.
+} SluiceDemandByteBuffers;
+
+/**
+ * Gets the buffers that hold byte pages, for applications that write their own descriptors. Unused
+ * elements are another buffer of the loader.
+ *
+ * After sluiceBeginDemandLaunch they are those of the launch. A buffer is destroyed only after all
+ * launches that had it are processed. The descriptor sets of launches hold them as
+ * SLUICE_DEMAND_BINDING_BYTES, except on devices with fewer than 39 storage buffers per shader
+ * stage.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a wrong structSize.
+ */
+SLUICE_API SluiceResult sluiceGetDemandByteBuffers(const SluiceDemandLoader *loader,
+                                                   SluiceDemandByteBuffers *pBuffers);
+
 /**
  * Gets the layout of the descriptor sets of launches (SluiceDemandLaunch). The loader owns the
  * layout; it never changes.
@@ -425,7 +485,7 @@ typedef struct SluiceDemandLaunch {
     uint64_t launchIndex;  ///< Counts from 1.
     VkSemaphore semaphore; ///< Timeline semaphore. Your submission must signal it.
     uint64_t signalValue;  ///< Value to signal.
-    uint32_t tileCount;    ///< Tiles that become resident with this launch.
+    uint32_t tileCount;    ///< Tiles and byte pages that become resident with this launch.
     /**
      * Holds all that shaders read and write (sluiceGetDemandDescriptorSetLayout). Bind it only in
      * commands of this launch: later launches write it again. The loader owns it.
@@ -565,11 +625,11 @@ typedef struct SluiceDemandStatistics {
     uint64_t evictedCount, failedCount, canceledCount;
     uint64_t texturesCreated, texturesOpened, texturesFailed;
     uint64_t bytesRead, bytesUploaded;
-    uint64_t virtualPageCount;  ///< Virtual pages that have an id.
-    uint64_t residentTileCount; ///< Mip tails count as tiles.
-    uint64_t residentResourcePageCount;
-    uint64_t tileMemorySize;   ///< Bytes of device memory for tiles. At most the budget.
-    uint64_t deviceMemorySize; ///< Bytes of all device memory that is not host-mapped.
+    uint64_t virtualPageCount;          ///< Virtual pages that have an id.
+    uint64_t residentTileCount;         ///< Mip tails count as tiles.
+    uint64_t residentResourcePageCount; ///< Pages with values.
+    uint64_t tileMemorySize;            ///< Bytes of device memory for tiles. At most the budget.
+    uint64_t deviceMemorySize;          ///< Bytes of all device memory that is not host-mapped.
     float lodBias;
     /**
      * Reads and fills by time from request to end. Bucket i counts those of less than 2^i us that
@@ -586,6 +646,9 @@ typedef struct SluiceDemandStatistics {
     uint64_t pageChunkShortages; ///< As in SluiceVulkanStreamerStatistics.
     uint64_t
         sharedCount; ///< Tiles that another front end of the context had: resident without a read.
+    uint64_t residentBytePageCount; ///< Byte pages; not part of residentResourcePageCount.
+    uint64_t byteMemorySize;        ///< Bytes of device memory for byte pages.
+    uint32_t byteChunkCount;        ///< Buffers that hold byte pages.
 } SluiceDemandStatistics;
 
 /**

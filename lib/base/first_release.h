@@ -58,12 +58,13 @@
 #define SLC_FIRST_SluiceDemandSampler SLC_UP_TO(SluiceDemandSampler, explicitAddressModes)
 #define SLC_FIRST_SluiceDemandTextureCreateInfo                                                    \
     SLC_UP_TO(SluiceDemandTextureCreateInfo, failureColor)
-#define SLC_FIRST_SluiceDemandResourceCreateInfo SLC_UP_TO(SluiceDemandResourceCreateInfo, pfnEvict)
+#define SLC_FIRST_SluiceDemandResourceCreateInfo SLC_UP_TO(SluiceDemandResourceCreateInfo, pfnRead)
 #define SLC_FIRST_SluiceDemandBuffers SLC_UP_TO(SluiceDemandBuffers, sections)
+#define SLC_FIRST_SluiceDemandByteBuffers SLC_UP_TO(SluiceDemandByteBuffers, generation)
 #define SLC_FIRST_SluiceDemandLaunch SLC_UP_TO(SluiceDemandLaunch, descriptorSet)
 #define SLC_FIRST_SluiceDemandRequests SLC_UP_TO(SluiceDemandRequests, lodBias)
 #define SLC_FIRST_SluiceDemandTicketStatus SLC_UP_TO(SluiceDemandTicketStatus, failedCount)
-#define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, sharedCount)
+#define SLC_FIRST_SluiceDemandStatistics SLC_UP_TO(SluiceDemandStatistics, byteChunkCount)
 #define SLC_FIRST_SluiceVulkanDeviceCapabilities                                                   \
     SLC_UP_TO(SluiceVulkanDeviceCapabilities, deviceLocalMemorySize)
 #define SLC_FIRST_SluiceVulkanFormatCapabilities                                                   \

@@ -12,6 +12,7 @@
 #include <assert.h>
 
 #define BATCH 256u
+#define LEAST_LARGE 4u /* jobs for large byte pages */
 
 void slc_job_list_append(SluiceDemandLoader *loader, struct slc_job_list *list,
                          struct slc_demand_job *job)
@@ -61,7 +62,7 @@ static void on_failure(void *user, const SluiceTileReadFailure *failure)
     told.userValue = job->id;
     if (job->kind == SLC_JOB_OPEN)
         told.source = job->image->source;
-    else if (job->kind == SLC_JOB_RESOURCE)
+    else if (job->kind != SLC_JOB_TILE)
         told.source = NULL;
     loader->info.failure.pfnFailed(loader->info.failure.pUserData, &told);
 }
@@ -75,18 +76,49 @@ static SluiceResult create_reader(SluiceDemandLoader *loader)
     return slc_create_shared_loader(&loader->context->shared, &create, &loader->reader);
 }
 
+/* The free jobs of a kind. */
+static struct slc_job_list *free_list(SluiceDemandLoader *loader, enum slc_job_kind kind,
+                                      uint32_t **count)
+{
+    switch (kind) {
+    case SLC_JOB_TILE:
+    case SLC_JOB_BYTES: *count = &loader->free_tile_count; return &loader->free_tiles;
+    case SLC_JOB_LARGE: *count = &loader->free_large_count; return &loader->free_large;
+    default: *count = &loader->free_other_count; return &loader->free_others;
+    }
+}
+
+/* The staging memory of a job; NULL: it has none. */
+static struct slc_staging *staging_of(SluiceDemandLoader *loader, uint32_t index)
+{
+    if (index >= loader->first_large)
+        return &loader->large;
+    return index < loader->info.maxTilesInFlight ? &loader->staging : NULL;
+}
+
+/* Its first slot there. */
+static uint32_t slot_of(const SluiceDemandLoader *loader, uint32_t index)
+{
+    return index < loader->first_large ? index : (index - loader->first_large) * SLC_LARGE_SLOTS;
+}
+
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
 {
     uint32_t tiles = loader->info.maxTilesInFlight;
     const struct slc_job_list empty = {SLC_NONE, SLC_NONE};
-    loader->free_tiles = loader->free_others = empty;
+    loader->free_tiles = loader->free_others = loader->free_large = empty;
     loader->arrived = loader->admitted = loader->copied = empty;
-    loader->job_count = 2 * tiles; /* the second half opens images and fills pages */
+    loader->first_large = 2 * tiles; /* the second of the tiles opens images and finds values */
+    loader->free_large_count = slc_max_u32(LEAST_LARGE, tiles / SLC_LARGE_SLOTS);
+    loader->job_count = loader->first_large + loader->free_large_count;
     loader->jobs = slc_calloc(&loader->cb, loader->job_count, sizeof *loader->jobs);
     if (!loader->jobs)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     for (uint32_t i = 0; i < loader->job_count; i++)
-        slc_job_list_append(loader, i < tiles ? &loader->free_tiles : &loader->free_others,
+        slc_job_list_append(loader,
+                            i < tiles                 ? &loader->free_tiles
+                            : i < loader->first_large ? &loader->free_others
+                                                      : &loader->free_large,
                             &loader->jobs[i]);
     loader->free_tile_count = loader->free_other_count = tiles;
     SluiceResult result = slc_staging_init(&loader->staging, &loader->context->shared.staging,
@@ -96,6 +128,7 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
 
 void slc_jobs_finish(SluiceDemandLoader *loader)
 {
+    slc_staging_finish(&loader->large);
     slc_staging_finish(&loader->staging);
     slc_free(&loader->cb, loader->jobs, loader->job_count, sizeof *loader->jobs);
     loader->jobs = NULL;
@@ -127,42 +160,60 @@ static bool find_staged(SluiceDemandLoader *loader)
     return false;
 }
 
-bool slc_job_tile_is_ready(SluiceDemandLoader *loader)
+bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind)
 {
-    return loader->free_tile_count > 0 &&
-           (slc_staging_ensure(&loader->staging, loader->free_tiles.first) || find_staged(loader));
+    uint32_t *count;
+    struct slc_job_list *list = free_list(loader, kind, &count);
+    if (*count == 0)
+        return false;
+    struct slc_staging *staging = staging_of(loader, list->first);
+    if (!staging || slc_staging_ensure(staging, slot_of(loader, list->first)))
+        return true;
+    return list == &loader->free_tiles && find_staged(loader);
 }
 
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind)
 {
-    bool tile = kind == SLC_JOB_TILE;
-    struct slc_demand_job *job =
-        slc_job_list_pop(loader, tile ? &loader->free_tiles : &loader->free_others);
+    uint32_t *count;
+    struct slc_demand_job *job = slc_job_list_pop(loader, free_list(loader, kind, &count));
     if (!job)
         return NULL;
     assert(job->kind == SLC_JOB_FREE);
     job->kind = kind; /* what the lock guards stays as it is: nothing is running */
     job->stale = job->counted = false;
     job->image = NULL;
-    if (tile)
-        slc_staging_take(&loader->staging, slc_job_index(loader, job));
-    *(tile ? &loader->free_tile_count : &loader->free_other_count) -= 1;
+    uint32_t index = slc_job_index(loader, job);
+    struct slc_staging *staging = staging_of(loader, index);
+    if (staging)
+        slc_staging_take(staging, slot_of(loader, index));
+    *count -= 1;
     return job;
 }
 
 void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job)
 {
-    bool tile = job->kind == SLC_JOB_TILE;
+    uint32_t *count, index = slc_job_index(loader, job);
+    struct slc_job_list *list = free_list(loader, job->kind, &count);
+    struct slc_staging *staging = staging_of(loader, index);
     job->kind = SLC_JOB_FREE;
-    if (tile)
-        slc_staging_give(&loader->staging, slc_job_index(loader, job));
-    push_front(loader, tile ? &loader->free_tiles : &loader->free_others, job);
-    *(tile ? &loader->free_tile_count : &loader->free_other_count) += 1;
+    if (staging)
+        slc_staging_give(staging, slot_of(loader, index));
+    push_front(loader, list, job);
+    *count += 1;
 }
 
-uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
+uint8_t *slc_job_memory(SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
-    return slc_staging_memory(&loader->staging, slc_job_index(loader, job));
+    uint32_t index = slc_job_index(loader, job);
+    return slc_staging_memory(staging_of(loader, index), slot_of(loader, index));
+}
+
+VkBuffer slc_job_buffer(SluiceDemandLoader *loader, const struct slc_demand_job *job,
+                        uint64_t *offset)
+{
+    uint32_t index = slc_job_index(loader, job);
+    *offset = slc_staging_offset(slot_of(loader, index));
+    return slc_staging_buffer(staging_of(loader, index), slot_of(loader, index));
 }
 
 /* With the lock held. */
@@ -285,6 +336,8 @@ static void job_back(SluiceDemandLoader *loader, const SluiceTileReadResult *rea
     } else if (job->kind == SLC_JOB_RESOURCE) {
         slc_resource_job_back(loader, job, read->result);
         slc_job_free(loader, job);
+    } else if (job->kind == SLC_JOB_BYTES || job->kind == SLC_JOB_LARGE) {
+        slc_byte_job_back(loader, job, read->result);
     } else {
         slc_image_job_back(loader, job->image, job, read->result);
         slc_job_free(loader, job);

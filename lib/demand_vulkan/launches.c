@@ -68,7 +68,8 @@ static bool wants_used(const SluiceDemandLoader *loader)
         return false;
     slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &counts);
     uint64_t held = counts.resident + counts.loading;
-    return loader->limited_count || held + soon > limit || held > limit / 4 * 3;
+    return loader->limited_count || slc_byte_memory_is_filling(&loader->bytes) ||
+           held + soon > limit || held > limit / 4 * 3;
 }
 
 static void set_parameter(SluiceDemandLoader *loader, uint32_t index, uint32_t value)
@@ -217,7 +218,10 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     bool tracking = wants_used(loader);
     loader->memory_pressure = slc_memory_client_begin(&loader->memory);
     exhume(loader);
+    slc_byte_pages_begin(loader, launch);
     slc_staging_trim(&loader->staging); /* it counts launches */
+    if (loader->large.blocks)
+        slc_staging_trim(&loader->large);
     gather(loader, launch, tracking);
     SluiceResult result =
         slc_page_directory_record(&loader->directory, commandBuffer, slot_of(loader, launch));
@@ -235,6 +239,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     begun.descriptorSet =
         slc_descriptors_update(&loader->descriptors, &loader->vk, slot_of(loader, launch),
                                loader->pages, loader->page_user, NULL);
+    slc_byte_pages_bind(loader, slot_of(loader, launch));
     slc_struct_write(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &begun);
     loader->counts.launchCount++;
     return SLUICE_SUCCESS;

@@ -38,6 +38,8 @@ static SluiceResult check_limits(const SluiceLogCallback *log,
         {"pageCapacity", info->pageCapacity, 1, MAX_PAGES},
         {"maxRequestsPerLaunch", info->maxRequestsPerLaunch, 1, MAX_REQUESTS},
         {"maxTilesInFlight", info->maxTilesInFlight, 1, MAX_TILES_IN_FLIGHT},
+        {"byteMemoryBudget", info->byteMemoryBudget ? info->byteMemoryBudget : SLC_BYTE_SLAB_SIZE,
+         SLC_BYTE_SLAB_SIZE, UINT64_MAX},
         {"memoryBudget", info->memoryBudget ? info->memoryBudget : MIN_BUDGET, MIN_BUDGET,
          UINT64_MAX},
     };
@@ -203,6 +205,9 @@ static SluiceResult create_pages(SluiceDemandLoader *loader)
                                 slc_tile_memory_limit(&loader->tiles), &loader->tile_interface);
     if (result == SLUICE_SUCCESS)
         result = slc_residency_set_class(loader->residency, SLC_CLASS_UNBOUND, UINT64_MAX, NULL);
+    if (result == SLUICE_SUCCESS)
+        result = slc_residency_set_class(loader->residency, SLC_CLASS_BYTES, UINT64_MAX,
+                                         &loader->byte_interface);
     return result;
 }
 
@@ -212,10 +217,11 @@ static SluiceResult create_memory(SluiceDemandLoader *loader)
     if (result == SLUICE_SUCCESS)
         result = slc_page_pool_add_user(loader->pages, loader->semaphore, loader->info.memoryBudget,
                                         &loader->memory, &loader->page_user);
-    if (result == SLUICE_SUCCESS)
-        slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
-                             loader->info.memoryBudget);
-    return result;
+    if (result != SLUICE_SUCCESS)
+        return result;
+    slc_tile_memory_init(&loader->tiles, loader->pages, loader->page_user,
+                         loader->info.memoryBudget);
+    return SLUICE_SUCCESS;
 }
 
 static void fill_buffers(const SluiceDemandLoader *loader, SluiceDemandBuffers *buffers)
@@ -234,6 +240,7 @@ static SluiceResult create_descriptors(SluiceDemandLoader *loader)
 {
     struct slc_descriptors_create_info info = {.buffer_count = SLUICE_DEMAND_BINDING_BUFFER_COUNT,
                                                .page_count = loader->pages->views.count,
+                                               .array_count = slc_byte_pages_binding_count(loader),
                                                .set_count = loader->info.launchesInFlight};
     SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
     fill_buffers(loader, &buffers);
@@ -250,8 +257,8 @@ static SluiceResult create_descriptors(SluiceDemandLoader *loader)
 static SluiceResult create_parts(SluiceDemandLoader *loader)
 {
     static SluiceResult (*const steps[])(SluiceDemandLoader *) = {
-        check_device,      create_semaphore,   create_memory, create_tables,
-        create_page_table, create_descriptors, create_pages,  slc_jobs_init};
+        check_device,        create_semaphore,   create_memory, create_tables, create_page_table,
+        slc_byte_pages_init, create_descriptors, create_pages,  slc_jobs_init};
     SluiceResult result = SLUICE_SUCCESS;
     for (size_t i = 0; i < sizeof steps / sizeof steps[0] && result == SLUICE_SUCCESS; i++)
         result = steps[i](loader);
@@ -332,6 +339,7 @@ static void stop_workers(SluiceDemandLoader *loader)
 static void destroy_device_parts(SluiceDemandLoader *loader)
 {
     slc_descriptors_finish(&loader->descriptors, &loader->vk);
+    slc_byte_memory_finish(&loader->bytes);
     slc_page_directory_finish(&loader->directory);
     slc_demand_scan_finish(&loader->scan, &loader->vk);
     if (loader->page_user < SLC_MAX_PAGE_USERS)
@@ -427,6 +435,7 @@ SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,
     statistics.virtualPageCount = slc_page_space_used(loader->space);
     statistics.residentTileCount = tiles.resident;
     statistics.residentResourcePageCount = loader->held_count;
+    slc_byte_pages_count(loader, &statistics);
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(loader->pages);
     slc_memory_client_get(&loader->memory, &statistics.deviceMemorySize,
                           &statistics.hostVisibleMemorySize);

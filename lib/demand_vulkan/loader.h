@@ -11,6 +11,7 @@
 #include "demand/page_space.h"
 #include "base/none.h"
 #include "demand/page_residency.h"
+#include "demand_vulkan/byte_memory.h"
 #include "demand_vulkan/page_directory.h"
 #include "demand_vulkan/scan.h"
 #include "demand_vulkan/table_mirror.h"
@@ -23,8 +24,10 @@
 #define SLC_MAX_LAUNCHES 16u
 #define SLC_MAX_REGULAR_LEVELS 16u /* words of an element of the buffer of levels */
 #define SLC_DEMAND_CLASSES 256u    /* tiles, resources without a limit, each resource with one */
+#define SLC_LARGE_SLOTS 16u        /* of staging memory: for a byte page above 64 KiB */
 #define SLC_CLASS_TILES 0u
 #define SLC_CLASS_UNBOUND 1u
+#define SLC_CLASS_BYTES 2u /* byte pages of resources without a limit */
 
 enum slc_texture_kind {
     SLC_TEXTURE_FREE = 0,
@@ -91,13 +94,25 @@ struct slc_demand_image {
 
 enum slc_resource_state { SLC_RESOURCE_FREE = 0, SLC_RESOURCE_LIVE, SLC_RESOURCE_DESTROYED };
 
-/* An image of one row, whose texels are the values of the pages: so the tile loader reads it. */
+enum slc_job_kind {
+    SLC_JOB_FREE = 0,
+    SLC_JOB_OPEN,
+    SLC_JOB_TILE,
+    SLC_JOB_RESOURCE, ///< a value
+    SLC_JOB_BYTES,    ///< a byte page of at most 64 KiB
+    SLC_JOB_LARGE     ///< a larger one
+};
+
+/* An image of one row, whose texels are the pages: so the tile loader reads it. */
 struct slc_demand_resource {
     SluiceImageSource base; ///< must be first
     enum slc_resource_state state;
     uint32_t index, generation, next_free;
     SluiceDemandResourceCreateInfo info;
     uint32_t first_page, job_count;
+    enum slc_job_kind job_kind;
+    uint32_t stride; ///< of byte pages; 0: values
+    bool addresses;  ///< of byte pages: values are addresses
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
@@ -111,13 +126,12 @@ struct slc_eviction {
     uint64_t value, launch;
 };
 
-enum slc_job_kind { SLC_JOB_FREE = 0, SLC_JOB_OPEN, SLC_JOB_TILE, SLC_JOB_RESOURCE };
-
-/* A read. Jobs below maxTilesInFlight have a tile of staging memory at their index. */
+/* A read. Jobs below maxTilesInFlight have a tile of staging memory at their index; those from
+ * first_large on have SLC_LARGE_SLOTS of the other staging memory. */
 struct slc_demand_job {
     enum slc_job_kind kind;
     uint32_t page, owner;           ///< image slot, or index of the resource
-    uint32_t place;                 ///< of a tile: chunk << 16 | layer
+    uint32_t place;                 ///< of a tile: chunk << 16 | layer; of a byte page
     uint32_t next;                  ///< free, arrived or copied: in the list
     bool stale;                     ///< what is read is not wanted any more
     bool counted;                   ///< in bytesUploaded
@@ -217,10 +231,16 @@ struct SluiceDemandLoader {
     struct slc_page_pool *pages; ///< of the context; NULL: not yet
     uint32_t page_user;          ///< of these; SLC_MAX_PAGE_USERS: not yet
     struct slc_tile_memory tiles;
-    struct slc_descriptors descriptors; ///< a set per launch in flight
+    struct slc_byte_memory bytes;
+    struct slc_page_memory byte_interface;
+    struct slc_buffer_array byte_buffers; ///< chunks as new launches see them
+    uint64_t byte_reserve;                ///< bytes of memoryBudget that tiles do not get
+    uint32_t byte_resource_count;         ///< live
+    struct slc_descriptors descriptors;   ///< a set per launch in flight
     struct slc_buffer table_buffer, levels_buffer;
     bool told_of_modes;             ///< that a texture's address modes are not its image's
     struct slc_staging staging;     ///< a slot per tile job
+    struct slc_staging large;       ///< SLC_LARGE_SLOTS per large job; zeroed until one is needed
     struct slc_table_mirror table;  ///< struct SluiceDemandTexture by index
     struct slc_table_mirror levels; ///< parameters; then 16 words for each image slot
     struct slc_table_mirror grids;  ///< the words of grids, behind them
@@ -253,18 +273,19 @@ struct SluiceDemandLoader {
 
     struct slc_demand_resource **resources; ///< owned, by index
     uint32_t resource_high, resource_capacity, free_resource;
-    bool classes[SLC_DEMAND_CLASSES]; ///< in use
-    struct slc_eviction *evictions;   ///< owned; a ring in the order of their launches
+    bool classes[SLC_DEMAND_CLASSES];      ///< in use
+    bool byte_classes[SLC_DEMAND_CLASSES]; ///< ... or last used for byte pages
+    struct slc_eviction *evictions;        ///< owned; a ring in the order of their launches
     uint32_t eviction_first, eviction_count, eviction_capacity;
     uint32_t held_count; ///< values of resources that are resident: each will need a place there
 
     SluiceTileLoader *reader;
     struct slc_demand_job *jobs; ///< owned
-    uint32_t job_count;
-    struct slc_job_list free_tiles, free_others;
+    uint32_t job_count, first_large;
+    struct slc_job_list free_tiles, free_others, free_large;
     struct slc_job_list arrived, admitted, copied; ///< read; resident; on its way to its place
-    uint32_t free_tile_count, free_other_count;
-    uint32_t reading_count; ///< tiles that are submitted and not yet back
+    uint32_t free_tile_count, free_other_count, free_large_count;
+    uint32_t reading_count; ///< tiles and byte pages that are submitted and not yet back
     struct slc_job_batch batch;
     struct slc_tickets tickets;
 
@@ -370,6 +391,14 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
                                              SluiceResult *result);
 void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job,
                            SluiceResult result);
+/** A page could be read. */
+void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                               uint32_t page);
+/** The job brought nothing, or nothing that is wanted. */
+void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                       const struct slc_demand_job *job, SluiceResult result);
+/** A job of it is over, of whatever kind. */
+void slc_resource_release(SluiceDemandLoader *loader, uint32_t index);
 /** The value of a page is not resident any more. */
 void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page,
                           uint64_t value);
@@ -377,15 +406,42 @@ void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t p
 void slc_resources_exhume(SluiceDemandLoader *loader);
 void slc_resources_finish(SluiceDemandLoader *loader);
 
+/* byte_pages.c */
+/** What byte pages need of the loader; allocates nothing. Errors, logged: UNSUPPORTED,
+ *  INVALID_ARGUMENT. */
+SluiceResult slc_byte_pages_init(SluiceDemandLoader *loader);
+/** Elements of the array of chunks in descriptor sets: 0 where the device has too few. */
+uint32_t slc_byte_pages_binding_count(const SluiceDemandLoader *loader);
+/** A resource of byte pages is about to be made. Errors: INVALID_ARGUMENT, logged;
+ * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+SluiceResult slc_byte_pages_prepare(SluiceDemandLoader *loader, uint32_t page_size);
+/** How the pages of a resource are read and shown, by its info. */
+void slc_byte_pages_describe(const SluiceDemandLoader *loader,
+                             struct slc_demand_resource *resource);
+void slc_byte_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result);
+/** What shaders get for a page of a resource; `value` as the residency says it. */
+uint64_t slc_byte_pages_value(const SluiceDemandLoader *loader, uint32_t page, uint64_t value);
+/** A resource of byte pages was made, or is gone. */
+void slc_byte_pages_add_resource(SluiceDemandLoader *loader);
+void slc_byte_pages_remove_resource(SluiceDemandLoader *loader);
+/** A launch begins: empty chunks go, and tiles get what byte pages do not. */
+void slc_byte_pages_begin(SluiceDemandLoader *loader, uint64_t launch);
+/** The set of a launch has all chunks. */
+void slc_byte_pages_bind(SluiceDemandLoader *loader, uint32_t slot);
+void slc_byte_pages_count(const SluiceDemandLoader *loader, SluiceDemandStatistics *statistics);
+
 /* jobs.c */
 SluiceResult slc_jobs_init(SluiceDemandLoader *loader);
 void slc_jobs_finish(SluiceDemandLoader *loader);
-/** Whether a TILE job can be taken. Makes staging memory for it. */
-bool slc_job_tile_is_ready(SluiceDemandLoader *loader);
-/** NULL: too much is under way. TILE jobs have staging memory: only if one is ready. */
+/** Whether a job of the kind can be taken. Makes staging memory for it. */
+bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind);
+/** NULL: too much is under way. Jobs with staging memory: only if one is ready. */
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind);
 void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job);
-uint8_t *slc_job_memory(const SluiceDemandLoader *loader, const struct slc_demand_job *job);
+/** Staging memory of the job. */
+uint8_t *slc_job_memory(SluiceDemandLoader *loader, const struct slc_demand_job *job);
+VkBuffer slc_job_buffer(SluiceDemandLoader *loader, const struct slc_demand_job *job,
+                        uint64_t *offset);
 /** A task of the ticket begins: `read` without its userValue. Errors, with no task begun: what the
  *  tile loader says. */
 SluiceResult slc_job_submit(SluiceDemandLoader *loader, struct slc_demand_job *job,

@@ -218,6 +218,16 @@ bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t pag
            dir->pool.table[block].words[page % SLUICE_DEMAND_BLOCK_PAGES] == value;
 }
 
+bool slc_page_directory_shows_wide(const struct slc_page_directory *dir, uint32_t page,
+                                   uint64_t value)
+{
+    uint32_t block = dir->entries[page / SLUICE_DEMAND_BLOCK_PAGES];
+    return slc_page_directory_shows(dir, page, (uint32_t)value) &&
+           dir->pool.table[block]
+                   .words[SLUICE_DEMAND_BLOCK_PAGES + page % SLUICE_DEMAND_BLOCK_PAGES] ==
+               (uint32_t)(value >> 32);
+}
+
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page)
 {
     if (!slc_page_directory_has(dir, page))

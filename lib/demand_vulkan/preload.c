@@ -136,7 +136,7 @@ static bool advance(SluiceDemandLoader *loader, struct slc_preload *preload)
         return over;
     if (!preload->planned)
         plan(loader, preload, image);
-    while (slc_job_tile_is_ready(loader)) {
+    while (slc_job_is_ready(loader, SLC_JOB_TILE)) {
         uint32_t page;
         SluiceResult result;
         if (!has_room(loader) || !next_page(preload, image, &page))

@@ -100,7 +100,10 @@ static void apply(SluiceDemandLoader *loader, const struct slc_page_change *chan
     SluiceResult result = SLUICE_SUCCESS;
     bool tile = change->class_index == SLC_CLASS_TILES;
     if (change->shown == SLC_SHOW_RESIDENT)
-        result = slc_page_directory_show(&loader->directory, change->page, change->value, !tile);
+        result = slc_page_directory_show(
+            &loader->directory, change->page,
+            tile ? change->value : slc_byte_pages_value(loader, change->page, change->value),
+            !tile);
     else if (change->shown == SLC_SHOW_REFUSED && tile)
         result = slc_page_directory_refuse(&loader->directory, change->page);
     else

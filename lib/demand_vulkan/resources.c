@@ -1,10 +1,11 @@
-/* Pages of the application: a callback says what shaders get for each. */
+/* Pages of the application: a callback says what shaders get for each, a value or bytes. */
 #include "base/alloc.h"
 #include "base/checked.h"
 #include "base/log.h"
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "vulkan/create_checks.h"
 
 #include <sluice/shared/demand.h>
 
@@ -25,9 +26,11 @@ static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
 static SluiceResult read_region(SluiceImageSource *source, const SluiceImageRegion *region,
                                 void *texels, size_t row_pitch)
 {
-    const struct slc_demand_resource *resource = (const struct slc_demand_resource *)source;
+    const SluiceDemandResourceCreateInfo *info =
+        &((const struct slc_demand_resource *)source)->info;
     (void)row_pitch;
-    return resource->info.pfnFill(resource->info.pUserData, region->x, texels);
+    return info->pageSize ? info->pfnRead(info->pUserData, region->x, info->pageSize, texels)
+                          : info->pfnFill(info->pUserData, region->x, texels);
 }
 
 static void destroy_source(SluiceImageSource *source)
@@ -79,16 +82,19 @@ static SluiceResult add_slot(SluiceDemandLoader *loader, struct slc_demand_resou
 static SluiceResult take_class(SluiceDemandLoader *loader,
                                const SluiceDemandResourceCreateInfo *info, uint8_t *class_index)
 {
-    uint32_t limit = info->maxResidentPageCount, at = SLC_CLASS_UNBOUND;
+    const struct slc_page_memory *memory = info->pageSize ? &loader->byte_interface : NULL;
+    uint32_t limit = info->maxResidentPageCount;
+    uint32_t at = memory ? SLC_CLASS_BYTES : SLC_CLASS_UNBOUND;
     if (limit && limit < info->pageCount) {
-        for (at = SLC_CLASS_UNBOUND + 1; at < SLC_DEMAND_CLASSES && loader->classes[at];)
+        for (at = SLC_CLASS_BYTES + 1; at < SLC_DEMAND_CLASSES && loader->classes[at];)
             at++;
         if (at == SLC_DEMAND_CLASSES)
             return SLUICE_ERROR_LIMIT_EXCEEDED;
-        SluiceResult result = slc_residency_set_class(loader->residency, at, limit, NULL);
+        SluiceResult result = slc_residency_set_class(loader->residency, at, limit, memory);
         if (result != SLUICE_SUCCESS)
             return result;
         loader->classes[at] = true;
+        loader->byte_classes[at] = memory != NULL;
         loader->limited_count++;
     }
     *class_index = (uint8_t)at;
@@ -97,7 +103,7 @@ static SluiceResult take_class(SluiceDemandLoader *loader,
 
 static void give_class(SluiceDemandLoader *loader, uint8_t class_index)
 {
-    if (class_index == SLC_CLASS_UNBOUND)
+    if (class_index <= SLC_CLASS_BYTES)
         return;
     loader->classes[class_index] = false;
     loader->limited_count--;
@@ -127,7 +133,30 @@ static SluiceResult create(SluiceDemandLoader *loader, const SluiceDemandResourc
     new->generation++;
     new->info = *info;
     new->told = false;
+    slc_byte_pages_describe(loader, new);
+    if (new->stride)
+        slc_byte_pages_add_resource(loader);
     return SLUICE_SUCCESS;
+}
+
+static SluiceResult check(const SluiceDemandLoader *loader,
+                          const SluiceDemandResourceCreateInfo *info)
+{
+    const struct slc_limit limits[] = {{"pageCount", info->pageCount, 1, UINT32_MAX},
+                                       {"rank", info->rank, 0, SLUICE_DEMAND_RANKS - 1}};
+    SluiceResult result =
+        slc_check_limits(&loader->vk.log, limits, sizeof limits / sizeof limits[0]);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    if (info->pageSize ? info->pfnFill || info->pfnEvict : (bool)info->pfnRead) {
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
+                "pageSize is %u: pfnFill and pfnEvict are for pages of 0 bytes, pfnRead is for "
+                "larger ones",
+                info->pageSize);
+        return SLUICE_ERROR_INVALID_ARGUMENT;
+    }
+    return info->pageCount > loader->info.pageCapacity ? SLUICE_ERROR_LIMIT_EXCEEDED
+                                                       : SLUICE_SUCCESS;
 }
 
 SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
@@ -135,17 +164,20 @@ SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
                                      SluiceDemandResourceId *pResourceId, uint32_t *pFirstPage)
 {
     struct slc_demand_resource *resource;
-    if (!loader || !pCreateInfo || !pCreateInfo->pfnFill || !pResourceId || !pFirstPage)
+    if (!loader || !pCreateInfo || !pResourceId || !pFirstPage)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceDemandResourceCreateInfo info = {.structSize = sizeof info};
     SluiceResult result = slc_struct_read(SLC_STRUCT(SluiceDemandResourceCreateInfo), &info,
                                           pCreateInfo, &loader->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (info.pageCount == 0 || info.rank >= SLUICE_DEMAND_RANKS)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    if (info.pageCount > loader->info.pageCapacity)
-        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    if (!(info.pageSize ? (bool)info.pfnRead : (bool)info.pfnFill))
+        return SLUICE_ERROR_NULL_POINTER;
+    result = check(loader, &info);
+    if (result == SLUICE_SUCCESS && info.pageSize)
+        result = slc_byte_pages_prepare(loader, info.pageSize);
+    if (result != SLUICE_SUCCESS)
+        return result;
     result = create(loader, &info, &resource);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -163,15 +195,18 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
     *result = SLUICE_SUCCESS;
     if (resource->state != SLC_RESOURCE_LIVE || region.x >= resource->info.pageCount)
         return SLC_REQUEST_RESIDENT;
-    if (loader->free_other_count == 0)
+    if (!slc_job_is_ready(loader, resource->job_kind))
         return SLC_REQUEST_POSTPONED;
-    const struct slc_page_request request = {
-        .page = page, .class_index = resource->class_index, .rank = (uint8_t)resource->info.rank};
+    const struct slc_page_request request = {.page = page,
+                                             .class_index = resource->class_index,
+                                             .rank = (uint8_t)resource->info.rank,
+                                             .kind = resource->stride};
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     if (answer != SLC_REQUEST_LOAD)
         return answer;
-    struct slc_demand_job *job = slc_job_take(loader, SLC_JOB_RESOURCE);
-    void *texels = &job->value;
+    struct slc_demand_job *job = slc_job_take(loader, resource->job_kind);
+    void *texels = resource->stride ? (void *)slc_job_memory(loader, job) : (void *)&job->value;
+    job->place = resource->stride ? slc_residency_place(loader->residency, page) : SLC_NO_PLACE;
     job->page = page;
     job->owner = index;
     job->id = resource_id(resource);
@@ -183,6 +218,7 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
     *result = slc_job_submit(loader, job, &read, ticket);
     if (*result == SLUICE_SUCCESS) {
         resource->job_count++;
+        loader->reading_count += resource->stride != 0;
         return SLC_REQUEST_LOAD;
     }
     slc_residency_failed(loader->residency, page, false);
@@ -206,6 +242,8 @@ static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *r
     sluiceDropTileLoaderStatistics(loader->reader, &resource->base);
     slc_pages_give(loader, resource->first_page, resource->info.pageCount);
     give_class(loader, resource->class_index);
+    if (resource->stride)
+        slc_byte_pages_remove_resource(loader);
     resource->state = SLC_RESOURCE_FREE;
     if (resource->generation == UINT32_MAX)
         return; /* its ids are used up */
@@ -232,33 +270,49 @@ static bool reserve_eviction(SluiceDemandLoader *loader)
     return true;
 }
 
+void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                               uint32_t page)
+{
+    slc_retries_success(loader, &resource->retry_group, page);
+    resource->told = resource->told && resource->retry_group != 0;
+}
+
+void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                       const struct slc_demand_job *job, SluiceResult result)
+{
+    bool refuse = result != SLUICE_SUCCESS && !job->stale && !slc_result_may_pass(result);
+    char retrying[48];
+    if (refuse && !resource->told)
+        slc_log(&loader->vk.log, SLUICE_LOG_WARNING, "page %u of a resource has no %s: %s; %s.",
+                job->page - resource->first_page, resource->stride ? "bytes" : "value",
+                sluiceGetResultName(result), slc_retries_words(loader, retrying, sizeof retrying));
+    resource->told |= refuse;
+    refuse = refuse && slc_retries_add(loader, &resource->retry_group, job->page);
+    slc_residency_failed(loader->residency, job->page, refuse);
+}
+
+void slc_resource_release(SluiceDemandLoader *loader, uint32_t index)
+{
+    struct slc_demand_resource *resource = loader->resources[index];
+    resource->job_count--;
+    check_gone(loader, resource);
+}
+
 void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job,
                            SluiceResult result)
 {
     struct slc_demand_resource *resource = loader->resources[job->owner];
-    uint32_t page = job->page - resource->first_page;
     bool filled = result == SLUICE_SUCCESS;
     if (filled && !job->stale && reserve_eviction(loader)) {
         loader->held_count++;
         slc_residency_loaded(loader->residency, job->page, job->value);
-        slc_retries_success(loader, &resource->retry_group, job->page);
-        resource->told = resource->told && resource->retry_group != 0;
+        slc_resource_note_success(loader, resource, job->page);
     } else {
-        bool refuse = !filled && !job->stale && !slc_result_may_pass(result);
-        char retrying[48];
         if (filled) /* which no launch has seen */
-            tell_evicted(resource, page, job->value);
-        if (refuse && !resource->told)
-            slc_log(&loader->vk.log, SLUICE_LOG_WARNING,
-                    "page %u of a resource has no value: %s; %s.", page,
-                    sluiceGetResultName(result),
-                    slc_retries_words(loader, retrying, sizeof retrying));
-        resource->told |= refuse;
-        refuse = refuse && slc_retries_add(loader, &resource->retry_group, job->page);
-        slc_residency_failed(loader->residency, job->page, refuse);
+            tell_evicted(resource, job->page - resource->first_page, job->value);
+        slc_resource_fail(loader, resource, job, result);
     }
-    resource->job_count--;
-    check_gone(loader, resource);
+    slc_resource_release(loader, resource->index);
 }
 
 void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page, uint64_t value)
@@ -295,8 +349,8 @@ static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resou
                    uint32_t count)
 {
     slc_retries_all(loader, &resource->retry_group);
-    if (resource->job_count)
-        slc_jobs_drop(loader, SLC_JOB_RESOURCE, resource->index, first, count);
+    if (resource->job_count || resource->stride) /* bytes may be on their way to their slots */
+        slc_jobs_drop(loader, resource->job_kind, resource->index, first, count);
     slc_residency_forget(loader->residency, first, count);
     slc_evicted_take(loader);
 }
@@ -330,7 +384,7 @@ SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
         return result;
     forget(loader, resource, resource->first_page, resource->info.pageCount);
     if (resource->job_count)
-        slc_jobs_wait(loader, SLC_JOB_RESOURCE, resource->index);
+        slc_jobs_wait(loader, resource->job_kind, resource->index);
     slc_pages_forget_requests(loader, resource->first_page, resource->info.pageCount);
     resource->state = SLC_RESOURCE_DESTROYED;
     check_gone(loader, resource);

@@ -7,11 +7,16 @@
 void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
                           uint64_t budget)
 {
-    uint64_t most =
-        slc_page_chunks_capacity(pool->chunks.count, pool->chunks.caps->max_image_array_layers);
+    *memory = (struct slc_tile_memory){.pool = pool, .user = user};
+    slc_tile_memory_set_budget(memory, budget);
+}
+
+void slc_tile_memory_set_budget(struct slc_tile_memory *memory, uint64_t budget)
+{
+    const struct slc_page_chunks *chunks = &memory->pool->chunks;
+    uint64_t most = slc_page_chunks_capacity(chunks->count, chunks->caps->max_image_array_layers);
     uint64_t limit = budget / SLC_TILE_SIZE;
-    *memory =
-        (struct slc_tile_memory){.pool = pool, .user = user, .limit = limit < most ? limit : most};
+    memory->limit = limit < most ? limit : most;
 }
 
 static uint32_t take(void *user, uint32_t kind)

@@ -160,7 +160,7 @@ enum slc_request_answer slc_tile_request(SluiceDemandLoader *loader, struct slc_
     *result = SLUICE_SUCCESS;
     if (image->state != SLC_IMAGE_OPEN)
         return SLC_REQUEST_RESIDENT; /* what it was asked for is gone */
-    if (!slc_job_tile_is_ready(loader))
+    if (!slc_job_is_ready(loader, SLC_JOB_TILE))
         return SLC_REQUEST_POSTPONED;
     bool tail = page == image->tail_page;
     uint32_t index, level = find_level(image, page, &index);

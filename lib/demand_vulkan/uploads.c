@@ -1,4 +1,4 @@
-/* From staging memory to the layers that are the tiles' places. */
+/* From staging memory to the layers that are the tiles' places, and the slots of byte pages. */
 #include "base/checked.h"
 #include "demand_vulkan/tiles.h"
 #include "vulkan/sparse_layout.h"
@@ -13,6 +13,23 @@ struct copies {
     uint32_t count;
     VkBufferImageCopy list[COPY_BATCH];
 };
+
+struct byte_copies {
+    SluiceDemandLoader *loader;
+    VkCommandBuffer commands;
+    VkBuffer source, target;
+    uint32_t count;
+    VkBufferCopy list[COPY_BATCH];
+};
+
+/* The job is no longer one of its owner's. */
+static void release(SluiceDemandLoader *loader, const struct slc_demand_job *job)
+{
+    if (job->image)
+        slc_image_release(loader, job->image);
+    else
+        slc_resource_release(loader, job->owner);
+}
 
 /*
  * While reads are under way a launch copies only its share of the staging memory: one part is
@@ -33,7 +50,7 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
          left > 0 && (job = slc_job_list_pop(loader, &loader->arrived));) {
         if (job->stale) {
             slc_residency_failed(loader->residency, job->page, false);
-            slc_image_release(loader, job->image);
+            release(loader, job);
             slc_job_free(loader, job);
             continue;
         }
@@ -47,7 +64,7 @@ void slc_uploads_drop(SluiceDemandLoader *loader)
 {
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
         slc_residency_forget(loader->residency, job->page, 1);
-        slc_image_release(loader, job->image);
+        release(loader, job);
         slc_job_free(loader, job);
     }
 }
@@ -70,15 +87,15 @@ static void add(struct copies *c, const struct slc_demand_job *job,
 {
     VkImage target = slc_page_image(c->loader->pages, job->place);
     uint32_t block = job->image->blocks ? 4 : 1;
-    uint32_t slot = slc_job_index(c->loader, job);
-    VkBuffer source = slc_staging_buffer(&c->loader->staging, slot);
+    uint64_t offset;
+    VkBuffer source = slc_job_buffer(c->loader, job, &offset);
     if (c->count == COPY_BATCH || target != c->target || source != c->source)
         flush(c);
     c->target = target;
     c->source = source;
     /* A level may end inside the page, where only whole blocks may end. */
     c->list[c->count++] = (VkBufferImageCopy){
-        .bufferOffset = slc_staging_offset(slot) + part->offset,
+        .bufferOffset = offset + part->offset,
         .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, job->place & 0xFFFFu, 1},
         .imageOffset = {(int32_t)part->x, (int32_t)part->y, 0},
         .imageExtent = {round_up(part->region.width, block), round_up(part->region.height, block),
@@ -88,32 +105,71 @@ static void add(struct copies *c, const struct slc_demand_job *job,
             job->image->info.format, part->region.width, part->region.height);
 }
 
+static void flush_bytes(struct byte_copies *c)
+{
+    if (c->count)
+        c->loader->vk.CmdCopyBuffer(c->commands, c->source, c->target, c->count, c->list);
+    c->count = 0;
+}
+
+static void record_bytes(struct byte_copies *c, const struct slc_demand_job *job)
+{
+    SluiceDemandLoader *loader = c->loader;
+    const struct slc_demand_resource *resource = loader->resources[job->owner];
+    uint32_t chunk;
+    VkBufferCopy copy = {.size = resource->info.pageSize};
+    VkBuffer source = slc_job_buffer(loader, job, &copy.srcOffset);
+    slc_byte_place(job->place, resource->stride, &chunk, &copy.dstOffset);
+    VkBuffer target = loader->bytes.chunks[chunk].buffer;
+    if (c->count == COPY_BATCH || target != c->target || source != c->source)
+        flush_bytes(c);
+    c->source = source;
+    c->target = target;
+    c->list[c->count++] = copy;
+    if (!job->counted)
+        loader->counts.bytesUploaded += copy.size;
+}
+
 /* False: forgotten since it was admitted, because the page table had no room, or while its launch
  * was abandoned; then even its place may be another's. */
 static bool is_wanted(const SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
-    return !job->stale && slc_page_directory_shows(&loader->directory, job->page, job->place);
+    if (job->image)
+        return !job->stale && slc_page_directory_shows(&loader->directory, job->page, job->place);
+    return !job->stale &&
+           slc_page_directory_shows_wide(&loader->directory, job->page,
+                                         slc_byte_pages_value(loader, job->page, job->place));
+}
+
+static void record_tile(struct copies *copies, struct slc_demand_job *job)
+{
+    SluiceDemandLoader *loader = copies->loader;
+    struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
+    slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
+    uint32_t part_count = slc_tile_parts(job->image, job->page, parts);
+    for (uint32_t i = 0; i < part_count; i++)
+        add(copies, job, &parts[i]);
 }
 
 uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands)
 {
     struct copies copies = {.loader = loader, .commands = commands};
+    struct byte_copies bytes = {.loader = loader, .commands = commands};
     uint32_t count = 0;
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
-        if (is_wanted(loader, job)) {
-            struct slc_tile_part parts[SLC_TILE_MAX_PARTS];
-            slc_page_share_written(loader->pages, loader->page_user, job->place, loader->launch);
-            uint32_t part_count = slc_tile_parts(job->image, job->page, parts);
-            for (uint32_t i = 0; i < part_count; i++)
-                add(&copies, job, &parts[i]);
-            count++;
-        }
+        bool wanted = is_wanted(loader, job);
+        if (wanted && job->image)
+            record_tile(&copies, job);
+        else if (wanted)
+            record_bytes(&bytes, job);
+        count += wanted;
         job->launch = loader->launch;
         job->counted = true;
-        slc_image_release(loader, job->image);
+        release(loader, job);
         slc_job_list_append(loader, &loader->copied, job);
     }
     flush(&copies);
+    flush_bytes(&bytes);
     return count;
 }
 
@@ -133,7 +189,7 @@ void slc_uploads_abandon(SluiceDemandLoader *loader, uint64_t launch)
         } else if (job->stale) { /* its image may be another's by now */
             slc_job_free(loader, job);
         } else {
-            job->image->job_count++;
+            *(job->image ? &job->image->job_count : &loader->resources[job->owner]->job_count) += 1;
             slc_job_list_append(loader, &loader->admitted, job);
         }
     }

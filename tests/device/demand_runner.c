@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "demand_runner_bytes_comp.h"
 #include "demand_runner_comp.h"
 
 #define BUFFERS 9u
+#define BINDINGS (BUFFERS + 2)
 
 const SluiceDemandSampler runner_nearest = {.structSize = sizeof runner_nearest,
                                             .filter = SLUICE_DEMAND_FILTER_NEAREST,
@@ -18,7 +20,7 @@ const SluiceDemandSampler runner_nearest = {.structSize = sizeof runner_nearest,
 static void create_layouts(struct runner *r)
 {
     struct harness *h = r->h;
-    VkDescriptorSetLayoutBinding bindings[BUFFERS + 1];
+    VkDescriptorSetLayoutBinding bindings[BINDINGS];
     for (uint32_t i = 0; i <= BUFFERS; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
@@ -26,9 +28,14 @@ static void create_layouts(struct runner *r)
                                           : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
             .descriptorCount = i < BUFFERS ? 1 : RUNNER_CHUNKS,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
+    bindings[BUFFERS + 1] =
+        (VkDescriptorSetLayoutBinding){.binding = BUFFERS + 1,
+                                       .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                       .descriptorCount = SLUICE_DEMAND_BYTE_CHUNKS,
+                                       .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
     VkDescriptorSetLayoutCreateInfo set = {.sType =
                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                           .bindingCount = BUFFERS + 1,
+                                           .bindingCount = r->reads_bytes ? BINDINGS : BINDINGS - 1,
                                            .pBindings = bindings};
     assert_int_equal(h->CreateDescriptorSetLayout(h->device, &set, NULL, &r->set_layout),
                      VK_SUCCESS);
@@ -44,9 +51,10 @@ static void create_layouts(struct runner *r)
 static void create_pipeline(struct runner *r)
 {
     struct harness *h = r->h;
-    VkShaderModuleCreateInfo code = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                     .codeSize = sizeof demand_runner_comp,
-                                     .pCode = demand_runner_comp};
+    VkShaderModuleCreateInfo code = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = r->reads_bytes ? sizeof demand_runner_bytes_comp : sizeof demand_runner_comp,
+        .pCode = r->reads_bytes ? demand_runner_bytes_comp : demand_runner_comp};
     VkShaderModule module;
     assert_int_equal(h->CreateShaderModule(h->device, &code, NULL, &module), VK_SUCCESS);
     VkComputePipelineCreateInfo info = {
@@ -84,7 +92,8 @@ static void create_sets(struct runner *r)
 {
     struct harness *h = r->h;
     VkDescriptorPoolSize sizes[2] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFERS * RUNNER_LAUNCHES},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+         (BUFFERS + SLUICE_DEMAND_BYTE_CHUNKS) * RUNNER_LAUNCHES},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, RUNNER_CHUNKS * RUNNER_LAUNCHES}};
     VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                        .maxSets = RUNNER_LAUNCHES,
@@ -111,6 +120,7 @@ void runner_init_with(struct runner *r, struct harness *h, SluiceDemandLoader *l
 {
     *r = (struct runner){.h = h,
                          .loader = loader,
+                         .reads_bytes = h->runs_bytes && h->reads_bytes,
                          .launch = {.structSize = sizeof r->launch},
                          .requests = {.structSize = sizeof r->requests}};
     harness_buffer_init(h, &r->inputs, RUNNER_SAMPLES * sizeof(struct RunnerInput),
@@ -205,10 +215,31 @@ static void write_pages(struct runner *r, uint32_t at)
     r->generations[at] = pages.generation;
 }
 
+static void write_chunks(struct runner *r, uint32_t at)
+{
+    SluiceDemandByteBuffers bytes = {.structSize = sizeof bytes};
+    CHECK_OK(sluiceGetDemandByteBuffers(r->loader, &bytes));
+    if (!r->reads_bytes || r->byte_generations[at] == bytes.generation)
+        return;
+    VkDescriptorBufferInfo infos[SLUICE_DEMAND_BYTE_CHUNKS];
+    assert_int_equal(bytes.bufferCount, SLUICE_DEMAND_BYTE_CHUNKS);
+    for (uint32_t i = 0; i < SLUICE_DEMAND_BYTE_CHUNKS; i++)
+        infos[i] = (VkDescriptorBufferInfo){bytes.pBuffers[i], 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = r->sets[at],
+                                  .dstBinding = BUFFERS + 1,
+                                  .descriptorCount = SLUICE_DEMAND_BYTE_CHUNKS,
+                                  .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                  .pBufferInfo = infos};
+    r->h->UpdateDescriptorSets(r->h->device, 1, &write, 0, NULL);
+    r->byte_generations[at] = bytes.generation;
+}
+
 static void record_samples(struct runner *r, VkCommandBuffer commands, uint32_t at)
 {
     struct harness *h = r->h;
     write_pages(r, at);
+    write_chunks(r, at);
     h->CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, r->pipeline);
     h->CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, r->layout, 0, 1,
                              &r->sets[at], 0, NULL);

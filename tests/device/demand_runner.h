@@ -6,6 +6,7 @@
 #include "support/fault_source.h"
 
 #include <sluice/demand.h>
+#include <sluice/shared/bindings.h>
 
 #include "demand_runner_shared.h"
 
@@ -20,7 +21,9 @@ struct runner {
     VkPipeline pipeline;
     VkDescriptorPool pool;
     VkDescriptorSet sets[RUNNER_LAUNCHES];
-    uint64_t generations[RUNNER_LAUNCHES]; ///< of the pages in each set
+    uint64_t generations[RUNNER_LAUNCHES];      ///< of the pages in each set
+    uint64_t byte_generations[RUNNER_LAUNCHES]; ///< of the chunks of byte pages
+    bool reads_bytes;                           ///< the shader does, too
     struct harness_buffer inputs, outputs;
     uint32_t count; ///< samples
     SluiceDemandLaunch launch;

@@ -200,7 +200,11 @@ static bool create_device(struct harness *h, const struct extras *extras)
     features.features.samplerAnisotropy = there.features.samplerAnisotropy;
     vulkan12.samplerMirrorClampToEdge = there12.samplerMirrorClampToEdge;
     vulkan12.pNext = extras->features;
-    vulkan12.bufferDeviceAddress = extras->extension_count > 0 && there12.bufferDeviceAddress;
+    vulkan12.bufferDeviceAddress = there12.bufferDeviceAddress;
+    vulkan12.shaderStorageBufferArrayNonUniformIndexing =
+        there12.shaderStorageBufferArrayNonUniformIndexing;
+    h->reads_bytes =
+        there12.bufferDeviceAddress && there12.shaderStorageBufferArrayNonUniformIndexing;
     h->anisotropy = there.features.samplerAnisotropy;
     h->mirror_clamp = there12.samplerMirrorClampToEdge;
     if (sluiceRequireVulkanFeatures(h->instance, h->physical_device, h->get, h->mode, &log,

@@ -4,6 +4,8 @@
 #include "extremes/note.h"
 #include "support/failing_allocator.h"
 
+#include <string.h>
+
 static struct harness h;
 
 struct life {
@@ -11,8 +13,8 @@ struct life {
     struct runner r;
     struct runner_image image, other;
     SluiceDemandTextureId texture, variant, grid;
-    SluiceDemandResourceId resource;
-    uint32_t first_page;
+    SluiceDemandResourceId resource, small, large;
+    uint32_t first_page, first_small, first_large;
 };
 
 static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
@@ -52,6 +54,30 @@ static SluiceResult create_resource(struct life *l)
     return sluiceAddDemandResource(l->r.loader, &info, &l->resource, &l->first_page);
 }
 
+static SluiceResult read_bytes(void *user, uint32_t page, uint32_t size, void *bytes)
+{
+    (void)user;
+    memset(bytes, (int)page, size);
+    return SLUICE_SUCCESS;
+}
+
+static SluiceResult create_bytes(struct life *l)
+{
+    const SluiceDemandResourceCreateInfo info = {
+        .structSize = sizeof info, .pageCount = 3000, .pageSize = 5000, .pfnRead = read_bytes};
+    return sluiceAddDemandResource(l->r.loader, &info, &l->small, &l->first_small);
+}
+
+static SluiceResult create_large(struct life *l)
+{
+    const SluiceDemandResourceCreateInfo info = {.structSize = sizeof info,
+                                                 .pageCount = 3000,
+                                                 .maxResidentPageCount = 2,
+                                                 .pageSize = 200000,
+                                                 .pfnRead = read_bytes};
+    return sluiceAddDemandResource(l->r.loader, &info, &l->large, &l->first_large);
+}
+
 static SluiceResult preload(struct life *l)
 {
     SluiceDemandTicket ticket;
@@ -83,6 +109,8 @@ static SluiceResult invalidate(struct life *l)
     SluiceResult result = sluiceInvalidateDemandTexture(l->r.loader, l->texture);
     if (result == SLUICE_SUCCESS)
         result = sluiceInvalidateDemandPages(l->r.loader, l->resource, 1, 2000);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceInvalidateDemandPages(l->r.loader, l->small, 10, 2000);
     return result;
 }
 
@@ -93,14 +121,19 @@ static SluiceResult destroy(struct life *l)
         result = sluiceRemoveDemandTexture(l->r.loader, l->texture);
     if (result == SLUICE_SUCCESS)
         result = sluiceRemoveDemandResource(l->r.loader, l->resource);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceRemoveDemandResource(l->r.loader, l->small);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceRemoveDemandResource(l->r.loader, l->large);
     return result;
 }
 
 /* In the order of a life; launches between show what was made and changed. */
 static SluiceResult (*const calls[])(struct life *) = {
-    create_texture, create_variant, create_grid, create_resource, launch,  launch,
-    launch,         preload,        launch,      invalidate,      launch,  launch,
-    replace,        launch,         launch,      launch,          destroy, launch};
+    create_texture, create_variant, create_grid, create_resource, create_bytes,
+    create_large,   launch,         launch,      launch,          preload,
+    launch,         invalidate,     launch,      launch,          replace,
+    launch,         launch,         launch,      destroy,         launch};
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
 static void open_life(struct life *l)
@@ -137,6 +170,10 @@ static void aim(struct life *l)
     runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
     for (uint32_t i = 0; i < 50; i++)
         runner_add_page(&l->r, l->first_page + i * 50);
+    for (uint32_t i = 0; i < 20 && l->small; i++)
+        runner_add_page(&l->r, l->first_small + i * 50);
+    for (uint32_t i = 0; i < 2 && l->large; i++)
+        runner_add_page(&l->r, l->first_large + i * 50);
 }
 
 /* With `step` all calls before it have what they need, and it has not, n times. */
@@ -169,7 +206,7 @@ static void every_call_survives_every_refused_allocation(void **state)
         open_life(&l);
         for (uint32_t step = 0; step < CALLS; step++) {
             refusals += press(&l, step, lasting);
-            if (calls[step] == create_resource)
+            if (calls[step] == create_large)
                 aim(&l);
             if (calls[step] == preload)
                 check_shown(&l, &l.image);
@@ -195,7 +232,7 @@ static void questions_take_no_memory(void **state)
     static struct life l;
     l = (struct life){0};
     open_life(&l);
-    for (uint32_t step = 0; step < 6; step++)
+    for (uint32_t step = 0; step < 8; step++)
         CHECK_OK(calls[step](&l));
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     SluiceDemandLaunch launch = {.structSize = sizeof launch};
@@ -207,10 +244,12 @@ static void questions_take_no_memory(void **state)
     CHECK_OK(sluiceAbandonDemandLaunch(l.r.loader, &launch));
     SluiceDemandBuffers buffers = {.structSize = sizeof buffers};
     SluiceVulkanPages pages = {.structSize = sizeof pages};
+    SluiceDemandByteBuffers byte_buffers = {.structSize = sizeof byte_buffers};
     VkDescriptorSetLayout layout;
     SluiceDemandTicketStatus status = {.structSize = sizeof status};
     sluiceGetDemandBuffers(l.r.loader, &buffers);
     sluiceGetDemandPages(l.r.loader, &pages);
+    sluiceGetDemandByteBuffers(l.r.loader, &byte_buffers);
     CHECK_OK(sluiceGetDemandDescriptorSetLayout(l.r.loader, &layout));
     (void)runner_statistics(&l.r);
     CHECK_OK(sluiceGetDemandTicketStatus(l.r.loader, l.r.ticket, &status));

@@ -54,6 +54,7 @@ sluiceRemoveDemandResource(f->loader, f->resource)
 sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
+sluiceGetDemandByteBuffers(f->loader, &f->out.byte_buffers)
 sluiceGetDemandDescriptorSetLayout(f->loader, &f->out.set_layout)
 sluiceBeginDemandLaunch(f->loader, f->commands, &f->out.launch) => sluiceAbandonDemandLaunch(f->loader, &f->out.launch)
 !sluiceEndDemandLaunch(f->loader, f->commands)
@@ -117,6 +118,7 @@ struct fixture {
         SluiceDemandResourceId resource;
         uint32_t page;
         SluiceDemandBuffers demand_buffers;
+        SluiceDemandByteBuffers byte_buffers;
         SluiceDemandLaunch launch;
         SluiceDemandRequests requests;
         SluiceStreamedTextureManager *manager;

@@ -10,7 +10,9 @@
  *
  * Requires the device features runtimeDescriptorArray and
  * shaderSampledImageArrayNonUniformIndexing. Without them define SLUICE_PAGE_LOOP as
- * maxPageChunkCount.
+ * maxPageChunkCount. Byte pages (demand_bytes.glsl) require
+ * shaderStorageBufferArrayNonUniformIndexing; with SLUICE_PAGE_LOOP
+ * shaderStorageBufferArrayDynamicIndexing.
  */
 #ifndef SLUICE_DEMAND_BINDINGS_GLSL
 #define SLUICE_DEMAND_BINDINGS_GLSL
@@ -65,6 +67,17 @@ layout(std430, set = SLUICE_DEMAND_SET, binding = SLUICE_DEMAND_BINDING_SECTIONS
     uint sluiceDemandSectionWords[];
 };
 #define SLUICE_DEMAND_SECTION_WORD(i) sluiceDemandSectionWords[i]
+
+/* Buffers with byte pages. */
+layout(std430, set = SLUICE_DEMAND_SET, binding = SLUICE_DEMAND_BINDING_BYTES) readonly buffer SluiceDemandByteChunk
+{
+    uint words[];
+} sluiceDemandByteChunks[SLUICE_DEMAND_BYTE_CHUNKS];
+#ifdef SLUICE_PAGE_LOOP
+#define SLUICE_DEMAND_BYTE_WORD(chunk, i) sluiceDemandByteChunks[chunk].words[i]
+#else
+#define SLUICE_DEMAND_BYTE_WORD(chunk, i) sluiceDemandByteChunks[nonuniformEXT(chunk)].words[i]
+#endif
 
 /*
  * Demand loading has its own array of pages, also in shaders that include bindings.glsl. A new page

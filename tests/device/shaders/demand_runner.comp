@@ -2,8 +2,12 @@
 #version 450
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_GOOGLE_include_directive : require
+#ifdef RUNNER_READS_BYTES
+#extension GL_EXT_buffer_reference_uvec2 : require
+#endif
 
 #include "sluice/shared/demand.h"
+#include "sluice/shared/bindings.h"
 #include "demand_runner_shared.h"
 
 layout(local_size_x = 64) in;
@@ -29,6 +33,37 @@ layout(push_constant) uniform Push { uint count; };
 #define SLUICE_PAGE_TEXTURE(i) pages[nonuniformEXT(i)]
 #include "sluice/demand.glsl"
 
+#ifdef RUNNER_READS_BYTES
+layout(std430, binding = 10) readonly buffer Chunk { uint words[]; } chunks[SLUICE_DEMAND_BYTE_CHUNKS];
+#define SLUICE_DEMAND_BYTE_WORD(chunk, i) chunks[nonuniformEXT(chunk)].words[i]
+#include "sluice/demand_bytes.glsl"
+
+layout(std430, buffer_reference, buffer_reference_align = 16) readonly buffer Words { uint words[]; };
+
+/* FNV-1a of all bytes. */
+uint hash(uint sum, uint word, uint at, uint size)
+{
+    for (uint b = 0u; b < 4u && at * 4u + b < size; b++)
+        sum = (sum ^ bitfieldExtract(word, int(b) * 8, 8)) * 16777619u;
+    return sum;
+}
+
+uvec2 readBytes(uint kind, uint page, uint size, out bool resident)
+{
+    SluiceDemandBytes bytes;
+    uvec2 value;
+    uint sum = 2166136261u;
+    if (kind == RUNNER_BYTES)
+        resident = sluiceMapBytesOrRequest(page, bytes);
+    else
+        resident = sluiceMapOrRequest(page, value);
+    for (uint i = 0u; resident && i * 4u < size; i++)
+        sum = hash(sum, kind == RUNNER_BYTES ? sluiceDemandWord(bytes, i) : Words(value).words[i], i, size);
+    bool odd = kind == RUNNER_BYTES ? bytes.offset % 16u != 0u : value.x % 16u != 0u;
+    return uvec2(sum, uint(resident && odd));
+}
+#endif
+
 void main()
 {
     uint at = gl_GlobalInvocationID.x;
@@ -41,6 +76,10 @@ void main()
     bool resident;
     if (i.kind == RUNNER_MAP)
         resident = sluiceMapOrRequest(i.index, value);
+#ifdef RUNNER_READS_BYTES
+    else if (i.kind == RUNNER_BYTES || i.kind == RUNNER_ADDRESS)
+        value = readBytes(i.kind, i.index, uint(i.dx[0]), resident);
+#endif
     else if (i.kind == RUNNER_LOD)
         color = sluiceDemandLod(i.index, uv, dx.x, resident);
     else

@@ -6,9 +6,11 @@
 
 #define RUNNER_CHUNKS 64
 
-#define RUNNER_GRAD 0 /* sluiceDemandGrad */
-#define RUNNER_LOD 1  /* sluiceDemandLod with a[0] */
-#define RUNNER_MAP 2  /* sluiceMapOrRequest of the page `index` */
+#define RUNNER_GRAD 0    /* sluiceDemandGrad */
+#define RUNNER_LOD 1     /* sluiceDemandLod with a[0] */
+#define RUNNER_MAP 2     /* sluiceMapOrRequest of the page `index` */
+#define RUNNER_BYTES 3   /* the byte page `index` of dx[0] bytes, by offsets */
+#define RUNNER_ADDRESS 4 /* ... by its address */
 
 struct RunnerInput {
     uint kind, index;
@@ -20,7 +22,7 @@ SLUICE_SHARED_SIZE(struct RunnerInput, 32)
 
 struct RunnerOutput {
     float color[4];
-    uint value[2]; /* of a page */
+    uint value[2]; /* of a page; of a byte page: its hash, and 0 unless its place is unaligned */
     uint resident;
     uint reserved;
 };

@@ -30,6 +30,8 @@
 #define SLUICE_DEMAND_BINDING_SECTIONS 6
 #define SLUICE_DEMAND_BINDING_BUFFER_COUNT 7
 #define SLUICE_DEMAND_BINDING_PAGES 7
+#define SLUICE_DEMAND_BINDING_BYTES 8 /* an array of storage buffers: chunks of byte pages */
+#define SLUICE_DEMAND_BYTE_CHUNKS 16  /* its elements */
 
 /* Elements of the array of samplers: the least that every device supports, less one for pages. */
 #define SLUICE_SAMPLER_COUNT 15

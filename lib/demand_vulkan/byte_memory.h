@@ -1,0 +1,104 @@
+/**
+ * Slots of GPU buffers as places of byte pages, within a budget of device memory.
+ *
+ * Buffers ("chunks") are cut into slabs of 2 MiB. The slots of a slab have one stride: the size of
+ * a page, rounded up to 16 bytes. A slab without pages may get another stride. Chunks are made when
+ * no slab is left, each as large as all before it, and destroyed when they were empty for a while.
+ *
+ * A slot that was given back can be taken at once, because launches run in the order of their
+ * submission: the copy into it is behind all shaders that read it. It keeps its bytes until then,
+ * and those that were given back longest ago are taken first, so that its last page can have it
+ * back as it was. Externally synchronised.
+ */
+#ifndef SLC_DEMAND_VULKAN_BYTE_MEMORY_H
+#define SLC_DEMAND_VULKAN_BYTE_MEMORY_H
+
+#include "demand/page_residency.h"
+#include "vulkan/caps.h"
+#include "vulkan/memory.h"
+
+#include <sluice/shared/bindings.h>
+
+#define SLC_BYTE_ALIGNMENT 16u
+#define SLC_BYTE_SLAB_SIZE (2u << 20)
+#define SLC_MAX_BYTE_PAGE_SIZE (1u << 20)
+
+struct slc_byte_slot {
+    uint32_t previous, next; ///< free: in the ring
+    uint32_t owner;          ///< free: the page whose bytes it has, SLC_NO_PAGE for nobody's
+    bool held;
+};
+
+struct slc_byte_slab {
+    uint32_t stride; ///< bytes
+    uint32_t slot_count, free_count;
+    struct slc_byte_slot *slots; ///< owned; slot_count, and the head of the ring. NULL: not in use
+};
+
+enum slc_byte_chunk_state {
+    SLC_BYTE_CHUNK_FREE = 0,
+    SLC_BYTE_CHUNK_LIVE,
+    SLC_BYTE_CHUNK_RETIRING ///< new launches do not see it; waits for the others
+};
+
+struct slc_byte_chunk {
+    enum slc_byte_chunk_state state;
+    VkBuffer buffer;
+    struct slc_memory memory;
+    VkDeviceAddress address;     ///< 0 without addresses
+    struct slc_byte_slab *slabs; ///< owned
+    uint32_t slab_count, held_count;
+    uint64_t tick;   ///< LIVE: the last in which it was not empty
+    uint64_t launch; ///< RETIRING: the last that may see it
+};
+
+struct slc_byte_memory {
+    const struct slc_vk *vk; ///< borrowed, as the next one
+    const struct slc_caps *caps;
+    SluiceAllocationCallbacks cb;
+    PFN_vkGetBufferDeviceAddress get_address; ///< NULL: values are not addresses
+    struct slc_byte_chunk chunks[SLUICE_DEMAND_BYTE_CHUNKS];
+    uint64_t budget; ///< bytes, hard limit of `size`
+    uint64_t size;   ///< bytes of all chunks
+    uint32_t chunk_count;
+    uint64_t generation;   ///< of the buffers that shaders see, from 1 on
+    uint32_t last;         ///< slab that a slot was taken from last
+    uint64_t held_size;    ///< bytes of slots that are held
+    uint64_t tick;         ///< launches that were begun, abandoned ones included
+    uint64_t refused_tick; ///< 1 + the last in which the device had no memory; 0: it had some then
+    uint64_t evicted_count;
+    bool short_of; ///< a slot was asked for and not there since the last launch
+};
+
+/** `addresses`: the device has bufferDeviceAddress enabled. Nothing is allocated. */
+void slc_byte_memory_init(struct slc_byte_memory *memory, const struct slc_vk *vk,
+                          const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                          uint64_t budget, bool addresses);
+/** No commands in progress use it. Zeroed: nothing to do. */
+void slc_byte_memory_finish(struct slc_byte_memory *memory);
+
+/** Bytes from one page of this size to the next. */
+static inline uint32_t slc_byte_stride(uint32_t page_size)
+{
+    return (page_size + SLC_BYTE_ALIGNMENT - 1) / SLC_BYTE_ALIGNMENT * SLC_BYTE_ALIGNMENT;
+}
+
+/** For slc_residency_set_class: the kind of a page is its stride. */
+struct slc_page_memory slc_byte_memory_interface(struct slc_byte_memory *memory);
+
+/** Where a place is: in the buffer of `*chunk`, from `*offset` on. */
+void slc_byte_place(uint32_t place, uint32_t stride, uint32_t *chunk, uint64_t *offset);
+/** What shaders get for a place: its address, or its byte offset and, in the high half, its chunk.
+ */
+uint64_t slc_byte_value(const struct slc_byte_memory *memory, uint32_t place, uint32_t stride,
+                        bool address);
+
+/** Launch `launch` begins and launches up to `processed` are over: chunks that have been empty for
+ *  a while go, under `pressure` sooner. */
+void slc_byte_memory_begin(struct slc_byte_memory *memory, uint64_t launch, uint64_t processed,
+                           bool pressure);
+
+/** Pages may soon be evicted: shaders are to say what they use. */
+bool slc_byte_memory_is_filling(const struct slc_byte_memory *memory);
+
+#endif /* SLC_DEMAND_VULKAN_BYTE_MEMORY_H */
