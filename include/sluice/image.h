@@ -23,7 +23,8 @@ extern "C" {
  * - No suffix: channels in memory order.
  * - PACK32: little-endian words of 32 bits. The channel named last is in the lowest bits.
  * - SRGB: sRGB-encoded color and linear alpha.
- * - BLOCK: compressed blocks of 4x4 texels, 8 bytes (BC1, BC4) or 16 bytes (the others).
+ * - BLOCK: compressed blocks of 8 bytes (BC1, BC4, ETC2_R8G8B8, ETC2_R8G8B8A1, EAC_R11) or 16
+ *   bytes (the others). Blocks are 4x4 texels unless the name says another size.
  */
 typedef enum SluiceFormat {
     SLUICE_FORMAT_UNDEFINED = 0,
@@ -55,11 +56,28 @@ typedef enum SluiceFormat {
     SLUICE_FORMAT_BC6H_UFLOAT_BLOCK = 26, ///< RGB
     SLUICE_FORMAT_BC6H_SFLOAT_BLOCK = 27,
     SLUICE_FORMAT_BC7_UNORM_BLOCK = 28,
-    SLUICE_FORMAT_BC7_SRGB_BLOCK = 29
+    SLUICE_FORMAT_BC7_SRGB_BLOCK = 29,
+    SLUICE_FORMAT_R16_UNORM = 30,
+    SLUICE_FORMAT_R16G16_UNORM = 31,
+    SLUICE_FORMAT_R16G16B16A16_UNORM = 32,
+    SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK = 33,
+    SLUICE_FORMAT_ETC2_R8G8B8_SRGB_BLOCK = 34,
+    SLUICE_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK = 35, ///< Alpha is 0 or 1.
+    SLUICE_FORMAT_ETC2_R8G8B8A1_SRGB_BLOCK = 36,
+    SLUICE_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK = 37,
+    SLUICE_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK = 38,
+    SLUICE_FORMAT_EAC_R11_UNORM_BLOCK = 39,
+    SLUICE_FORMAT_EAC_R11_SNORM_BLOCK = 40,
+    SLUICE_FORMAT_EAC_R11G11_UNORM_BLOCK = 41,
+    SLUICE_FORMAT_EAC_R11G11_SNORM_BLOCK = 42,
+    SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK = 43, ///< LDR
+    SLUICE_FORMAT_ASTC_4x4_SRGB_BLOCK = 44,
+    SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK = 45, ///< LDR, blocks of 8x8 texels
+    SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK = 46
 } SluiceFormat;
 
 /** Number of enumerators. Every format is below it. */
-#define SLUICE_FORMAT_COUNT 30
+#define SLUICE_FORMAT_COUNT 47
 
 /** Memory layout of a format: blocks of texels. Blocks of uncompressed formats are 1x1. */
 typedef struct SluiceFormatInfo {
@@ -251,7 +269,7 @@ typedef struct SluiceProceduralImage {
  *
  * `pInfo->pName` is copied. A mipLevelCount of 0 means the full chain. Colors are converted to the
  * format like those of OpenEXR files (exr.h):
- * - Half floats saturate. 8 and 10 bit formats clamp and round. sRGB formats encode.
+ * - Half floats saturate. 8, 10 and 16 bit integers clamp and round. sRGB formats encode.
  * - NaN becomes 0, except in 32-bit float formats.
  * - Unsigned float formats round to nearest, ties to even, and saturate. E5B9G9R9 rounds ties up,
  *   as its specification says. Negative values become 0.

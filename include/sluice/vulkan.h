@@ -204,8 +204,8 @@ SLUICE_API SluiceResult sluiceGetVulkanSparseImageLayout(
  * Enables in `*pFeatures` and `*pVulkan12` the features that a streamer of this mode requires. Pass
  * both to vkCreateDevice (VkPhysicalDeviceFeatures2 chain). No extension is required.
  *
- * Set sType and zero the rest. Features you already set are kept. textureCompressionBC is enabled
- * if the device has it. `pLog` may be NULL.
+ * Set sType and zero the rest. Features you already set are kept. textureCompressionBC, ETC2 and
+ * ASTC_LDR are enabled if the device has them. `pLog` may be NULL.
  *
  * Features per mode:
  * - All modes: timelineSemaphore, fragmentStoresAndAtomics.

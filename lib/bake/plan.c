@@ -11,16 +11,6 @@
 #define HALF_LIMIT 65504.0f
 #define FLOAT_INFINITY 0x1p120f /* a shader's filter may weigh a few of them and stays finite */
 
-/* Formats that differ in whether they hold sRGB. */
-static const SluiceFormat twins[][2] = {
-    {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB},
-    {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK},
-    {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK},
-    {SLUICE_FORMAT_BC2_UNORM_BLOCK, SLUICE_FORMAT_BC2_SRGB_BLOCK},
-    {SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC3_SRGB_BLOCK},
-    {SLUICE_FORMAT_BC7_UNORM_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK},
-};
-
 SluiceResult slc_check_settings(const SluiceBakeSettings *s)
 {
     bool is_fine = (unsigned)s->format < SLUICE_FORMAT_COUNT &&
@@ -33,27 +23,6 @@ SluiceResult slc_check_settings(const SluiceBakeSettings *s)
                    s->cutout <= 1.0f && s->compressionLevel <= SLUICE_STORE_MAX_COMPRESSION_LEVEL &&
                    !(s->normalMap && s->transfer == SLUICE_BAKE_TRANSFER_SRGB);
     return is_fine ? SLUICE_SUCCESS : SLUICE_ERROR_INVALID_ARGUMENT;
-}
-
-static bool has_srgb_twin(SluiceFormat format)
-{
-    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
-        if (twins[i][0] == format || twins[i][1] == format)
-            return true;
-    return false;
-}
-
-SluiceFormat slc_format_twin(SluiceFormat format, bool srgb)
-{
-    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
-        if (twins[i][0] == format || twins[i][1] == format)
-            return twins[i][srgb];
-    return format;
-}
-
-bool slc_format_is_srgb(SluiceFormat format)
-{
-    return has_srgb_twin(format) && slc_format_twin(format, true) == format;
 }
 
 static SluiceFormat byte_format(const struct slc_picture *picture, bool normals)
@@ -86,7 +55,8 @@ static SluiceFormat texel_format(SluiceFormat format, bool srgb)
     SluiceFormatInfo info = {.structSize = sizeof info};
     if (sluiceGetFormatInfo(format, &info) != SLUICE_SUCCESS || !slc_format_is_compressed(&info))
         return format;
-    return slc_format_twin(slc_block_texel_format(format), srgb && has_srgb_twin(format));
+    return slc_format_twin(slc_block_texel_format(format),
+                           srgb && slc_format_has_srgb_twin(format));
 }
 
 static bool is_float32(SluiceFormat format)
@@ -131,7 +101,7 @@ static void find_meaning(const struct slc_picture *picture, struct slc_plan *pla
     if (plan->meaning == SLUICE_STORE_MEANING_NORMAL ||
         plan->meaning == SLUICE_STORE_MEANING_DATA || picture->foreign_primaries)
         plan->color_space = SLUICE_STORE_COLOR_SPACE_UNDEFINED;
-    else if (rules->srgb && has_srgb_twin(plan->format))
+    else if (rules->srgb && slc_format_has_srgb_twin(plan->format))
         plan->color_space = SLUICE_STORE_COLOR_SPACE_SRGB;
     else
         plan->color_space = SLUICE_STORE_COLOR_SPACE_LINEAR_SRGB;
@@ -141,8 +111,8 @@ static void find_meaning(const struct slc_picture *picture, struct slc_plan *pla
 static float find_threshold(const struct slc_plan *plan)
 {
     float cutout = plan->settings.cutout;
-    bool is_bytes =
-        sluiceGetFormatTexelSize(plan->rules.format) == 4 && has_srgb_twin(plan->rules.format);
+    bool is_bytes = sluiceGetFormatTexelSize(plan->rules.format) == 4 &&
+                    slc_format_has_srgb_twin(plan->rules.format);
     if (!plan->rules.alpha || cutout == 0.0f || !is_bytes)
         return plan->rules.alpha ? cutout : 0.0f;
     return (ceilf(cutout * 255.0f) - 0.5f) / 255.0f;

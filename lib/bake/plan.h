@@ -5,6 +5,7 @@
 #include <sluice/store.h>
 
 #include "bake/picture.h"
+#include "image/format_size.h"
 
 struct slc_plan {
     SluiceBakeSettings settings;
@@ -16,10 +17,6 @@ struct slc_plan {
     bool reaches_around; ///< rows of a level may begin in its middle
     float threshold;     ///< that alpha has to reach before it is rounded; 0: no cut-out
 };
-
-/** The format of the same bytes that holds sRGB, or that does not; itself where there is none. */
-SluiceFormat slc_format_twin(SluiceFormat format, bool srgb);
-bool slc_format_is_srgb(SluiceFormat format);
 
 /** Errors: INVALID_ARGUMENT for values out of their ranges. */
 SluiceResult slc_check_settings(const SluiceBakeSettings *settings);

@@ -1,6 +1,7 @@
 #include "container/container_layout.h"
 
 #include "base/checked.h"
+#include "image/format_size.h"
 
 SluiceResult slc_layout_check(const struct slc_container_layout *layout,
                               const struct slc_input_file *file, const char *advice)
@@ -35,16 +36,9 @@ uint64_t slc_layout_image_size(const struct slc_container_layout *layout, uint32
 /* One format of those that differ in how bytes are understood, not in which there are. */
 static SluiceFormat bytes_of(SluiceFormat format)
 {
-    switch (format) {
-    case SLUICE_FORMAT_R8G8B8A8_SRGB: return SLUICE_FORMAT_R8G8B8A8_UNORM;
-    case SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK:
-    case SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK:
-    case SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK: return SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK;
-    case SLUICE_FORMAT_BC2_SRGB_BLOCK: return SLUICE_FORMAT_BC2_UNORM_BLOCK;
-    case SLUICE_FORMAT_BC3_SRGB_BLOCK: return SLUICE_FORMAT_BC3_UNORM_BLOCK;
-    case SLUICE_FORMAT_BC7_SRGB_BLOCK: return SLUICE_FORMAT_BC7_UNORM_BLOCK;
-    default: return format;
-    }
+    SluiceFormat linear = slc_format_twin(format, false);
+    return linear == SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK ? SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK
+                                                       : linear;
 }
 
 SluiceResult slc_layout_rename(struct slc_container_layout *layout,

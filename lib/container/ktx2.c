@@ -20,6 +20,7 @@ enum {
     LEVEL_SIZE = 24
 };
 
+enum { FIRST_ASTC = 157, LAST_ASTC = 184 }; /* VkFormat */
 enum { SCHEME_NONE = 0, SCHEME_BASIS_LZ = 1, SCHEME_ZSTD = 2, FACE_COUNT = 6 };
 
 static const uint8_t identifier[12] = {0xAB, 'K',  'T',  'X',  ' ',  '2',
@@ -36,8 +37,11 @@ static SluiceFormat vulkan_format(uint32_t number, unsigned *changes)
     case 44: *changes = SLC_SWAP_RED_BLUE; return SLUICE_FORMAT_R8G8B8A8_UNORM;
     case 50: *changes = SLC_SWAP_RED_BLUE; return SLUICE_FORMAT_R8G8B8A8_SRGB;
     case 64: return SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32;
+    case 70: return SLUICE_FORMAT_R16_UNORM;
     case 76: return SLUICE_FORMAT_R16_SFLOAT;
+    case 77: return SLUICE_FORMAT_R16G16_UNORM;
     case 83: return SLUICE_FORMAT_R16G16_SFLOAT;
+    case 91: return SLUICE_FORMAT_R16G16B16A16_UNORM;
     case 97: return SLUICE_FORMAT_R16G16B16A16_SFLOAT;
     case 100: return SLUICE_FORMAT_R32_SFLOAT;
     case 103: return SLUICE_FORMAT_R32G32_SFLOAT;
@@ -60,6 +64,20 @@ static SluiceFormat vulkan_format(uint32_t number, unsigned *changes)
     case 144: return SLUICE_FORMAT_BC6H_SFLOAT_BLOCK;
     case 145: return SLUICE_FORMAT_BC7_UNORM_BLOCK;
     case 146: return SLUICE_FORMAT_BC7_SRGB_BLOCK;
+    case 147: return SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK;
+    case 148: return SLUICE_FORMAT_ETC2_R8G8B8_SRGB_BLOCK;
+    case 149: return SLUICE_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK;
+    case 150: return SLUICE_FORMAT_ETC2_R8G8B8A1_SRGB_BLOCK;
+    case 151: return SLUICE_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK;
+    case 152: return SLUICE_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK;
+    case 153: return SLUICE_FORMAT_EAC_R11_UNORM_BLOCK;
+    case 154: return SLUICE_FORMAT_EAC_R11_SNORM_BLOCK;
+    case 155: return SLUICE_FORMAT_EAC_R11G11_UNORM_BLOCK;
+    case 156: return SLUICE_FORMAT_EAC_R11G11_SNORM_BLOCK;
+    case 157: return SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK;
+    case 158: return SLUICE_FORMAT_ASTC_4x4_SRGB_BLOCK;
+    case 171: return SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK;
+    case 172: return SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK;
     default: return SLUICE_FORMAT_UNDEFINED;
     }
 }
@@ -80,6 +98,11 @@ static SluiceResult read_format(const struct slc_input_file *file, const uint8_t
                               scheme);
     layout->levels_are_compressed = scheme == SCHEME_ZSTD;
     layout->format = vulkan_format(format, &layout->changes);
+    if (layout->format == SLUICE_FORMAT_UNDEFINED && format >= FIRST_ASTC && format <= LAST_ASTC)
+        return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
+                              "holds ASTC blocks of another size than 4x4 and 8x8 (VkFormat %u), "
+                              "whose tiles have no power of two; write it with one of these",
+                              format);
     if (layout->format == SLUICE_FORMAT_UNDEFINED)
         return slc_input_fail(file, SLUICE_ERROR_UNSUPPORTED,
                               "has the VkFormat %u, which is not read; write it as BC1 to BC7 or "

@@ -1,6 +1,7 @@
 #include "base/checked.h"
 #include "demand_vulkan/opening.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 #include "image/srgb.h"
 
 #include <string.h>
@@ -54,13 +55,6 @@ static float bc4_texel(const uint8_t block[8], bool is_signed)
     return (a * (float)(6 - index) + b * (float)(index - 1)) / 5;
 }
 
-static bool is_srgb(SluiceFormat format)
-{
-    return format == SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK ||
-           format == SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK || format == SLUICE_FORMAT_BC2_SRGB_BLOCK ||
-           format == SLUICE_FORMAT_BC3_SRGB_BLOCK || format == SLUICE_FORMAT_BC7_SRGB_BLOCK;
-}
-
 /* False for formats that take more than this. */
 static bool block_color(SluiceFormat format, const uint8_t *block, float rgba[4])
 {
@@ -103,6 +97,7 @@ void slc_base_color(SluiceFormat format, const void *texel, float rgba[4])
         slc_texels_to_rgba(format, texel, rgba, 1);
     else if (!block_color(format, texel, rgba))
         rgba[0] = rgba[1] = rgba[2] = 0.5f;
-    for (uint32_t i = 0; i < 3 && is_srgb(format); i++)
+    bool is_srgb_block = info.blockWidth > 1 && slc_format_is_srgb(format);
+    for (uint32_t i = 0; i < 3 && is_srgb_block; i++)
         rgba[i] = slc_srgb_to_linear[slc_unorm8_from_float(rgba[i])];
 }

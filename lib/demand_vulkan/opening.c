@@ -31,6 +31,10 @@ static const char *find_trouble(const struct slc_demand_image *image)
         return "arrayLayerCount is beyond 1";
     if (!image->loader->usable[info->format])
         return "the device does not sample and filter its format";
+    SluiceFormatInfo format = {.structSize = sizeof format};
+    (void)sluiceGetFormatInfo(info->format, &format);
+    if (format.blockWidth > 4) /* levels of a mip tail lie at multiples of 4 texels */
+        return "its format has blocks larger than 4x4, which demand loading does not read";
     return NULL;
 }
 

@@ -267,7 +267,8 @@ SluiceResult sluiceCreateExrImageSource(const SluiceExrImageSourceCreateInfo *pI
     if (result != SLUICE_SUCCESS)
         return result;
     if (info.format != SLUICE_FORMAT_UNDEFINED &&
-        (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format)))
+        (sluiceGetFormatTexelSize(info.format) == 0 || slc_format_is_packed(info.format) ||
+         slc_format_is_unorm16(info.format)))
         return SLUICE_ERROR_INVALID_ARGUMENT;
     SluiceAllocationCallbacks cb = slc_allocator(info.pAllocator);
     struct exr_source *source = slc_calloc(&cb, 1, sizeof *source);

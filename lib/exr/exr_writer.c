@@ -6,6 +6,7 @@
 #include "base/part_file.h"
 #include "base/struct_size.h"
 #include "image/convert.h"
+#include "image/format_size.h"
 #include "image/half.h"
 
 #include <openexr.h>
@@ -138,7 +139,7 @@ static void convert_texels(SluiceFormat format, const char *texels, uint16_t (*h
     enum { BATCH = 64 };
     uint32_t texel_size = sluiceGetFormatTexelSize(format);
     uint32_t channels = slc_format_channel_count(format);
-    if (texel_size == 2 * channels) {
+    if (texel_size == 2 * channels && !slc_format_is_unorm16(format)) {
         for (uint32_t i = 0; i < count; i++)
             memcpy(halves[i], texels + (size_t)i * texel_size, texel_size);
         return;

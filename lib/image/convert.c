@@ -31,6 +31,22 @@ static void srgb_from_rgba(const float *rgba, uint8_t *out, size_t count)
     }
 }
 
+static uint32_t unorm_from_float(float value, uint32_t max)
+{
+    if (!(value > 0.0f))
+        return 0;
+    return value >= 1.0f ? max : (uint32_t)((double)value * max + 0.5);
+}
+
+static void unorm16_from_rgba(uint32_t channels, const float *rgba, char *out, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t c = 0; c < channels; c++, out += 2) {
+            uint16_t word = (uint16_t)unorm_from_float(rgba[4 * i + c], 65535);
+            memcpy(out, &word, 2);
+        }
+}
+
 /* Half and float texels go through memcpy: a caller's row pitch may leave them unaligned. */
 static void half_from_rgba(uint32_t channels, const float *rgba, char *out, size_t count)
 {
@@ -45,13 +61,6 @@ static void float_from_rgba(uint32_t channels, const float *rgba, char *out, siz
 {
     for (size_t i = 0; i < count; i++, out += 4 * channels)
         memcpy(out, rgba + 4 * i, 4 * channels);
-}
-
-static uint32_t unorm_from_float(float value, uint32_t max)
-{
-    if (!(value > 0.0f))
-        return 0;
-    return value >= 1.0f ? max : (uint32_t)((double)value * max + 0.5);
 }
 
 static uint32_t word_from_rgba(SluiceFormat format, const float *rgba)
@@ -84,6 +93,9 @@ void slc_texels_from_rgba(SluiceFormat format, const float *rgba, void *texels, 
     case SLUICE_FORMAT_R16_SFLOAT:
     case SLUICE_FORMAT_R16G16_SFLOAT:
     case SLUICE_FORMAT_R16G16B16A16_SFLOAT: half_from_rgba(channels, rgba, texels, count); return;
+    case SLUICE_FORMAT_R16_UNORM:
+    case SLUICE_FORMAT_R16G16_UNORM:
+    case SLUICE_FORMAT_R16G16B16A16_UNORM: unorm16_from_rgba(channels, rgba, texels, count); return;
     case SLUICE_FORMAT_R32_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT:
     case SLUICE_FORMAT_R32G32B32A32_SFLOAT: float_from_rgba(channels, rgba, texels, count); return;
@@ -126,6 +138,18 @@ static void rgba_from_half(uint32_t channels, const char *in, float *rgba, size_
             uint16_t half;
             memcpy(&half, in, 2);
             rgba[c] = slc_float_from_half(half);
+        }
+    }
+}
+
+static void rgba_from_unorm16(uint32_t channels, const char *in, float *rgba, size_t count)
+{
+    for (size_t i = 0; i < count; i++, rgba += 4) {
+        set_defaults(rgba);
+        for (uint32_t c = 0; c < channels; c++, in += 2) {
+            uint16_t word;
+            memcpy(&word, in, 2);
+            rgba[c] = (float)word / 65535.0f;
         }
     }
 }
@@ -174,6 +198,9 @@ void slc_texels_to_rgba(SluiceFormat format, const void *texels, float *rgba, si
     case SLUICE_FORMAT_R16_SFLOAT:
     case SLUICE_FORMAT_R16G16_SFLOAT:
     case SLUICE_FORMAT_R16G16B16A16_SFLOAT: rgba_from_half(channels, texels, rgba, count); return;
+    case SLUICE_FORMAT_R16_UNORM:
+    case SLUICE_FORMAT_R16G16_UNORM:
+    case SLUICE_FORMAT_R16G16B16A16_UNORM: rgba_from_unorm16(channels, texels, rgba, count); return;
     case SLUICE_FORMAT_R32_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT:
     case SLUICE_FORMAT_R32G32B32A32_SFLOAT: rgba_from_float(channels, texels, rgba, count); return;

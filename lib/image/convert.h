@@ -1,9 +1,9 @@
 /**
  * Texels of any format that is not compressed from and to linear RGBA floats.
  *
- * Towards half, values saturate at +-65504; towards 8 and 10 bits they are clamped to [0, 1] and
- * rounded to nearest, sRGB formats encode R, G and B; small floats as small_float.h says; in all
- * NaN becomes 0. Towards 32-bit float nothing changes.
+ * Towards half, values saturate at +-65504; towards 8, 10 and 16 bits they are clamped to [0, 1]
+ * and rounded to nearest, sRGB formats encode R, G and B; small floats as small_float.h says; in
+ * all NaN becomes 0. Towards 32-bit float nothing changes.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H

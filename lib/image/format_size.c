@@ -8,9 +8,10 @@ struct format {
 
 #define TEXELS(name, size, channels)                                                               \
     [SLUICE_FORMAT_##name] = {#name, {sizeof(SluiceFormatInfo), size, 1, 1, channels}}
-#define BLOCKS(name, size, channels)                                                               \
+#define BLOCKS_OF(name, extent, size, channels)                                                    \
     [SLUICE_FORMAT_##name##                                                                        \
-        _BLOCK] = {#name "_BLOCK", {sizeof(SluiceFormatInfo), size, 4, 4, channels}}
+        _BLOCK] = {#name "_BLOCK", {sizeof(SluiceFormatInfo), size, extent, extent, channels}}
+#define BLOCKS(name, size, channels) BLOCKS_OF(name, 4, size, channels)
 
 static const struct format formats[SLUICE_FORMAT_COUNT] = {
     [SLUICE_FORMAT_UNDEFINED] = {"UNDEFINED", {0}},
@@ -43,7 +44,60 @@ static const struct format formats[SLUICE_FORMAT_COUNT] = {
     BLOCKS(BC6H_SFLOAT, 16, 3),
     BLOCKS(BC7_UNORM, 16, 4),
     BLOCKS(BC7_SRGB, 16, 4),
+    TEXELS(R16_UNORM, 2, 1),
+    TEXELS(R16G16_UNORM, 4, 2),
+    TEXELS(R16G16B16A16_UNORM, 8, 4),
+    BLOCKS(ETC2_R8G8B8_UNORM, 8, 3),
+    BLOCKS(ETC2_R8G8B8_SRGB, 8, 3),
+    BLOCKS(ETC2_R8G8B8A1_UNORM, 8, 4),
+    BLOCKS(ETC2_R8G8B8A1_SRGB, 8, 4),
+    BLOCKS(ETC2_R8G8B8A8_UNORM, 16, 4),
+    BLOCKS(ETC2_R8G8B8A8_SRGB, 16, 4),
+    BLOCKS(EAC_R11_UNORM, 8, 1),
+    BLOCKS(EAC_R11_SNORM, 8, 1),
+    BLOCKS(EAC_R11G11_UNORM, 16, 2),
+    BLOCKS(EAC_R11G11_SNORM, 16, 2),
+    BLOCKS_OF(ASTC_4x4_UNORM, 4, 16, 4),
+    BLOCKS_OF(ASTC_4x4_SRGB, 4, 16, 4),
+    BLOCKS_OF(ASTC_8x8_UNORM, 8, 16, 4),
+    BLOCKS_OF(ASTC_8x8_SRGB, 8, 16, 4),
 };
+
+/* Formats that differ in whether they hold sRGB. */
+static const SluiceFormat twins[][2] = {
+    {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB},
+    {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGBA_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC2_UNORM_BLOCK, SLUICE_FORMAT_BC2_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC3_UNORM_BLOCK, SLUICE_FORMAT_BC3_SRGB_BLOCK},
+    {SLUICE_FORMAT_BC7_UNORM_BLOCK, SLUICE_FORMAT_BC7_SRGB_BLOCK},
+    {SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK, SLUICE_FORMAT_ETC2_R8G8B8_SRGB_BLOCK},
+    {SLUICE_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK, SLUICE_FORMAT_ETC2_R8G8B8A1_SRGB_BLOCK},
+    {SLUICE_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK, SLUICE_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK},
+    {SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK, SLUICE_FORMAT_ASTC_4x4_SRGB_BLOCK},
+    {SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK, SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK},
+};
+
+bool slc_format_has_srgb_twin(SluiceFormat format)
+{
+    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
+        if (twins[i][0] == format || twins[i][1] == format)
+            return true;
+    return false;
+}
+
+SluiceFormat slc_format_twin(SluiceFormat format, bool srgb)
+{
+    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++)
+        if (twins[i][0] == format || twins[i][1] == format)
+            return twins[i][srgb];
+    return format;
+}
+
+bool slc_format_is_srgb(SluiceFormat format)
+{
+    return slc_format_has_srgb_twin(format) && slc_format_twin(format, true) == format;
+}
 
 /* UNDEFINED for what a newer or confused caller may give. */
 static const struct format *find(SluiceFormat format)

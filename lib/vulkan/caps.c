@@ -290,6 +290,10 @@ SluiceResult sluiceRequireVulkanFeatures(VkInstance instance, VkPhysicalDevice p
     pFeatures->fragmentStoresAndAtomics = VK_TRUE;
     if (there.features.textureCompressionBC)
         pFeatures->textureCompressionBC = VK_TRUE;
+    if (there.features.textureCompressionETC2)
+        pFeatures->textureCompressionETC2 = VK_TRUE;
+    if (there.features.textureCompressionASTC_LDR)
+        pFeatures->textureCompressionASTC_LDR = VK_TRUE;
     pVulkan12->timelineSemaphore = VK_TRUE;
     return SLUICE_SUCCESS;
 }

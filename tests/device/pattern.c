@@ -70,6 +70,9 @@ float pattern_tolerance(SluiceFormat format)
     case SLUICE_FORMAT_R16_SFLOAT:
     case SLUICE_FORMAT_R16G16_SFLOAT:
     case SLUICE_FORMAT_R16G16B16A16_SFLOAT: return 0.0005f;
+    case SLUICE_FORMAT_R16_UNORM:
+    case SLUICE_FORMAT_R16G16_UNORM:
+    case SLUICE_FORMAT_R16G16B16A16_UNORM:
     case SLUICE_FORMAT_R8_UNORM:
     case SLUICE_FORMAT_R8G8B8A8_UNORM: return 0.0001f; /* k / 255 is exact but for the division */
     default: return 0.0f;
@@ -80,8 +83,10 @@ uint32_t pattern_channel_count(SluiceFormat format)
 {
     switch (format) {
     case SLUICE_FORMAT_R8_UNORM:
+    case SLUICE_FORMAT_R16_UNORM:
     case SLUICE_FORMAT_R16_SFLOAT:
     case SLUICE_FORMAT_R32_SFLOAT: return 1;
+    case SLUICE_FORMAT_R16G16_UNORM:
     case SLUICE_FORMAT_R16G16_SFLOAT:
     case SLUICE_FORMAT_R32G32_SFLOAT: return 2;
     default: return 4;

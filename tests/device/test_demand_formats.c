@@ -22,7 +22,8 @@ static bool is_usable(SluiceFormat format)
 
 static bool is_decoded(SluiceFormat format)
 {
-    return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK;
+    return format != SLUICE_FORMAT_BC6H_UFLOAT_BLOCK && format != SLUICE_FORMAT_BC6H_SFLOAT_BLOCK &&
+           format < SLUICE_FORMAT_ETC2_R8G8B8_UNORM_BLOCK;
 }
 
 static bool is_signed(SluiceFormat format)

@@ -180,6 +180,8 @@ static void levels_of_a_tail_fit_side_by_side(void **state)
         CHECK_OK(sluiceGetFormatInfo((SluiceFormat)format, &info));
         CHECK_OK(sluiceGetStandardTileShape((SluiceFormat)format, &width, &height));
         bool blocks = info.blockWidth > 1;
+        if (info.blockWidth > 4)
+            continue; /* refused by demand loaders */
         memset(taken, 0, sizeof taken);
         for (uint32_t k = 0; k < slc_mip_count(slc_max_u32(width, height) / 2); k++) {
             struct slc_demand_place at = slc_demand_tail_place(width, height, blocks, k);

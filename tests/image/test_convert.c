@@ -19,6 +19,9 @@ static const SluiceFormat all_formats[] = {
     SLUICE_FORMAT_A2B10G10R10_UNORM_PACK32,
     SLUICE_FORMAT_B10G11R11_UFLOAT_PACK32,
     SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32,
+    SLUICE_FORMAT_R16_UNORM,
+    SLUICE_FORMAT_R16G16_UNORM,
+    SLUICE_FORMAT_R16G16B16A16_UNORM,
 };
 
 static long double encode(long double x)
@@ -79,6 +82,19 @@ static void unorm_rounds_to_the_nearest_step_and_clamps(void **state)
     assert_int_equal(slc_unorm8_from_float(INFINITY), 255);
 }
 
+static void words_of_16_bits_come_back_exactly(void **state)
+{
+    (void)state;
+    for (uint32_t word = 0; word < 65536; word++) {
+        uint16_t given[4] = {(uint16_t)word, 0, 65535, (uint16_t)(65535 - word)}, back[4];
+        float rgba[4];
+        slc_texels_to_rgba(SLUICE_FORMAT_R16G16B16A16_UNORM, given, rgba, 1);
+        assert_true(fabs((double)rgba[0] - word / 65535.0) < 1e-7);
+        slc_texels_from_rgba(SLUICE_FORMAT_R16G16B16A16_UNORM, rgba, back, 1);
+        assert_memory_equal(given, back, sizeof given);
+    }
+}
+
 /* What a format can hold comes back; what it lacks is black and opaque. */
 static void texels_survive_a_round_trip_in_every_format(void **state)
 {
@@ -128,6 +144,7 @@ int main(void)
         cmocka_unit_test(every_srgb_value_survives_a_round_trip),
         cmocka_unit_test(srgb_encodes_to_the_nearest_value),
         cmocka_unit_test(unorm_rounds_to_the_nearest_step_and_clamps),
+        cmocka_unit_test(words_of_16_bits_come_back_exactly),
         cmocka_unit_test(texels_survive_a_round_trip_in_every_format),
         cmocka_unit_test(infinities_and_nan_follow_the_header),
     };

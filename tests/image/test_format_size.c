@@ -46,6 +46,23 @@ static const struct expected all[] = {
     EXPECT(BC6H_SFLOAT_BLOCK, 8, 256, 256, 3),
     EXPECT(BC7_UNORM_BLOCK, 8, 256, 256, 4),
     EXPECT(BC7_SRGB_BLOCK, 8, 256, 256, 4),
+    EXPECT(R16_UNORM, 16, 256, 128, 1),
+    EXPECT(R16G16_UNORM, 32, 128, 128, 2),
+    EXPECT(R16G16B16A16_UNORM, 64, 128, 64, 4),
+    EXPECT(ETC2_R8G8B8_UNORM_BLOCK, 4, 512, 256, 3),
+    EXPECT(ETC2_R8G8B8_SRGB_BLOCK, 4, 512, 256, 3),
+    EXPECT(ETC2_R8G8B8A1_UNORM_BLOCK, 4, 512, 256, 4),
+    EXPECT(ETC2_R8G8B8A1_SRGB_BLOCK, 4, 512, 256, 4),
+    EXPECT(ETC2_R8G8B8A8_UNORM_BLOCK, 8, 256, 256, 4),
+    EXPECT(ETC2_R8G8B8A8_SRGB_BLOCK, 8, 256, 256, 4),
+    EXPECT(EAC_R11_UNORM_BLOCK, 4, 512, 256, 1),
+    EXPECT(EAC_R11_SNORM_BLOCK, 4, 512, 256, 1),
+    EXPECT(EAC_R11G11_UNORM_BLOCK, 8, 256, 256, 2),
+    EXPECT(EAC_R11G11_SNORM_BLOCK, 8, 256, 256, 2),
+    EXPECT(ASTC_4x4_UNORM_BLOCK, 8, 256, 256, 4),
+    EXPECT(ASTC_4x4_SRGB_BLOCK, 8, 256, 256, 4),
+    EXPECT(ASTC_8x8_UNORM_BLOCK, 2, 512, 512, 4),
+    EXPECT(ASTC_8x8_SRGB_BLOCK, 2, 512, 512, 4),
 };
 #define COUNT (sizeof all / sizeof all[0])
 
@@ -66,11 +83,12 @@ static void formats_are_described_as_vulkan_does(void **state)
     for (size_t i = 0; i < COUNT; i++) {
         const struct expected *e = &all[i];
         bool compressed = strstr(e->name, "_BLOCK") != NULL;
+        uint32_t extent = !compressed ? 1 : strstr(e->name, "8x8") ? 8 : 4;
         SluiceFormatInfo info = {.structSize = sizeof info};
         CHECK_OK(sluiceGetFormatInfo(e->format, &info));
         assert_string_equal(sluiceGetFormatName(e->format), e->name);
-        assert_int_equal(info.blockWidth, compressed ? 4 : 1);
-        assert_int_equal(info.blockHeight, compressed ? 4 : 1);
+        assert_int_equal(info.blockWidth, extent);
+        assert_int_equal(info.blockHeight, extent);
         assert_int_equal(info.blockSize * 8,
                          e->bits_per_texel * info.blockWidth * info.blockHeight);
         assert_int_equal(info.channelCount, e->channels);

@@ -32,11 +32,18 @@ static uint32_t size_at_level(uint32_t size, uint32_t level)
 static void describe_format(struct naive_store *store)
 {
     static const uint8_t sizes[SLUICE_FORMAT_COUNT] = {
-        0, 1, 4, 4, 2,  4,  8,  4,  8, 16, 2,  4,  4,  4,         /* to E5B9G9R9 */
-        8, 8, 8, 8, 16, 16, 16, 16, 8, 8,  16, 16, 16, 16, 16, 16 /* BC1 to BC7 */
+        0, 1, 4, 4, 2,  4,  8,  4,  8,  16, 2,  4,  4,  4,          /* to E5B9G9R9 */
+        8, 8, 8, 8, 16, 16, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16, /* BC1 to BC7 */
+        2, 4, 8,                                                    /* R16, R16G16, R16G16B16A16 */
+        8, 8, 8, 8, 16, 16, 8,  8,  16, 16, 16, 16, 16, 16          /* ETC2, EAC, ASTC */
     };
     store->block_size = store->format < SLUICE_FORMAT_COUNT ? sizes[store->format] : 0;
-    store->block_extent = store->format >= SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK ? 4 : 1;
+    bool is_plain = store->format < SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK ||
+                    (store->format >= SLUICE_FORMAT_R16_UNORM &&
+                     store->format <= SLUICE_FORMAT_R16G16B16A16_UNORM);
+    store->block_extent = is_plain                                              ? 1
+                          : store->format >= SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK ? 8
+                                                                                : 4;
 }
 
 /* The standard shapes: twice the blocks of 4 x 4 bytes are lost in one direction, then the other.
