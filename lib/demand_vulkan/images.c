@@ -232,25 +232,25 @@ void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *ima
     slc_image_release(loader, image);
 }
 
-static void bury(SluiceDemandLoader *loader, struct slc_demand_image *image)
+static void retire(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     close_source(loader, image);
     slc_image_give_levels(loader, image);
-    image->state = SLC_IMAGE_BURIED;
+    image->state = SLC_IMAGE_RETIRED;
     image->launch = loader->launch;
     image->next = SLC_NONE;
-    if (loader->first_buried_image == SLC_NONE)
-        loader->first_buried_image = image->slot;
+    if (loader->first_retired_image == SLC_NONE)
+        loader->first_retired_image = image->slot;
     else
-        loader->images[loader->last_buried_image]->next = image->slot;
-    loader->last_buried_image = image->slot;
+        loader->images[loader->last_retired_image]->next = image->slot;
+    loader->last_retired_image = image->slot;
 }
 
 void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *image)
 {
     assert(image->job_count > 0);
     if (--image->job_count == 0 && image->state == SLC_IMAGE_DETACHED)
-        bury(loader, image);
+        retire(loader, image);
 }
 
 static void drop_jobs(SluiceDemandLoader *loader, struct slc_demand_image *image)
@@ -293,7 +293,7 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
     loader->textures[image->texture].image = SLC_NONE;
     image->state = SLC_IMAGE_DETACHED;
     if (image->job_count == 0)
-        bury(loader, image);
+        retire(loader, image);
 }
 
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image)
@@ -340,13 +340,13 @@ void slc_images_refresh(SluiceDemandLoader *loader)
     loader->first_refresh = waiting;
 }
 
-void slc_images_exhume(SluiceDemandLoader *loader)
+void slc_images_end_retired(SluiceDemandLoader *loader)
 {
-    while (loader->first_buried_image != SLC_NONE) {
-        struct slc_demand_image *image = loader->images[loader->first_buried_image];
+    while (loader->first_retired_image != SLC_NONE) {
+        struct slc_demand_image *image = loader->images[loader->first_retired_image];
         if (image->launch > loader->processed)
             return;
-        loader->first_buried_image = image->next;
+        loader->first_retired_image = image->next;
         free_slot(loader, image);
     }
 }

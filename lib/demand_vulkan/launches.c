@@ -42,13 +42,13 @@ static void complete_forgotten(SluiceDemandLoader *loader)
 }
 
 /* What launches up to `processed` named is free. */
-static void exhume(SluiceDemandLoader *loader)
+static void end_retired(SluiceDemandLoader *loader)
 {
     slc_page_space_complete(loader->space, loader->processed);
-    slc_uploads_exhume(loader);
-    slc_images_exhume(loader);
-    slc_textures_exhume(loader);
-    slc_resources_exhume(loader);
+    slc_uploads_end_retired(loader);
+    slc_images_end_retired(loader);
+    slc_textures_end_retired(loader);
+    slc_resources_end_retired(loader);
     complete_forgotten(loader);
     slc_table_mirror_complete(&loader->table, loader->processed);
     slc_table_mirror_complete(&loader->levels, loader->processed);
@@ -217,7 +217,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
     loader->memory_pressure = slc_memory_client_begin(&loader->memory);
-    exhume(loader);
+    end_retired(loader);
     slc_byte_pages_begin(loader, launch);
     slc_staging_trim(&loader->staging); /* it counts launches */
     if (loader->large.blocks)
@@ -377,7 +377,7 @@ SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
     SluiceDemandRequests requests = {.structSize = sizeof requests};
     while (loader->processed < given.launchIndex) {
         loader->processed++;
-        exhume(loader);
+        end_retired(loader);
         slc_requests_process(loader, loader->processed, ticket, &requests);
     }
     requests.lodBias = slc_residency_lod_bias(loader->residency);

@@ -280,8 +280,8 @@ static SluiceDemandLoader *allocate(const SluiceDemandLoaderCreateInfo *info)
     loader->info = *info;
     loader->page_user = SLC_MAX_PAGE_USERS;
     loader->texture_high = 1; /* 0 is no texture's */
-    loader->free_texture = loader->first_buried_texture = SLC_NONE;
-    loader->free_image = loader->first_buried_image = loader->first_refresh = SLC_NONE;
+    loader->free_texture = loader->first_retired_texture = SLC_NONE;
+    loader->free_image = loader->first_retired_image = loader->first_refresh = SLC_NONE;
     loader->free_resource = SLC_NONE;
     slc_image_opener_init(&loader->opener);
     if (slc_tickets_init(&loader->tickets, &loader->cb) != SLUICE_SUCCESS) {

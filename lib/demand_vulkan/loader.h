@@ -34,7 +34,7 @@ enum slc_texture_kind {
     SLC_TEXTURE_IMAGE,
     SLC_TEXTURE_VARIANT,
     SLC_TEXTURE_GRID,
-    SLC_TEXTURE_BURIED ///< destroyed; launches may still name the index
+    SLC_TEXTURE_RETIRED ///< destroyed; launches may still name the index
 };
 
 /* By index; 0 is not used. What shaders see of it is the element of the same index of `table`. */
@@ -49,10 +49,10 @@ struct slc_demand_texture {
     uint32_t grid_uses;  ///< cells of grids that name it
     uint32_t first_element, cell_count; ///< GRID: where its cells are, 16 in an element of `grids`
     uint32_t base;                      ///< VARIANT
-    uint32_t next;                      ///< IMAGE, VARIANT: next variant; FREE, BURIED: in the list
-    uint64_t launch;                    ///< BURIED: the last that may name it
-    SluiceDemandImage source;           ///< IMAGE
-    VkSamplerAddressMode modes[2];      ///< IMAGE, VARIANT: the sampler's
+    uint32_t next;                 ///< IMAGE, VARIANT: next variant; FREE, RETIRED: in the list
+    uint64_t launch;               ///< RETIRED: the last that may name it
+    SluiceDemandImage source;      ///< IMAGE
+    VkSamplerAddressMode modes[2]; ///< IMAGE, VARIANT: the sampler's
     bool explicit_modes;
     float failure_color[4];
 };
@@ -62,17 +62,17 @@ enum slc_image_state {
     SLC_IMAGE_OPENING,
     SLC_IMAGE_OPEN,
     SLC_IMAGE_DETACHED, ///< no texture's any more; reads are under way
-    SLC_IMAGE_BURIED    ///< closed; launches may still name its pages
+    SLC_IMAGE_RETIRED   ///< closed; launches may still name its pages
 };
 
 /* An image that is open. Workers see it through the job that opens it; it is never moved. */
 struct slc_demand_image {
     enum slc_image_state state;
     uint32_t slot, texture;
-    uint32_t next; ///< FREE, BURIED, or waiting for a job that reads the base color again
+    uint32_t next; ///< FREE, RETIRED, or waiting for a job that reads the base color again
     bool refresh;  ///< it is in that list
     uint32_t job_count;
-    uint64_t launch;          ///< BURIED: the last that may name its pages
+    uint64_t launch;          ///< RETIRED: the last that may name its pages
     SluiceDemandImage origin; ///< as the texture had it when it was opened
     SluiceDemandTicket ticket;
 
@@ -262,10 +262,10 @@ struct SluiceDemandLoader {
 
     struct slc_demand_texture *textures; ///< owned
     uint32_t texture_high, texture_capacity, texture_count, texture_page_count;
-    uint32_t free_texture, first_buried_texture, last_buried_texture;
+    uint32_t free_texture, first_retired_texture, last_retired_texture;
 
     struct slc_demand_image **images; ///< owned, by slot
-    uint32_t image_high, image_capacity, free_image, first_buried_image, last_buried_image;
+    uint32_t image_high, image_capacity, free_image, first_retired_image, last_retired_image;
     uint32_t first_refresh;
     uint32_t *tail_blocks; ///< owned; by slot / SLUICE_DEMAND_BLOCK_PAGES: the first tail page
     uint32_t tail_block_count, tail_block_capacity;
@@ -335,7 +335,7 @@ void slc_texture_show_unknown(SluiceDemandLoader *loader, uint32_t index);
 void slc_texture_show_failed(SluiceDemandLoader *loader, uint32_t index);
 void slc_texture_show_image(SluiceDemandLoader *loader, const struct slc_demand_image *image);
 /** Indices of textures that no launch after `processed` names. */
-void slc_textures_exhume(SluiceDemandLoader *loader);
+void slc_textures_end_retired(SluiceDemandLoader *loader);
 void slc_demand_textures_finish(SluiceDemandLoader *loader);
 /** True: it could not be opened, and may be asked for again. */
 bool slc_texture_retry(SluiceDemandLoader *loader, uint32_t index);
@@ -380,7 +380,7 @@ void slc_image_detach(SluiceDemandLoader *loader, struct slc_demand_image *image
 /** Its texels have changed. */
 void slc_image_invalidate(SluiceDemandLoader *loader, struct slc_demand_image *image);
 void slc_images_refresh(SluiceDemandLoader *loader);
-void slc_images_exhume(SluiceDemandLoader *loader);
+void slc_images_end_retired(SluiceDemandLoader *loader);
 void slc_images_finish(SluiceDemandLoader *loader);
 /** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
 void slc_image_opener_init(SluiceImageSource *opener);
@@ -403,7 +403,7 @@ void slc_resource_release(SluiceDemandLoader *loader, uint32_t index);
 void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page,
                           uint64_t value);
 /** pfnEvict for what no launch after `processed` reads. */
-void slc_resources_exhume(SluiceDemandLoader *loader);
+void slc_resources_end_retired(SluiceDemandLoader *loader);
 void slc_resources_finish(SluiceDemandLoader *loader);
 
 /* byte_pages.c */
@@ -484,7 +484,7 @@ uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands
 /** What launches from this one on copied is admitted again. */
 void slc_uploads_abandon(SluiceDemandLoader *loader, uint64_t launch);
 /** Staging memory that launches up to `processed` have read. */
-void slc_uploads_exhume(SluiceDemandLoader *loader);
+void slc_uploads_end_retired(SluiceDemandLoader *loader);
 
 /* requests.c */
 /** What the launch asked for, counted into `requests`. */

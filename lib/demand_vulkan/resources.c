@@ -337,7 +337,7 @@ static void tell_next(SluiceDemandLoader *loader)
     check_gone(loader, resource);
 }
 
-void slc_resources_exhume(SluiceDemandLoader *loader)
+void slc_resources_end_retired(SluiceDemandLoader *loader)
 {
     while (loader->eviction_count &&
            loader->evictions[loader->eviction_first].launch <= loader->processed)

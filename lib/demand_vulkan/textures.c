@@ -32,7 +32,7 @@ SluiceResult slc_texture_find(SluiceDemandLoader *loader, SluiceDemandTextureId 
         generation > loader->textures[*index].generation)
         return SLUICE_ERROR_UNKNOWN_TEXTURE;
     const struct slc_demand_texture *texture = &loader->textures[*index];
-    bool live = texture->kind != SLC_TEXTURE_FREE && texture->kind != SLC_TEXTURE_BURIED;
+    bool live = texture->kind != SLC_TEXTURE_FREE && texture->kind != SLC_TEXTURE_RETIRED;
     return live && generation == texture->generation ? SLUICE_SUCCESS : SLUICE_ERROR_STALE_TEXTURE;
 }
 
@@ -90,7 +90,7 @@ static SluiceResult grow(SluiceDemandLoader *loader)
 
 SluiceResult slc_texture_take(SluiceDemandLoader *loader, uint32_t *index)
 {
-    slc_textures_exhume(loader);
+    slc_textures_end_retired(loader);
     *index = loader->free_texture;
     if (*index != SLC_NONE) {
         loader->free_texture = loader->textures[*index].next;
@@ -259,7 +259,7 @@ SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader, SluiceDem
     return SLUICE_SUCCESS;
 }
 
-static void bury(SluiceDemandLoader *loader, uint32_t index, const float color[4])
+static void retire(SluiceDemandLoader *loader, uint32_t index, const float color[4])
 {
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->grid_uses)
@@ -268,25 +268,25 @@ static void bury(SluiceDemandLoader *loader, uint32_t index, const float color[4
         slc_grid_empty(loader, texture);
     show_failed(loader, index, color);
     slc_pages_forget_requests(loader, index, 1);
-    texture->kind = SLC_TEXTURE_BURIED;
+    texture->kind = SLC_TEXTURE_RETIRED;
     texture->launch = loader->launch;
     texture->next = SLC_NONE;
-    if (loader->first_buried_texture == SLC_NONE)
-        loader->first_buried_texture = index;
+    if (loader->first_retired_texture == SLC_NONE)
+        loader->first_retired_texture = index;
     else
-        loader->textures[loader->last_buried_texture].next = index;
-    loader->last_buried_texture = index;
+        loader->textures[loader->last_retired_texture].next = index;
+    loader->last_retired_texture = index;
     loader->texture_count--;
 }
 
-void slc_textures_exhume(SluiceDemandLoader *loader)
+void slc_textures_end_retired(SluiceDemandLoader *loader)
 {
-    while (loader->first_buried_texture != SLC_NONE) {
-        uint32_t index = loader->first_buried_texture;
+    while (loader->first_retired_texture != SLC_NONE) {
+        uint32_t index = loader->first_retired_texture;
         struct slc_demand_texture *texture = &loader->textures[index];
         if (texture->launch > loader->processed)
             return;
-        loader->first_buried_texture = texture->next;
+        loader->first_retired_texture = texture->next;
         if (texture->cell_count)
             slc_region_arena_give(&loader->grid_arena, texture->first_element,
                                   slc_div_up_u32(texture->cell_count, 16));
@@ -325,13 +325,13 @@ SluiceResult sluiceRemoveDemandTexture(SluiceDemandLoader *loader, SluiceDemandT
             slc_image_detach(loader, loader->images[texture->image]);
         for (uint32_t next; texture->next != SLC_NONE; texture->next = next) {
             next = loader->textures[texture->next].next;
-            bury(loader, texture->next, color);
+            retire(loader, texture->next, color);
         }
     } else {
         memcpy(color, loader->textures[texture->base].failure_color, sizeof color);
         unlink_variant(loader, index);
     }
-    bury(loader, index, color);
+    retire(loader, index, color);
     return SLUICE_SUCCESS;
 }
 

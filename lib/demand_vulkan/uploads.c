@@ -173,7 +173,7 @@ uint32_t slc_uploads_record(SluiceDemandLoader *loader, VkCommandBuffer commands
     return count;
 }
 
-void slc_uploads_exhume(SluiceDemandLoader *loader)
+void slc_uploads_end_retired(SluiceDemandLoader *loader)
 {
     while (loader->copied.first != SLC_NONE &&
            loader->jobs[loader->copied.first].launch <= loader->processed)

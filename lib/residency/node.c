@@ -175,7 +175,7 @@ static void restore(struct slc_machine *r, uint32_t node)
 }
 
 /** A packed tile: others go in runs. */
-static void park(struct slc_machine *r, uint32_t node)
+static void to_standby(struct slc_machine *r, uint32_t node)
 {
     struct slc_node *n = slc_node_at(r, node);
     assert(!is_regular(n));
@@ -239,7 +239,7 @@ void slc_node_unwanted(struct slc_machine *r, uint32_t node)
         slc_node_at(r, node)->failures = 0;
         slc_node_set_state(r, node, SLUICE_TILE_STATE_CANCELED);
         break;
-    case SLUICE_TILE_STATE_MAPPED: park(r, node); break;
+    case SLUICE_TILE_STATE_MAPPED: to_standby(r, node); break;
     case SLUICE_TILE_STATE_STANDBY:
         slc_node_at(r, node)->flags &= (uint8_t)~SLC_NODE_WANTED;
         r->evicted_wanted--;

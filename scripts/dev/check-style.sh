@@ -78,7 +78,7 @@ names_in_two_places() {
     files 'lib/*.c' 'lib/*.h' | sed 's,.*/,,' | sort | uniq -d
 }
 
-echo 1..12
+echo 1..13
 search $'\t' "${code[@]}" | report sources_hold_no_tabs
 search '[[:blank:]]+$' "${text[@]}" | report lines_have_no_trailing_blanks
 search $'\r' "${text[@]}" | report lines_end_with_a_newline_alone
@@ -94,6 +94,10 @@ search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:bla
     '*.c' '*.cpp' '*.h' | report random_numbers_are_the_same_on_every_machine
 
 import_circles residency core demand vulkan demand_vulkan | report files_of_a_folder_do_not_import_in_circles
+
+# Words that the field has others for: retire, evict, restore. CHANGELOG.md may name what was.
+search '\b(bur[y]|burie[ds]|exhum[e]|ghos[t]s?|displac(e[ds]?|ing))\b' "${text[@]}" |
+    grep -v '^CHANGELOG.md:' | report memory_is_retired_and_tiles_are_evicted
 
 names_in_two_places | report names_of_lib_are_unique
 

@@ -196,7 +196,7 @@ void naive_list_standby(struct naive_manager *n, uint64_t keep);
 /** Merges a map into the texture's spans and finds `held` anew; `asked` as in last_asked. */
 void naive_remember(struct naive_manager *n, struct naive_texture *t, const uint8_t *asked,
                     uint64_t time, uint64_t timeout);
-/* Whether so many misses are enough to let go of a level. */
+/* Whether so many misses are enough for a level to expire. */
 bool naive_would_believe(const struct naive_manager *n, const struct naive_texture *t,
                          uint64_t misses, uint32_t level);
 void naive_forget_history(struct naive_texture *t);

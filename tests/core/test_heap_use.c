@@ -137,7 +137,7 @@ static uint32_t defragment_to_the_end(struct fixture *f, uint32_t room, bool com
     }
 }
 
-/* Every heap is left with the one packed tile of one texture, which nothing ever lets go of. */
+/* Every heap is left with the one packed tile of one texture, which nothing ever evicts. */
 static void packed_tiles_move_too_and_pin_no_heap(void **state)
 {
     (void)state;

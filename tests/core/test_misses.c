@@ -1,4 +1,4 @@
-/** missesToExpire: how many maps have to miss what a region wanted before it is let go. */
+/** missesToExpire: how many maps have to miss what a region wanted before that expires. */
 #include "core/fixture.h"
 
 enum { TIMEOUT = 100 };
