@@ -2,10 +2,10 @@
  */
 #include "rig.h"
 
+#include "../../tools/common/chosen_names.h"
 #include "../../tools/common/shared_options.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static const struct {
     const char *name;
@@ -15,6 +15,7 @@ static const struct {
     {"trips", measure_trips},   {"budget", measure_budget},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
+#define MEASUREMENT_NAMES "create,fill,sampling,trips,budget"
 
 bool check(SluiceResult result, const char *what)
 {
@@ -25,8 +26,7 @@ bool check(SluiceResult result, const char *what)
 }
 
 struct arguments {
-    const char *device;
-    int only; ///< 0: all, else a measurement's place + 1
+    const char *device, *only;
     uint32_t threads;
     bool json, quick, list, validation;
 };
@@ -51,7 +51,7 @@ static int measure(const struct arguments *arguments)
             bench.wall ? ", wall time" : "");
     int status = 0;
     for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
-        if (arguments->only && arguments->only != (int)i + 1)
+        if (!names_have(arguments->only, measurements[i].name))
             continue;
         fprintf(stderr, "%s\n", measurements[i].name);
         if (!measurements[i].measure(&bench)) {
@@ -71,8 +71,7 @@ int main(int argc, char **argv)
     struct arguments a = {0};
     const struct option rows[] = {
         option_device(&a.device),
-        {OPTION_CHOICE, "only", "all|create|fill|sampling|trips|budget", "all", &a.only,
-         "measurement to make"},
+        option_only(&a.only, "some of " MEASUREMENT_NAMES),
         option_threads(&a.threads),
         {OPTION_FLAG, "quick", .value = &a.quick,
          .help = "small and few: to see that everything works"},
@@ -91,6 +90,8 @@ int main(int argc, char **argv)
     }
     if (a.list)
         return gpu_list_devices() > 0 ? 0 : 77;
+    if (!names_are_known(a.only, MEASUREMENT_NAMES))
+        return 2;
     options.json = a.json;
     options.quick = a.quick;
     return measure(&a);

@@ -5,7 +5,7 @@
 #   bench/demand/run.sh [options]
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
-#   --only NAME       create, fill, sampling, trips or budget (default: all)
+#   --only NAMES      some of create,fill,sampling,trips,budget (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           few and small textures: to see that everything works
 #   --threads N       that load tiles (default: all processors but one)

@@ -6,6 +6,7 @@
 #include "figures.h"
 #include "micro.h"
 
+#include "../../tools/common/chosen_names.h"
 #include "../../tools/common/shared_options.h"
 
 #include <stdio.h>
@@ -26,6 +27,11 @@ static const struct part {
 #endif
 };
 enum { PARTS = sizeof parts / sizeof *parts };
+#ifdef WITH_HARNESS
+#define PART_NAMES "copy,feedback,follow,idle,add,memory,heaps,growth,cut,floor"
+#else
+#define PART_NAMES "copy,feedback,follow,idle,add,memory,heaps,growth"
+#endif
 
 static const char *only; ///< NULL: everything
 #ifdef WITH_HARNESS
@@ -38,12 +44,7 @@ static enum option_outcome parse(int argc, char **argv)
         option_json(&options.json),
         {OPTION_FLAG, "quick", .value = &options.quick,
          .help = "a tenth of the repetitions, a tenth of the tiles for memory"},
-        {OPTION_TEXT, "only", "NAME", "(all)", &only,
-         "one part: copy, feedback, follow, idle, add, memory, heaps, growth"
-#ifdef WITH_HARNESS
-         ", cut, floor"
-#endif
-        },
+        option_only(&only, "some of " PART_NAMES),
 #ifdef WITH_HARNESS
         {OPTION_REPEATED, "trace", "FILE", "(none)", &traces,
          "trace for floor, which copies its maps"},
@@ -54,11 +55,6 @@ static enum option_outcome parse(int argc, char **argv)
                                        "Times single calls of the manager, and weighs it.\n",
                                        NULL, rows, sizeof rows / sizeof *rows};
     return options_parse(&table, argc, argv);
-}
-
-static bool chosen(const char *name)
-{
-    return !only || strcmp(only, name) == 0;
 }
 
 /** True in the child, which runs a part and exits; the parent waits for it. */
@@ -78,33 +74,28 @@ static bool forked(const char *name, int *status)
 int main(int argc, char **argv)
 {
     int status = 0;
-    bool any = false;
     switch (parse(argc, argv)) {
     case OPTIONS_RUN: break;
     case OPTIONS_HELP: return 0;
     case OPTIONS_ERROR: return 2;
     }
+    if (!names_are_known(only, PART_NAMES))
+        return 2;
     for (int i = 0; i < PARTS; i++) {
-        if (!chosen(parts[i].name))
+        if (!names_have(only, parts[i].name))
             continue;
-        any = true;
         if (forked(parts[i].name, &status)) {
             parts[i].run();
             return 0;
         }
     }
 #ifdef WITH_HARNESS
-    any = any || chosen("floor");
-    for (int i = 0; chosen("floor") && i < (int)traces.count; i++) {
+    for (int i = 0; names_have(only, "floor") && i < (int)traces.count; i++) {
         if (forked(traces.items[i], &status)) {
             bench_floor(traces.items[i]);
             return 0;
         }
     }
 #endif
-    if (!any) {
-        fprintf(stderr, "there is no part named %s (see --help)\n", only);
-        return 2;
-    }
     return status;
 }

@@ -11,9 +11,9 @@
 #   --harness DIR   the feedback-replay harness (default: $SLUICE_HARNESS, then ../shared/replay
 #                   beside the checkout); without it only single calls are timed
 #   --work DIR      keep what is built and generated there (default: a scratch folder, removed)
-#   --only NAME     one of t100 t1000 t10000 t1000_fast_cap4 t10000_cap16, or a part of the micro
-#                   program: copy feedback follow idle add memory heaps growth cut floor, or
-#                   clairvoyant, the second table (default: all)
+#   --only NAMES    some, with commas between: t100 t1000 t10000 t1000_fast_cap4 t10000_cap16, the
+#                   parts of the micro program copy feedback follow idle add memory heaps growth cut
+#                   floor, and clairvoyant, the second table (default: all)
 #   --help
 #
 # The library is built with gcc -O2, static and without asserts, installed into the work folder and
@@ -54,10 +54,12 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
-case " $trace_runs $micro_parts clairvoyant " in
-*" ${only:-t100} "*) ;;
-*) die "there is nothing named $only (see --help)" ;;
-esac
+for name in ${only//,/ }; do
+    case " $trace_runs $micro_parts clairvoyant " in
+    *" $name "*) ;;
+    *) die "there is nothing named $name (see --help)" ;;
+    esac
+done
 
 if [ -z "$work" ]; then
     work=$(mktemp -d)
@@ -76,7 +78,7 @@ logged() {
     }
 }
 
-wants() { [ -z "$only" ] || [ "$only" = "$1" ]; }
+wants() { [ -z "$only" ] || [[ ",$only," = *",$1,"* ]]; }
 
 build_library() {
     say "building the library"
@@ -101,7 +103,7 @@ compile() {
 build_programs() {
     say "building the programs"
     local sources=("$here"/{micro,micro_feedback,micro_growth,micro_heaps,micro_memory,micro_scale,figures,rig}.c
-        "$root"/tools/common/{nearest,option_help,option_table,option_value,shared_options,text}.c)
+        "$root"/tools/common/{chosen_names,nearest,option_help,option_table,option_value,shared_options,text}.c)
     if [ "$have_harness" = no ]; then
         compile micro "${sources[@]}" -lm
         return
@@ -122,9 +124,12 @@ find_harness() {
     [ "$have_harness" = no ] || return 0
     say "no feedback-replay harness in $harness (--harness DIR, SLUICE_HARNESS):"
     say "what plays traces and the camera cut are left out, single calls are timed all the same"
-    case " $trace_runs cut floor clairvoyant " in
-    *" ${only:-none} "*) die "$only needs the harness" ;;
-    esac
+    local name
+    for name in ${only//,/ }; do
+        case " $trace_runs cut floor clairvoyant " in
+        *" $name "*) die "$name needs the harness" ;;
+        esac
+    done
 }
 
 make_traces() {
@@ -212,7 +217,7 @@ parse_clairvoyant() {
 run_clairvoyant() {
     local name=$1 trace=$2 options=(hold=1)
     shift 2
-    [ -z "$only" ] || measure_quality "$name" "$trace" "$@"
+    wants "$name" || measure_quality "$name" "$trace" "$@"
     if [ "$quick" = yes ] && [ "$name" != t1000 ]; then
         say "$name: --quick leaves out the clairvoyant schedule and the bound"
         options+=(rounds=0)
@@ -243,27 +248,24 @@ run_against_clairvoyant() {
     run_prefetching t10000 40000
 }
 
-# The micro program, or the one part of it that is asked for and what its ratios refer to.
+# The micro program, or the parts of it that are asked for and what their ratios refer to.
 run_micro() {
-    local options=() parts=() part
+    local options=() parts='' part
     [ "$quick" = no ] || options+=(--quick)
     if [ "$have_harness" = yes ]; then
         for part in t100 t1000 t10000 t1000_fast; do options+=(--trace "$work/$part.slt"); done
     fi
-    case $only in
-    '') ;;
-    clairvoyant) return ;;
-    t1*) parts=(floor) ;;
-    feedback | follow) parts=(copy "$only") ;;
-    *) parts=("$only") ;;
-    esac
-    if [ -z "$only" ]; then
-        "$work/micro" "${options[@]}" >>"$figures" || die "the micro program failed"
-    else
-        for part in "${parts[@]}"; do
-            "$work/micro" "${options[@]}" --only "$part" >>"$figures" || die "the micro program failed"
-        done
-    fi
+    for part in ${only//,/ }; do
+        case $part in
+        clairvoyant) ;;
+        t1*) parts+=,floor ;;
+        feedback | follow) parts+=,copy,$part ;;
+        *) parts+=,$part ;;
+        esac
+    done
+    [ -z "$only" ] || [ -n "$parts" ] || return 0
+    [ -z "$parts" ] || options+=(--only "${parts#,}")
+    "$work/micro" "${options[@]}" >>"$figures" || die "the micro program failed"
 }
 
 machine() {

@@ -1,6 +1,7 @@
 /* What streaming costs on a Vulkan device. run.sh builds this and makes a table of its lines. */
 #include "bench.h"
 
+#include "../../tools/common/chosen_names.h"
 #include "../../tools/common/shared_options.h"
 
 #include <math.h>
@@ -17,6 +18,7 @@ static const struct {
     {"sharp", measure_sharp},       {"unseen", measure_unseen},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
+#define MEASUREMENT_NAMES "sampling,feedback,fill,budget,resolve,host,sharp,unseen"
 
 static const char *const mode_names[] = {"auto", "sparse", "paged", "dense"};
 
@@ -66,32 +68,6 @@ struct arguments {
     bool json, quick, list, validation;
 };
 
-/* Whether `list`, names with commas between them, has `name`; NULL has all. */
-static bool chosen(const char *list, const char *name)
-{
-    size_t length = strlen(name);
-    for (const char *at = list; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
-        if (strncmp(at, name, length) == 0 && (at[length] == '\0' || at[length] == ','))
-            return true;
-    return list == NULL;
-}
-
-static bool names_are_known(const char *list)
-{
-    char copy[256];
-    snprintf(copy, sizeof copy, "%s", list ? list : "");
-    for (char *name = strtok(copy, ","); name; name = strtok(NULL, ",")) {
-        bool known = false;
-        for (size_t i = 0; i < MEASUREMENT_COUNT; i++)
-            known |= strcmp(name, measurements[i].name) == 0;
-        if (!known) {
-            fprintf(stderr, "there is no measurement %s; see --help\n", name);
-            return false;
-        }
-    }
-    return true;
-}
-
 /* What was not asked for: 1080p over a texture of more than a GiB, or what a CPU can hold. */
 static void fill_in_sizes(struct bench *bench)
 {
@@ -128,7 +104,7 @@ static int measure_mode(const struct arguments *arguments, SluiceResidencyMode m
             caps->driverInfo, bench.wall ? ", wall time" : "");
     int status = 0;
     for (size_t i = 0; i < MEASUREMENT_COUNT; i++) {
-        if (!chosen(arguments->only, measurements[i].name))
+        if (!names_have(arguments->only, measurements[i].name))
             continue;
         fprintf(stderr, "%s: %s\n", bench.mode_name, measurements[i].name);
         if (!measurements[i].measure(&bench)) {
@@ -162,8 +138,7 @@ int main(int argc, char **argv)
         option_device(&a.device),
         {OPTION_CHOICE, "residency", "all|sparse|paged|dense", "all", &a.residency,
          "mode to measure"},
-        {OPTION_TEXT, "only", "NAMES", "(all)", &a.only,
-         "some of sampling,feedback,fill,budget,resolve,host,sharp,unseen"},
+        option_only(&a.only, "some of " MEASUREMENT_NAMES),
         {OPTION_EXTENT, "size", "WxH", "0x0", a.size,
          "of pictures in pixels; 0x0: 1920x1080, on software devices 640x360, with --quick 160x90",
          0, 8192},
@@ -192,7 +167,7 @@ int main(int argc, char **argv)
     }
     if (a.list)
         return gpu_list_devices() > 0 ? 0 : 77;
-    if (!names_are_known(a.only))
+    if (!names_are_known(a.only, MEASUREMENT_NAMES))
         return 2;
     if ((a.size[0] == 0) != (a.size[1] == 0)) {
         options_refuse(&table, "--size wants two numbers, or 0x0");

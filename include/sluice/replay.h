@@ -93,7 +93,7 @@ typedef struct SluiceReplayInfo {
     /** Receives each line of the text dump, without a newline. May be NULL. */
     void (*pfnLine)(void *pUserData, const char *pLine);
     /* For SLTRACE1 only, which has feedback but no frame loop: */
-    uint32_t heapTileCapacity; ///< Slots per heap. Default: 1024.
+    uint32_t heapTileCapacity; ///< Slots per heap, 1 to 2^20. Default: 256.
     uint32_t maxHeapCount;     ///< Default: no limit.
     uint32_t standbyTileCount; ///< numExtraStandbyTiles of the manager.
     uint32_t tilesPerFrame;    ///< Most tiles answered per frame. Default: 256.

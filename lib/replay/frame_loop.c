@@ -10,7 +10,6 @@
 
 #include <string.h>
 
-#define DEFAULT_HEAP_TILES 1024
 #define DEFAULT_TILES_PER_FRAME 256
 #define DEFAULT_TIMEOUT 1000000
 /* Entries asked for at a time where all are taken. */
@@ -73,7 +72,8 @@ static SluiceResult start(struct frame_loop *loop)
     const SluiceReplayInfo *info = loop->replay->info;
     SluiceStreamedTextureManagerCreateInfo create = {
         .structSize = sizeof create,
-        .heapTileCapacity = info->heapTileCapacity ? info->heapTileCapacity : DEFAULT_HEAP_TILES,
+        .heapTileCapacity =
+            info->heapTileCapacity ? info->heapTileCapacity : SLUICE_DEFAULT_HEAP_TILE_CAPACITY,
         .tileSize = SLUICE_DEFAULT_TILE_SIZE,
         .alwaysMapPackedTiles = true,
     };

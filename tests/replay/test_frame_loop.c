@@ -71,6 +71,22 @@ static void cap_and_latency_change_the_decisions(void **state)
     trace_buffer_free(&trace);
 }
 
+static void heaps_have_the_recommended_size_by_default(void **state)
+{
+    (void)state;
+    struct trace_buffer trace;
+    struct lines lines = {0};
+    SluiceReplayResult result = {.structSize = sizeof result};
+    make_feedback_scene(&trace);
+    SluiceReplayInfo info = replay_info(&trace);
+    info.pUserData = &lines;
+    info.pfnLine = lines_take;
+    CHECK_OK(sluiceReplay(&info, &result));
+    assert_int_equal(strncmp(lines.text, "manager heap-tiles=256 ", 23), 0);
+    lines_free(&lines);
+    trace_buffer_free(&trace);
+}
+
 static void read_file(const char *path, struct trace_buffer *buffer)
 {
     FILE *file = fopen(path, "rb");
@@ -211,6 +227,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(feedback_that_stands_still_ends_with_what_it_wants),
         cmocka_unit_test(cap_and_latency_change_the_decisions),
+        cmocka_unit_test(heaps_have_the_recommended_size_by_default),
         cmocka_unit_test(recorded_run_has_the_same_decisions),
         cmocka_unit_test(every_truncation_is_found_at_or_before_the_cut),
         cmocka_unit_test(changed_bytes_are_found_or_played),

@@ -11,7 +11,7 @@ traces=${traces:-$4}
 mkdir -p "$data"
 "$write_golden" "$data" >/dev/null
 for trace in "$data"/*.trace; do
-    "$replay" "$trace" --dump >"${trace%.trace}.expected"
+    "$replay" "$trace" --heap-tiles 1024 --standby 1000 --dump >"${trace%.trace}.expected"
 done
 for trace in "$traces"/*.slt; do
     [ -f "$trace" ] || continue

@@ -94,3 +94,8 @@ struct option option_json(bool *json)
     return (struct option){OPTION_FLAG, "json", .value = json,
                            .help = "print JSON objects, one per line"};
 }
+
+struct option option_only(const char **only, const char *known)
+{
+    return (struct option){OPTION_TEXT, "only", "NAMES", "(all)", only, known};
+}
