@@ -56,7 +56,7 @@ typedef enum SluiceBakeAlpha {
     SLUICE_BAKE_ALPHA_PREMULTIPLIED = 2
 } SluiceBakeAlpha;
 
-/** Work that is spent on blocks of BC6H and BC7. docs/baking.md has figures. */
+/** Work that is spent on blocks of BC6H, BC7 and ASTC. docs/baking.md has figures. */
 typedef enum SluiceBakeQuality {
     SLUICE_BAKE_QUALITY_NORMAL = 0,
     SLUICE_BAKE_QUALITY_FAST = 1,
@@ -67,7 +67,7 @@ typedef enum SluiceBakeQuality {
 typedef struct SluiceBakeSettings {
     uint32_t structSize; ///< sizeof(SluiceBakeSettings).
     /**
-     * Format of the store: any but BC2 and the signed BC4 and BC5. Of a format and its
+     * Format of the store: any but BC2, ETC2, EAC and the signed BC4 and BC5. Of a format and its
      * sRGB twin, `transfer` selects one, whichever you name. Formats without a twin hold linear
      * light.
      *
@@ -119,8 +119,8 @@ typedef struct SluiceBakerCreateInfo {
      */
     uint64_t maxMemory;
     /**
-     * Default: malloc and free. Called from all threads. libvips, OpenEXRCore and libsquish always
-     * use malloc.
+     * Default: malloc and free. Called from all threads. libvips, OpenEXRCore, libsquish and
+     * astcenc always use malloc.
      */
     const SluiceAllocationCallbacks *pAllocator;
     SluiceLogCallback log; ///< Problems of a file, with its name.

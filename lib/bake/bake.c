@@ -189,6 +189,7 @@ static SluiceResult filter_levels(struct bake *bake, const SluiceStoreLayout *la
 {
     struct slc_baking baking = {.allocator = bake->baker->allocator,
                                 .picture = bake->picture,
+                                .astc = &bake->baker->astc,
                                 .plan = bake->plan,
                                 .user = bake->info->pUserData,
                                 .progress = bake->info->pfnProgress};

@@ -58,6 +58,7 @@ SluiceResult sluiceCreateBaker(const SluiceBakerCreateInfo *pInfo, SluiceBaker *
         return result;
     }
     slc_decode_srgb16(decoded16);
+    slc_astc_pool_init(&baker->astc, &cb);
     baker->allocator = cb;
     baker->log = info.log;
     baker->max_memory = info.maxMemory ? info.maxMemory : DEFAULT_MEMORY;
@@ -72,6 +73,7 @@ void sluiceDestroyBaker(SluiceBaker *baker)
         return;
     SluiceAllocationCallbacks cb = baker->allocator;
     slc_bake_jobs_finish(&baker->jobs);
+    slc_astc_pool_finish(&baker->astc);
     slc_free(&cb, baker->decoded16, 65536, sizeof *baker->decoded16);
     slc_free(&cb, baker, 1, sizeof *baker);
 }

@@ -4,6 +4,7 @@
 
 #include <sluice/bake.h>
 
+#include "bake/astc_pool.h"
 #include "bake/work_pool.h"
 
 struct SluiceBaker {
@@ -12,6 +13,7 @@ struct SluiceBaker {
     uint64_t max_memory;
     uint64_t used_memory; ///< under the pool's mutex
     struct slc_bake_jobs jobs;
+    struct slc_astc_pool astc;
     float *decoded16; ///< 65536 values of sRGB codes
 };
 

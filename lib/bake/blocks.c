@@ -4,6 +4,7 @@
 #include "bake/bc7_encode.h"
 #include "bake/block_squish.h"
 #include "base/checked.h"
+#include "image/format_size.h"
 
 #include <assert.h>
 #include <string.h>
@@ -11,7 +12,7 @@
 /* Blocks that are encoded in one call. */
 #define RUN 64u
 
-enum encoder { NONE, SQUISH, BC7, BC6H };
+enum encoder { NONE, SQUISH, BC7, BC6H, ASTC };
 
 struct encoding {
     enum encoder encoder;
@@ -32,6 +33,12 @@ static const struct encoding encodings[SLUICE_FORMAT_COUNT] = {
     [SLUICE_FORMAT_BC4_UNORM_BLOCK] = {SQUISH, SLC_BLOCK_BC4, false, false, 8},
     [SLUICE_FORMAT_BC5_UNORM_BLOCK] = {SQUISH, SLC_BLOCK_BC5, false, false, 16},
 #endif
+#ifdef SLC_HAVE_ASTC
+    [SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK] = {.encoder = ASTC},
+    [SLUICE_FORMAT_ASTC_4x4_SRGB_BLOCK] = {.encoder = ASTC},
+    [SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK] = {.encoder = ASTC},
+    [SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK] = {.encoder = ASTC},
+#endif
     [SLUICE_FORMAT_BC7_UNORM_BLOCK] = {.encoder = BC7, .block_size = 16},
     [SLUICE_FORMAT_BC7_SRGB_BLOCK] = {.encoder = BC7, .block_size = 16},
     [SLUICE_FORMAT_BC6H_UFLOAT_BLOCK] = {.encoder = BC6H, .block_size = 16},
@@ -41,6 +48,17 @@ static const struct encoding encodings[SLUICE_FORMAT_COUNT] = {
 bool slc_can_encode_blocks(SluiceFormat format)
 {
     return (uint32_t)format < SLUICE_FORMAT_COUNT && encodings[format].encoder != NONE;
+}
+
+const char *slc_block_encoder_hint(SluiceFormat format)
+{
+    if (format >= SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK && format <= SLUICE_FORMAT_ASTC_8x8_SRGB_BLOCK)
+        return "; build it with astcenc (libastcenc-dev)";
+    return format >= SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK && format <= SLUICE_FORMAT_BC5_UNORM_BLOCK &&
+                   format != SLUICE_FORMAT_BC2_UNORM_BLOCK &&
+                   format != SLUICE_FORMAT_BC2_SRGB_BLOCK && format != SLUICE_FORMAT_BC4_SNORM_BLOCK
+               ? "; build it with libsquish"
+               : "";
 }
 
 SluiceFormat slc_block_texel_format(SluiceFormat format)
@@ -95,16 +113,29 @@ static void encode_run(const struct encoding *encoding, SluiceBakeQuality qualit
         slc_encode_bc6h(encoding->is_signed, quality, (const uint16_t(*)[64])run->halves, count,
                         out);
         break;
+    case ASTC:
     case NONE: break;
     }
 }
 
-void slc_encode_blocks(SluiceFormat format, SluiceBakeQuality quality, const void *texels,
-                       size_t pitch, uint32_t width, uint32_t height, void *blocks)
+/* All blocks in one call. */
+static SluiceResult encode_astc(const struct slc_block_encoder *encoder, const void *texels,
+                                size_t pitch, uint32_t width, uint32_t height, void *blocks)
 {
-    assert(slc_can_encode_blocks(format));
-    const struct encoding *encoding = &encodings[format];
-    size_t texel_size = sluiceGetFormatTexelSize(slc_block_texel_format(format));
+    SluiceFormatInfo info = {.structSize = sizeof info};
+    (void)sluiceGetFormatInfo(encoder->format, &info);
+    return slc_astc_pool_encode(encoder->astc, info.blockWidth, slc_format_is_srgb(encoder->format),
+                                encoder->quality, texels, pitch, width, height, blocks);
+}
+
+SluiceResult slc_encode_blocks(const struct slc_block_encoder *encoder, const void *texels,
+                               size_t pitch, uint32_t width, uint32_t height, void *blocks)
+{
+    assert(slc_can_encode_blocks(encoder->format));
+    const struct encoding *encoding = &encodings[encoder->format];
+    if (encoding->encoder == ASTC)
+        return encode_astc(encoder, texels, pitch, width, height, blocks);
+    size_t texel_size = sluiceGetFormatTexelSize(slc_block_texel_format(encoder->format));
     union run run;
     uint32_t masks[RUN], count = 0;
     uint8_t *out = blocks;
@@ -116,8 +147,9 @@ void slc_encode_blocks(SluiceFormat format, SluiceBakeQuality quality, const voi
             bool is_last = y + 4 >= height && x + 4 >= width;
             if (++count < RUN && !is_last)
                 continue;
-            encode_run(encoding, quality, &run, masks, count, out);
+            encode_run(encoding, encoder->quality, &run, masks, count, out);
             out += (size_t)count * encoding->block_size;
             count = 0;
         }
+    return SLUICE_SUCCESS;
 }

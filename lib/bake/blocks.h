@@ -1,20 +1,34 @@
-/** Blocks from texels: BC1, BC3, BC4 and BC5 through libsquish, BC6H and BC7 by ourselves. */
+/**
+ * Blocks from texels: BC1, BC3, BC4 and BC5 through libsquish, ASTC through astcenc, BC6H and BC7
+ * by ourselves.
+ */
 #ifndef SLC_BAKE_BLOCKS_H
 #define SLC_BAKE_BLOCKS_H
 
-#include <sluice/bake.h>
+#include "bake/astc_pool.h"
 
 /** Whether this build makes blocks of the format. */
 bool slc_can_encode_blocks(SluiceFormat format);
 
+/** What to do where a build lacks the encoder, for messages; "" if there is none. */
+const char *slc_block_encoder_hint(SluiceFormat format);
+
 /** What blocks of the format are made from: RGBA bytes, or halves. */
 SluiceFormat slc_block_texel_format(SluiceFormat format);
+
+/** What blocks are made, and how. */
+struct slc_block_encoder {
+    SluiceFormat format;
+    SluiceBakeQuality quality;
+    struct slc_astc_pool *astc; ///< may be NULL for other formats
+};
 
 /**
  * Rows of texels, `pitch` bytes apart, to packed rows of blocks. Texels beyond the right and
  * lower edge do not count. Colors of sRGB formats are compared as they are encoded.
+ * Errors: OUT_OF_HOST_MEMORY.
  */
-void slc_encode_blocks(SluiceFormat format, SluiceBakeQuality quality, const void *texels,
-                       size_t pitch, uint32_t width, uint32_t height, void *blocks);
+SluiceResult slc_encode_blocks(const struct slc_block_encoder *encoder, const void *texels,
+                               size_t pitch, uint32_t width, uint32_t height, void *blocks);
 
 #endif /* SLC_BAKE_BLOCKS_H */

@@ -10,6 +10,7 @@
 struct slc_baking {
     SluiceAllocationCallbacks allocator;
     struct slc_picture *picture;
+    struct slc_astc_pool *astc;
     struct slc_plan plan;
     struct slc_pyramid pyramid;
     struct slc_tiler tiler;
@@ -27,8 +28,8 @@ struct slc_baking {
 uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_plan *plan,
                            const SluiceStoreLayout *layout);
 
-/** What is set: allocator, picture, plan, user, progress. Errors: OUT_OF_HOST_MEMORY; finish it
- *  then, too. */
+/** What is set: allocator, picture, astc, plan, user, progress. Errors: OUT_OF_HOST_MEMORY; finish
+ * it then, too. */
 SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jobs,
                              const SluiceStoreLayout *layout);
 void slc_baking_finish(struct slc_baking *baking);

@@ -132,8 +132,8 @@ SluiceResult slc_plan_make(const struct slc_picture *picture, const SluiceBakeSe
     plan->rules.srgb = srgb;
     plan->format = slc_format_twin(format, srgb);
     if (sluiceGetFormatTexelSize(plan->format) == 0 && !slc_can_encode_blocks(plan->format)) {
-        slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s", picture->name,
-                sluiceGetFormatName(plan->format));
+        slc_log(&picture->log, SLUICE_LOG_ERROR, "%s: this build cannot encode %s%s", picture->name,
+                sluiceGetFormatName(plan->format), slc_block_encoder_hint(plan->format));
         return SLUICE_ERROR_UNSUPPORTED;
     }
     find_rules(picture, plan);

@@ -107,10 +107,11 @@ static SluiceResult write_encoded(struct slc_tiler *tiler, const SluiceImageRegi
     void *blocks = slc_alloc(&tiler->allocator, size, 1);
     if (!blocks)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
-    slc_encode_blocks(format, tiler->quality, texels, pitch, region->width, region->height, blocks);
     SluiceResult result =
-        sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, blocks,
-                             (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
+        slc_encode_blocks(&tiler->encoder, texels, pitch, region->width, region->height, blocks);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceWriteStoreTile(tiler->writer, 0, region->mipLevel, x, y, blocks,
+                                      (size_t)sluiceGetFormatRegionSize(format, region->width, 1));
     slc_free(&tiler->allocator, blocks, size, 1);
     return result;
 }
@@ -235,8 +236,11 @@ static SluiceResult encode_tail(struct slc_tiler *tiler, const void **levels, ch
         const struct slc_tiler_level *level = &tiler->levels[l];
         const void *texels = tiler->tail + level->tail_offset;
         if (blocks) {
-            slc_encode_blocks(layout->format, tiler->quality, texels, level->width * texel_size,
-                              level->width, level->height, blocks);
+            SluiceResult result =
+                slc_encode_blocks(&tiler->encoder, texels, level->width * texel_size, level->width,
+                                  level->height, blocks);
+            if (result != SLUICE_SUCCESS)
+                return result;
             texels = blocks;
             blocks += sluiceGetFormatRegionSize(layout->format, level->width, level->height);
         }

@@ -5,9 +5,9 @@
 #ifndef SLC_BAKE_TILER_H
 #define SLC_BAKE_TILER_H
 
-#include <sluice/bake.h>
 #include <sluice/store.h>
 
+#include "bake/blocks.h"
 #include "bake/work_pool.h"
 
 /** Bands of a level: one that is filled, one whose tiles are written, one that is filled last. */
@@ -44,8 +44,8 @@ struct slc_tiler {
     SluiceAllocationCallbacks allocator;
     struct slc_bake_jobs *jobs;
     SluiceStoreLayout layout;
-    SluiceFormat texel_format; ///< of rows: the layout's, or what blocks are made from
-    SluiceBakeQuality quality; ///< of blocks; set after init
+    SluiceFormat texel_format;        ///< of rows: the layout's, or what blocks are made from
+    struct slc_block_encoder encoder; ///< of blocks; set after init
     SluiceStoreWriter *writer;
     SluiceResult result;       ///< the first failure; under the pool's mutex
     uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex

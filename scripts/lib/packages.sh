@@ -4,7 +4,7 @@
 
 packages_to_build=(gcc libc6-dev meson ninja-build pkg-config glslang-tools spirv-tools
     libvulkan-dev mesa-vulkan-drivers libopenexr-dev libimath-dev libpng-dev zlib1g-dev libzstd-dev
-    libxxhash-dev libvips-dev libsquish-dev g++)
+    libxxhash-dev libvips-dev libsquish-dev libastcenc-dev g++)
 packages_to_test=(binutils clang libcmocka-dev vulkan-validationlayers)
 
 package_is_installed() {

@@ -20,6 +20,10 @@
 #include "bake/squish_back.h"
 #endif
 
+#ifdef HAVE_ASTC
+#include "bake/astc_back.h"
+#endif
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,9 +36,13 @@ static const struct {
     SluiceFormat format;
     int squish; ///< kind of squish_back; -1: not of libsquish
 } formats[] = {
-    {"bc1", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 0}, {"bc3", SLUICE_FORMAT_BC3_UNORM_BLOCK, 1},
-    {"bc7", SLUICE_FORMAT_BC7_UNORM_BLOCK, -1},     {"bc6h", SLUICE_FORMAT_BC6H_UFLOAT_BLOCK, -1},
+    {"bc1", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 0},
+    {"bc3", SLUICE_FORMAT_BC3_UNORM_BLOCK, 1},
+    {"bc7", SLUICE_FORMAT_BC7_UNORM_BLOCK, -1},
+    {"bc6h", SLUICE_FORMAT_BC6H_UFLOAT_BLOCK, -1},
     {"bc6hs", SLUICE_FORMAT_BC6H_SFLOAT_BLOCK, -1},
+    {"astc-4x4", SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK, -1},
+    {"astc-8x8", SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK, -1},
 };
 static const char *const qualities[] = {"normal", "fast", "best"};
 
@@ -147,8 +155,28 @@ static void add_errors(const struct texels *texels, int squish, const uint8_t *b
     }
 }
 
+/* Through astcenc's own decoder. */
+static void add_astc_errors(const struct texels *texels, uint32_t extent, uint8_t *blocks,
+                            size_t size, struct errors *errors)
+{
+    size_t count = (size_t)texels->width * texels->height;
+    uint8_t *back = calloc(count, 4);
+#ifdef HAVE_ASTC
+    if (!back || !astc_back(extent, blocks, size, texels->width, texels->height, back))
+        abort();
+#else
+    (void)extent, (void)blocks, (void)size;
+#endif
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < (texels->alpha ? 4u : 3u); c++) {
+            double off = (double)((const uint8_t *)texels->bytes)[4 * i + c] - back[4 * i + c];
+            errors->bytes += off * off;
+        }
+    free(back);
+}
+
 static void measure(const char *path, size_t f, SluiceBakeQuality quality,
-                    const struct texels *texels)
+                    const struct texels *texels, struct slc_astc_pool *astc)
 {
     struct errors errors = {0};
     SluiceFormatInfo info = {.structSize = sizeof info};
@@ -156,13 +184,18 @@ static void measure(const char *path, size_t f, SluiceBakeQuality quality,
     size_t size = (size_t)sluiceGetFormatRegionSize(texels->format, texels->width, texels->height);
     uint8_t *blocks = malloc(size);
     double begin = processor_time();
-    slc_encode_blocks(texels->format, quality, texels->bytes, (size_t)texels->width * texels->size,
-                      texels->width, texels->height, blocks);
+    const struct slc_block_encoder encoder = {texels->format, quality, astc};
+    if (slc_encode_blocks(&encoder, texels->bytes, (size_t)texels->width * texels->size,
+                          texels->width, texels->height, blocks) != SLUICE_SUCCESS)
+        abort();
     double seconds = processor_time() - begin;
     const uint8_t *block = blocks;
-    for (uint32_t y = 0; y < texels->height; y += 4)
-        for (uint32_t x = 0; x < texels->width; x += 4, block += info.blockSize)
-            add_errors(texels, formats[f].squish, block, x, y, &errors);
+    if (texels->format >= SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK)
+        add_astc_errors(texels, info.blockWidth, blocks, size, &errors);
+    else
+        for (uint32_t y = 0; y < texels->height; y += 4)
+            for (uint32_t x = 0; x < texels->width; x += 4, block += info.blockSize)
+                add_errors(texels, formats[f].squish, block, x, y, &errors);
     double texel_count = (double)texels->width * texels->height;
     double count = texel_count * (texels->alpha ? 4 : 3);
     const char *slash = strrchr(path, '/');
@@ -183,6 +216,9 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: encoder_figures FORMAT[,FORMAT...] PICTURE...\n");
         return 2;
     }
+    const SluiceAllocationCallbacks cb = slc_allocator(NULL);
+    struct slc_astc_pool astc;
+    slc_astc_pool_init(&astc, &cb);
     for (int a = 2; a < argc; a++)
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
             struct texels texels;
@@ -196,8 +232,9 @@ int main(int argc, char **argv)
                 return 1;
             }
             for (int q = 0; q < (formats[f].squish >= 0 ? 1 : 3); q++)
-                measure(argv[a], f, (SluiceBakeQuality)q, &texels);
+                measure(argv[a], f, (SluiceBakeQuality)q, &texels, &astc);
             free(texels.bytes);
         }
+    slc_astc_pool_finish(&astc);
     return 0;
 }

@@ -20,8 +20,9 @@ static const char notes[] =
     "baked all the same; 2 wrong usage.\n";
 
 /* In the order of the words of --format, --quality, --filter and --alpha. */
-static const char format_names[] = "auto|r8|rg8|rgba8|r16f|rg16f|rgba16f|r32f|rg32f|rgba32f|"
-                                   "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc6h|bc7";
+static const char format_names[] =
+    "auto|r8|rg8|rgba8|r16f|rg16f|rgba16f|r32f|rg32f|rgba32f|"
+    "rgb10a2|rg11b10f|rgb9e5|bc1|bc3|bc4|bc5|bc6h|bc7|astc-4x4|astc-8x8";
 static const SluiceFormat formats[] = {
     SLUICE_FORMAT_UNDEFINED,
     SLUICE_FORMAT_R8_UNORM,
@@ -42,6 +43,8 @@ static const SluiceFormat formats[] = {
     SLUICE_FORMAT_BC5_UNORM_BLOCK,
     SLUICE_FORMAT_BC6H_UFLOAT_BLOCK,
     SLUICE_FORMAT_BC7_UNORM_BLOCK,
+    SLUICE_FORMAT_ASTC_4x4_UNORM_BLOCK,
+    SLUICE_FORMAT_ASTC_8x8_UNORM_BLOCK,
 };
 static const SluiceBakeQuality qualities[] = {SLUICE_BAKE_QUALITY_FAST, SLUICE_BAKE_QUALITY_NORMAL,
                                               SLUICE_BAKE_QUALITY_BEST};
@@ -130,7 +133,7 @@ enum option_outcome parse_options(struct options *o, int argc, char **argv)
         {OPTION_CHOICE, "format", format_names, "auto", &c.format,
          "format of the texels; auto: by channels, bit depth and meaning."},
         {OPTION_CHOICE, "quality", "fast|normal|best", "normal", &c.quality,
-         "work spent on bc6h and bc7"},
+         "work spent on bc6h, bc7 and astc"},
         {OPTION_FLAG, "srgb", .value = &c.srgb,
          .help = "the numbers are sRGB, as is assumed for integers of two channels or more"},
         {OPTION_FLAG, "linear", .value = &c.linear,
