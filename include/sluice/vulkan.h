@@ -572,11 +572,13 @@ SLUICE_API SluiceResult sluiceGetVulkanBuffers(const SluiceVulkanStreamer *strea
  * lives until all frames begun before are complete.
  */
 typedef struct SluiceVulkanPages {
-    uint32_t structSize;       ///< sizeof(SluiceVulkanPages).
-    VkSampler sampler;         ///< Never changes.
-    uint32_t viewCount;        ///< maxPageChunkCount. Never changes.
-    const VkImageView *pViews; ///< 2D arrays, VK_IMAGE_LAYOUT_GENERAL. Valid until the next begin.
-    uint64_t generation;       ///< Counts from 1.
+    uint32_t structSize; ///< sizeof(SluiceVulkanPages).
+    VkSampler sampler;   ///< Never changes.
+    uint32_t viewCount;  ///< maxPageChunkCount. Never changes.
+    /** 2D arrays, VK_IMAGE_LAYOUT_GENERAL. Get them after begin and use them for that frame or
+     *  launch: later ones may have other views. */
+    const VkImageView *pViews;
+    uint64_t generation; ///< Counts from 1.
 } SluiceVulkanPages;
 
 /**

@@ -11,9 +11,12 @@
  * first needs them, and destroyed with the last front end. A streamer in paged mode and a demand
  * loader that have the same SluiceImageSource read each tile once and keep it on one page.
  *
- * Submit frames and launches of a context to queues of one family. The functions that begin, end,
- * abandon or process them must not run at the same time for two front ends of one context. If they
- * must, create a context per thread.
+ * Submit frames and launches of a context to queues of one family.
+ *
+ * Front ends of a context may be used on different threads at the same time: a render thread and a
+ * thread that traces paths need no lock for Sluice. Use one front end on one thread at a time.
+ * Vulkan's rules stay: lock a queue that several threads submit to, and the sparse queue while a
+ * streamer in sparse mode begins a frame.
  */
 #ifndef SLUICE_VULKAN_CONTEXT_H
 #define SLUICE_VULKAN_CONTEXT_H

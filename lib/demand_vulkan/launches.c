@@ -238,7 +238,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
                                 .tileCount = record_transfers(loader, commandBuffer)};
     begun.descriptorSet =
         slc_descriptors_update(&loader->descriptors, &loader->vk, slot_of(loader, launch),
-                               loader->pages, loader->page_user, NULL);
+                               slc_page_pool_views(loader->pages, loader->page_user), NULL);
     slc_byte_pages_bind(loader, slot_of(loader, launch));
     slc_struct_write(SLC_STRUCT(SluiceDemandLaunch), pLaunch, &begun);
     loader->counts.launchCount++;

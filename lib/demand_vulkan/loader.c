@@ -409,7 +409,8 @@ SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkan
     SluiceResult checked = slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &loader->vk.log);
     if (checked != SLUICE_SUCCESS)
         return checked;
-    const struct slc_page_views *views = slc_page_pool_views(loader->pages, loader->page_user);
+    const struct slc_page_views *views =
+        slc_page_pool_current_views(loader->pages, loader->page_user);
     const SluiceVulkanPages pages = {.structSize = sizeof pages,
                                      .sampler = views->sampler,
                                      .viewCount = views->count,

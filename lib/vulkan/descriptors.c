@@ -166,26 +166,23 @@ static void write_pages(const struct slc_descriptors *d, const struct slc_vk *vk
 }
 
 static void update_pages(const struct slc_descriptors *d, const struct slc_vk *vk,
-                         struct slc_descriptor_set *set, struct slc_page_pool *pages, uint32_t user)
+                         struct slc_descriptor_set *set, const struct slc_page_views *shown)
 {
-    pthread_mutex_lock(&pages->mutex); /* other users of the pool may be on other threads */
-    const struct slc_page_views *shown = slc_page_pool_views(pages, user);
-    if (set->page_generation != shown->generation) {
-        assert(d->page_count <= shown->count);
-        write_pages(d, vk, set->set, shown);
-        set->page_generation = shown->generation;
-    }
-    pthread_mutex_unlock(&pages->mutex);
+    if (set->page_generation == shown->generation)
+        return;
+    assert(d->page_count <= shown->count);
+    write_pages(d, vk, set->set, shown);
+    set->page_generation = shown->generation;
 }
 
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
-                                       uint32_t index, struct slc_page_pool *pages,
-                                       uint32_t page_user, const struct slc_texture_array *textures)
+                                       uint32_t index, const struct slc_page_views *pages,
+                                       const struct slc_texture_array *textures)
 {
     struct slc_descriptor_set *set = &descriptors->sets[index];
     if (!set->set)
         return VK_NULL_HANDLE;
-    update_pages(descriptors, vk, set, pages, page_user);
+    update_pages(descriptors, vk, set, pages);
     if (textures && set->texture_generation != textures->generation) {
         slc_texture_array_write(textures, vk, set->set, descriptors->page_binding + 1,
                                 set->texture_generation);

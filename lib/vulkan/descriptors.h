@@ -9,7 +9,7 @@
 #define SLC_VULKAN_DESCRIPTORS_H
 
 #include "vulkan/caps.h"
-#include "vulkan/page_pool.h"
+#include "vulkan/page_views.h"
 #include "vulkan/texture_array.h"
 
 #define SLC_DESCRIPTOR_BUFFERS 8u
@@ -58,11 +58,10 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
                                   const struct slc_descriptors_create_info *info);
 void slc_descriptors_finish(struct slc_descriptors *descriptors, const struct slc_vk *vk);
 
-/** Makes set `index` current, which no commands in progress use, and returns it. `textures` as
- * given at creation. */
+/** Makes set `index` current, which no commands in progress use, and returns it. `pages`: what the
+ *  front end's frames see; `textures` as given at creation. */
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
-                                       uint32_t index, struct slc_page_pool *pages,
-                                       uint32_t page_user,
+                                       uint32_t index, const struct slc_page_views *pages,
                                        const struct slc_texture_array *textures);
 
 /** The array of storage buffers of set `index`, which no commands in progress use. */

@@ -229,8 +229,9 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
         s->ended_frame = s->frame;
         return result;
     }
-    frame.descriptorSet = slc_descriptors_update(&s->descriptors, &s->vk, s->slot, s->pages,
-                                                 s->page_user, &s->texture_array);
+    frame.descriptorSet =
+        slc_descriptors_update(&s->descriptors, &s->vk, s->slot,
+                               slc_page_pool_views(s->pages, s->page_user), &s->texture_array);
     slc_struct_write(SLC_STRUCT(SluiceStreamingFrame), pFrame, &frame);
     return SLUICE_SUCCESS;
 }

@@ -325,21 +325,20 @@ void slc_page_chunks_free(struct slc_page_chunks *chunks, uint32_t page, uint32_
     chunk->free_count++;
 }
 
-bool slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
+void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, bool hurry)
 {
     struct slc_page_chunk *chunk = &chunks->at[index];
     if (chunk->state != SLC_CHUNK_LIVE)
-        return false;
+        return;
     if (chunk->free_count < chunk->layer_count || chunk->tick == 0) /* 0: new, and still empty */
         chunk->tick = timelines->tick;
     if (timelines->tick - chunk->tick < (hurry ? 1 : IDLE_TICKS))
-        return false;
+        return;
     chunk->state = SLC_CHUNK_RETIRING;
     for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
         chunk->retire_values[i] = timelines->of[i].recorded;
     chunks->page_count[chunk->format] -= chunk->layer_count;
-    return true;
 }
 
 void slc_page_chunks_end_retired(struct slc_page_chunks *chunks, uint32_t index,

@@ -111,9 +111,9 @@ bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page
 void slc_page_chunks_free(struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                           uint64_t value, uint32_t owner);
 
-/** Retires the chunk if it has been empty for a while, or just now if `hurry`. True: no frame that
- *  is recorded from now on may see it. */
-bool slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
+/** Retires the chunk if it has been empty for a while, or just now if `hurry`. No frame that is
+ *  recorded from then on may see it. */
+void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, bool hurry);
 /** Destroys the chunk if it is retiring and no frame that sees it is left. */
 void slc_page_chunks_end_retired(struct slc_page_chunks *chunks, uint32_t index,

@@ -50,15 +50,26 @@ static void sum_limits(struct slc_page_pool *pool)
     pool->chunks.max_size = unlimited ? 0 : sum;
 }
 
-/* Images that shaders of the user's next frame may find in its array. */
+/* Images that shaders of the user's next frame may find in its array. Only calls of the user change
+ * the array: its thread may be reading it while others record. */
 static void show_chunks(struct slc_page_pool *pool, uint32_t user)
 {
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
         const struct slc_page_chunk *chunk = &pool->chunks.at[i];
-        if (chunk->state == SLC_CHUNK_LIVE &&
-            slc_page_chunk_is_ready(chunk, &pool->timelines, user))
-            slc_page_views_set(&pool->users[user].shown, i, chunk->view);
+        bool is_shown = chunk->state == SLC_CHUNK_LIVE &&
+                        slc_page_chunk_is_ready(chunk, &pool->timelines, user);
+        slc_page_views_set(&pool->users[user].shown, i, is_shown ? chunk->view : VK_NULL_HANDLE);
     }
+}
+
+const struct slc_page_views *slc_page_pool_current_views(struct slc_page_pool *pool, uint32_t user)
+{
+    pthread_mutex_lock(&pool->mutex);
+    for (uint32_t i = 0; i < pool->chunks.count; i++)
+        if (pool->chunks.at[i].state != SLC_CHUNK_LIVE)
+            slc_page_views_set(&pool->users[user].shown, i, VK_NULL_HANDLE);
+    pthread_mutex_unlock(&pool->mutex);
+    return &pool->users[user].shown;
 }
 
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
@@ -308,13 +319,6 @@ void slc_page_pool_hurry(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-static void hide_chunk(struct slc_page_pool *pool, uint32_t index)
-{
-    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++)
-        if (pool->timelines.of[i].semaphore)
-            slc_page_views_set(&pool->users[i].shown, index, VK_NULL_HANDLE);
-}
-
 void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                           uint64_t completed_frame, VkCommandBuffer commands)
 {
@@ -324,8 +328,7 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
     end_going(pool);
     for (uint32_t i = 0; i < chunks->count; i++) {
         slc_page_chunks_end_retired(chunks, i, &pool->timelines);
-        if (slc_page_chunks_retire(chunks, i, &pool->timelines, pool->hurry))
-            hide_chunk(pool, i);
+        slc_page_chunks_retire(chunks, i, &pool->timelines, pool->hurry);
     }
     slc_page_timelines_record(&pool->timelines, user, frame);
     for (uint32_t i = 0; i < chunks->count; i++)

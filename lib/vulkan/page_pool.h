@@ -26,7 +26,7 @@ struct slc_page_user {
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
     /** What its shaders get; owns the array of views alone. A new image is in its maker's array as
      *  soon as a frame of the maker puts it into its layout, and in others when that is complete.
-     */
+     *  A retired one leaves with the user's next frame. */
     struct slc_page_views shown;
     uint32_t held_count;  ///< pages
     uint64_t max_size;    ///< bytes; 0: no limit of its own
@@ -67,12 +67,17 @@ void slc_page_pool_set_max_size(struct slc_page_pool *pool, uint32_t user, uint6
 /** The user's frames are complete. Pages that it still holds are given back. */
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
 
-/** The array of views for shaders of the user's frames, as of the last frame that was recorded. */
+/** The array of views for shaders of the user's frames, as of the last frame that was recorded.
+ *  Calls of other users do not change it. */
 static inline const struct slc_page_views *slc_page_pool_views(const struct slc_page_pool *pool,
                                                                uint32_t user)
 {
     return &pool->users[user].shown;
 }
+
+/** As slc_page_pool_views, without images that others have retired since. For use between frames.
+ */
+const struct slc_page_views *slc_page_pool_current_views(struct slc_page_pool *pool, uint32_t user);
 
 /** Pages that the user could hold: those of all chunks, and those that chunks could still be made
  *  for, without pages that others hold. */

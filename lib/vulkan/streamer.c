@@ -476,7 +476,8 @@ SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVu
         slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &streamer->vk.log);
     if (checked != SLUICE_SUCCESS)
         return checked;
-    const struct slc_page_views *views = slc_page_pool_views(streamer->pages, streamer->page_user);
+    const struct slc_page_views *views =
+        slc_page_pool_current_views(streamer->pages, streamer->page_user);
     const SluiceVulkanPages pages = {.structSize = sizeof pages,
                                      .sampler = views->sampler,
                                      .viewCount = views->count,

@@ -403,6 +403,141 @@ static void an_idle_front_end_is_not_waited_for(void **state)
     finish(&s);
 }
 
+static pthread_mutex_t queue_mutex = PTHREAD_MUTEX_INITIALIZER;
+
+/* The application's part: one queue for two threads. */
+static VKAPI_ATTR VkResult VKAPI_CALL submit_alone(VkQueue queue, uint32_t count,
+                                                   const VkSubmitInfo *submits, VkFence fence)
+{
+    static PFN_vkQueueSubmit submit;
+    pthread_mutex_lock(&queue_mutex);
+    if (!submit)
+        submit = (PFN_vkQueueSubmit)h.GetDeviceProcAddr(h.device, "vkQueueSubmit");
+    VkResult result = submit(queue, count, submits, fence);
+    pthread_mutex_unlock(&queue_mutex);
+    return result;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL wait_alone(VkDevice device)
+{
+    static PFN_vkDeviceWaitIdle wait;
+    pthread_mutex_lock(&queue_mutex);
+    if (!wait)
+        wait = (PFN_vkDeviceWaitIdle)h.GetDeviceProcAddr(h.device, "vkDeviceWaitIdle");
+    VkResult result = wait(device);
+    pthread_mutex_unlock(&queue_mutex);
+    return result;
+}
+
+/* The harness of another thread: the same device, command buffers of its own. */
+static struct harness harness_of_thread(void)
+{
+    struct harness other = h;
+    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                          .queueFamilyIndex = h.family};
+    assert_int_equal(h.CreateCommandPool(h.device, &pool, NULL, &other.pool), VK_SUCCESS);
+    const VkCommandBufferAllocateInfo info = {.sType =
+                                                  VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                              .commandPool = other.pool,
+                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                              .commandBufferCount = HARNESS_FRAMES};
+    assert_int_equal(h.AllocateCommandBuffers(h.device, &info, other.commands), VK_SUCCESS);
+    memset(other.last, 0, sizeof other.last);
+    return other;
+}
+
+/* The level that a color of PATTERN_LEVEL shows. */
+static uint32_t shown_level(const float color[4])
+{
+    return (uint32_t)lroundf(color[0] * 16) - 1;
+}
+
+/* Samples of tiles that there is no memory for show coarser ones. */
+static void check_resident(const struct stage *s)
+{
+    uint32_t sample = 0;
+    for (uint32_t level = 0; level < LEVELS; level++)
+        for (uint32_t y = 0; y < SIZE >> level; y += TILE)
+            for (uint32_t x = 0; x < SIZE >> level; x += TILE, sample++) {
+                struct RunnerOutput out = runner_output(&s->runner, sample);
+                float expected[4];
+                if (!out.resident)
+                    continue;
+                uint32_t shown = shown_level(out.color);
+                assert_in_range(shown, level, 10);
+                pattern_texel(PATTERN_LEVEL, shown, (x + TILE / 2) >> (shown - level),
+                              (y + TILE / 2) >> (shown - level), expected);
+                for (uint32_t i = 0; i < 4; i++)
+                    assert_true(fabsf(out.color[i] - expected[i]) <= 1.0f / 255);
+            }
+}
+
+struct tracing {
+    struct stage *stage;
+    atomic_bool stops;
+    uint32_t launches;
+};
+
+/* Its texture comes and goes; there is memory for 64 of its tiles. */
+static void *trace(void *user)
+{
+    struct tracing *t = user;
+    struct stage *s = t->stage;
+    for (; !atomic_load(&t->stops); t->launches++) {
+        runner_launch(&s->runner);
+        CHECK_OK(sluiceWaitDemandTicket(s->runner.loader, s->runner.ticket, UINT64_MAX, NULL));
+        check_resident(s);
+        if (t->launches % 16 == 15) {
+            CHECK_OK(sluiceRemoveDemandTexture(s->runner.loader, s->demand));
+            add_to_loader(s);
+        }
+    }
+    return NULL;
+}
+
+static void front_ends_may_be_on_two_threads(void **state)
+{
+    static struct stage s;
+    static struct harness other;
+    (void)state;
+    h.QueueSubmit = submit_alone;
+    h.DeviceWaitIdle = wait_alone;
+    other = harness_of_thread();
+    const SluiceDemandLoaderCreateInfo info = {
+        .structSize = sizeof info, .memoryBudget = (uint64_t)64 << 16, .noLodBias = true};
+    counter_init(&s.counter);
+    scene_init(
+        &s.scene, &h,
+        (SluiceVulkanStreamerCreateInfo){.structSize = sizeof(SluiceVulkanStreamerCreateInfo),
+                                         .feedbackTimeoutTicks = 4});
+    runner_init(&s.runner, &other, &info);
+    stream(&s);
+    add_to_loader(&s);
+    struct tracing tracing = {.stage = &s};
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, trace, &tracing), 0);
+    for (uint32_t i = 0; i < 240; i++) {
+        bool looks = i / 40 % 2 == 0; /* away for so long that empty images go */
+        s.scene.textures[s.streamed].sample_count = looks ? SCENE_SAMPLES : 0;
+        scene_settle(&s.scene, 1);
+        scene_check_levels(&s.scene);
+        if (i % 80 == 79) {
+            scene_remove(&s.scene, s.streamed);
+            stream(&s);
+        }
+    }
+    atomic_store(&tracing.stops, true);
+    pthread_join(thread, NULL);
+    assert_true(tracing.launches > 16);
+    scene_settle(&s.scene, 30); /* some wait for reads of the one that stands still now */
+    check_streamed(&s);
+    assert_true(shared_count(&s) + streamer_statistics(&s).tilesShared > 0);
+    finish(&s);
+    h.DestroyCommandPool(h.device, other.pool, NULL);
+    assert_int_equal(other.message_count, 0);
+}
+
 int main(void)
 {
     int status = harness_init(&h);
@@ -419,6 +554,7 @@ int main(void)
         cmocka_unit_test(tiles_that_the_streamer_evicted_come_back_from_the_other),
         cmocka_unit_test(changed_texels_are_read_again_by_the_one_that_was_told),
         cmocka_unit_test(an_idle_front_end_is_not_waited_for),
+        cmocka_unit_test(front_ends_may_be_on_two_threads),
     };
     CHECK_OK(
         harness_set_context(&h, &(SluiceVulkanContextCreateInfo){.readRetry = {.maxAttempts = 1}}));

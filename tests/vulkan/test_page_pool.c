@@ -9,12 +9,15 @@
 
 #include "support/test.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
+
 #define FORMAT SLUICE_FORMAT_R8G8B8A8_UNORM
 
 enum { USERS = 2, CHUNKS = 3, LAYERS = 64, NONE = SLC_MAX_PAGE_USERS };
 
-static uint64_t timelines[USERS]; ///< what the semaphores 1, 2, ... have reached
-static uint32_t layout_count;     ///< images put into their layout since it was set to 0
+static atomic_uint_fast64_t timelines[USERS]; ///< what the semaphores 1, 2, ... have reached
+static uint32_t layout_count; ///< images put into their layout since it was set to 0
 static const VkCommandBuffer commands = (VkCommandBuffer)(uintptr_t)64;
 
 static VkResult VKAPI_CALL get_value(VkDevice device, VkSemaphore semaphore, uint64_t *value)
@@ -176,11 +179,37 @@ static void an_empty_image_goes_when_no_user_can_see_it(void **state)
         record(&r, 0, frame);
     }
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
-    for (uint32_t i = 0; i < USERS; i++)
-        assert_ptr_equal(slc_page_pool_views(&r.pool, r.users[i])->views[0], r.pool.views.empty);
+    const struct slc_page_views *other = slc_page_pool_views(&r.pool, r.users[1]);
+    assert_ptr_equal(slc_page_pool_views(&r.pool, r.users[0])->views[0], r.pool.views.empty);
+    assert_ptr_not_equal(other->views[0], r.pool.views.empty); /* its thread may be reading it */
     timelines[1] = 1;
     record(&r, 0, frame);
     assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 0);
+    assert_ptr_equal(slc_page_pool_current_views(&r.pool, r.users[1])->views[0],
+                     r.pool.views.empty);
+    finish(&r);
+}
+
+static void a_retired_image_leaves_the_views_with_the_next_frame(void **state)
+{
+    (void)state;
+    struct rig r;
+    uint32_t pages[LAYERS];
+    init(&r, 0);
+    take_all(&r, 0, pages);
+    record(&r, 1, 1);
+    for (uint32_t i = 0; i < LAYERS; i++)
+        slc_page_pool_give(&r.pool, r.users[0], pages[i], SLC_NO_OWNER);
+    for (uint64_t frame = 2; frame < 100; frame++) {
+        timelines[0] = frame - 1;
+        record(&r, 0, frame);
+    }
+    const struct slc_page_views *other = slc_page_pool_views(&r.pool, r.users[1]);
+    uint64_t generation = other->generation;
+    record(&r, 1, 2); /* frame 1 is not complete: the image still exists */
+    assert_int_equal(slc_page_pool_get_counts(&r.pool).chunk_count, 1);
+    assert_ptr_equal(other->views[0], r.pool.views.empty);
+    assert_true(other->generation > generation);
     finish(&r);
 }
 
@@ -376,6 +405,75 @@ static void an_abandoned_frame_leaves_the_texels_that_came_back(void **state)
     }
 }
 
+struct walker {
+    struct rig *rig;
+    uint32_t user;
+    uint32_t pages[LAYERS];
+    uint32_t taken, wrong; ///< pages in all; that another one had, too
+};
+
+static atomic_uint owners[CHUNKS][LAYERS * 4]; ///< user + 1; 0: nobody has the page
+
+static atomic_uint *owner_of(uint32_t page)
+{
+    return &owners[page >> 16][page & 0xFFFFu];
+}
+
+/* Frames of one user, on a thread of its own: half of its pages go and others come. */
+static void *walk(void *argument)
+{
+    struct walker *w = argument;
+    struct slc_page_pool *pool = &w->rig->pool;
+    uint32_t random = w->user + 1;
+    for (uint64_t frame = 1; frame < 2000; frame++) {
+        for (uint32_t i = 0; i < LAYERS; i++) {
+            random = random * 1664525u + 1013904223u;
+            if (random >> 31)
+                continue;
+            if (w->pages[i] != SLUICE_PAGE_NONE) {
+                w->wrong += atomic_exchange(owner_of(w->pages[i]), 0) != w->user + 1;
+                slc_page_pool_give(pool, w->user, w->pages[i], SLC_NO_OWNER);
+            }
+            w->pages[i] = frame / 200 % 2 ? SLUICE_PAGE_NONE /* until images go */
+                                          : slc_page_pool_take(pool, w->user, FORMAT);
+            if (w->pages[i] == SLUICE_PAGE_NONE)
+                continue;
+            w->taken++;
+            w->wrong += atomic_exchange(owner_of(w->pages[i]), w->user + 1) != 0;
+        }
+        slc_page_pool_record(pool, w->user, frame, timelines[w->user], commands);
+        const struct slc_page_views *views = slc_page_pool_views(pool, w->user);
+        for (uint32_t i = 0; i < views->count; i++)
+            w->wrong += views->views[i] == VK_NULL_HANDLE;
+        for (uint32_t i = 0; i < LAYERS; i++)
+            w->wrong +=
+                w->pages[i] != SLUICE_PAGE_NONE && views->views[w->pages[i] >> 16] == views->empty;
+        timelines[w->user] = frame - 1;
+    }
+    return NULL;
+}
+
+static void users_may_be_on_threads_of_their_own(void **state)
+{
+    (void)state;
+    struct rig r;
+    struct walker walkers[USERS];
+    pthread_t threads[USERS];
+    init(&r, 0);
+    for (uint32_t i = 0; i < USERS; i++) {
+        walkers[i] = (struct walker){.rig = &r, .user = r.users[i]};
+        for (uint32_t j = 0; j < LAYERS; j++)
+            walkers[i].pages[j] = SLUICE_PAGE_NONE;
+        assert_int_equal(pthread_create(&threads[i], NULL, walk, &walkers[i]), 0);
+    }
+    for (uint32_t i = 0; i < USERS; i++) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(walkers[i].wrong, 0);
+        assert_true(walkers[i].taken > 1000);
+    }
+    finish(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -383,6 +481,7 @@ int main(void)
         cmocka_unit_test(a_user_takes_its_own_page_at_once),
         cmocka_unit_test(a_new_image_belongs_to_its_maker_until_it_is_in_its_layout),
         cmocka_unit_test(an_empty_image_goes_when_no_user_can_see_it),
+        cmocka_unit_test(a_retired_image_leaves_the_views_with_the_next_frame),
         cmocka_unit_test(a_user_that_goes_gives_its_pages_back),
         cmocka_unit_test(pages_that_others_hold_are_no_capacity),
         cmocka_unit_test(an_abandoned_frame_is_not_waited_for),
@@ -392,6 +491,7 @@ int main(void)
         cmocka_unit_test(a_user_that_holds_a_shared_page_reads_the_tile_itself),
         cmocka_unit_test(a_texture_that_goes_takes_no_read_of_others_away),
         cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
+        cmocka_unit_test(users_may_be_on_threads_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
