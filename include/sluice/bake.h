@@ -74,7 +74,8 @@ typedef struct SluiceBakeSettings {
      * Default (UNDEFINED): the format that fits the picture.
      * - 8-bit integers: R8 for one channel; R8G8 for two that are not gray and alpha; else
      *   R8G8B8A8. Normal maps: R8G8B8A8 UNORM.
-     * - 16-bit integers: R32 for one channel, half RGBA for more.
+     * - 16-bit integers: R16, R16G16 or R16G16B16A16 UNORM, chosen like those of 8 bits. Colors
+     *   become linear light.
      * - 16- and 32-bit floats: same type, one or four channels.
      */
     SluiceFormat format;
@@ -188,8 +189,9 @@ typedef struct SluiceBakeReport {
  * Level 0 is stored byte for byte if the format holds the picture's samples. Block-compressed
  * pictures (DDS, KTX2) keep all their levels and must have the full chain. Of the settings, only
  * these apply to them: transfer (selects the sRGB twin of the format or the reverse), normalMap,
- * wraps, compression. ICC profiles and orientation tags are not applied. CMYK, Lab and similar
- * become sRGB.
+ * wraps, compression. ICC profiles are not applied. CMYK, Lab and similar become sRGB. Pictures are
+ * turned as their EXIF orientation says, with a message of SLUICE_LOG_INFO, and are then unpacked
+ * as a whole.
  *
  * The output is complete or absent. An interrupted bake leaves the output path + ".sluice-part";
  * the next bake resumes it. `pReport` may be NULL.

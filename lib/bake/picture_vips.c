@@ -17,6 +17,7 @@ struct vips_picture {
     VipsImage *image;
     VipsRegion *region;
     uint32_t first, count; ///< rows in the region
+    int orientation;       ///< 1 to 8, as EXIF counts them
 };
 
 /* One line of what libvips says of the last failure; its buffer is the whole process's. */
@@ -38,13 +39,14 @@ static SluiceResult unsupported(const struct vips_picture *picture, const char *
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Takes the place of the image it is made from. */
-static bool replace(VipsImage **image, int status, VipsImage *made)
+/* Takes the place of the image it is made from. `made` is a pointer, because it is set in the
+ * argument before it. */
+static bool replace(VipsImage **image, int status, VipsImage *const *made)
 {
     if (status != 0)
         return false;
     g_object_unref(*image);
-    *image = made;
+    *image = *made;
     return true;
 }
 
@@ -68,15 +70,28 @@ static bool convert(VipsImage **image, bool *was_short)
 {
     VipsImage *made = NULL;
     *was_short = vips_image_get_coding(*image) == VIPS_CODING_RAD;
-    if (*was_short && !replace(image, vips_rad2float(*image, &made, NULL), made))
+    if (*was_short && !replace(image, vips_rad2float(*image, &made, NULL), &made))
         return false;
     if (is_another_space(vips_image_guess_interpretation(*image)) &&
-        !replace(image, vips_colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL), made))
+        !replace(image, vips_colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL), &made))
         return false;
     VipsBandFormat format = vips_image_get_format(*image);
     bool is_kept =
         format == VIPS_FORMAT_UCHAR || format == VIPS_FORMAT_USHORT || format == VIPS_FORMAT_FLOAT;
-    return is_kept || replace(image, vips_cast_float(*image, &made, NULL), made);
+    return is_kept || replace(image, vips_cast_float(*image, &made, NULL), &made);
+}
+
+/* Turns the picture as its EXIF tag says, for which it is read again, not from top to bottom. */
+static bool turn(struct vips_picture *picture)
+{
+    VipsImage *made = NULL;
+    picture->orientation = vips_image_get_orientation(picture->image);
+    if (picture->orientation <= 1)
+        return true;
+    VipsImage *whole = vips_image_new_from_file(picture->path, "access", VIPS_ACCESS_RANDOM,
+                                                "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
+    return whole && replace(&picture->image, 0, &whole) &&
+           replace(&picture->image, vips_autorot(picture->image, &made, NULL), &made);
 }
 
 static SluiceResult load(struct vips_picture *picture)
@@ -84,6 +99,8 @@ static SluiceResult load(struct vips_picture *picture)
     picture->image = vips_image_new_from_file(picture->path, "access", VIPS_ACCESS_SEQUENTIAL,
                                               "fail_on", VIPS_FAIL_ON_TRUNCATED, NULL);
     if (!picture->image)
+        return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
+    if (!turn(picture))
         return fail(picture, SLUICE_ERROR_CORRUPT_DATA);
     if (vips_band_format_iscomplex(vips_image_get_format(picture->image)))
         return unsupported(picture, "complex numbers are no colors");
@@ -192,8 +209,9 @@ static void describe(struct vips_picture *picture)
     base->memory =
         (uint64_t)base->width * base->channels * slc_sample_size(base->sample) * (2 * 512 + STRIP) +
         ((uint64_t)16 << 20);
-    base->unpacked_size = times_unpacked(image) * (uint64_t)base->width * base->height *
-                          base->channels * slc_sample_size(base->sample);
+    uint32_t times = times_unpacked(image) + (picture->orientation > 1);
+    base->unpacked_size = times * (uint64_t)base->width * base->height * base->channels *
+                          slc_sample_size(base->sample);
     base->memory += base->unpacked_size;
 }
 
@@ -214,6 +232,9 @@ SluiceResult slc_picture_open_vips(const char *path, const SluiceAllocationCallb
         return result;
     }
     describe(picture);
+    if (picture->orientation > 1)
+        slc_log(log, SLUICE_LOG_INFO, "%s: turned as its EXIF orientation %d says", path,
+                picture->orientation);
     *opened = &picture->base;
     return SLUICE_SUCCESS;
 }

@@ -32,14 +32,22 @@ static SluiceFormat byte_format(const struct slc_picture *picture, bool normals)
     return picture->channels == 1 ? SLUICE_FORMAT_R8_UNORM : SLUICE_FORMAT_R8G8_UNORM;
 }
 
+static SluiceFormat word_format(const struct slc_picture *picture, bool normals)
+{
+    if (normals || picture->channels > 2 || picture->alpha)
+        return SLUICE_FORMAT_R16G16B16A16_UNORM;
+    return picture->channels == 1 ? SLUICE_FORMAT_R16_UNORM : SLUICE_FORMAT_R16G16_UNORM;
+}
+
 static SluiceFormat natural_format(const struct slc_picture *picture, bool normals, bool srgb)
 {
     bool is_single = picture->channels == 1;
     bool is_pair = picture->channels == 2 && !picture->alpha && !normals;
-    bool is_half = picture->sample == SLC_SAMPLE_F16 || picture->halves_suffice ||
-                   (picture->sample == SLC_SAMPLE_U16 && !is_single);
+    bool is_half = picture->sample == SLC_SAMPLE_F16 || picture->halves_suffice;
     if (picture->sample == SLC_SAMPLE_U8)
         return is_single && srgb ? SLUICE_FORMAT_R8G8B8A8_UNORM : byte_format(picture, normals);
+    if (picture->sample == SLC_SAMPLE_U16)
+        return word_format(picture, normals);
     if (is_half)
         return is_single ? SLUICE_FORMAT_R16_SFLOAT
                : is_pair ? SLUICE_FORMAT_R16G16_SFLOAT

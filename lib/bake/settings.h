@@ -5,7 +5,7 @@
 #include <sluice/bake.h>
 
 /** Part of every hash; raised when the same settings give other texels. */
-#define SLC_BAKE_REVISION 2
+#define SLC_BAKE_REVISION 3
 
 /** Hash of all settings that determine the texels. */
 uint64_t slc_hash_settings(const SluiceBakeSettings *settings);

@@ -230,8 +230,21 @@ void slc_write_texels(const struct slc_rules *rules, const float *rgba, float al
                     slc_min_u32(CHUNK, count - i));
 }
 
+static bool keeps_words(const struct slc_rules *rules)
+{
+    switch (rules->format) {
+    case SLUICE_FORMAT_R16_UNORM: return rules->channels == 1;
+    case SLUICE_FORMAT_R16G16_UNORM:
+        return rules->channels == 2 && !rules->alpha && !rules->normals;
+    case SLUICE_FORMAT_R16G16B16A16_UNORM: return rules->channels >= 3;
+    default: return false;
+    }
+}
+
 bool slc_keeps_samples(const struct slc_rules *rules)
 {
+    if (rules->sample == SLC_SAMPLE_U16)
+        return !rules->srgb && keeps_words(rules);
     if (rules->sample != SLC_SAMPLE_U8)
         return false;
     switch (rules->format) {
@@ -249,14 +262,13 @@ void slc_copy_samples(const struct slc_rules *rules, const void *samples, void *
 {
     const uint8_t *in = samples;
     uint8_t *out = texels;
+    size_t size = slc_sample_size(rules->sample);
     if (rules->channels != 3) {
-        memcpy(out, in, (size_t)count * rules->channels);
+        memcpy(out, in, (size_t)count * rules->channels * size);
         return;
     }
-    for (uint32_t i = 0; i < count; i++, in += 3, out += 4) {
-        out[0] = in[0];
-        out[1] = in[1];
-        out[2] = in[2];
-        out[3] = 255;
+    for (uint32_t i = 0; i < count; i++, in += 3 * size, out += 4 * size) {
+        memcpy(out, in, 3 * size);
+        memset(out + 3 * size, 255, size);
     }
 }

@@ -5,6 +5,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <vips/vips.h>
 #include <string.h>
 
 /* IEC 61966-2-1 */
@@ -139,7 +140,50 @@ static void bytes_of_the_picture_are_kept(void **state)
     bake_folder_finish(&f.folder);
 }
 
-static void words_of_the_picture_are_kept_as_far_as_floats_hold_them(void **state)
+/* Each of EXIF's eight orientations: where the upright picture's texel is in the file. */
+static void pictures_are_turned_as_exif_says(void **state)
+{
+    (void)state;
+    enum { W = 5, H = 3 };
+    struct fixture f;
+    uint8_t samples[W * H * 3];
+    fixture_init(&f);
+    for (int i = 0; i < W * H * 3; i++)
+        samples[i] = (uint8_t)(i * 5);
+    assert_int_equal(VIPS_INIT("test"), 0);
+    for (int o = 1; o <= 8; o++) {
+        uint32_t width;
+        char path[256];
+        bake_folder_file(&f.folder, "turned.tif", path);
+        VipsImage *image = vips_image_new_from_memory(samples, sizeof samples, W, H, 3,
+                                                      VIPS_FORMAT_UCHAR),
+                  *copy;
+        assert_int_equal(vips_copy(image, &copy, "interpretation", VIPS_INTERPRETATION_sRGB, NULL),
+                         0);
+        vips_image_set_int(copy, VIPS_META_ORIENTATION, o);
+        assert_int_equal(vips_image_write_to_file(copy, path, NULL), 0);
+        g_object_unref(copy);
+        g_object_unref(image);
+        bake_picture_file(path, f.out, &(SluiceBakeSettings){sizeof(SluiceBakeSettings)});
+        size_t size;
+        uint8_t *texels = read_bytes(f.out, 0, &size);
+        assert_int_equal(size, W * H * 4);
+        width = o < 5 ? W : H;
+        assert_int_equal(store_info(f.out).layout.width, width);
+        for (uint32_t i = 0; i < W * H; i++) {
+            uint32_t x = i % width, y = i / width, c = o < 5 ? x : y, r = o < 5 ? y : x;
+            bool mirrors_columns = o == 2 || o == 3 || o == 7 || o == 8;
+            bool mirrors_rows = o == 3 || o == 4 || o == 6 || o == 7;
+            c = mirrors_columns ? W - 1 - c : c;
+            r = mirrors_rows ? H - 1 - r : r;
+            assert_memory_equal(texels + 4 * i, samples + 3 * (r * W + c), 3);
+        }
+        free(texels);
+    }
+    bake_folder_finish(&f.folder);
+}
+
+static void words_of_the_picture_are_kept(void **state)
 {
     (void)state;
     struct fixture f;
@@ -151,19 +195,19 @@ static void words_of_the_picture_are_kept_as_far_as_floats_hold_them(void **stat
     SluiceBakeSettings settings = {.structSize = sizeof settings};
     write_png(f.in, samples, 64, 48, 1, true);
     bake_picture_file(f.in, f.out, &settings);
-    assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R32_SFLOAT);
+    assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R16_UNORM);
     float *level = read_level(f.out, 0, &width, &height);
     for (size_t i = 0; i < 64 * 48; i++)
         assert_true(fabs((double)level[4 * i] - samples[i] / 65535.0) < 1e-7);
     free(level);
     write_png(f.in, samples, 16, 16, 3, true);
     bake_picture_file(f.in, f.out, &settings);
-    assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R16G16B16A16_SFLOAT);
+    assert_int_equal(store_info(f.out).layout.format, SLUICE_FORMAT_R16G16B16A16_UNORM);
     level = read_level(f.out, 0, &width, &height);
     for (size_t i = 0; i < 16 * 16; i++)
         for (uint32_t c = 0; c < 3; c++) {
             double expected = decode(samples[3 * i + c] / 65535.0);
-            assert_true(fabs((double)level[4 * i + c] - expected) <= expected / 2048 + 1e-7);
+            assert_true(fabs((double)level[4 * i + c] - expected) <= 0.501 / 65535);
         }
     free(level);
     bake_folder_finish(&f.folder);
@@ -448,7 +492,8 @@ int main(void)
         cmocka_unit_test(colors_are_averaged_as_light),
         cmocka_unit_test(data_are_averaged_as_they_are),
         cmocka_unit_test(bytes_of_the_picture_are_kept),
-        cmocka_unit_test(words_of_the_picture_are_kept_as_far_as_floats_hold_them),
+        cmocka_unit_test(pictures_are_turned_as_exif_says),
+        cmocka_unit_test(words_of_the_picture_are_kept),
         cmocka_unit_test(colors_count_as_much_as_they_cover),
         cmocka_unit_test(premultiplied_colors_are_averaged_as_they_are),
         cmocka_unit_test(normals_keep_their_length),
