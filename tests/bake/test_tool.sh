@@ -20,6 +20,15 @@ fact one_picture_becomes_one_file
 run 0 in/a.png -o made.d/ && [ -s made.d/a.store ]
 fact an_output_that_ends_in_a_slash_is_a_folder
 
+run 2 in/a.png -o picture.PNG && grep -q 'a tile store is written, not a picture' err &&
+    [ ! -e picture.PNG ] && mkdir folder.png && run 0 in/a.png -o folder.png && [ -s folder.png/a.store ]
+fact an_output_named_as_a_picture_is_refused_unless_it_is_a_folder
+
+echo junk >junk.png
+run 1 in/a.png junk.png -o junk.d && grep -q '^failed .*junk.store: junk.png: ' out
+fact a_failed_row_says_why
+rm -r junk.png junk.d folder.png
+
 run 0 in -o out.d && [ "$(find out.d -type f | sort | tr '\n' ' ')" = \
     "out.d/a.store out.d/d.store out.d/sub/b.store out.d/sub/deep/c.store out.d/sub/e.store " ]
 fact folders_keep_their_structure

@@ -1,9 +1,12 @@
 #include "options.h"
 
+#include "../common/files.h"
+#include "../common/picture_names.h"
 #include "../common/shared_options.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char usage[] =
     "usage: sluice-bake IN... -o OUT|DIR [options]\n"
@@ -106,6 +109,14 @@ static bool parse_cutout(const char *text, void *value)
     return end != text && *end == '\0' && *cutout > 0.0f && *cutout <= 1.0f;
 }
 
+/* Pictures cannot be written; a folder may have such a name. */
+static bool is_named_as_picture(const char *output)
+{
+    struct stat status;
+    bool is_folder = stat(output, &status) == 0 && S_ISDIR(status.st_mode);
+    return files_has_suffix(output, PICTURE_SUFFIXES) && !is_folder;
+}
+
 static bool is_complete(const struct option_table *table, const struct options *o,
                         const struct choices *c)
 {
@@ -114,6 +125,11 @@ static bool is_complete(const struct option_table *table, const struct options *
                               o->verify ? "a file to verify" : "a picture");
     if (!o->output && !o->verify)
         return options_refuse(table, "-o is needed: a .store file or a folder; --help says more");
+    if (o->output && is_named_as_picture(o->output))
+        return options_refuse(table,
+                              "-o %s: a tile store is written, not a picture; name it .store, or "
+                              "make pictures with sluice-info --png",
+                              o->output);
     if (c->srgb && (c->linear || o->settings.normalMap))
         return options_refuse(table, "--srgb or --%s, not both; --help says more",
                               c->linear ? "linear" : "normal");

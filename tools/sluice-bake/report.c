@@ -46,6 +46,10 @@ static void print_row(const struct bake_job *job)
     printf("%-9s  %13s  %-20s  %9s  %9s  ", names[status_of(job)], size,
            r->width ? sluiceGetFormatName(r->format) : "", size_text(job->size, in), out);
     text_write(stdout, job->output);
+    if (status_of(job) == FAILED) {
+        printf(": ");
+        text_write(stdout, reason(job));
+    }
     putchar('\n');
 }
 
