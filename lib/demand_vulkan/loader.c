@@ -10,7 +10,7 @@
 #include "vulkan/region_arena.h"
 #include "vulkan/shared_parts.h"
 #include "vulkan/sparse_layout.h"
-#include "vulkan/submitted_work.h"
+#include "vulkan/timeline.h"
 
 #include <sluice/shared/bindings.h>
 #include <sluice/shared/demand.h>
@@ -97,17 +97,7 @@ static SluiceResult check_device(SluiceDemandLoader *loader)
 
 static SluiceResult create_semaphore(SluiceDemandLoader *loader)
 {
-    const VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
-                                        .pNext = &type};
-    SluiceResult result = slc_vk_result(
-        &loader->vk, loader->vk.CreateSemaphore(loader->vk.device, &info, NULL, &loader->semaphore),
-        "vkCreateSemaphore");
-    if (result != SLUICE_SUCCESS)
-        loader->semaphore = VK_NULL_HANDLE;
-    slc_vk_name(&loader->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)loader->semaphore, "launches");
-    return result;
+    return slc_timeline_create(&loader->vk, "launches", &loader->semaphore);
 }
 
 static SluiceResult create_buffer(SluiceDemandLoader *loader, struct slc_buffer *buffer,
@@ -356,7 +346,7 @@ void sluiceDestroyDemandLoader(SluiceDemandLoader *loader)
         return;
     stop_workers(loader);
     if (loader->ended > loader->processed)
-        slc_submitted_work_wait(&loader->vk, loader->semaphore, loader->ended, "launch");
+        slc_timeline_wait(&loader->vk, loader->semaphore, loader->ended, "launch");
     slc_resources_finish(loader);
     slc_images_finish(loader);
     slc_demand_textures_finish(loader);
@@ -406,18 +396,7 @@ SluiceResult sluiceGetDemandPages(const SluiceDemandLoader *loader, SluiceVulkan
 {
     if (!loader || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult checked = slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &loader->vk.log);
-    if (checked != SLUICE_SUCCESS)
-        return checked;
-    const struct slc_page_views *views =
-        slc_page_pool_current_views(loader->pages, loader->page_user);
-    const SluiceVulkanPages pages = {.structSize = sizeof pages,
-                                     .sampler = views->sampler,
-                                     .viewCount = views->count,
-                                     .pViews = views->views,
-                                     .generation = views->generation};
-    slc_struct_write(SLC_STRUCT(SluiceVulkanPages), pPages, &pages);
-    return SLUICE_SUCCESS;
+    return slc_page_pool_write_views(loader->pages, loader->page_user, pPages);
 }
 
 SluiceResult sluiceGetDemandStatistics(SluiceDemandLoader *loader,

@@ -1,6 +1,7 @@
 #include "vulkan/page_pool.h"
 
 #include "base/checked.h"
+#include "base/struct_size.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -62,14 +63,26 @@ static void show_chunks(struct slc_page_pool *pool, uint32_t user)
     }
 }
 
-const struct slc_page_views *slc_page_pool_current_views(struct slc_page_pool *pool, uint32_t user)
+SluiceResult slc_page_pool_write_views(struct slc_page_pool *pool, uint32_t user,
+                                       SluiceVulkanPages *out)
 {
+    const struct slc_struct *type = SLC_STRUCT(SluiceVulkanPages);
+    SluiceResult result = slc_struct_check(type, out, &pool->vk.log);
+    if (result != SLUICE_SUCCESS)
+        return result;
+    struct slc_page_views *shown = &pool->users[user].shown;
     pthread_mutex_lock(&pool->mutex);
     for (uint32_t i = 0; i < pool->chunks.count; i++)
         if (pool->chunks.at[i].state != SLC_CHUNK_LIVE)
-            slc_page_views_set(&pool->users[user].shown, i, VK_NULL_HANDLE);
+            slc_page_views_set(shown, i, VK_NULL_HANDLE);
     pthread_mutex_unlock(&pool->mutex);
-    return &pool->users[user].shown;
+    const SluiceVulkanPages pages = {.structSize = sizeof pages,
+                                     .sampler = shown->sampler,
+                                     .viewCount = shown->count,
+                                     .pViews = shown->views,
+                                     .generation = shown->generation};
+    slc_struct_write(type, out, &pages);
+    return SLUICE_SUCCESS;
 }
 
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,

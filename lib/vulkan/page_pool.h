@@ -20,6 +20,8 @@
 #include "vulkan/page_views.h"
 #include "vulkan/shared_tiles.h"
 
+#include <sluice/vulkan.h>
+
 #include <pthread.h>
 
 struct slc_page_user {
@@ -75,9 +77,10 @@ static inline const struct slc_page_views *slc_page_pool_views(const struct slc_
     return &pool->users[user].shown;
 }
 
-/** As slc_page_pool_views, without images that others have retired since. For use between frames.
- */
-const struct slc_page_views *slc_page_pool_current_views(struct slc_page_pool *pool, uint32_t user);
+/** slc_page_pool_views for applications, without images that others have retired since. Errors:
+ *  INVALID_ARGUMENT for a wrong structSize. */
+SluiceResult slc_page_pool_write_views(struct slc_page_pool *pool, uint32_t user,
+                                       SluiceVulkanPages *out);
 
 /** Pages that the user could hold: those of all chunks, and those that chunks could still be made
  *  for, without pages that others hold. */

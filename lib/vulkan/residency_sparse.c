@@ -13,6 +13,7 @@
 #include "vulkan/device_heap.h"
 #include "vulkan/sparse_bindings.h"
 #include "vulkan/sparse_image.h"
+#include "vulkan/timeline.h"
 
 #include <assert.h>
 
@@ -558,20 +559,6 @@ static SluiceResult create_arrays(struct sparse_residency *s)
     return SLUICE_SUCCESS;
 }
 
-static SluiceResult create_semaphore(struct sparse_residency *s)
-{
-    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    SluiceResult result =
-        slc_vk_result(s->vk, s->vk->CreateSemaphore(s->vk->device, &info, NULL, &s->semaphore),
-                      "vkCreateSemaphore");
-    if (result != SLUICE_SUCCESS)
-        s->semaphore = VK_NULL_HANDLE;
-    slc_vk_name(s->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)s->semaphore, "binds");
-    return result;
-}
-
 SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info *info,
                                          struct slc_residency **residency)
 {
@@ -588,7 +575,7 @@ SluiceResult slc_create_sparse_residency(const struct slc_residency_create_info 
     s->touched.limit = info->max_touched_tiles;
     SluiceResult result = create_arrays(s);
     if (result == SLUICE_SUCCESS)
-        result = create_semaphore(s);
+        result = slc_timeline_create(s->vk, "binds", &s->semaphore);
     if (result == SLUICE_SUCCESS)
         result = slc_sparse_memory_type(s->vk, s->caps, &s->memory_type);
     if (result != SLUICE_SUCCESS) {

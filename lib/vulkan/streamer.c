@@ -8,7 +8,7 @@
 #include "vulkan/around.h"
 #include "vulkan/create_checks.h"
 #include "vulkan/shared_parts.h"
-#include "vulkan/submitted_work.h"
+#include "vulkan/timeline.h"
 
 #include <sluice/shared/bindings.h>
 
@@ -280,23 +280,9 @@ static SluiceResult create_descriptors(SluiceVulkanStreamer *s)
     return result;
 }
 
-static SluiceResult create_semaphore(SluiceVulkanStreamer *s)
-{
-    VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-    VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
-    SluiceResult result =
-        slc_vk_result(&s->vk, s->vk.CreateSemaphore(s->vk.device, &info, NULL, &s->semaphore),
-                      "vkCreateSemaphore");
-    if (result != SLUICE_SUCCESS)
-        s->semaphore = VK_NULL_HANDLE;
-    slc_vk_name(&s->vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)s->semaphore, "frames");
-    return result;
-}
-
 static SluiceResult create_device_parts(SluiceVulkanStreamer *s)
 {
-    SluiceResult result = create_semaphore(s);
+    SluiceResult result = slc_timeline_create(&s->vk, "frames", &s->semaphore);
     if (result == SLUICE_SUCCESS)
         result = slc_use_pages(&s->context->shared, &s->pages);
     if (result == SLUICE_SUCCESS)
@@ -391,7 +377,7 @@ static void wait_for_own_work(SluiceVulkanStreamer *s)
 {
     uint64_t frame = slc_streamer_last_submittable(s);
     if (frame > s->completed_frame)
-        slc_submitted_work_wait(&s->vk, s->semaphore, frame, "frame");
+        slc_timeline_wait(&s->vk, s->semaphore, frame, "frame");
     if (s->residency)
         s->residency->interface->wait(s->residency);
 }
@@ -472,19 +458,7 @@ SluiceResult sluiceGetVulkanPages(const SluiceVulkanStreamer *streamer, SluiceVu
 {
     if (!streamer || !pPages)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult checked =
-        slc_struct_check(SLC_STRUCT(SluiceVulkanPages), pPages, &streamer->vk.log);
-    if (checked != SLUICE_SUCCESS)
-        return checked;
-    const struct slc_page_views *views =
-        slc_page_pool_current_views(streamer->pages, streamer->page_user);
-    const SluiceVulkanPages pages = {.structSize = sizeof pages,
-                                     .sampler = views->sampler,
-                                     .viewCount = views->count,
-                                     .pViews = views->views,
-                                     .generation = views->generation};
-    slc_struct_write(SLC_STRUCT(SluiceVulkanPages), pPages, &pages);
-    return SLUICE_SUCCESS;
+    return slc_page_pool_write_views(streamer->pages, streamer->page_user, pPages);
 }
 
 static void take_manager_counts(const SluiceStreamedTextureManager *manager,

@@ -1,9 +1,23 @@
-#include "vulkan/submitted_work.h"
+#include "vulkan/timeline.h"
 
 #include "base/log.h"
 
 #define SECOND 1000000000ull
 #define PATIENCE 5u /* seconds without progress */
+
+SluiceResult slc_timeline_create(const struct slc_vk *vk, const char *name, VkSemaphore *semaphore)
+{
+    const VkSemaphoreTypeCreateInfo type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
+    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                        .pNext = &type};
+    SluiceResult result = slc_vk_result(vk, vk->CreateSemaphore(vk->device, &info, NULL, semaphore),
+                                        "vkCreateSemaphore");
+    if (result != SLUICE_SUCCESS)
+        *semaphore = VK_NULL_HANDLE;
+    slc_vk_name(vk, VK_OBJECT_TYPE_SEMAPHORE, (uint64_t)*semaphore, name);
+    return result;
+}
 
 static VkResult wait_a_second(const struct slc_vk *vk, VkSemaphore semaphore, uint64_t value)
 {
@@ -14,8 +28,8 @@ static VkResult wait_a_second(const struct slc_vk *vk, VkSemaphore semaphore, ui
     return vk->WaitSemaphores(vk->device, &info, SECOND);
 }
 
-void slc_submitted_work_wait(const struct slc_vk *vk, VkSemaphore semaphore, uint64_t value,
-                             const char *what)
+void slc_timeline_wait(const struct slc_vk *vk, VkSemaphore semaphore, uint64_t value,
+                       const char *what)
 {
     uint64_t reached = 0;
     for (uint32_t idle = 0; idle < PATIENCE; idle++) {
