@@ -94,3 +94,17 @@ void page_launch_interactively(SluiceDemandLoader *loader, VkCommandBuffer comma
         /* trace, end the launch, submit, and keep it behind those under way */
     }
 }
+
+static uint64_t build(uint32_t page)
+{
+    return page;
+}
+
+void page_answer(SluiceDemandLoader *loader, SluiceDemandResourceId resource);
+void page_answer(SluiceDemandLoader *loader, SluiceDemandResourceId resource)
+{
+    uint32_t pages[64], count = 64;
+    sluiceGetMissedDemandPages(loader, resource, &count, pages);
+    for (uint32_t i = 0; i < count; i++)
+        sluiceSetDemandPageValue(loader, resource, pages[i], build(pages[i]), false);
+}

@@ -347,10 +347,11 @@ typedef struct SluiceDemandResourceCreateInfo {
     uint32_t maxResidentPageCount;
     void *pUserData;
     /**
-     * Computes the value that shaders get for a page, 0 to pageCount - 1. Required if pageSize is
-     * 0, else NULL. Called on worker threads, several at the same time. SLUICE_NOT_READY: called
-     * again (readRetry), and later when a shader next misses the page. After other failures: called
-     * again when failureRetryDelayNs has passed.
+     * Computes the value that shaders get for a page, 0 to pageCount - 1. Must be NULL if pageSize
+     * is not 0. NULL: you answer pages that were missed (sluiceGetMissedDemandPages). Called on
+     * worker threads, several at the same time. SLUICE_NOT_READY: called again (readRetry), and
+     * later when a shader next misses the page. After other failures: called again when
+     * failureRetryDelayNs has passed.
      */
     SluiceResult (*pfnFill)(void *pUserData, uint32_t page, uint64_t *pValue);
     /**
@@ -370,9 +371,9 @@ typedef struct SluiceDemandResourceCreateInfo {
      */
     bool byteOffsets;
     /**
-     * Writes all `size` bytes of a page, pageSize of them, into staging memory. Required if
-     * pageSize is not 0, else NULL. Threads and errors as for pfnFill. The memory is write-only:
-     * reading it back is slow.
+     * Writes all `size` bytes of a page, pageSize of them, into staging memory. Must be NULL if
+     * pageSize is 0. NULL: you answer pages that were missed. Threads and errors as for pfnFill.
+     * The memory is write-only: reading it back is slow.
      */
     SluiceResult (*pfnRead)(void *pUserData, uint32_t page, uint32_t size, void *pBytes);
 } SluiceDemandResourceCreateInfo;
@@ -411,6 +412,58 @@ SLUICE_API SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
 SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
                                                     SluiceDemandResourceId resourceId,
                                                     uint32_t firstPage, uint32_t count);
+
+/**
+ * Lists pages of a resource without callback that launches missed, in the order in which they were
+ * missed: by launch, then ascending.
+ *
+ * A page is listed once, and not again until you answer it and it is missed anew. Answer with
+ * sluiceSetDemandPageValue or sluiceSetDemandPageBytes, whenever you like. Until then
+ * SluiceDemandRequests.missingCount includes it. To leave a page without an answer, call
+ * sluiceInvalidateDemandPages: it is listed again when it is missed again. That call also takes an
+ * answer back.
+ *
+ * `*pPageCount` is the capacity of `pPages`, and then how many pages were written: 0 to pageCount -
+ * 1 of the resource. Returns SLUICE_INCOMPLETE if there are more.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
+ *         an unknown or destroyed resource.
+ */
+SLUICE_API SluiceResult sluiceGetMissedDemandPages(SluiceDemandLoader *loader,
+                                                   SluiceDemandResourceId resourceId,
+                                                   uint32_t *pPageCount, uint32_t *pPages);
+/**
+ * Sets the value of a page of a resource with values. Shaders see it from the next launch on. The
+ * page need not have been missed, and the resource may have a pfnFill. A value that the page had is
+ * released (pfnEvict) when no launch reads it any more, and so is this one later.
+ *
+ * The page is evicted like others, and then missed again. `pinned`: it is never evicted, until it
+ * is set again or invalidated. Pinned pages count against maxResidentPageCount.
+ *
+ * Returns SLUICE_NOT_READY if the page is being filled, with nothing changed; or if all
+ * maxResidentPageCount pages are pinned, awaited or used by the last launch.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, beyond pageCount or for a resource
+ *         with bytes; SLUICE_ERROR_OUT_OF_HOST_MEMORY: the page may then have no value.
+ */
+SLUICE_API SluiceResult sluiceSetDemandPageValue(SluiceDemandLoader *loader,
+                                                 SluiceDemandResourceId resourceId, uint32_t page,
+                                                 uint64_t value, bool pinned);
+/**
+ * Sets the bytes of a page of a resource with bytes: copies pageSize bytes into staging memory. The
+ * next launch copies them into GPU memory, and shows them. Otherwise as sluiceSetDemandPageValue.
+ * Pinned pages count against byteMemoryBudget.
+ *
+ * Returns SLUICE_NOT_READY, with nothing changed, if the page is being read or was set a moment
+ * ago, or if no staging memory is free: begin a launch, and call again. Also returns it if no slot
+ * is free: the page is then missing.
+ *
+ * Errors: as sluiceSetDemandPageValue; SLUICE_ERROR_INVALID_ARGUMENT for a resource with values.
+ */
+SLUICE_API SluiceResult sluiceSetDemandPageBytes(SluiceDemandLoader *loader,
+                                                 SluiceDemandResourceId resourceId, uint32_t page,
+                                                 const void *pBytes, bool pinned);
 
 /** Storage buffers for shaders. The handles never change during the loader's life. */
 typedef struct SluiceDemandBuffers {
@@ -548,8 +601,8 @@ typedef struct SluiceDemandRequests {
      * resident, or is as sharp as memory allows.
      */
     uint32_t missingCount;
-    uint32_t servedCount;    ///< Reads and fills that begin now.
-    uint32_t pendingCount;   ///< Reads and fills already in progress.
+    uint32_t servedCount;    ///< Reads and fills that begin now, and pages that you are to answer.
+    uint32_t pendingCount;   ///< Reads and fills already in progress, and pages that are awaited.
     uint32_t restoredCount;  ///< Evicted pages restored without a read.
     uint32_t postponedCount; ///< Did not fit into the list, or too much is in flight.
     uint32_t refusedCount;   ///< No memory, or unreadable. Coarser levels are used for now.

@@ -12,6 +12,7 @@
 #include "base/none.h"
 #include "demand/page_residency.h"
 #include "demand_vulkan/byte_memory.h"
+#include "demand_vulkan/missed_pages.h"
 #include "demand_vulkan/page_directory.h"
 #include "demand_vulkan/scan.h"
 #include "demand_vulkan/table_mirror.h"
@@ -116,8 +117,9 @@ struct slc_demand_resource {
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
-    uint32_t retry_group; ///< pages that have no value; 0: none
-    bool told;            ///< of the first of them
+    struct slc_missed_pages missed; ///< loading, and the application is to answer them
+    uint32_t retry_group;           ///< pages that have no value; 0: none
+    bool told;                      ///< of the first of them
 };
 
 /* A value that no new launch sees. */
@@ -277,7 +279,8 @@ struct SluiceDemandLoader {
     bool byte_classes[SLC_DEMAND_CLASSES]; ///< ... or last used for byte pages
     struct slc_eviction *evictions;        ///< owned; a ring in the order of their launches
     uint32_t eviction_first, eviction_count, eviction_capacity;
-    uint32_t held_count; ///< values of resources that are resident: each will need a place there
+    uint32_t unasked_count; ///< pages of the last launch that the residency was not asked for
+    uint32_t held_count;    ///< values of resources that are resident: each will need a place there
 
     SluiceTileLoader *reader;
     struct slc_demand_job *jobs; ///< owned
@@ -385,7 +388,21 @@ void slc_images_finish(SluiceDemandLoader *loader);
 /** A source whose every texel is an image to be opened: see slc_demand_image.read_color. */
 void slc_image_opener_init(SluiceImageSource *opener);
 
+/* page_answers.c */
+/** A page of a resource without a callback. */
+enum slc_request_answer slc_answer_request(SluiceDemandLoader *loader,
+                                           struct slc_demand_resource *resource, uint32_t page,
+                                           SluiceResult *result);
+/** These pages were forgotten, and are not awaited any more. */
+void slc_answers_forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
+                        uint32_t first, uint32_t count);
+
 /* resources.c */
+/** Errors: UNKNOWN_TEXTURE, STALE_TEXTURE. */
+SluiceResult slc_resource_find(SluiceDemandLoader *loader, SluiceDemandResourceId id,
+                               struct slc_demand_resource **resource);
+/** Room to remember that every value that is resident, and one more, went. */
+bool slc_resource_reserve_eviction(SluiceDemandLoader *loader);
 enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
                                              uint32_t page, SluiceDemandTicket ticket,
                                              SluiceResult *result);

@@ -75,6 +75,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
     slc_residency_begin(loader->residency, launch);
     if (loader->tracked[slot])
         feed_used(loader, slot);
+    loader->unasked_count = 0;
     slc_jobs_begin_batch(loader);
     for (uint32_t i = 0; i < scan.listedCount; i++) {
         SluiceResult result; /* without host memory it is one of those that are postponed */
@@ -83,7 +84,8 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
     }
     slc_jobs_end_batch(loader);
-    slc_residency_settle(loader->residency, scan.requestCount);
+    /* Pages that it was not asked for count as tiles there; these are none. */
+    slc_residency_settle(loader->residency, scan.requestCount - loader->unasked_count);
     slc_evicted_take(loader);
     add_counts(&loader->counts, &now);
     requests->missingCount += now.missingCount;

@@ -46,8 +46,8 @@ static SluiceDemandResourceId resource_id(const struct slc_demand_resource *reso
     return (uint64_t)resource->generation << 32 | (resource->index + 1);
 }
 
-static SluiceResult find(SluiceDemandLoader *loader, SluiceDemandResourceId id,
-                         struct slc_demand_resource **resource)
+SluiceResult slc_resource_find(SluiceDemandLoader *loader, SluiceDemandResourceId id,
+                               struct slc_demand_resource **resource)
 {
     uint32_t index = (uint32_t)id - 1, generation = (uint32_t)(id >> 32);
     if (index >= loader->resource_high || generation == 0 ||
@@ -171,8 +171,6 @@ SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
                                           pCreateInfo, &loader->vk.log);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (!(info.pageSize ? (bool)info.pfnRead : (bool)info.pfnFill))
-        return SLUICE_ERROR_NULL_POINTER;
     result = check(loader, &info);
     if (result == SLUICE_SUCCESS && info.pageSize)
         result = slc_byte_pages_prepare(loader, info.pageSize);
@@ -195,13 +193,18 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
     *result = SLUICE_SUCCESS;
     if (resource->state != SLC_RESOURCE_LIVE || region.x >= resource->info.pageCount)
         return SLC_REQUEST_RESIDENT;
-    if (!slc_job_is_ready(loader, resource->job_kind))
+    if (!resource->info.pfnFill && !resource->info.pfnRead)
+        return slc_answer_request(loader, resource, page, result);
+    if (!slc_job_is_ready(loader, resource->job_kind)) {
+        loader->unasked_count++;
         return SLC_REQUEST_POSTPONED;
+    }
     const struct slc_page_request request = {.page = page,
                                              .class_index = resource->class_index,
                                              .rank = (uint8_t)resource->info.rank,
                                              .kind = resource->stride};
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
+    loader->unasked_count += *result != SLUICE_SUCCESS;
     if (answer != SLC_REQUEST_LOAD)
         return answer;
     struct slc_demand_job *job = slc_job_take(loader, resource->job_kind);
@@ -239,6 +242,7 @@ static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *r
     if (resource->state != SLC_RESOURCE_DESTROYED || resource->job_count ||
         resource->eviction_count)
         return;
+    slc_missed_pages_finish(&resource->missed, &loader->cb);
     sluiceDropTileLoaderStatistics(loader->reader, &resource->base);
     slc_pages_give(loader, resource->first_page, resource->info.pageCount);
     give_class(loader, resource->class_index);
@@ -251,8 +255,7 @@ static void check_gone(SluiceDemandLoader *loader, struct slc_demand_resource *r
     loader->free_resource = resource->index;
 }
 
-/* Room to remember that every value that is resident went. */
-static bool reserve_eviction(SluiceDemandLoader *loader)
+bool slc_resource_reserve_eviction(SluiceDemandLoader *loader)
 {
     uint32_t old = loader->eviction_capacity;
     if (loader->eviction_count + loader->held_count < old)
@@ -303,7 +306,7 @@ void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *jo
 {
     struct slc_demand_resource *resource = loader->resources[job->owner];
     bool filled = result == SLUICE_SUCCESS;
-    if (filled && !job->stale && reserve_eviction(loader)) {
+    if (filled && !job->stale && slc_resource_reserve_eviction(loader)) {
         loader->held_count++;
         slc_residency_loaded(loader->residency, job->page, job->value);
         slc_resource_note_success(loader, resource, job->page);
@@ -352,6 +355,7 @@ static void forget(SluiceDemandLoader *loader, struct slc_demand_resource *resou
     if (resource->job_count || resource->stride) /* bytes may be on their way to their slots */
         slc_jobs_drop(loader, resource->job_kind, resource->index, first, count);
     slc_residency_forget(loader->residency, first, count);
+    slc_answers_forget(loader, resource, first, count);
     slc_evicted_take(loader);
 }
 
@@ -362,7 +366,7 @@ SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
     struct slc_demand_resource *resource;
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = find(loader, resourceId, &resource);
+    SluiceResult result = slc_resource_find(loader, resourceId, &resource);
     if (result != SLUICE_SUCCESS)
         return result;
     uint32_t page_count = resource->info.pageCount;
@@ -379,7 +383,7 @@ SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
     struct slc_demand_resource *resource;
     if (!loader)
         return SLUICE_ERROR_NULL_POINTER;
-    SluiceResult result = find(loader, resourceId, &resource);
+    SluiceResult result = slc_resource_find(loader, resourceId, &resource);
     if (result != SLUICE_SUCCESS)
         return result;
     forget(loader, resource, resource->first_page, resource->info.pageCount);
@@ -399,8 +403,10 @@ void slc_resources_finish(SluiceDemandLoader *loader)
                    loader->resources[i]->info.pageCount);
     while (loader->eviction_count)
         tell_next(loader);
-    for (uint32_t i = 0; i < loader->resource_high; i++)
+    for (uint32_t i = 0; i < loader->resource_high; i++) {
+        slc_missed_pages_finish(&loader->resources[i]->missed, &loader->cb);
         slc_free(&loader->cb, loader->resources[i], 1, sizeof *loader->resources[i]);
+    }
     slc_free(&loader->cb, loader->resources, loader->resource_capacity,
              sizeof(struct slc_demand_resource *));
     slc_free(&loader->cb, loader->evictions, loader->eviction_capacity, sizeof *loader->evictions);

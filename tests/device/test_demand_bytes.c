@@ -389,6 +389,38 @@ static void abandoned_launches_lose_no_page(void **state)
     runner_finish(&r);
 }
 
+static void pages_that_wait_for_staging_memory_blur_no_texture(void **state)
+{
+    (void)state;
+    struct runner r;
+    struct store s;
+    if (!h.reads_bytes)
+        skip();
+    const SluiceDemandLoaderCreateInfo create = {
+        .structSize = sizeof create, .memoryBudget = 16u << 20, .maxTilesInFlight = 16};
+    h.runs_bytes = true;
+    runner_init(&r, &h, &create);
+    store_init(&s, 1000);
+    store_add(&r, &s, 3000, 0, true);
+    for (uint32_t i = 0; i < 3000; i++)
+        add_page(&r, &s, i, true);
+    for (uint32_t i = 0; i < 4; i++) {
+        runner_launch(&r);
+        assert_true(r.requests.postponedCount > 1000); /* more than there is room for tiles */
+        assert_true(r.requests.lodBias == 0.0f);
+    }
+    runner_load(&r, 400);
+    assert_int_equal(r.requests.missingCount, 0);
+    runner_finish(&r);
+}
+
+static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
+{
+    (void)user;
+    *value = page;
+    return SLUICE_SUCCESS;
+}
+
 static void wrong_arguments_are_refused(void **state)
 {
     (void)state;
@@ -411,11 +443,14 @@ static void wrong_arguments_are_refused(void **state)
                  SLUICE_ERROR_INVALID_ARGUMENT);
     assert_non_null(strstr(h.last_message, "pageSize is 1048577"));
     info = good;
-    info.pfnRead = NULL;
-    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first), SLUICE_ERROR_NULL_POINTER);
+    info.pageSize = 0; /* pfnRead is for bytes, pfnFill for values */
+    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
+    assert_non_null(strstr(h.last_message, "pfnRead"));
     info = good;
-    info.pageSize = 0;
-    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first), SLUICE_ERROR_NULL_POINTER);
+    info.pfnFill = fill;
+    CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
+                 SLUICE_ERROR_INVALID_ARGUMENT);
     info = good;
     info.rank = 16;
     CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
@@ -450,6 +485,7 @@ int main(void)
         cmocka_unit_test(chunks_that_run_empty_are_freed),
         cmocka_unit_test(removed_resources_give_their_memory_back),
         cmocka_unit_test(abandoned_launches_lose_no_page),
+        cmocka_unit_test(pages_that_wait_for_staging_memory_blur_no_texture),
         cmocka_unit_test(wrong_arguments_are_refused),
     };
     return harness_finish(&h, RUN_TESTS(tests));

@@ -13,8 +13,8 @@ struct life {
     struct runner r;
     struct runner_image image, other;
     SluiceDemandTextureId texture, variant, grid;
-    SluiceDemandResourceId resource, small, large;
-    uint32_t first_page, first_small, first_large;
+    SluiceDemandResourceId resource, small, large, answered;
+    uint32_t first_page, first_small, first_large, first_answered;
 };
 
 static SluiceResult fill(void *user, uint32_t page, uint64_t *value)
@@ -78,6 +78,22 @@ static SluiceResult create_large(struct life *l)
     return sluiceAddDemandResource(l->r.loader, &info, &l->large, &l->first_large);
 }
 
+static SluiceResult create_answered(struct life *l)
+{
+    const SluiceDemandResourceCreateInfo info = {.structSize = sizeof info, .pageCount = 3000};
+    return sluiceAddDemandResource(l->r.loader, &info, &l->answered, &l->first_answered);
+}
+
+/* More than the arrays of a loader hold at first. */
+static SluiceResult set_pages(struct life *l)
+{
+    static const uint8_t bytes[5000];
+    SluiceResult result = sluiceSetDemandPageBytes(l->r.loader, l->small, 2999, bytes, true);
+    for (uint32_t i = 0; i < 200 && result >= 0; i++)
+        result = sluiceSetDemandPageValue(l->r.loader, l->answered, i, i, i % 2);
+    return result < 0 ? result : SLUICE_SUCCESS;
+}
+
 static SluiceResult preload(struct life *l)
 {
     SluiceDemandTicket ticket;
@@ -125,15 +141,17 @@ static SluiceResult destroy(struct life *l)
         result = sluiceRemoveDemandResource(l->r.loader, l->small);
     if (result == SLUICE_SUCCESS)
         result = sluiceRemoveDemandResource(l->r.loader, l->large);
+    if (result == SLUICE_SUCCESS)
+        result = sluiceRemoveDemandResource(l->r.loader, l->answered);
     return result;
 }
 
 /* In the order of a life; launches between show what was made and changed. */
 static SluiceResult (*const calls[])(struct life *) = {
-    create_texture, create_variant, create_grid, create_resource, create_bytes,
-    create_large,   launch,         launch,      launch,          preload,
-    launch,         invalidate,     launch,      launch,          replace,
-    launch,         launch,         launch,      destroy,         launch};
+    create_texture,  create_variant, create_grid, create_resource, create_bytes, create_large,
+    create_answered, set_pages,      launch,      launch,          launch,       preload,
+    launch,          invalidate,     launch,      launch,          replace,      launch,
+    launch,          launch,         destroy,     launch};
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
 static void open_life(struct life *l)
@@ -157,9 +175,10 @@ static void check_shown(struct life *l, struct runner_image *image)
 {
     runner_clear(&l->r);
     runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
-    CHECK_OK(launch(l));
-    CHECK_OK(launch(l));
-    CHECK_OK(launch(l));
+    /* After a refused image of pages the device is not asked for 60 launches. */
+    for (uint32_t i = 0;
+         i < 3 || (i < 200 && (l->r.requests.missingCount || l->r.requests.lodBias > 0.0f)); i++)
+        CHECK_OK(launch(l));
     assert_int_equal(l->r.requests.missingCount, 0);
     runner_check_texel(&l->r, 0, image, 0, 299, 299);
 }
@@ -170,9 +189,11 @@ static void aim(struct life *l)
     runner_add_texel(&l->r, l->texture, 300, 300, 0, 299, 299);
     for (uint32_t i = 0; i < 50; i++)
         runner_add_page(&l->r, l->first_page + i * 50);
-    for (uint32_t i = 0; i < 20 && l->small; i++)
+    for (uint32_t i = 0; i < 20; i++)
         runner_add_page(&l->r, l->first_small + i * 50);
-    for (uint32_t i = 0; i < 2 && l->large; i++)
+    for (uint32_t i = 0; i < 300; i++)
+        runner_add_page(&l->r, l->first_answered + 100 + i);
+    for (uint32_t i = 0; i < 2; i++)
         runner_add_page(&l->r, l->first_large + i * 50);
 }
 
@@ -206,7 +227,7 @@ static void every_call_survives_every_refused_allocation(void **state)
         open_life(&l);
         for (uint32_t step = 0; step < CALLS; step++) {
             refusals += press(&l, step, lasting);
-            if (calls[step] == create_large)
+            if (calls[step] == set_pages)
                 aim(&l);
             if (calls[step] == preload)
                 check_shown(&l, &l.image);
@@ -232,7 +253,7 @@ static void questions_take_no_memory(void **state)
     static struct life l;
     l = (struct life){0};
     open_life(&l);
-    for (uint32_t step = 0; step < 8; step++)
+    for (uint32_t step = 0; step < 10; step++)
         CHECK_OK(calls[step](&l));
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     SluiceDemandLaunch launch = {.structSize = sizeof launch};
@@ -250,6 +271,9 @@ static void questions_take_no_memory(void **state)
     sluiceGetDemandBuffers(l.r.loader, &buffers);
     sluiceGetDemandPages(l.r.loader, &pages);
     sluiceGetDemandByteBuffers(l.r.loader, &byte_buffers);
+    uint32_t missed[8], missed_count = 8;
+    CHECK_RESULT(sluiceGetMissedDemandPages(l.r.loader, l.answered, &missed_count, missed),
+                 SLUICE_SUCCESS);
     CHECK_OK(sluiceGetDemandDescriptorSetLayout(l.r.loader, &layout));
     (void)runner_statistics(&l.r);
     CHECK_OK(sluiceGetDemandTicketStatus(l.r.loader, l.r.ticket, &status));

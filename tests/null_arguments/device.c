@@ -52,6 +52,9 @@ sluicePreloadDemandTexture(f->loader, f->id, 0, ?&f->out.ticket)
 sluiceAddDemandResource(f->loader, &f->resource_info, &f->out.resource, &f->out.page)
 sluiceRemoveDemandResource(f->loader, f->resource)
 sluiceInvalidateDemandPages(f->loader, f->resource, 0, 1)
+sluiceGetMissedDemandPages(f->loader, f->resource, &f->out.page_count, &f->out.page)
+sluiceSetDemandPageValue(f->loader, f->resource, 0, ?1, ?true)
+sluiceSetDemandPageBytes(f->loader, f->bytes, 0, &f->out.page, ?true)
 sluiceGetDemandBuffers(f->loader, &f->out.demand_buffers)
 sluiceGetDemandPages(f->loader, &f->out.pages)
 sluiceGetDemandByteBuffers(f->loader, &f->out.byte_buffers)
@@ -92,7 +95,7 @@ struct fixture {
     SluiceDemandTextureId id;
     float color[4];
     SluiceDemandResourceCreateInfo resource_info;
-    SluiceDemandResourceId resource;
+    SluiceDemandResourceId resource, bytes;
     SluiceDemandLaunch launch;
     struct {
         SluiceResidencyMode mode;
@@ -116,7 +119,7 @@ struct fixture {
         SluiceDemandTextureId id;
         SluiceDemandTicket ticket;
         SluiceDemandResourceId resource;
-        uint32_t page;
+        uint32_t page, page_count;
         SluiceDemandBuffers demand_buffers;
         SluiceDemandByteBuffers byte_buffers;
         SluiceDemandLaunch launch;
@@ -187,6 +190,9 @@ static void init_loader(struct fixture *f)
         .structSize = sizeof(SluiceDemandResourceCreateInfo), .pageCount = 4, .pfnFill = fill};
     uint32_t first;
     CHECK_OK(sluiceAddDemandResource(f->loader, &f->resource_info, &f->resource, &first));
+    const SluiceDemandResourceCreateInfo bytes = {
+        .structSize = sizeof bytes, .pageCount = 4, .pageSize = 4};
+    CHECK_OK(sluiceAddDemandResource(f->loader, &bytes, &f->bytes, &first));
 }
 
 static void fixture_init(struct fixture *f, void **state)
