@@ -71,6 +71,7 @@ typedef enum SluiceResult {
     SLUICE_ERROR_TIME_BACKWARDS = -12,
     /** A map or buffer does not have the size that the texture requires. */
     SLUICE_ERROR_SIZE_MISMATCH = -13,
+    /** No heap has this id. */
     SLUICE_ERROR_UNKNOWN_HEAP = -14,
     /** The heap still holds tiles. */
     SLUICE_ERROR_HEAP_IN_USE = -15,
@@ -83,9 +84,11 @@ typedef enum SluiceResult {
     SLUICE_ERROR_FILE_NOT_FOUND = -19,
     /** The operating system failed to read or write. */
     SLUICE_ERROR_IO = -20,
+    /** The work was canceled before it ended. */
     SLUICE_ERROR_CANCELED = -21,
     /** A Vulkan call failed. The log callback names the call and its VkResult. */
     SLUICE_ERROR_VULKAN = -22,
+    /** A Vulkan call returned VK_ERROR_DEVICE_LOST. */
     SLUICE_ERROR_DEVICE_LOST = -23,
     /** Another writer has the file open. Nothing has changed. */
     SLUICE_ERROR_BUSY = -24

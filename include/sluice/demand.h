@@ -18,7 +18,7 @@
  * Interactive renderers do not wait for the ticket; they show what is resident. docs/demand.md
  * explains each step.
  *
- * Ids are never reused. The id of a destroyed object is refused.
+ * Ids are never reused. The id of a removed texture or resource is refused.
  *
  * Thread safety, unless a function says otherwise: external on the loader.
  */
@@ -36,6 +36,7 @@ typedef struct SluiceDemandLoader SluiceDemandLoader;
 
 /** Id of a texture. Never 0. The low 32 bits are the index for shaders. */
 typedef uint64_t SluiceDemandTextureId;
+/** Id of a resource. Never 0. */
 typedef uint64_t SluiceDemandResourceId;
 /** Ticket of the work that one call started. 0: no work, always complete. */
 typedef uint64_t SluiceDemandTicket;
@@ -53,7 +54,7 @@ typedef struct SluiceDemandLoaderCreateInfo {
     SluiceVulkanContext *context;
     uint32_t launchesInFlight; ///< 1 to 16. Default: 2.
     uint32_t maxTextureCount;  ///< Including variants and grids. At most 2^24. Default: 2^17.
-    uint64_t pageCapacity;     ///< Virtual pages, at most 2^31. Rounded up to 1024s. Default: 2^26.
+    uint64_t pageCapacity; ///< Virtual pages, at most 2^31. Made a multiple of 1024. Default: 2^26.
     /**
      * Most pages that one scan lists and one call serves. Other pages wait for the next scan. At
      * most 2^20. Default: 8192. Choose more than the number of resource pages that are refused or
@@ -95,9 +96,10 @@ typedef struct SluiceDemandLoaderCreateInfo {
      *  resource. */
     SluiceTileReadFailureCallback failure;
     /**
-     * Nanoseconds until failed work may be tried again: textures that could not be opened, and four
-     * tiles of a texture or pages of a resource; the others as soon as one of the four loads. They
-     * are loaded when shaders next request them. Default: 30 s. UINT64_MAX: never.
+     * Nanoseconds until failed work may be tried again: a texture that could not be opened, or four
+     * tiles of a texture or pages of a resource. When one of the four loads, all others of the
+     * texture or resource may be tried again. Work begins when shaders next request it. Default:
+     * 30 s. UINT64_MAX: never.
      */
     uint64_t failureRetryDelayNs;
 } SluiceDemandLoaderCreateInfo;
@@ -225,7 +227,7 @@ typedef struct SluiceDemandTextureCreateInfo {
 } SluiceDemandTextureCreateInfo;
 
 /**
- * Creates a texture without opening its image.
+ * Adds a texture without opening its image.
  *
  * Any format that the device can sample and filter is allowed. An image that has several layers, or
  * whose info is out of range (image.h), shows its failureColor once it was opened.
@@ -239,8 +241,8 @@ SLUICE_API SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
                                                SluiceDemandTextureId *pTextureId);
 
 /**
- * Creates a texture that shares image and tiles of `baseId` and has another sampler. Destroyed with
- * its base texture, or earlier.
+ * Adds a texture that shares image and tiles of `baseId` and has another sampler. It is removed
+ * with its base texture, or earlier.
  *
  * Errors: as sluiceAddDemandTexture; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT if `baseId` is a grid.
@@ -251,7 +253,7 @@ SLUICE_API SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader
                                                       SluiceDemandTextureId *pTextureId);
 
 /**
- * Creates a grid of `columns` x `rows` textures that is sampled as one texture: column floor(u),
+ * Adds a grid of `columns` x `rows` textures that is sampled as one texture: column floor(u),
  * row floor(v).
  *
  * `pTextureIds` lists them row by row from v = 0. Samples outside the grid, and where an id is
@@ -269,7 +271,7 @@ SLUICE_API SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
                                             SluiceDemandTextureId *pTextureId);
 
 /**
- * Destroys a texture and its variants.
+ * Removes a texture and its variants.
  *
  * Shaders that still use it get its failureColor; in grids, the grid's missingColor. Its pages and
  * index are reused after the launches begun so far are processed.
@@ -379,7 +381,7 @@ typedef struct SluiceDemandResourceCreateInfo {
 } SluiceDemandResourceCreateInfo;
 
 /**
- * Creates a resource. Shaders address its pages as `*pFirstPage` + page, with the functions of
+ * Adds a resource. Shaders address its pages as `*pFirstPage` + page, with the functions of
  * shaders/include/sluice/demand_pages.glsl and demand_bytes.glsl.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for values
@@ -393,13 +395,13 @@ SLUICE_API SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
                                                 SluiceDemandResourceId *pResourceId,
                                                 uint32_t *pFirstPage);
 /**
- * Destroys a resource. Waits for its fills in progress.
+ * Removes a resource. Waits for its fills in progress.
  *
  * Its values are evicted when the launches begun so far are processed, at the latest when the
  * loader is destroyed. Keep pUserData until then.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
- *         an unknown or destroyed resource.
+ *         an unknown or removed resource.
  */
 SLUICE_API SluiceResult sluiceRemoveDemandResource(SluiceDemandLoader *loader,
                                                    SluiceDemandResourceId resourceId);
@@ -606,7 +608,7 @@ typedef struct SluiceDemandRequests {
     uint32_t restoredCount;  ///< Evicted pages restored without a read.
     uint32_t postponedCount; ///< Did not fit into the list, or too much is in flight.
     uint32_t refusedCount;   ///< No memory, or unreadable. Coarser levels are used for now.
-    float lodBias;           ///< LOD bias of the next launch; see noLodBias.
+    float lodBias;           ///< LOD bias of the next launch, in levels; see noLodBias.
 } SluiceDemandRequests;
 
 /**
@@ -614,8 +616,8 @@ typedef struct SluiceDemandRequests {
  * first.
  *
  * Process each launch once, in order. Processing a launch also processes the launches before it.
- * Returns SLUICE_NOT_READY, with nothing changed, if the launch is not complete after `timeoutNs`.
- * `pTicket` may be NULL.
+ * Returns SLUICE_NOT_READY, with nothing changed, if the launch is not complete after `timeoutNs`
+ * nanoseconds. 0: does not wait. UINT64_MAX: waits without limit. `pTicket` may be NULL.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for a launch that was not ended
  *         or was processed before; SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_VULKAN;
@@ -646,7 +648,7 @@ SLUICE_API SluiceResult sluiceGetDemandTicketStatus(SluiceDemandLoader *loader,
  * Waits until all tasks of a ticket that have begun have ended, successfully or not. Except for
  * preloads these are all tasks. `pStatus` may be NULL.
  *
- * Returns SLUICE_NOT_READY after `timeoutNs`.
+ * Returns SLUICE_NOT_READY after `timeoutNs` nanoseconds. UINT64_MAX: waits without limit.
  *
  * Errors: as sluiceGetDemandTicketStatus; SLUICE_ERROR_CANCELED after sluiceAbortDemandLoader.
  * Thread safety: any thread.
@@ -656,6 +658,8 @@ SLUICE_API SluiceResult sluiceWaitDemandTicket(SluiceDemandLoader *loader,
                                                SluiceDemandTicketStatus *pStatus);
 /**
  * Cancels the tasks of a ticket that have not begun. Shaders may request them again.
+ *
+ * Errors: as sluiceGetDemandTicketStatus.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader,
@@ -663,6 +667,8 @@ SLUICE_API SluiceResult sluiceCancelDemandTicket(SluiceDemandLoader *loader,
 /**
  * Cancels all tasks that have not begun, and wakes all waiting threads. From then on launches
  * return SLUICE_ERROR_CANCELED. The loader can only be destroyed.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceAbortDemandLoader(SluiceDemandLoader *loader);
@@ -677,13 +683,14 @@ typedef struct SluiceDemandStatistics {
     uint64_t requestCount, pendingCount, servedCount, restoredCount, refusedCount, postponedCount;
     uint64_t evictedCount, failedCount, canceledCount;
     uint64_t texturesCreated, texturesOpened, texturesFailed;
-    uint64_t bytesRead, bytesUploaded;
+    uint64_t bytesRead;                 ///< Bytes read from sources and resources.
+    uint64_t bytesUploaded;             ///< Bytes copied to pages.
     uint64_t virtualPageCount;          ///< Virtual pages that have an id.
     uint64_t residentTileCount;         ///< Mip tails count as tiles.
     uint64_t residentResourcePageCount; ///< Pages with values.
     uint64_t tileMemorySize;            ///< Bytes of device memory for tiles. At most the budget.
     uint64_t deviceMemorySize;          ///< Bytes of all device memory that is not host-mapped.
-    float lodBias;
+    float lodBias;                      ///< LOD bias of all textures, in levels.
     /**
      * Reads and fills by time from request to end. Bucket i counts those of less than 2^i us that
      * bucket i - 1 does not; the last bucket counts all others.

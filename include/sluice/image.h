@@ -91,7 +91,8 @@ typedef struct SluiceFormatInfo {
  * Gets the block size and channel count of a format.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if the format is UNDEFINED or
- * unknown. Thread safety: any thread.
+ *         unknown.
+ * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetFormatInfo(SluiceFormat format, SluiceFormatInfo *pInfo);
 /**
@@ -109,13 +110,15 @@ SLUICE_API uint32_t sluiceGetFormatTexelSize(SluiceFormat format);
 SLUICE_API uint64_t sluiceGetFormatRegionSize(SluiceFormat format, uint32_t width, uint32_t height);
 /**
  * Returns the name without prefix, such as "R8_UNORM". "UNDEFINED" for UNDEFINED and unknown
- * values. Thread safety: any thread.
+ * values.
+ * Thread safety: any thread.
  */
 SLUICE_API const char *sluiceGetFormatName(SluiceFormat format);
 /**
  * Gets width and height, in texels, of the standard 64 KiB tile.
  *
- * Errors: SLUICE_ERROR_UNSUPPORTED if the format is UNDEFINED or unknown.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNSUPPORTED if the format is UNDEFINED or
+ *         unknown.
  * Thread safety: any thread.
  */
 SLUICE_API SluiceResult sluiceGetStandardTileShape(SluiceFormat format, uint32_t *pWidth,

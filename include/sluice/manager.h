@@ -123,13 +123,14 @@ typedef struct SluiceStreamedTextureManagerConfig {
      */
     uint64_t givenUpRetryDelayTicks;
     /**
-     * Number of heaps to shrink to. While more heaps exist, tiles are evicted until the others fit
-     * into so many heaps: STANDBY tiles, oldest first, then wanted tiles, finest first. No heap is
-     * allocated meanwhile. Packed tiles stay. Make the heaps empty with sluiceEvacuateHeaps, and
-     * release them with sluiceGetEmptyHeaps and sluiceReleaseHeap. Default: 0, never shrink.
+     * Number of heaps to shrink to. While more heaps exist, tiles are evicted until the rest fits
+     * into targetHeapCount heaps: STANDBY tiles, oldest first, then wanted tiles, finest first. No
+     * heap is allocated meanwhile. Packed tiles stay. Make the heaps empty with
+     * sluiceEvacuateHeaps, and release them with sluiceGetEmptyHeaps and sluiceReleaseHeap.
+     * Default: 0, never shrink.
      */
     uint32_t targetHeapCount;
-    /** Requests never evict resident tiles: they wait for free slots. targetHeapCount still does.
+    /** Requests never evict resident tiles: they wait for free slots. targetHeapCount still evicts.
      */
     bool noEviction;
     bool noMipBias; ///< The global mip bias becomes 0 and stays 0.
@@ -296,8 +297,8 @@ SLUICE_API SluiceResult sluiceAddStreamedTexture(SluiceStreamedTextureManager *m
  * Its tiles are no longer listed, and late answers return SLUICE_ERROR_STALE_TEXTURE. Textures that
  * follow it have no primary from now on.
  *
- * Errors: SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE; SLUICE_ERROR_TIME_BACKWARDS if
- *         `retireValue` is below an earlier one.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_TIME_BACKWARDS if `retireValue` is below an earlier one.
  */
 SLUICE_API SluiceResult sluiceRemoveStreamedTexture(SluiceStreamedTextureManager *manager,
                                                     SluiceTextureId textureId,
@@ -367,9 +368,9 @@ SLUICE_API SluiceResult sluiceMatchPrimaryTexture(SluiceStreamedTextureManager *
  * SLUICE_NO_TEXTURE as primary ends following. Current requests of the follower expire only with
  * later maps.
  *
- * Errors: SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE; SLUICE_ERROR_INVALID_ARGUMENT
- *         if the primary is the texture itself or follows another, or if the texture has followers;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
+ *         SLUICE_ERROR_INVALID_ARGUMENT if the primary is the texture itself or follows another, or
+ *         if the texture has followers; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
 SLUICE_API SluiceResult sluiceSetPrimaryTexture(SluiceStreamedTextureManager *manager,
                                                 SluiceTextureId followerId,
@@ -529,7 +530,7 @@ SLUICE_API SluiceResult sluiceGetTilesToUnmap(SluiceStreamedTextureManager *mana
  * A retire value is a frame number or timeline semaphore value. Values passed to calls that release
  * slots must not decrease, nor must values passed here. 0 is always complete.
  *
- * Errors: SLUICE_ERROR_TIME_BACKWARDS.
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_TIME_BACKWARDS.
  */
 SLUICE_API SluiceResult sluiceCompleteRetireValue(SluiceStreamedTextureManager *manager,
                                                   uint64_t retireValue);
@@ -581,7 +582,7 @@ SLUICE_API SluiceResult sluiceGetEmptyHeaps(const SluiceStreamedTextureManager *
 /**
  * Releases an empty heap through the heap allocator.
  *
- * Errors: SLUICE_ERROR_UNKNOWN_HEAP, SLUICE_ERROR_HEAP_IN_USE.
+ * Errors: SLUICE_ERROR_NULL_POINTER, SLUICE_ERROR_UNKNOWN_HEAP, SLUICE_ERROR_HEAP_IN_USE.
  */
 SLUICE_API SluiceResult sluiceReleaseHeap(SluiceStreamedTextureManager *manager, uint32_t heapId);
 
@@ -615,6 +616,8 @@ SLUICE_API SluiceResult sluiceWriteMinMipRect(const SluiceStreamedTextureManager
  * Returns rectangles that cover all MinMip texels that changed since they were last returned, at
  * most one per texture. For a new texture the rectangle is the whole map. Uses `pRectCount` and
  * `pRects` as sluiceGetTilesToMap uses `pTileCount` and `pTiles`.
+ *
+ * Errors: SLUICE_ERROR_NULL_POINTER.
  */
 SLUICE_API SluiceResult sluiceGetMinMipUpdates(SluiceStreamedTextureManager *manager,
                                                uint32_t *pRectCount, SluiceMinMipRect *pRects);

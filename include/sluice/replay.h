@@ -65,7 +65,11 @@ SLUICE_API SluiceResult sluiceBeginFileRecording(SluiceStreamedTextureManager *m
                                                  const SluiceFileRecordingInfo *pInfo,
                                                  SluiceRecorder **pRecorder);
 
-/** Calls sluiceBeginFileRecording without a log. */
+/**
+ * Calls sluiceBeginFileRecording without a log.
+ *
+ * Errors, thread safety: as sluiceBeginFileRecording.
+ */
 SLUICE_API SluiceResult sluiceBeginRecordingToFile(SluiceStreamedTextureManager *manager,
                                                    const char *pPath,
                                                    const SluiceAllocationCallbacks *pAllocator,

@@ -78,8 +78,10 @@ typedef struct SluiceVulkanDeviceCapabilities {
     bool shaderResourceResidency;    ///< Residency codes exist.
     bool shaderResourceMinLod;       ///< Samplers take a LOD clamp: SLUICE_MIN_LOD in sample.glsl.
     bool residencyNonResidentStrict; ///< Reads of unbound texels return 0.
-    bool nonUniformIndexing;      ///< Of image arrays. If false, shaders define SLUICE_PAGE_LOOP.
-    bool runtimeDescriptorArrays; ///< Arrays of unknown length. If false: as nonUniformIndexing.
+    /** Non-uniform indices into image arrays. If false, shaders define SLUICE_PAGE_LOOP. */
+    bool nonUniformIndexing;
+    /** Descriptor arrays of unknown length. If false, shaders define SLUICE_PAGE_LOOP. */
+    bool runtimeDescriptorArrays;
     /**
      * Best queue family with SPARSE_BINDING, preferably without graphics. It may support nothing
      * else.
@@ -483,7 +485,8 @@ typedef struct SluiceVulkanTexture {
 } SluiceVulkanTexture;
 
 /**
- * Creates the image of a source and starts to stream it. The format is the source's.
+ * Adds a texture: creates the image of a source and starts to stream it. The format is the
+ * source's.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown address mode, a
  *         primary that follows another texture, or a source whose info is out of range (image.h),
@@ -690,7 +693,8 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesRead;     ///< Bytes of texels read from sources.
     uint64_t bytesUploaded; ///< Bytes of texels copied to images.
     uint64_t tilesMapped, tilesUnmapped, tilesCanceled, tilesFailed;
-    uint64_t bindCalls, bindRuns;
+    uint64_t bindCalls;         ///< Calls of vkQueueBindSparse.
+    uint64_t bindRuns;          ///< Runs of neighboring tiles of a row, bound in them.
     uint64_t unbinds;           ///< Tiles whose memory was unbound.
     uint64_t unbindsSaved;      ///< Unmapped tiles bound again, or removed, before their unbind.
     uint64_t feedbackMaps;      ///< Maps resolved and passed to the manager.

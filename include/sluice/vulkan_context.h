@@ -54,7 +54,7 @@ typedef struct SluiceDeviceMemoryRequest {
     uint32_t structSize; ///< sizeof(SluiceDeviceMemoryRequest) of the library.
     SluiceDeviceMemoryPurpose purpose;
     uint64_t size;            ///< Bytes.
-    uint64_t alignment;       ///< Bytes. Of the offset. A power of two.
+    uint64_t alignment;       ///< Bytes. Alignment of the offset, a power of two.
     uint32_t memoryTypeIndex; ///< Memory type to allocate from.
     bool mapped;              ///< Map it until it is freed. Its type is host-visible and coherent.
     bool images; ///< For images of VK_IMAGE_TILING_OPTIMAL, else for a buffer or for sparse binds.
@@ -112,7 +112,8 @@ typedef struct SluiceVulkanContextCreateInfo {
     const SluiceDeviceMemoryCallbacks *pDeviceMemory;
     /**
      * Bytes of device memory for the tiles of all streamers and demand loaders together: the
-     * purposes IMAGE, HEAP and PAGES of SluiceDeviceMemoryPurpose. Hard limit, at least 4 MiB.
+     * purposes IMAGE, HEAP, PAGES and BYTES of SluiceDeviceMemoryPurpose. Hard limit, at least 4
+     * MiB.
      * Allocations that exceed it fail as on a device without memory. Default: no limit but those of
      * the streamers and demand loaders (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
      */
@@ -204,10 +205,10 @@ SLUICE_API SluiceResult sluiceSetVulkanMemoryBudget(SluiceVulkanContext *context
 
 /** Device memory of a context: what its streamers and demand loaders have allocated, in bytes. */
 typedef struct SluiceVulkanContextStatistics {
-    uint32_t structSize;         ///< Set it to sizeof(SluiceVulkanContextStatistics).
+    uint32_t structSize;         ///< sizeof(SluiceVulkanContextStatistics).
     uint32_t memoryBlockCount;   ///< Blocks allocated at present.
     uint64_t memoryBudget;       ///< Limit of tileMemorySize, in bytes. UINT64_MAX: none.
-    uint64_t tileMemorySize;     ///< Sum of the next three.
+    uint64_t tileMemorySize;     ///< Sum of the next three and byteMemorySize.
     uint64_t imageMemorySize;    ///< SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE
     uint64_t heapMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_HEAP
     uint64_t pageMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_PAGES
