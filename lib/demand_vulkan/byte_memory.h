@@ -8,7 +8,7 @@
  * A slot that was given back can be taken at once, because launches run in the order of their
  * submission: the copy into it is behind all shaders that read it. It keeps its bytes until then,
  * and those that were given back longest ago are taken first, so that its last page can have it
- * back as it was. Externally synchronised.
+ * back as it was. Externally synchronized.
  */
 #ifndef SLC_DEMAND_VULKAN_BYTE_MEMORY_H
 #define SLC_DEMAND_VULKAN_BYTE_MEMORY_H
