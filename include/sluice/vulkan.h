@@ -253,7 +253,8 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t framesInFlight;           ///< 1 to 16. Default: 3.
     uint32_t maxTextureCount;          ///< 1 to 2^20. Default: 1024.
     uint32_t texturesPerFrame;         ///< Feedback maps read back per frame. Default: 10.
-    uint32_t tilesPerFrame; ///< Most tiles mapped and uploaded per frame, 1 to 2^14. Default: 256.
+    /** Most tiles mapped and uploaded per frame, and produced. 1 to 2^14. Default: 256. */
+    uint32_t tilesPerFrame;
     uint32_t maxLoadsInFlight; ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
     uint32_t heapTileCapacity; ///< Tiles per heap, 1 to 2^20. Default: 256.
     uint32_t maxHeapCount;     ///< Default: as many as fit into device memory.
@@ -441,12 +442,80 @@ SLUICE_API SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *stream
  */
 SLUICE_API SluiceResult sluiceWaitVulkanStreamerIdle(SluiceVulkanStreamer *streamer);
 
+/** Texels that a producer writes: a tile, or a piece of the mip tail. Never grows. */
+typedef struct SluiceTileTarget {
+    SluiceImageRegion region; ///< Texels of the texture: level, rectangle and array layer.
+    uint32_t x, y;            ///< Where the rectangle begins in the level of the image.
+    uint32_t layer;           ///< Array layer of the image.
+} SluiceTileTarget;
+
+/**
+ * Tiles to be written by commands of the application. All lie in one level of one image. Pointers
+ * are valid during the call.
+ */
+typedef struct SluiceTileBatch {
+    uint32_t structSize; ///< Set by Sluice. sizeof(SluiceTileBatch).
+    SluiceTextureId textureId;
+    VkCommandBuffer commandBuffer; ///< That of sluiceBeginStreamingFrame.
+    uint64_t frameIndex;           ///< As SluiceStreamingFrame.frameIndex.
+    /** In VK_IMAGE_LAYOUT_GENERAL. In paged mode it holds pages of several textures. */
+    VkImage image;
+    /**
+     * 2D array, all layers of `mipLevel` alone. For storage image descriptors. VK_NULL_HANDLE if
+     * the device cannot store to images of the format (sRGB and compressed formats): use transfers.
+     */
+    VkImageView imageView;
+    uint32_t mipLevel; ///< Level of `image`. Not the level of the texture, which is in `region`.
+    uint32_t tileCount;
+    const SluiceTileTarget *pTiles;
+} SluiceTileBatch;
+
+/**
+ * Fills tiles of a texture by commands on the GPU. Takes the place of an image source.
+ *
+ * docs/producers.md explains it with code.
+ */
+typedef struct SluiceTileProducer {
+    uint32_t structSize; ///< sizeof(SluiceTileProducer).
+    /**
+     * Required. Describes the texture. A mipLevelCount of 0 means the full chain. Copied; pName
+     * must outlive the texture.
+     */
+    const SluiceImageInfo *pImage;
+    void *pUserData;
+    /**
+     * Required. Records commands that write every texel of the tiles of a batch.
+     *
+     * sluiceBeginStreamingFrame calls it, on its thread and outside a render pass, once per image
+     * and level. All batches of a frame together hold at most tilesPerFrame tiles, and mip tails.
+     * Barriers before and after are the streamer's: compute and transfer commands may write. Write
+     * a batch by one dispatch, or by copies: the streamer orders batches, not commands of a batch.
+     *
+     * On entry `pResults` holds SLUICE_SUCCESS for each tile. Set another value for tiles that are
+     * not recorded. The returned value counts for all tiles unless it is SLUICE_SUCCESS. Values:
+     * - SLUICE_SUCCESS: the tile is shown when this frame is complete.
+     * - SLUICE_NOT_READY: asked again in later frames, up to timeoutFrames; then the tile failed.
+     * - An error: the tile failed. Coarser levels stay on screen, and the tile is retried like a
+     *   failed read (manager.h).
+     *
+     * For tiles that are not recorded, no command may write to their target. The same tile can be
+     * asked for again: after eviction, and if its frame was abandoned. The callback must not call
+     * functions of the streamer or its manager. It is not called again for a texture after
+     * sluiceRemoveVulkanTexture; commands that it recorded earlier may still be executing.
+     */
+    SluiceResult (*pfnRecordTiles)(void *pUserData, const SluiceTileBatch *pBatch,
+                                   SluiceResult *pResults);
+    /** Frames in which a tile may answer SLUICE_NOT_READY before it has failed. Default: 64. */
+    uint32_t timeoutFrames;
+} SluiceTileProducer;
+
 /** Settings of a texture. A field of zero selects its default. */
 typedef struct SluiceVulkanTextureCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureCreateInfo).
     /**
-     * Required. Must outlive the texture, and reads that are in progress when the texture is
-     * removed. sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer end those reads.
+     * Required without pProducer. Must outlive the texture, and reads that are in progress when the
+     * texture is removed. sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer end those
+     * reads.
      */
     SluiceImageSource *source;
     SluiceTextureId primaryId; ///< Texture whose feedback this one follows, or SLUICE_NO_TEXTURE.
@@ -463,6 +532,8 @@ typedef struct SluiceVulkanTextureCreateInfo {
      * Default: 1, none.
      */
     float maxAnisotropy;
+    /** Fills the tiles in place of `source`, which must be NULL then. Copied. Default: none. */
+    const SluiceTileProducer *pProducer;
 } SluiceVulkanTextureCreateInfo;
 
 /** Texture as the application draws with it. Never grows. */
@@ -485,23 +556,25 @@ typedef struct SluiceVulkanTexture {
 } SluiceVulkanTexture;
 
 /**
- * Adds a texture: creates the image of a source and starts to stream it. The format is the
- * source's.
+ * Adds a texture: creates the image of a source or producer and starts to stream it. The format
+ * is the source's.
  *
- * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for an unknown address mode, a
- *         primary that follows another texture, or a source whose info is out of range (image.h),
- *         for example without its full mip chain; SLUICE_ERROR_UNKNOWN_TEXTURE and
- *         SLUICE_ERROR_STALE_TEXTURE for the primary; SLUICE_ERROR_UNSUPPORTED if the device cannot
- *         stream the format or size; SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount,
- *         maxRegionCount or feedbackReadbackSize; errors of the source;
- *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
+ * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for both a source and a
+ *         producer, an unknown address mode, a primary that follows another texture, or an image
+ *         whose info is out of range (image.h), for example without its full mip chain;
+ *         SLUICE_ERROR_UNKNOWN_TEXTURE and SLUICE_ERROR_STALE_TEXTURE for the primary;
+ *         SLUICE_ERROR_UNSUPPORTED if the device cannot stream the format or size;
+ *         SLUICE_ERROR_LIMIT_EXCEEDED above maxTextureCount, maxRegionCount or
+ *         feedbackReadbackSize; errors of the source; SLUICE_ERROR_OUT_OF_HOST_MEMORY;
+ *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
  */
 SLUICE_API SluiceResult sluiceAddVulkanTexture(SluiceVulkanStreamer *streamer,
                                                const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                                SluiceVulkanTexture *pTexture);
 
 /**
- * Adds a source with `layerCount` array layers. `pLayers` receives one texture per layer.
+ * Adds a source or producer with `layerCount` array layers. `pLayers` receives one texture per
+ * layer.
  *
  * Each layer is a streamed texture with its own id, feedback and MinMip map. Their table indices
  * are consecutive, and all are layers of one image. Removing one of them removes all.
@@ -693,12 +766,13 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t bytesRead;     ///< Bytes of texels read from sources.
     uint64_t bytesUploaded; ///< Bytes of texels copied to images.
     uint64_t tilesMapped, tilesUnmapped, tilesCanceled, tilesFailed;
-    uint64_t bindCalls;         ///< Calls of vkQueueBindSparse.
-    uint64_t bindRuns;          ///< Runs of neighboring tiles of a row, bound in them.
-    uint64_t unbinds;           ///< Tiles whose memory was unbound.
-    uint64_t unbindsSaved;      ///< Unmapped tiles bound again, or removed, before their unbind.
-    uint64_t feedbackMaps;      ///< Maps resolved and passed to the manager.
-    uint32_t loadsInFlight;     ///< Uncollected reads, and uploads not yet recorded.
+    uint64_t bindCalls;    ///< Calls of vkQueueBindSparse.
+    uint64_t bindRuns;     ///< Runs of neighboring tiles of a row, bound in them.
+    uint64_t unbinds;      ///< Tiles whose memory was unbound.
+    uint64_t unbindsSaved; ///< Unmapped tiles bound again, or removed, before their unbind.
+    uint64_t feedbackMaps; ///< Maps resolved and passed to the manager.
+    /** Uncollected reads, uploads not yet recorded, and tiles with producers not yet shown. */
+    uint32_t loadsInFlight;
     uint64_t deviceMemorySize;  ///< Bytes of all device memory that is not host-mapped.
     uint64_t feedbackWords;     ///< Words of 4 bytes of feedback read back.
     uint64_t feedbackPostponed; ///< Maps that had to wait; see feedbackReadbackSize.
@@ -723,6 +797,7 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t pageChunkShortages;
     /** Paged: tiles mapped without a read, because another front end of the context had them. */
     uint64_t tilesShared;
+    uint64_t tilesProduced; ///< Tiles that producers wrote, without those of mip tails.
 } SluiceVulkanStreamerStatistics;
 
 /**

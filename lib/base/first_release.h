@@ -75,13 +75,14 @@
     SLC_UP_TO(SluiceVulkanStreamerDebugInfo, wholeFeedbackMaps)
 #define SLC_FIRST_SluiceVulkanStreamerCreateInfo SLC_UP_TO(SluiceVulkanStreamerCreateInfo, pDebug)
 #define SLC_FIRST_SluiceVulkanStreamerSettings SLC_UP_TO(SluiceVulkanStreamerSettings, noMipBias)
-#define SLC_FIRST_SluiceVulkanTextureCreateInfo                                                    \
-    SLC_UP_TO(SluiceVulkanTextureCreateInfo, maxAnisotropy)
+#define SLC_FIRST_SluiceTileBatch SLC_UP_TO(SluiceTileBatch, pTiles)
+#define SLC_FIRST_SluiceTileProducer SLC_UP_TO(SluiceTileProducer, timeoutFrames)
+#define SLC_FIRST_SluiceVulkanTextureCreateInfo SLC_UP_TO(SluiceVulkanTextureCreateInfo, pProducer)
 #define SLC_FIRST_SluiceVulkanBuffers SLC_UP_TO(SluiceVulkanBuffers, pageTable)
 #define SLC_FIRST_SluiceVulkanPages SLC_UP_TO(SluiceVulkanPages, generation)
 #define SLC_FIRST_SluiceStreamingFrame SLC_UP_TO(SluiceStreamingFrame, descriptorSet)
 #define SLC_FIRST_SluiceVulkanStreamerStatistics                                                   \
-    SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesShared)
+    SLC_UP_TO(SluiceVulkanStreamerStatistics, tilesProduced)
 #define SLC_FIRST_SluiceDeviceMemoryRequest SLC_UP_TO(SluiceDeviceMemoryRequest, deviceAddress)
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minStagingSize)

@@ -65,6 +65,14 @@ void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc
                    sluiceGetFormatRegionSize(format, tile.width, tile.height) == SLC_TILE_SIZE;
 }
 
+bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image)
+{
+    VkImageFormatProperties limits;
+    return vk->GetPhysicalDeviceImageFormatProperties(
+               vk->physical_device, image->format, image->imageType, image->tiling,
+               image->usage | VK_IMAGE_USAGE_STORAGE_BIT, image->flags, &limits) == VK_SUCCESS;
+}
+
 SluiceResult sluiceGetVulkanFormatCapabilities(VkInstance instance, VkPhysicalDevice physicalDevice,
                                                PFN_vkGetInstanceProcAddr pfnGetInstanceProcAddr,
                                                SluiceFormat format,

@@ -7,6 +7,7 @@
 #include "vulkan/load_binds.h"
 #include "vulkan/load_cancels.h"
 #include "vulkan/load_deferred.h"
+#include "vulkan/load_productions.h"
 #include "vulkan/load_starts.h"
 #include "vulkan/shrink.h"
 #include "vulkan/tile_upload.h"
@@ -79,6 +80,8 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
 {
     SluiceResult result = retire(s);
     s->memory_pressure = slc_memory_client_begin(&s->memory); /* without what was just freed */
+    if (result >= 0)
+        result = slc_productions_publish(s);
     if (result >= 0)
         result = slc_loads_collect(s);
     if (result >= 0)
@@ -168,6 +171,8 @@ static SluiceResult record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
     if (written_twice) /* entries and words of the page table, which what follows changes */
         barrier_after(s, commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
     SluiceResult result = slc_tile_uploads_record(s, commands);
+    if (result >= 0)
+        result = slc_productions_record(s, commands);
     if (result >= 0 && residency->record_publish)
         residency->record_publish(s->residency, commands);
     if (result >= 0)

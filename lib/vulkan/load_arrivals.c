@@ -18,8 +18,7 @@ static void packed_restart(struct slc_texture *texture)
     texture->packed_first_unit = SLC_NONE;
 }
 
-/* All units are back and one of them failed: nothing was bound, the manager tries again later. */
-static SluiceResult packed_fail(SluiceVulkanStreamer *s, uint32_t index)
+SluiceResult slc_packed_fail(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
     while (texture->packed_first_unit != SLC_NONE) {
@@ -50,7 +49,7 @@ SluiceResult slc_packed_unit_back(SluiceVulkanStreamer *s, uint32_t index, Sluic
     if (++texture->packed_done < texture->packed.unit_count)
         return SLUICE_SUCCESS;
     if (texture->packed_result != SLUICE_SUCCESS)
-        return packed_fail(s, unit->texture);
+        return slc_packed_fail(s, unit->texture);
     slc_read_trouble_delivered(s, unit->texture, texture->packed_tiles[0].tileIndex);
     texture->packed_state = SLC_PACKED_MAPPING;
     texture->packed_done = 0;
@@ -86,9 +85,7 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t index, SluiceResult
     return result;
 }
 
-/* Sources that are not ready may hold half of the staging slots. The others are for sources that
- * are: what is not ready then fails, and the manager asks again later. */
-static bool can_wait(const SluiceVulkanStreamer *s)
+bool slc_loads_can_wait(const SluiceVulkanStreamer *s)
 {
     return s->free_unit_count >= s->info.maxLoadsInFlight / 2;
 }
@@ -104,7 +101,7 @@ static SluiceResult unit_back(SluiceVulkanStreamer *s, const SluiceTileReadResul
         return SLUICE_SUCCESS;
     }
     SluiceResult answer = read->result;
-    if (answer == SLUICE_NOT_READY && !unit->canceled && can_wait(s)) {
+    if (answer == SLUICE_NOT_READY && !unit->canceled && slc_loads_can_wait(s)) {
         answer = slc_unit_submit(s, index);
         if (answer == SLUICE_SUCCESS)
             return SLUICE_SUCCESS;

@@ -1,6 +1,7 @@
 #include "vulkan/load_binds.h"
 
 #include "vulkan/load_deferred.h"
+#include "vulkan/load_productions.h"
 #include "vulkan/load_units.h"
 
 /* Gives what the residency has room for; the units move on when the batch has its number. */
@@ -40,6 +41,12 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
     for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->arrived)) != SLC_NONE;) {
         struct slc_unit *u = &s->units[unit];
         if (s->textures[u->texture].state == SLC_TEXTURE_REMOVED) {
+            slc_unit_free(s, unit);
+            continue;
+        }
+        if (u->canceled) { /* it has nothing that was paid for: nobody has filled it */
+            slc_load_give_back(s, u->texture, &u->tile);
+            slc_unit_forget_tile(s, u);
             slc_unit_free(s, unit);
             continue;
         }
@@ -126,4 +133,5 @@ void slc_loads_abandon(SluiceVulkanStreamer *s, uint64_t frame)
     for (uint32_t unit; (unit = slc_unit_list_pop(s, &s->binding)) != SLC_NONE;)
         slc_unit_list_append(s, &again, unit);
     s->binding = again;
+    slc_productions_abandon(s, frame);
 }

@@ -44,7 +44,11 @@ SluiceResult slc_loads_cancel(SluiceVulkanStreamer *s)
                 continue;
             }
             /* What has arrived goes on to standby: its read is paid for already. */
-            if (unit == SLC_MAP_NONE || s->units[unit].state != SLC_UNIT_READING)
+            if (unit == SLC_MAP_NONE)
+                continue;
+            if (s->units[unit].produced)
+                s->units[unit].canceled = s->units[unit].state != SLC_UNIT_UPLOADED;
+            if (s->units[unit].state != SLC_UNIT_READING)
                 continue;
             s->units[unit].canceled = true;
             sluiceCancelTileRead(s->loader, s->units[unit].ticket);

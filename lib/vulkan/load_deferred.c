@@ -31,7 +31,7 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
         const struct slc_unit *unit = &s->units[i];
         bool is_coming = unit->state == SLC_UNIT_READING || unit->state == SLC_UNIT_ARRIVED;
         count += is_coming && unit->packed_unit == SLC_NONE &&
-                 s->textures[unit->texture].info.format == format;
+                 slc_texture_page_format(&s->textures[unit->texture]) == format;
     }
     return count;
 }
@@ -41,7 +41,7 @@ static uint32_t count_loads(const SluiceVulkanStreamer *s, SluiceFormat format)
 uint32_t slc_pages_left(SluiceVulkanStreamer *s, uint32_t texture)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
-    SluiceFormat format = s->textures[texture].info.format;
+    SluiceFormat format = slc_texture_page_format(&s->textures[texture]);
     uint32_t *left = &s->pages_left[format];
     if (*left == SLC_NONE && interface->page_room) {
         uint32_t room = interface->page_room(s->residency, texture);
@@ -66,7 +66,7 @@ static uint32_t count_without_page(SluiceVulkanStreamer *s)
         uint32_t texture = s->deferred.tiles[i].texture, left = slc_pages_left(s, texture);
         count += left == 0;
         if (left > 0 && left != SLC_NONE)
-            s->pages_left[s->textures[texture].info.format]--;
+            s->pages_left[slc_texture_page_format(&s->textures[texture])]--;
     }
     return count;
 }

@@ -10,7 +10,7 @@ static uint8_t *unit_memory(SluiceVulkanStreamer *s, uint32_t unit)
     return slc_staging_memory(&s->staging, unit);
 }
 
-static SluiceImageRegion tile_region(const struct slc_texture *texture, const SluiceTile *tile)
+SluiceImageRegion slc_tile_region(const struct slc_texture *texture, const SluiceTile *tile)
 {
     const SluiceStreamedTextureDesc *desc = &texture->image.desc;
     uint32_t x = tile->x * desc->tileWidth, y = tile->y * desc->tileHeight;
@@ -36,7 +36,7 @@ SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t index)
                            .ppTexels = texels,
                            .userValue = index};
     if (unit->packed_unit == SLC_NONE) {
-        regions[0] = tile_region(texture, &unit->tile);
+        regions[0] = slc_tile_region(texture, &unit->tile);
         texels[0] = unit_memory(s, index);
         read.priority = unit->tile.mipLevel; /* coarse first */
     } else {

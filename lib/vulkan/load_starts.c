@@ -3,6 +3,7 @@
 #include "base/checked.h"
 #include "vulkan/load_arrivals.h"
 #include "vulkan/load_deferred.h"
+#include "vulkan/load_productions.h"
 #include "vulkan/load_reads.h"
 #include "vulkan/load_units.h"
 
@@ -35,11 +36,19 @@ static enum slc_share share_tile(SluiceVulkanStreamer *s, uint32_t texture, cons
     return share;
 }
 
+/* Tiles that a producer fills need no staging memory. */
+static bool units_are_ready(SluiceVulkanStreamer *s, uint32_t texture, uint32_t count)
+{
+    return s->textures[texture].producer.pfn ? s->free_unit_count >= count
+                                             : slc_units_are_ready(s, count);
+}
+
 static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
 {
     const struct slc_residency_interface *interface = s->residency->interface;
     SluiceResult result = SLUICE_SUCCESS;
-    if (share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
+    bool produced = s->textures[texture].producer.pfn;
+    if (!produced && share_tile(s, texture, tile, &result) != SLC_SHARE_NONE)
         return result;
     if (interface->revive && interface->revive(s->residency, texture, tile)) {
         s->counts.tilesMapped++;
@@ -51,10 +60,14 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     if (interface->reserve && !interface->reserve(s->residency, texture, tile))
         return refuse_tile(s, texture, tile);
     uint32_t left = slc_pages_left(s, texture);
-    if (left == 0 || !slc_units_are_ready(s, 1))
+    if (left == 0 || !units_are_ready(s, texture, 1))
         return slc_load_defer(s, texture, tile);
     if (left != SLC_NONE)
-        s->pages_left[s->textures[texture].info.format]--;
+        s->pages_left[slc_texture_page_format(&s->textures[texture])]--;
+    if (produced) {
+        slc_production_start(s, texture, tile);
+        return SLUICE_SUCCESS;
+    }
     uint32_t unit = slc_unit_take(s, texture, SLC_NONE);
     s->units[unit].tile = *tile;
     slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
@@ -127,6 +140,10 @@ static SluiceResult start_packed(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
     uint32_t count = texture->packed.unit_count;
+    if (texture->producer.pfn) {
+        slc_production_start_packed(s, index);
+        return SLUICE_SUCCESS;
+    }
     texture->packed_state = SLC_PACKED_READING;
     texture->packed_done = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -151,7 +168,7 @@ static SluiceResult start_packed_queue(SluiceVulkanStreamer *s, bool *waits)
             i++;
             continue;
         }
-        if (!slc_units_are_ready(s, texture->packed.unit_count)) {
+        if (!units_are_ready(s, index, texture->packed.unit_count)) {
             *waits = true;
             return SLUICE_SUCCESS;
         }

@@ -61,15 +61,23 @@ bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count)
     return true;
 }
 
-/* One that is ready. */
-uint32_t slc_unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
+uint32_t slc_unit_take_empty(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
 {
     uint32_t unit = slc_unit_list_pop(s, &s->free_units);
     assert(unit != SLC_NONE && s->units[unit].state == SLC_UNIT_FREE);
-    slc_staging_take(&s->staging, unit);
     s->free_unit_count--;
-    s->units[unit] = (struct slc_unit){.texture = texture, .packed_unit = packed_unit};
+    s->units[unit] =
+        (struct slc_unit){.texture = texture, .packed_unit = packed_unit, .produced = true};
     s->textures[texture].unit_count++;
+    return unit;
+}
+
+/* One that is ready. */
+uint32_t slc_unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
+{
+    uint32_t unit = slc_unit_take_empty(s, texture, packed_unit);
+    s->units[unit].produced = false;
+    slc_staging_take(&s->staging, unit);
     return unit;
 }
 
@@ -78,7 +86,8 @@ void slc_unit_free(SluiceVulkanStreamer *s, uint32_t unit)
     s->textures[s->units[unit].texture].unit_count--;
     s->units[unit].state = SLC_UNIT_FREE;
     s->free_unit_count++;
-    slc_staging_give(&s->staging, unit);
+    if (!s->units[unit].produced)
+        slc_staging_give(&s->staging, unit);
     push_free(s, unit);
 }
 
@@ -103,6 +112,7 @@ SluiceResult slc_loads_init(SluiceVulkanStreamer *s)
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     const struct slc_unit_list empty = {SLC_NONE, SLC_NONE};
     s->free_units = s->arrived = s->binding = s->uploaded = empty;
+    s->unproduced = s->produced = empty;
     for (uint32_t i = 0; i < count; i++)
         slc_unit_list_append(s, &s->free_units, i);
     s->free_unit_count = count;

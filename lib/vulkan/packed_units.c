@@ -68,6 +68,7 @@ SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
         return SLUICE_SUCCESS;
     packed->rects = slc_alloc(cb, packed->rect_count, sizeof *packed->rects);
     packed->units = slc_alloc(cb, packed->unit_count, sizeof *packed->units);
+    packed->unit_room = packed->unit_count;
     if (!packed->rects || !packed->units) {
         slc_packed_units_finish(packed, cb);
         return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
@@ -76,9 +77,17 @@ SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
     return SLUICE_SUCCESS;
 }
 
+void slc_packed_units_join(struct slc_packed_units *packed)
+{
+    if (packed->unit_count == 0)
+        return;
+    packed->units[0] = (struct slc_packed_unit){0, packed->rect_count};
+    packed->unit_count = 1;
+}
+
 void slc_packed_units_finish(struct slc_packed_units *packed, const SluiceAllocationCallbacks *cb)
 {
     slc_free(cb, packed->rects, packed->rect_count, sizeof *packed->rects);
-    slc_free(cb, packed->units, packed->unit_count, sizeof *packed->units);
+    slc_free(cb, packed->units, packed->unit_room, sizeof *packed->units);
     *packed = (struct slc_packed_units){0};
 }

@@ -26,6 +26,7 @@ struct slc_packed_units {
     struct slc_packed_rect *rects; ///< owned
     struct slc_packed_unit *units; ///< owned
     uint32_t rect_count, unit_count;
+    uint32_t unit_room; ///< units that were allocated
 };
 
 /** Of the levels [regularMipCount, mipLevelCount). Rectangles are whole blocks of `format`. */
@@ -33,6 +34,8 @@ SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceStreamedTextureDesc *desc,
                                    const SluiceFormatInfo *format, uint32_t slot_size);
+/** Makes all of them one unit: nothing is to be read into a slot. */
+void slc_packed_units_join(struct slc_packed_units *packed);
 void slc_packed_units_finish(struct slc_packed_units *packed, const SluiceAllocationCallbacks *cb);
 
 #endif /* SLC_VULKAN_PACKED_UNITS_H */

@@ -60,12 +60,19 @@ void slc_page_chunks_finish(struct slc_page_chunks *chunks)
     *chunks = (struct slc_page_chunks){0};
 }
 
+static SluiceFormat texel_format(SluiceFormat format)
+{
+    return (SluiceFormat)(format & ~SLC_PAGE_PRODUCED);
+}
+
 static SluiceResult create_chunk(struct slc_page_chunks *chunks, struct slc_page_chunk *chunk,
                                  SluiceFormat format, uint32_t layer_count)
 {
-    SluiceImageInfo info = {
-        .structSize = sizeof info, .mipLevelCount = 1, .format = format, .pName = "pages"};
-    SluiceResult result = sluiceGetStandardTileShape(format, &info.width, &info.height);
+    SluiceImageInfo info = {.structSize = sizeof info,
+                            .mipLevelCount = 1,
+                            .format = texel_format(format),
+                            .pName = "pages"};
+    SluiceResult result = sluiceGetStandardTileShape(info.format, &info.width, &info.height);
     if (result != SLUICE_SUCCESS)
         return result;
     *chunk = (struct slc_page_chunk){.format = format, .layer_count = layer_count, .fresh = true};
@@ -78,9 +85,9 @@ static SluiceResult create_chunk(struct slc_page_chunks *chunks, struct slc_page
                                                    .owner = SLC_NO_OWNER};
     chunk->free_count = layer_count;
     result = slc_plain_image_create(&chunk->image, &chunks->memory, chunks->vk, chunks->caps,
-                                    chunks->cb, &info, 0, layer_count);
+                                    chunks->cb, &info, 0, layer_count, format & SLC_PAGE_PRODUCED);
     if (result == SLUICE_SUCCESS)
-        result = slc_create_array_view(chunks->vk, chunk->image.image, slc_vk_format(format),
+        result = slc_create_array_view(chunks->vk, chunk->image.image, slc_vk_format(info.format),
                                        &chunk->view);
     return result;
 }
@@ -143,7 +150,8 @@ static void log_shortage(struct slc_page_chunks *chunks, SluiceFormat format)
         slc_log(&chunks->vk->log, SLUICE_LOG_WARNING,
                 "all maxPageChunkCount %u images of pages are in use: no more than %u tiles of %s, "
                 "finer ones will not be loaded",
-                chunks->count, chunks->page_count[format], sluiceGetFormatName(format));
+                chunks->count, chunks->page_count[format],
+                sluiceGetFormatName(texel_format(format)));
 }
 
 /* Fewer and fewer layers, until the device has memory for them and the cap holds. */

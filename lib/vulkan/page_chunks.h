@@ -11,7 +11,10 @@
 #include "vulkan/page_timelines.h"
 #include "vulkan/plain_image.h"
 
-#define SLC_PAGE_FORMATS 64u
+#define SLC_PAGE_FORMATS 256u
+/* In a format: of pages that commands of the application write. They lie in chunks of their own,
+ * which shaders can store to. */
+#define SLC_PAGE_PRODUCED 128u
 #define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
 #define SLC_MAX_PAGE_CHUNKS (1u << 10)
 #define SLC_NO_OWNER UINT32_MAX
@@ -61,6 +64,12 @@ struct slc_page_chunks {
     uint32_t image_count; ///< chunks that have an image
     uint64_t shortages;   ///< pages that were not there because all chunks were in use
 };
+
+/** The format of the pages of a texture. `produced`: commands of the application write them. */
+static inline SluiceFormat slc_page_format(SluiceFormat format, bool produced)
+{
+    return (SluiceFormat)((uint32_t)format | (produced ? SLC_PAGE_PRODUCED : 0u));
+}
 
 /** Pages that so many chunks hold, at most: if all are of one format. */
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);

@@ -119,6 +119,13 @@ static inline VkImage slc_page_image(const struct slc_page_pool *pool, uint32_t 
     return pool->chunks.at[page >> 16].image.image;
 }
 
+/** For stores of shaders: all layers of that image. VK_NULL_HANDLE if they cannot. */
+static inline VkImageView slc_page_storage_view(const struct slc_page_pool *pool, uint32_t page)
+{
+    const struct slc_page_chunk *chunk = &pool->chunks.at[page >> 16];
+    return chunk->image.storage ? chunk->view : VK_NULL_HANDLE;
+}
+
 /** Begins a frame of the user: new chunks into their layout, empty ones are retired. Before
  *  anything that `frame` copies or draws. */
 void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t frame,

@@ -3,6 +3,7 @@
 #include "base/checked.h"
 #include "base/log.h"
 #include "vulkan/format.h"
+#include "vulkan/format_caps.h"
 
 static uint64_t texel_bytes(const SluiceImageInfo *info, uint32_t first_level)
 {
@@ -36,7 +37,7 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                                     const struct slc_vk *vk, const struct slc_caps *caps,
                                     const SluiceAllocationCallbacks *cb,
                                     const SluiceImageInfo *info, uint32_t first_level,
-                                    uint32_t layer_count)
+                                    uint32_t layer_count, bool storage)
 {
     *image = (struct slc_plain_image){0};
     VkImageCreateInfo create = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -58,6 +59,9 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                 info->width, info->height, sluiceGetFormatName(info->format), trouble);
         return SLUICE_ERROR_UNSUPPORTED;
     }
+    image->storage = storage && slc_image_may_store(vk, &create);
+    if (image->storage)
+        create.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
     SluiceResult result = slc_vk_result(
         vk, vk->CreateImage(vk->device, &create, NULL, &image->image), "vkCreateImage");
     if (result != SLUICE_SUCCESS) {

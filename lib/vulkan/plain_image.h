@@ -6,18 +6,20 @@
 
 struct slc_plain_image {
     VkImage image;
+    bool storage; ///< shaders can store to it
     struct slc_image_place place;
 };
 
 /**
- * The levels of `info` from `first_level` on; `layer_count` layers. Errors: UNSUPPORTED with a
+ * The levels of `info` from `first_level` on; `layer_count` layers. `storage`: shaders are to store
+ * to it, if the device can do that with the format. Errors: UNSUPPORTED with a
  * message that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_image_memory *memory,
                                     const struct slc_vk *vk, const struct slc_caps *caps,
                                     const SluiceAllocationCallbacks *cb,
                                     const SluiceImageInfo *info, uint32_t first_level,
-                                    uint32_t layer_count);
+                                    uint32_t layer_count, bool storage);
 /** Of a zeroed one, too. */
 void slc_plain_image_destroy(struct slc_plain_image *image, struct slc_image_memory *memory,
                              const struct slc_vk *vk, const SluiceAllocationCallbacks *cb);

@@ -14,6 +14,11 @@ static const char *name_of(const struct slc_texture *texture)
     return texture->info.pName ? texture->info.pName : "image";
 }
 
+static const char *loads_of(const struct slc_texture *texture)
+{
+    return texture->source ? "reads" : "calls of its producer";
+}
+
 static double seconds(const SluiceVulkanStreamer *s, uint64_t time_stamps)
 {
     return (double)time_stamps / (double)s->info.ticksPerSecond;
@@ -25,13 +30,16 @@ static void say_failed(SluiceVulkanStreamer *s, const struct slc_texture *textur
     SluiceTileLoaderStatistics reads = {.structSize = sizeof reads,
                                         .lastFailureOffset = SLUICE_UNKNOWN_OFFSET};
     char place[48] = "";
-    sluiceGetTileLoaderStatistics(s->loader, texture->source, &reads);
-    if (reads.lastFailure == result && reads.lastFailureOffset != SLUICE_UNKNOWN_OFFSET)
+    if (texture->source)
+        sluiceGetTileLoaderStatistics(s->loader, texture->source, &reads);
+    if (texture->source && reads.lastFailure == result &&
+        reads.lastFailureOffset != SLUICE_UNKNOWN_OFFSET)
         snprintf(place, sizeof place, " at offset 0x%llx",
                  (unsigned long long)reads.lastFailureOffset);
     bool packed = tile >= texture->layout.regularTileCount;
-    slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: read failed%s: %s. %s; retrying in %.3g s.",
-            name_of(texture), place, sluiceGetResultName(result),
+    slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %s failed%s: %s. %s; retrying in %.3g s.",
+            name_of(texture), texture->source ? "read" : "producer", place,
+            sluiceGetResultName(result),
             packed ? "Its packed levels are missing" : "Showing a coarser level",
             seconds(s, s->info.retryDelayTicks));
 }
@@ -40,11 +48,11 @@ static void say_given_up(const SluiceVulkanStreamer *s, const struct slc_texture
                          uint64_t failed_count)
 {
     if (s->info.givenUpRetryDelayTicks == UINT64_MAX)
-        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Not retrying.",
-                name_of(texture), (unsigned long long)failed_count);
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu %s failed. Not retrying.",
+                name_of(texture), (unsigned long long)failed_count, loads_of(texture));
     else
-        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu reads failed. Retrying every %.3g s.",
-                name_of(texture), (unsigned long long)failed_count,
+        slc_log(&s->vk.log, SLUICE_LOG_WARNING, "%s: %llu %s failed. Retrying every %.3g s.",
+                name_of(texture), (unsigned long long)failed_count, loads_of(texture),
                 seconds(s, s->info.givenUpRetryDelayTicks));
 }
 
@@ -101,8 +109,9 @@ void slc_read_trouble_delivered(SluiceVulkanStreamer *s, uint32_t texture, uint3
         return;
     trouble->health = SLC_READS_WELL;
     if (trouble->said != SLC_READS_WELL) {
-        slc_log(&s->vk.log, SLUICE_LOG_INFO, "%s: can be read again, after %llu failed reads.",
-                name_of(t), (unsigned long long)trouble->failed_count);
+        slc_log(&s->vk.log, SLUICE_LOG_INFO, "%s: can be %s again, after %llu failed %s.",
+                name_of(t), t->source ? "read" : "produced",
+                (unsigned long long)trouble->failed_count, loads_of(t));
         note_spoken(s, trouble);
         retry_other_layers(s, t);
     }

@@ -28,7 +28,16 @@ struct slc_residency;
 struct slc_residency_image {
     VkImage image;
     SluiceStreamedTextureDesc desc;
-    bool uneven; ///< some level's size is not twice the next one's
+    bool uneven;          ///< some level's size is not twice the next one's
+    bool storage;         ///< shaders can store to it
+    uint32_t first_level; ///< of the texture that `image` has
+};
+
+/** The page of one tile, which has an image of its own. */
+struct slc_tile_page {
+    VkImage image;
+    VkImageView view; ///< all layers, for stores; VK_NULL_HANDLE if there are none
+    uint32_t image_index, layer;
 };
 
 struct slc_residency_interface {
@@ -39,9 +48,11 @@ struct slc_residency_interface {
     void (*destroy)(struct slc_residency *residency);
 
     /** `index` is the streamer's; it names the image in the other calls. The layers of an array
-     *  have the indices from `index` on. Logs what it refuses. */
+     *  have the indices from `index` on. `produced`: shaders may store to it. Logs what it
+     * refuses. */
     SluiceResult (*create_image)(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, struct slc_residency_image *image);
+                                 const SluiceImageInfo *info, bool produced,
+                                 struct slc_residency_image *image);
     /** No frame that uses it is incomplete and image_is_idle. Of an array with its first layer. */
     void (*destroy_image)(struct slc_residency *residency, uint32_t index);
     /** True when no change of it is pending or under way. */
@@ -91,6 +102,9 @@ struct slc_residency_interface {
      *  texels may not be there, so it cannot be revived. Only room_to_unmap times. */
     void (*unmap)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
                   uint64_t frame, bool filled);
+    /** A tile whose map is over was never shown, and is not going to be: no frame reads or writes
+     *  it. NULL: nothing is to be done. */
+    void (*discard)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
     /** How many unmaps may be collected. */
     uint32_t (*room_to_unmap)(const struct slc_residency *residency);
     /** All that was collected goes to the GPU; `*value` names it. */
@@ -107,6 +121,13 @@ struct slc_residency_interface {
                            const VkBufferImageCopy *regions);
 
     /* What follows may be NULL: there is nothing to do. */
+
+    /** Where commands write a tile whose map is over. Of regular tiles. NULL: at its place in the
+     *  texture's image. */
+    struct slc_tile_page (*find_page)(const struct slc_residency *residency, uint32_t index,
+                                      const SluiceTile *tile);
+    /** Texels that a complete frame wrote there are shown by the frame that begins. */
+    void (*show)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
     /** Of the frame being begun, behind a barrier over all that earlier ones do. */
     void (*record_begin)(struct slc_residency *residency, uint64_t frame, VkCommandBuffer commands);

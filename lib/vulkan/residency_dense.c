@@ -36,7 +36,8 @@ static struct dense_residency *dense(struct slc_residency *residency)
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, struct slc_residency_image *image)
+                                 const SluiceImageInfo *info, bool produced,
+                                 struct slc_residency_image *image)
 {
     struct dense_residency *d = dense(residency);
     struct dense_image *layers = &d->images[index];
@@ -45,15 +46,17 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     SluiceResult result = slc_standard_layout_init(&layout, info);
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&layers[0].own, &d->memory, d->vk, d->caps, d->cb, info, 0,
-                                        layer_count);
+                                        layer_count, produced);
     d->base.counters.device_memory_size = d->memory.total_size;
     if (result != SLUICE_SUCCESS)
         return result;
     layers[0].layer_count = layer_count;
     for (uint32_t i = 0; i < layer_count; i++)
         layers[i].image = layers[0].own.image;
-    *image = (struct slc_residency_image){
-        .image = layers[0].image, .desc = layout.desc, .uneven = layout.uneven};
+    *image = (struct slc_residency_image){.image = layers[0].image,
+                                          .desc = layout.desc,
+                                          .uneven = layout.uneven,
+                                          .storage = layers[0].own.storage};
     return SLUICE_SUCCESS;
 }
 

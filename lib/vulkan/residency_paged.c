@@ -27,7 +27,7 @@ struct paged_image {
     uint32_t layer_count;            ///< 0 but for layer 0
     const SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
-    SluiceFormat format;
+    SluiceFormat page_format;           ///< of its pages
     uint32_t block_width, block_height; ///< texels
 };
 
@@ -99,14 +99,14 @@ static SluiceResult create_layer(struct paged_residency *p, uint32_t index, Slui
     if (result != SLUICE_SUCCESS)
         return result;
     image->tail = tail;
-    image->format = format;
     image->block_width = info.blockWidth;
     image->block_height = info.blockHeight;
     return slc_page_table_add(&p->table, index, desc);
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, struct slc_residency_image *out)
+                                 const SluiceImageInfo *info, bool produced,
+                                 struct slc_residency_image *out)
 {
     struct paged_residency *p = paged(residency);
     struct paged_image *first = &p->images[index];
@@ -115,19 +115,24 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     SluiceResult result = slc_standard_layout_init(&layout, info);
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&first->own_tail, &p->memory, p->vk, p->caps, p->cb, info,
-                                        layout.desc.regularMipCount, layer_count);
+                                        layout.desc.regularMipCount, layer_count, produced);
     if (result != SLUICE_SUCCESS)
         return result;
     first->layer_count = layer_count;
     for (uint32_t i = 0; i < layer_count && result == SLUICE_SUCCESS; i++)
         result = create_layer(p, index + i, info->format, &layout.desc, first->own_tail.image);
+    for (uint32_t i = 0; i < layer_count; i++)
+        p->images[index + i].page_format = slc_page_format(info->format, produced);
     if (result != SLUICE_SUCCESS) {
         destroy_image(residency, index);
         return result;
     }
     count_memory(p);
-    *out = (struct slc_residency_image){
-        .image = first->tail, .desc = layout.desc, .uneven = layout.uneven};
+    *out = (struct slc_residency_image){.image = first->tail,
+                                        .desc = layout.desc,
+                                        .uneven = layout.uneven,
+                                        .storage = first->own_tail.storage,
+                                        .first_level = layout.desc.regularMipCount};
     return SLUICE_SUCCESS;
 }
 
@@ -161,7 +166,7 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
 static uint32_t page_room(const struct slc_residency *residency, uint32_t index)
 {
     const struct paged_residency *p = (const struct paged_residency *)residency;
-    return slc_page_pool_free_count(p->pool, p->user, p->images[index].format);
+    return slc_page_pool_free_count(p->pool, p->user, p->images[index].page_format);
 }
 
 static SluiceResult update(struct slc_residency *residency, uint64_t frame,
@@ -214,7 +219,7 @@ static SluiceResult map(struct slc_residency *residency, uint32_t index, const S
         return SLUICE_SUCCESS; /* the packed levels have their own image */
     uint32_t *page = &p->table.entries[word_of(p, index, tile)];
     assert(!slc_page_is_taken(*page));
-    *page = slc_page_pool_take(p->pool, p->user, image->format);
+    *page = slc_page_pool_take(p->pool, p->user, image->page_format);
     count_memory(p);
     if (*page == SLUICE_PAGE_NONE)
         return SLUICE_ERROR_OUT_OF_DEVICE_MEMORY;
@@ -239,6 +244,37 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
     slc_page_table_store(&p->table, index, word, p->frame);
 }
 
+static void discard(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    if (tile->mipLevel >= p->table.parts[index].desc.regularMipCount)
+        return;
+    uint32_t *entry = &p->table.entries[word_of(p, index, tile)];
+    assert(slc_page_is_taken(*entry) && !(*entry & SLC_PAGE_SHOWN));
+    slc_page_pool_give(p->pool, p->user, slc_page_of_entry(*entry), SLC_NO_OWNER);
+    *entry = SLUICE_PAGE_NONE;
+}
+
+static struct slc_tile_page find_page(const struct slc_residency *residency, uint32_t index,
+                                      const SluiceTile *tile)
+{
+    const struct paged_residency *p = (const struct paged_residency *)residency;
+    uint32_t entry = p->table.entries[word_of(p, index, tile)];
+    assert(slc_page_is_taken(entry));
+    uint32_t page = slc_page_of_entry(entry);
+    return (struct slc_tile_page){slc_page_image(p->pool, page),
+                                  slc_page_storage_view(p->pool, page), page >> 16, page & 0xFFFFu};
+}
+
+static void show(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t word = word_of(p, index, tile);
+    assert(slc_page_is_taken(p->table.entries[word]));
+    p->table.entries[word] |= SLC_PAGE_SHOWN;
+    slc_page_table_store(&p->table, index, word, p->frame);
+}
+
 /* A tile was copied to its page before it was shown, and only what is shown is unmapped. */
 static bool revive(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
 {
@@ -253,7 +289,8 @@ static bool revive(struct slc_residency *residency, uint32_t index, const Sluice
     if (!there)
         return false;
     const struct slc_tile_key key = key_of(&p->images[index], tile);
-    slc_page_share_adopt(p->pool, p->user, &key, page);
+    if (key.source)
+        slc_page_share_adopt(p->pool, p->user, &key, page);
     slc_page_table_store(&p->table, index, word, p->frame);
     return true;
 }
@@ -421,6 +458,9 @@ static const struct slc_residency_interface paged_interface = {
     .update = update,
     .map = map,
     .unmap = unmap,
+    .discard = discard,
+    .find_page = find_page,
+    .show = show,
     .room_to_unmap = room_to_unmap,
     .submit = submit,
     .wait = wait,

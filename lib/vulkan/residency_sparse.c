@@ -122,21 +122,24 @@ static bool reserve(struct slc_residency *residency, uint32_t index, const Sluic
 }
 
 static SluiceResult create_image(struct slc_residency *residency, uint32_t index,
-                                 const SluiceImageInfo *info, struct slc_residency_image *image)
+                                 const SluiceImageInfo *info, bool produced,
+                                 struct slc_residency_image *image)
 {
     struct sparse_residency *s = sparse(residency);
     struct slc_sparse_image *sparse_image = &s->images[index];
     assert(!sparse_image->image);
     SluiceResult result =
-        slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info);
+        slc_sparse_image_create(sparse_image, s->vk, s->caps, s->memory_type, info, produced);
     for (uint32_t i = 0; result == SLUICE_SUCCESS && i < sparse_image->layer_count; i++)
         result = reserve_packed(s, &sparse_image[i], info);
     if (result != SLUICE_SUCCESS) {
         destroy_image(residency, index);
         return result;
     }
-    *image = (struct slc_residency_image){sparse_image->image, sparse_image->layout.desc,
-                                          sparse_image->layout.uneven};
+    *image = (struct slc_residency_image){.image = sparse_image->image,
+                                          .desc = sparse_image->layout.desc,
+                                          .uneven = sparse_image->layout.uneven,
+                                          .storage = sparse_image->storage};
     return SLUICE_SUCCESS;
 }
 
@@ -261,6 +264,14 @@ static void unmap(struct slc_residency *residency, uint32_t index, const SluiceT
         (struct pending_unmap){frame, slc_place_key(index, place), index, place, filled};
     slc_map_add(&s->pending_tiles, s->pending[at].key, at);
     s->images[index].unmap_count++;
+}
+
+static void discard(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
+{
+    struct sparse_residency *s = sparse(residency);
+    struct slc_tile_place place = slc_sparse_layout_place(&s->images[index].layout, tile);
+    slc_sparse_bindings_spoil(&s->pages, index, place);
+    slc_sparse_bindings_evict(&s->pages, index, place);
 }
 
 static SluiceResult map(struct slc_residency *residency, uint32_t index, const SluiceTile *tile)
@@ -525,6 +536,7 @@ static const struct slc_residency_interface sparse_interface = {
     .update = update,
     .map = map,
     .unmap = unmap,
+    .discard = discard,
     .room_to_unmap = room_to_unmap,
     .submit = submit,
     .wait = wait,

@@ -142,7 +142,7 @@ static void fill_layers(struct slc_sparse_image *images, uint32_t count)
 
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info)
+                                     const SluiceImageInfo *info, bool storage)
 {
     *image = (struct slc_sparse_image){0};
     VkImageCreateInfo create =
@@ -151,6 +151,9 @@ SluiceResult slc_sparse_image_create(struct slc_sparse_image *image, const struc
     const char *trouble = check_format(vk, caps, info);
     SluiceResult result = SLUICE_ERROR_UNSUPPORTED;
     if (!trouble) {
+        image->storage = storage && slc_image_may_store(vk, &create);
+        if (image->storage)
+            create.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         result = slc_vk_result(vk, vk->CreateImage(vk->device, &create, NULL, &image->image),
                                "vkCreateImage");
         if (result != SLUICE_SUCCESS)
@@ -243,7 +246,7 @@ SluiceResult sluiceGetVulkanSparseImageLayout(VkInstance instance, VkPhysicalDev
     }
     result = slc_sparse_memory_type(&vk, &caps, &memory_type);
     if (result == SLUICE_SUCCESS)
-        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info);
+        result = slc_sparse_image_create(&image, &vk, &caps, memory_type, &info, false);
     if (result != SLUICE_SUCCESS)
         return result;
     SluiceVulkanSparseImageLayout layout = {.structSize = sizeof layout};

@@ -10,6 +10,7 @@
 /** A sparse image, or one layer of an array: layers are places in one VkImage. */
 struct slc_sparse_image {
     VkImage image; ///< owned by the first layer
+    bool storage;  ///< shaders can store to it
     struct slc_sparse_layout layout;
     uint32_t layer, layer_count;
     struct slc_memory metadata;       ///< as the image; zeroed where there is none
@@ -20,12 +21,13 @@ struct slc_sparse_image {
 };
 
 /**
- * `images` are as many as info->arrayLayerCount, or one for 0. Errors: UNSUPPORTED with a message
+ * `images` are as many as info->arrayLayerCount, or one for 0. `storage`: shaders are to store to
+ * them, if the device can do that with the format. Errors: UNSUPPORTED with a message
  * that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
  */
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,
-                                     const SluiceImageInfo *info);
+                                     const SluiceImageInfo *info, bool storage);
 /** `images` is the first layer; all of them go. */
 void slc_sparse_image_destroy(struct slc_sparse_image *images, const struct slc_vk *vk);
 

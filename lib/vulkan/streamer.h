@@ -21,6 +21,7 @@
 #include "vulkan/resolve.h"
 #include "vulkan/sparse_layout.h"
 #include "vulkan/staging.h"
+#include "vulkan/tile_producer.h"
 #include "vulkan/time_defaults.h"
 
 #include <sluice/shared/texture_table.h>
@@ -52,7 +53,9 @@ struct slc_texture {
     enum slc_texture_state state;
     SluiceTextureId id;
     SluiceTextureId primary_id;
-    SluiceImageSource *source; ///< borrowed
+    SluiceImageSource *source; ///< borrowed; NULL: it has a producer
+    struct slc_tile_producer producer;
+    VkImageView *level_views; ///< owned by layer 0; of `image`, for stores; NULL: there are none
     SluiceImageInfo info;
     struct slc_residency_image image;
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
@@ -103,6 +106,8 @@ struct slc_unit {
     bool canceled;
     bool published; ///< the manager counts it as mapped: copied by a frame that was abandoned
     bool dropped;   ///< its tile was unmapped, and is not in tile_units; what it copied is no use
+    bool produced;  ///< the application's commands fill it: it has no memory in its staging slot
+    uint64_t asked_frame; ///< in which its producer was asked first; 0: in none
     uint64_t ticket;
     uint64_t value; ///< BINDING: of the bind; UPLOADED: the frame
     uint32_t next;  ///< in its list
@@ -171,6 +176,7 @@ struct SluiceVulkanStreamer {
     struct slc_unit *units;          ///< owned; maxLoadsInFlight
     struct slc_unit_list free_units; ///< used last, first
     struct slc_unit_list arrived, binding, uploaded;
+    struct slc_unit_list unproduced, produced; ///< bound; recorded, not complete
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
     struct slc_deferred_tiles deferred;
@@ -216,6 +222,11 @@ static inline struct slc_texture *slc_streamer_texture(SluiceVulkanStreamer *s, 
 static inline uint64_t slc_turns_size(const SluiceVulkanStreamer *s)
 {
     return ((uint64_t)s->info.maxTextureCount + 31) / 32 * 4;
+}
+
+static inline SluiceFormat slc_texture_page_format(const struct slc_texture *texture)
+{
+    return slc_page_format(texture->info.format, texture->producer.pfn);
 }
 
 /** Logs what the manager refuses although it should not; returns `result`. */

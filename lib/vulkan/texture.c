@@ -89,6 +89,8 @@ static SluiceResult create_packed(SluiceVulkanStreamer *s, struct slc_texture *t
     SluiceResult result = sluiceGetFormatInfo(texture->info.format, &format);
     if (result == SLUICE_SUCCESS)
         result = slc_packed_units_init(&texture->packed, &s->cb, desc, &format, SLC_TILE_SIZE);
+    if (texture->producer.pfn)
+        slc_packed_units_join(&texture->packed);
     if (result != SLUICE_SUCCESS || desc->packedTileCount == 0)
         return result;
     if (texture->packed.unit_count > s->info.maxLoadsInFlight) {
@@ -144,6 +146,7 @@ static void destroy_parts(SluiceVulkanStreamer *s, uint32_t index)
         s->vk.DestroyImageView(s->vk.device, texture->view, NULL);
     if (texture->array_view)
         s->vk.DestroyImageView(s->vk.device, texture->array_view, NULL);
+    slc_level_views_finish(&texture->level_views, &s->vk, &s->cb, &texture->image);
     /* of an array when its last layer goes */
     if (texture->image.image && texture->layer + 1 == texture->layer_count)
         s->residency->interface->destroy_image(s->residency, texture->first);
@@ -162,6 +165,9 @@ static SluiceResult build(SluiceVulkanStreamer *s, struct slc_texture *texture)
     if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->layer_count > 1)
         result = create_view(s, texture, VK_IMAGE_VIEW_TYPE_2D_ARRAY, texture->layer_count,
                              &texture->array_view);
+    if (result == SLUICE_SUCCESS && texture->layer == 0 && texture->producer.pfn)
+        result = slc_level_views_init(&texture->level_views, &s->vk, &s->cb, &texture->image,
+                                      slc_vk_format(texture->info.format), texture->layer_count);
     texture->layout.structSize = sizeof texture->layout;
     if (result == SLUICE_SUCCESS)
         result = sluiceGetStreamedTextureLayout(&texture->image.desc, &texture->layout);
@@ -217,6 +223,7 @@ static void choose_modes(SluiceVulkanStreamer *s, const SluiceVulkanTextureCreat
 /* All layers, or none. The manager comes last: what it has got is only given back with a frame. */
 static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
                               const SluiceVulkanTextureCreateInfo *info,
+                              const struct slc_tile_producer *producer,
                               const SluiceImageInfo *image, uint32_t count)
 {
     struct slc_residency_image residency_image;
@@ -228,13 +235,14 @@ static SluiceResult build_all(SluiceVulkanStreamer *s, uint32_t first,
     if (s->info.textureArray != SLUICE_TEXTURE_ARRAY_NONE)
         result = find_sampler(s, modes, max_anisotropy, &sampler);
     if (result == SLUICE_SUCCESS)
-        result =
-            s->residency->interface->create_image(s->residency, first, image, &residency_image);
+        result = s->residency->interface->create_image(s->residency, first, image, producer->pfn,
+                                                       &residency_image);
     if (result != SLUICE_SUCCESS)
         return result;
     for (uint32_t i = 0; i < count; i++)
         s->textures[first + i] =
             (struct slc_texture){.source = info->source,
+                                 .producer = *producer,
                                  .whole_shown = slc_settled_texel(SLUICE_MIP_UNTOUCHED),
                                  .primary_id = info->primaryId,
                                  .info = *image,
@@ -296,21 +304,35 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
                               s->samplers.list[texture->sampler].sampler);
 }
 
+/* The image of the source, or of the producer. */
+static SluiceResult describe(const SluiceVulkanStreamer *s,
+                             const SluiceVulkanTextureCreateInfo *info,
+                             struct slc_tile_producer *producer, SluiceImageInfo *image)
+{
+    if (!info->pProducer)
+        return info->source ? sluiceGetImageInfo(info->source, image) : SLUICE_ERROR_NULL_POINTER;
+    if (!info->source)
+        return slc_tile_producer_read(producer, image, info->pProducer, &s->vk.log);
+    slc_log(&s->vk.log, SLUICE_LOG_ERROR, "a texture has either a source or a producer, not both");
+    return SLUICE_ERROR_INVALID_ARGUMENT;
+}
+
 SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
                                          const SluiceVulkanTextureCreateInfo *pCreateInfo,
                                          uint32_t layerCount, SluiceVulkanTexture *pLayers)
 {
     SluiceVulkanStreamer *s = streamer;
-    if (!s || !pCreateInfo || !pLayers || !pCreateInfo->source)
+    if (!s || !pCreateInfo || !pLayers)
         return SLUICE_ERROR_NULL_POINTER;
     SluiceImageInfo image = {.structSize = sizeof image};
+    struct slc_tile_producer producer = {0};
     SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info};
     SluiceResult result =
         slc_struct_read(SLC_STRUCT(SluiceVulkanTextureCreateInfo), &info, pCreateInfo, &s->vk.log);
     if (result == SLUICE_SUCCESS)
         result = check_create_info(s, &info);
     if (result == SLUICE_SUCCESS)
-        result = sluiceGetImageInfo(info.source, &image);
+        result = describe(s, &info, &producer, &image);
     if (result == SLUICE_SUCCESS)
         result = slc_image_info_check(&image, SLC_LEVELS_ALL, &s->vk.log);
     if (result != SLUICE_SUCCESS)
@@ -321,7 +343,7 @@ SluiceResult sluiceAddVulkanTextureArray(SluiceVulkanStreamer *streamer,
     if (first == SLC_NONE)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     s->manager_locked = false;
-    result = build_all(s, first, &info, &image, layerCount);
+    result = build_all(s, first, &info, &producer, &image, layerCount);
     s->manager_locked = true;
     if (result != SLUICE_SUCCESS)
         return result;
@@ -427,9 +449,11 @@ static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *fir
 /* The application may destroy it now, and make another one at the same address. */
 static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *source)
 {
-    for (uint32_t i = 0; i < s->texture_high; i++)
+    for (uint32_t i = 0; i < s->texture_high && source; i++)
         if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
             return;
+    if (!source)
+        return;
     sluiceDropTileLoaderStatistics(s->loader, source); /* nothing of it is under way */
 }
 

@@ -42,6 +42,23 @@ static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
     return 1;
 }
 
+SluiceResult slc_packed_publish(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    for (uint32_t i = 0; i < texture->packed_collected; i++) {
+        SluiceResult result = sluiceUpdateTilesMapping(s->manager, texture->id, 1,
+                                                       &texture->packed_tiles[i].tileIndex);
+        if (result < 0)
+            return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
+    }
+    s->counts.tilesMapped += texture->packed_collected;
+    texture->packed_mapped += texture->packed_collected;
+    texture->packed_collected = 0;
+    texture->packed_state = SLC_PACKED_COLLECTING;
+    texture->packed_done = 0;
+    return SLUICE_SUCCESS;
+}
+
 /* What is published: whole tiles at once, packed levels when their last unit is copied. */
 static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t packed_units,
                             uint32_t tile_count)
@@ -49,19 +66,10 @@ static SluiceResult publish(SluiceVulkanStreamer *s, uint32_t index, uint32_t pa
     struct slc_texture *texture = &s->textures[index];
     SluiceResult result = SLUICE_SUCCESS;
     texture->packed_done += packed_units;
-    if (packed_units && texture->packed_done == texture->packed.unit_count) {
-        for (uint32_t i = 0; i < texture->packed_collected; i++) {
-            result = sluiceUpdateTilesMapping(s->manager, texture->id, 1,
-                                              &texture->packed_tiles[i].tileIndex);
-            if (result < 0)
-                return slc_streamer_check(s, result, "sluiceUpdateTilesMapping");
-        }
-        s->counts.tilesMapped += texture->packed_collected;
-        texture->packed_mapped += texture->packed_collected;
-        texture->packed_collected = 0;
-        texture->packed_state = SLC_PACKED_COLLECTING;
-        texture->packed_done = 0;
-    }
+    if (packed_units && texture->packed_done == texture->packed.unit_count)
+        result = slc_packed_publish(s, index);
+    if (result < 0)
+        return result;
     if (tile_count) {
         result = sluiceUpdateTilesMapping(s->manager, texture->id, tile_count, s->tile_indices);
         s->counts.tilesMapped += tile_count;
@@ -120,8 +128,8 @@ static uint64_t by_texture_and_slot(const SluiceVulkanStreamer *s, uint32_t unit
 }
 
 /* Shell sort: a few hundred entries, no allocation. */
-static void sort_units(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count,
-                       uint64_t (*key)(const SluiceVulkanStreamer *s, uint32_t unit))
+void slc_sort_units(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count,
+                    uint64_t (*key)(const SluiceVulkanStreamer *s, uint32_t unit))
 {
     for (uint32_t gap = count / 2; gap > 0; gap /= 2)
         for (uint32_t i = gap; i < count; i++) {
@@ -194,9 +202,9 @@ static bool record_round(SluiceVulkanStreamer *s, VkCommandBuffer commands, cons
 static SluiceResult record_units(SluiceVulkanStreamer *s, VkCommandBuffer commands, uint32_t count)
 {
     uint32_t round = 0;
-    sort_units(s, s->frame_units, count, by_texture);
+    slc_sort_units(s, s->frame_units, count, by_texture);
     SluiceResult result = publish_units(s, s->frame_units, count);
-    sort_units(s, s->frame_units, count, by_texture_and_slot);
+    slc_sort_units(s, s->frame_units, count, by_texture_and_slot);
     while (record_round(s, commands, s->frame_units, count, round))
         round++;
     return result;
@@ -212,10 +220,12 @@ static uint32_t take_units(SluiceVulkanStreamer *s, uint32_t *left)
         if (unit->value > completed || (!unit->published && *left == 0))
             break;
         bool useless = unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED;
-        *left -= !unit->published && !useless;
+        *left -= !unit->published && !useless && !unit->produced;
         uint32_t taken = slc_unit_list_pop(s, &s->binding);
         if (useless)
             slc_unit_free(s, taken);
+        else if (unit->produced)
+            slc_unit_list_append(s, &s->unproduced, taken);
         else
             s->frame_units[count++] = taken;
     }

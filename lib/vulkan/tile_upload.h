@@ -6,4 +6,11 @@
 
 SluiceResult slc_tile_uploads_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 
+/** The texels of all packed levels are there. */
+SluiceResult slc_packed_publish(SluiceVulkanStreamer *s, uint32_t texture);
+
+/** Sorts units by a key. */
+void slc_sort_units(const SluiceVulkanStreamer *s, uint32_t *units, uint32_t count,
+                    uint64_t (*key)(const SluiceVulkanStreamer *s, uint32_t unit));
+
 #endif /* SLC_VULKAN_TILE_UPLOAD_H */

@@ -1,0 +1,327 @@
+#include "vulkan/load_productions.h"
+
+#include "base/checked.h"
+#include "vulkan/load_arrivals.h"
+#include "vulkan/load_deferred.h"
+#include "vulkan/load_reads.h"
+#include "vulkan/load_units.h"
+#include "vulkan/read_troubles.h"
+#include "vulkan/tile_upload.h"
+
+#include <assert.h>
+
+#define BATCH 64u /* tiles of a call */
+
+/* Commands that were recorded in this frame, and what the next ones may have to wait for. */
+struct recording {
+    VkCommandBuffer commands;
+    VkImage image; ///< of the last batch; VK_NULL_HANDLE: there was none
+    uint32_t level, texture;
+};
+
+void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    uint32_t unit = slc_unit_take_empty(s, texture, SLC_NONE);
+    s->units[unit].tile = *tile;
+    s->units[unit].state = SLC_UNIT_ARRIVED;
+    slc_map_add(&s->tile_units, slc_pair_key(texture, tile->tileIndex), unit);
+    slc_unit_list_append(s, &s->arrived, unit);
+}
+
+/* All levels are one unit, as there is no staging slot that it must fit into. */
+void slc_production_start_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    struct slc_texture *texture = &s->textures[index];
+    assert(texture->packed.unit_count == 1);
+    uint32_t unit = slc_unit_take_empty(s, index, 0);
+    s->units[unit].state = SLC_UNIT_ARRIVED;
+    s->units[unit].next = SLC_NONE;
+    texture->packed_first_unit = unit;
+    texture->packed_state = SLC_PACKED_MAPPING;
+    texture->packed_done = 0;
+    s->packed_queue[s->packed_queue_count++] = index;
+}
+
+static void discard(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile)
+{
+    if (s->residency->interface->discard)
+        s->residency->interface->discard(s->residency, texture, tile);
+}
+
+static SluiceResult give_back(SluiceVulkanStreamer *s, uint32_t index)
+{
+    const struct slc_unit *unit = &s->units[index];
+    discard(s, unit->texture, &unit->tile);
+    SluiceResult result = slc_load_give_back(s, unit->texture, &unit->tile);
+    slc_unit_forget_tile(s, unit);
+    slc_unit_free(s, index);
+    return result;
+}
+
+static SluiceResult fail_tile(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    const struct slc_unit *unit = &s->units[index];
+    discard(s, unit->texture, &unit->tile);
+    SluiceResult result = sluiceReportFailedTiles(s->manager, s->textures[unit->texture].id, 1,
+                                                  &unit->tile.tileIndex, s->manager_time);
+    s->counts.tilesFailed++;
+    slc_read_trouble_failed(s, unit->texture, unit->tile.tileIndex, answer);
+    slc_unit_forget_tile(s, unit);
+    slc_unit_free(s, index);
+    return slc_streamer_check(s, result, "sluiceReportFailedTiles");
+}
+
+static SluiceResult fail_packed(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    uint32_t at = s->units[index].texture;
+    struct slc_texture *texture = &s->textures[at];
+    for (uint32_t i = 0; i < texture->packed_collected; i++)
+        discard(s, at, &texture->packed_tiles[i]);
+    s->units[index].next = SLC_NONE;
+    texture->packed_first_unit = index;
+    texture->packed_result = answer;
+    return slc_packed_fail(s, at);
+}
+
+/* What becomes of a unit with the producer's answer. */
+static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
+{
+    struct slc_unit *unit = &s->units[index];
+    uint32_t timeout = s->textures[unit->texture].producer.timeout_frames;
+    if (answer == SLUICE_SUCCESS) {
+        unit->state = SLC_UNIT_UPLOADED;
+        unit->value = s->frame;
+        slc_unit_list_append(s, &s->produced, index);
+        return SLUICE_SUCCESS;
+    }
+    if (unit->asked_frame == 0)
+        unit->asked_frame = s->frame;
+    if (answer == SLUICE_NOT_READY && s->frame - unit->asked_frame < timeout &&
+        slc_loads_can_wait(s)) {
+        slc_unit_list_append(s, &s->unproduced, index);
+        return SLUICE_SUCCESS;
+    }
+    return unit->packed_unit == SLC_NONE ? fail_tile(s, index, answer)
+                                         : fail_packed(s, index, answer);
+}
+
+static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands, bool before)
+{
+    const VkPipelineStageFlags writers =
+        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    const VkAccessFlags writes = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                              .srcAccessMask = writes,
+                              .dstAccessMask = before ? VK_ACCESS_SHADER_READ_BIT | writes
+                                                      : VK_ACCESS_SHADER_READ_BIT |
+                                                            VK_ACCESS_TRANSFER_WRITE_BIT};
+    s->vk.CmdPipelineBarrier(commands, before ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT : writers,
+                             before ? writers : VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &memory,
+                             0, NULL, 0, NULL);
+}
+
+/* Batches write other texels than each other. But a view has all layers of a level, so validation
+ * takes two batches with one view for a hazard. */
+static void order(const SluiceVulkanStreamer *s, struct recording *r, uint32_t texture,
+                  const SluiceTileBatch *batch)
+{
+    if (!r->image || r->texture != texture ||
+        (r->image == batch->image && r->level == batch->mipLevel))
+        barrier(s, r->commands, true);
+    r->image = batch->image;
+    r->level = batch->mipLevel;
+    r->texture = texture;
+}
+
+static void ask(SluiceVulkanStreamer *s, struct recording *r, uint32_t index,
+                SluiceTileBatch *batch, SluiceResult *results)
+{
+    const struct slc_texture *texture = &s->textures[index];
+    batch->structSize = sizeof *batch;
+    batch->textureId = texture->id;
+    batch->commandBuffer = r->commands;
+    batch->frameIndex = s->frame;
+    for (uint32_t i = 0; i < batch->tileCount; i++)
+        results[i] = SLUICE_SUCCESS;
+    order(s, r, index, batch);
+    s->manager_locked = true;
+    SluiceResult result = texture->producer.pfn(texture->producer.user, batch, results);
+    s->manager_locked = false;
+    for (uint32_t i = 0; i < batch->tileCount && result != SLUICE_SUCCESS; i++)
+        results[i] = result;
+}
+
+/* Of texels that lie at their place in the texture's image. */
+static void place_in_image(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
+                           const SluiceImageRegion *region, SluiceTileBatch *batch,
+                           SluiceTileTarget *target)
+{
+    const VkImageView *views = s->textures[texture->first].level_views;
+    batch->image = texture->image.image;
+    batch->mipLevel = region->mipLevel - texture->image.first_level;
+    batch->imageView = views ? views[batch->mipLevel] : VK_NULL_HANDLE;
+    *target = (SluiceTileTarget){*region, region->x, region->y, texture->layer};
+    target->region.arrayLayer = texture->layer;
+}
+
+static void place(const SluiceVulkanStreamer *s, const struct slc_unit *unit,
+                  SluiceTileBatch *batch, SluiceTileTarget *target)
+{
+    const struct slc_texture *texture = &s->textures[unit->texture];
+    const SluiceImageRegion region = slc_tile_region(texture, &unit->tile);
+    if (!s->residency->interface->find_page) {
+        place_in_image(s, texture, &region, batch, target);
+        return;
+    }
+    struct slc_tile_page page =
+        s->residency->interface->find_page(s->residency, unit->texture, &unit->tile);
+    batch->image = page.image;
+    batch->imageView = page.view;
+    batch->mipLevel = 0;
+    *target = (SluiceTileTarget){.region = region, .layer = page.layer};
+}
+
+/* By texture, and of each the tiles of one batch together: one image and level. */
+static uint64_t batch_key(const SluiceVulkanStreamer *s, uint32_t index)
+{
+    const struct slc_unit *unit = &s->units[index];
+    uint32_t part = SLC_NONE;
+    if (unit->packed_unit == SLC_NONE && s->residency->interface->find_page)
+        part = s->residency->interface->find_page(s->residency, unit->texture, &unit->tile)
+                   .image_index;
+    else if (unit->packed_unit == SLC_NONE)
+        part = unit->tile.mipLevel;
+    return (uint64_t)unit->texture << 32 | part;
+}
+
+/* Those of one key; the manager may hear of failures. */
+static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
+                                 const uint32_t *units, uint32_t count)
+{
+    SluiceTileTarget targets[BATCH];
+    SluiceResult results[BATCH], result = SLUICE_SUCCESS;
+    SluiceTileBatch batch = {.tileCount = count, .pTiles = targets};
+    assert(count <= BATCH);
+    for (uint32_t i = 0; i < count; i++)
+        place(s, &s->units[units[i]], &batch, &targets[i]);
+    ask(s, r, s->units[units[0]].texture, &batch, results);
+    for (uint32_t i = 0; i < count && result >= 0; i++)
+        result = answered(s, units[i], results[i]);
+    return result;
+}
+
+/* Level by level, until the first answer that is no success. */
+static SluiceResult record_packed(SluiceVulkanStreamer *s, struct recording *r, uint32_t index)
+{
+    uint32_t at = s->units[index].texture;
+    const struct slc_texture *texture = &s->textures[at];
+    const struct slc_packed_rect *rects = texture->packed.rects;
+    SluiceTileTarget targets[BATCH];
+    SluiceResult results[BATCH], answer = SLUICE_SUCCESS;
+    for (uint32_t i = 0; i < texture->packed.rect_count && answer == SLUICE_SUCCESS;) {
+        SluiceTileBatch batch = {.pTiles = targets};
+        uint32_t level = rects[i].region.mipLevel;
+        for (; i < texture->packed.rect_count && rects[i].region.mipLevel == level &&
+               batch.tileCount < BATCH;
+             i++)
+            place_in_image(s, texture, &rects[i].region, &batch, &targets[batch.tileCount++]);
+        ask(s, r, at, &batch, results);
+        for (uint32_t k = 0; k < batch.tileCount && answer == SLUICE_SUCCESS; k++)
+            answer = results[k];
+    }
+    return answered(s, index, answer);
+}
+
+/* As many as a frame may have, into frame_units; the others go on waiting. */
+static SluiceResult take(SluiceVulkanStreamer *s, uint32_t *count)
+{
+    struct slc_unit_list later = {SLC_NONE, SLC_NONE};
+    SluiceResult result = SLUICE_SUCCESS;
+    *count = 0;
+    for (uint32_t at; (at = slc_unit_list_pop(s, &s->unproduced)) != SLC_NONE;) {
+        const struct slc_unit *unit = &s->units[at];
+        if (unit->dropped || s->textures[unit->texture].state == SLC_TEXTURE_REMOVED)
+            slc_unit_free(s, at);
+        else if (unit->canceled)
+            result = result < 0 ? result : give_back(s, at);
+        else if (*count < s->info.tilesPerFrame)
+            s->frame_units[(*count)++] = at;
+        else
+            slc_unit_list_append(s, &later, at);
+    }
+    s->unproduced = later;
+    return result;
+}
+
+SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer commands)
+{
+    struct recording r = {.commands = commands};
+    const uint32_t *units = s->frame_units;
+    uint32_t count;
+    SluiceResult result = take(s, &count);
+    slc_sort_units(s, s->frame_units, count, batch_key);
+    for (uint32_t i = 0, next; i < count && result >= 0; i = next) {
+        next = i + 1;
+        if (s->units[units[i]].packed_unit != SLC_NONE) {
+            result = record_packed(s, &r, units[i]);
+            continue;
+        }
+        uint64_t key = batch_key(s, units[i]);
+        while (next < count && next - i < BATCH && batch_key(s, units[next]) == key)
+            next++;
+        result = record_tiles(s, &r, &units[i], next - i);
+    }
+    if (r.image)
+        barrier(s, commands, false);
+    return result;
+}
+
+static SluiceResult publish_tile(SluiceVulkanStreamer *s, const struct slc_unit *unit)
+{
+    if (s->residency->interface->show)
+        s->residency->interface->show(s->residency, unit->texture, &unit->tile);
+    s->counts.tilesMapped++;
+    s->counts.tilesProduced++;
+    slc_read_trouble_delivered(s, unit->texture, unit->tile.tileIndex);
+    return slc_streamer_check(s,
+                              sluiceUpdateTilesMapping(s->manager, s->textures[unit->texture].id, 1,
+                                                       &unit->tile.tileIndex),
+                              "sluiceUpdateTilesMapping");
+}
+
+static SluiceResult publish_packed(SluiceVulkanStreamer *s, uint32_t index)
+{
+    slc_read_trouble_delivered(s, index, s->textures[index].packed_tiles[0].tileIndex);
+    return slc_packed_publish(s, index);
+}
+
+SluiceResult slc_productions_publish(SluiceVulkanStreamer *s)
+{
+    SluiceResult result = SLUICE_SUCCESS;
+    while (s->produced.first != SLC_NONE &&
+           s->units[s->produced.first].value <= s->completed_frame && result >= 0) {
+        uint32_t at = slc_unit_list_pop(s, &s->produced);
+        const struct slc_unit *unit = &s->units[at];
+        if (!unit->dropped && s->textures[unit->texture].state == SLC_TEXTURE_LIVE)
+            result = unit->packed_unit == SLC_NONE ? publish_tile(s, unit)
+                                                   : publish_packed(s, unit->texture);
+        slc_unit_forget_tile(s, unit);
+        slc_unit_free(s, at);
+    }
+    return result;
+}
+
+void slc_productions_abandon(SluiceVulkanStreamer *s, uint64_t frame)
+{
+    struct slc_unit_list kept = {SLC_NONE, SLC_NONE}, again = kept;
+    for (uint32_t at; (at = slc_unit_list_pop(s, &s->produced)) != SLC_NONE;) {
+        bool stays = s->units[at].value < frame;
+        if (!stays)
+            s->units[at].state = SLC_UNIT_BINDING;
+        slc_unit_list_append(s, stays ? &kept : &again, at);
+    }
+    for (uint32_t at; (at = slc_unit_list_pop(s, &s->unproduced)) != SLC_NONE;)
+        slc_unit_list_append(s, &again, at);
+    s->produced = kept;
+    s->unproduced = again;
+}
