@@ -28,8 +28,7 @@ void scene_finish(struct scene *scene)
     harness_check_silence(scene->h);
 }
 
-uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerAddressMode u,
-                      VkSamplerAddressMode v, float anisotropy, SluiceTextureId primary)
+static uint32_t find_place(struct scene *scene)
 {
     uint32_t index = 0;
     while (scene->textures[index].used)
@@ -40,6 +39,28 @@ uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerA
         CHECK_OK(sluiceWaitVulkanStreamerIdle(scene->streamer));
     if (texture->owns)
         sluiceDestroyImageSource(texture->source);
+    return index;
+}
+
+uint32_t scene_add_produced(struct scene *scene, const SluiceTileProducer *producer)
+{
+    uint32_t index = find_place(scene);
+    const VkSamplerAddressMode repeat = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    struct scene_texture *texture = &scene->textures[index];
+    *texture = (struct scene_texture){
+        .used = true, .info = *producer->pImage, .u = repeat, .v = repeat, .anisotropy = 1};
+    SluiceVulkanTextureCreateInfo info = {.structSize = sizeof info, .pProducer = producer};
+    CHECK_OK(sluiceAddVulkanTexture(scene->streamer, &info, &texture->texture));
+    texture->info.mipLevelCount = texture->texture.mipLevelCount;
+    texture->probe = prober_texture(&scene->prober, &texture->texture, repeat, repeat, 1);
+    return index;
+}
+
+uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerAddressMode u,
+                      VkSamplerAddressMode v, float anisotropy, SluiceTextureId primary)
+{
+    uint32_t index = find_place(scene);
+    struct scene_texture *texture = &scene->textures[index];
     *texture = (struct scene_texture){
         .used = true, .source = source, .owns = true, .u = u, .v = v, .anisotropy = anisotropy};
     texture->info.structSize = sizeof texture->info;

@@ -37,6 +37,8 @@ void scene_finish(struct scene *scene);
 uint32_t scene_add(struct scene *scene, SluiceImageSource *source);
 uint32_t scene_add_as(struct scene *scene, SluiceImageSource *source, VkSamplerAddressMode u,
                       VkSamplerAddressMode v, float anisotropy, SluiceTextureId primary);
+/** A texture whose tiles a producer writes. Repeats, trilinear. */
+uint32_t scene_add_produced(struct scene *scene, const SluiceTileProducer *producer);
 /** Its source is destroyed with the scene. */
 void scene_remove(struct scene *scene, uint32_t texture);
 
