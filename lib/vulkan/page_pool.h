@@ -99,7 +99,8 @@ bool slc_page_pool_was_refused(struct slc_page_pool *pool);
  * than are free later, so that the device is asked again. */
 uint32_t slc_page_pool_free_count(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
 
-/** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. */
+/** SLUICE_PAGE_NONE if there is neither a free page nor room for another chunk. Take pages before
+ *  the slc_page_pool_record of the frame that shows them: its array of views has their images. */
 uint32_t slc_page_pool_take(struct slc_page_pool *pool, uint32_t user, SluiceFormat format);
 /** `owner` may ask for it again; or SLC_NO_OWNER. A page that others hold, too, stays theirs. */
 void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
