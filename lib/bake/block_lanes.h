@@ -9,7 +9,9 @@
 
 #include <stdint.h>
 
+#ifndef SLC_LANES
 #define SLC_LANES 4
+#endif
 
 typedef float slc_floats __attribute__((vector_size(4 * SLC_LANES)));
 typedef int32_t slc_ints __attribute__((vector_size(4 * SLC_LANES)));

@@ -103,16 +103,43 @@ static void squish_run(const struct encoding *encoding, uint8_t (*rgba)[64], con
 #endif
 }
 
+#ifdef SLC_HAVE_AVX2
+void slc_encode_bc7_avx2(SluiceBakeQuality quality, const uint8_t (*rgba)[64], size_t count,
+                         uint8_t *blocks);
+void slc_encode_bc6h_avx2(bool is_signed, SluiceBakeQuality quality, const uint16_t (*rgba)[64],
+                          size_t count, uint8_t *blocks);
+#endif
+
+static void encode_bc7(SluiceBakeQuality quality, union run *run, uint32_t count, uint8_t *out)
+{
+#ifdef SLC_HAVE_AVX2
+    if (__builtin_cpu_supports("avx2")) {
+        slc_encode_bc7_avx2(quality, (const uint8_t(*)[64])run->bytes, count, out);
+        return;
+    }
+#endif
+    slc_encode_bc7(quality, (const uint8_t(*)[64])run->bytes, count, out);
+}
+
+static void encode_bc6h(bool is_signed, SluiceBakeQuality quality, union run *run, uint32_t count,
+                        uint8_t *out)
+{
+#ifdef SLC_HAVE_AVX2
+    if (__builtin_cpu_supports("avx2")) {
+        slc_encode_bc6h_avx2(is_signed, quality, (const uint16_t(*)[64])run->halves, count, out);
+        return;
+    }
+#endif
+    slc_encode_bc6h(is_signed, quality, (const uint16_t(*)[64])run->halves, count, out);
+}
+
 static void encode_run(const struct encoding *encoding, SluiceBakeQuality quality, union run *run,
                        const uint32_t *masks, uint32_t count, uint8_t *out)
 {
     switch (encoding->encoder) {
     case SQUISH: squish_run(encoding, run->bytes, masks, count, out); break;
-    case BC7: slc_encode_bc7(quality, (const uint8_t(*)[64])run->bytes, count, out); break;
-    case BC6H:
-        slc_encode_bc6h(encoding->is_signed, quality, (const uint16_t(*)[64])run->halves, count,
-                        out);
-        break;
+    case BC7: encode_bc7(quality, run, count, out); break;
+    case BC6H: encode_bc6h(encoding->is_signed, quality, run, count, out); break;
     case ASTC:
     case NONE: break;
     }

@@ -1,6 +1,7 @@
 /* BC6H blocks decode to something near the halves, the same bytes with every compiler. */
 #include "bake/baked.h"
 #include "bake/bc6h_encode.h"
+#include "bake/blocks.h"
 #include "support/bptc_decode.h"
 #include "support/test.h"
 
@@ -111,6 +112,23 @@ static void blocks_of_all_kinds_are_near_and_the_same_everywhere(void **state)
             fail_msg("mode %d was never used", m);
 }
 
+/* The baker may use wider vectors than the functions that are tested here. */
+static void the_baker_writes_the_same_bytes(void **state)
+{
+    (void)state;
+    static uint16_t texels[COUNT][64];
+    static uint8_t blocks[COUNT][16], baked[COUNT][16];
+    for (uint32_t b = 0; b < COUNT; b++)
+        make_block(b, false, texels[b]);
+    for (size_t q = 0; q < 3; q++) {
+        const struct slc_block_encoder encoder = {SLUICE_FORMAT_BC6H_UFLOAT_BLOCK, qualities[q],
+                                                  NULL};
+        slc_encode_bc6h(false, qualities[q], (const uint16_t(*)[64])texels, COUNT, blocks[0]);
+        CHECK_OK(slc_encode_blocks(&encoder, texels, 32, 4, 4 * COUNT, baked));
+        assert_memory_equal(blocks, baked, sizeof blocks);
+    }
+}
+
 static void neighbors_do_not_matter(void **state)
 {
     (void)state;
@@ -209,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_of_all_kinds_are_near_and_the_same_everywhere),
+        cmocka_unit_test(the_baker_writes_the_same_bytes),
         cmocka_unit_test(neighbors_do_not_matter),
         cmocka_unit_test(blocks_of_one_half_are_exact),
         cmocka_unit_test(random_halves_become_finite_ones),

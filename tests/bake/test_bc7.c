@@ -1,6 +1,7 @@
 /* BC7 blocks decode to something near the texels, the same bytes with every compiler. */
 #include "bake/baked.h"
 #include "bake/bc7_encode.h"
+#include "bake/blocks.h"
 #include "support/bptc_decode.h"
 #include "support/test.h"
 
@@ -92,6 +93,23 @@ static void blocks_of_all_kinds_are_near_and_the_same_everywhere(void **state)
         assert_true(modes[1] > 0 && modes[4] > 0 && modes[5] > 0 && modes[6] > 0);
         assert_true(sum / (COUNT * 64.0) < most[q]);
         assert_int_equal(hash_of(blocks[0], sizeof blocks), hashes[q]);
+    }
+}
+
+/* The baker may use wider vectors than the functions that are tested here. */
+static void the_baker_writes_the_same_bytes(void **state)
+{
+    (void)state;
+    static uint8_t texels[COUNT][64];
+    static uint8_t blocks[COUNT][16], baked[COUNT][16];
+    for (uint32_t b = 0; b < COUNT; b++)
+        make_block(b, texels[b]);
+    for (size_t q = 0; q < 3; q++) {
+        const struct slc_block_encoder encoder = {SLUICE_FORMAT_BC7_UNORM_BLOCK, qualities[q],
+                                                  NULL};
+        slc_encode_bc7(qualities[q], (const uint8_t(*)[64])texels, COUNT, blocks[0]);
+        CHECK_OK(slc_encode_blocks(&encoder, texels, 16, 4, 4 * COUNT, baked));
+        assert_memory_equal(blocks, baked, sizeof blocks);
     }
 }
 
@@ -204,6 +222,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_of_all_kinds_are_near_and_the_same_everywhere),
+        cmocka_unit_test(the_baker_writes_the_same_bytes),
         cmocka_unit_test(neighbors_do_not_matter),
         cmocka_unit_test(blocks_of_one_color_are_exact),
         cmocka_unit_test(extremes_of_two_kinds_are_exact),
