@@ -386,7 +386,8 @@ typedef struct SluiceDemandResourceCreateInfo {
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, for values
  *         out of range or a callback of the other kind of page; SLUICE_ERROR_LIMIT_EXCEEDED above
- *         pageCapacity, or for more than 253 resources with maxResidentPageCount;
+ *         pageCapacity, for more than 253 resources with maxResidentPageCount, or for more than
+ *         256 sizes of pages in the life of a loader, rounded up to 16 bytes;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY. For a pageSize above 64 KiB also
  *         SLUICE_ERROR_OUT_OF_DEVICE_MEMORY and SLUICE_ERROR_VULKAN.
  */

@@ -195,10 +195,23 @@ static bool find_slab(struct slc_byte_memory *m, uint32_t stride)
     return m->last != SLC_NO_PLACE && cut(m, slab_at(m, m->last), stride);
 }
 
+bool slc_byte_memory_kind(struct slc_byte_memory *memory, uint32_t stride, uint32_t *kind)
+{
+    for (*kind = 0; *kind < memory->kind_count; (*kind)++)
+        if (memory->strides[*kind] == stride)
+            return true;
+    if (memory->kind_count == SLC_BYTE_KINDS)
+        return false;
+    memory->strides[memory->kind_count++] = stride;
+    return true;
+}
+
 static uint32_t take(void *user, uint32_t kind)
 {
     struct slc_byte_memory *m = user;
-    if (!has_slot(m, m->last, kind) && !find_slab(m, kind) && !(grow(m) && find_slab(m, kind))) {
+    uint32_t stride = m->strides[kind];
+    if (!has_slot(m, m->last, stride) && !find_slab(m, stride) &&
+        !(grow(m) && find_slab(m, stride))) {
         m->last = 0;
         m->short_of = true;
         return SLC_NO_PLACE;
@@ -211,7 +224,7 @@ static uint32_t take(void *user, uint32_t kind)
     slots[slot] = (struct slc_byte_slot){.owner = SLC_NO_PAGE, .held = true};
     slab->free_count--;
     m->chunks[m->last >> CHUNK_SHIFT].held_count++;
-    m->held_size += kind;
+    m->held_size += stride;
     return m->last << SLOT_SHIFT | slot;
 }
 

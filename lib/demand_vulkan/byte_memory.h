@@ -22,6 +22,7 @@
 #define SLC_BYTE_ALIGNMENT 16u
 #define SLC_BYTE_SLAB_SIZE (2u << 20)
 #define SLC_MAX_BYTE_PAGE_SIZE (1u << 20)
+#define SLC_BYTE_KINDS 256u /* strides; recordings have no more */
 
 struct slc_byte_slot {
     uint32_t previous, next; ///< free: in the ring
@@ -58,6 +59,8 @@ struct slc_byte_memory {
     SluiceAllocationCallbacks cb;
     PFN_vkGetBufferDeviceAddress get_address; ///< NULL: values are not addresses
     struct slc_byte_chunk chunks[SLUICE_DEMAND_BYTE_CHUNKS];
+    uint32_t strides[SLC_BYTE_KINDS]; ///< by kind of page
+    uint32_t kind_count;
     uint64_t budget; ///< bytes, hard limit of `size`
     uint64_t size;   ///< bytes of all chunks
     uint32_t chunk_count;
@@ -83,7 +86,10 @@ static inline uint32_t slc_byte_stride(uint32_t page_size)
     return (page_size + SLC_BYTE_ALIGNMENT - 1) / SLC_BYTE_ALIGNMENT * SLC_BYTE_ALIGNMENT;
 }
 
-/** For slc_residency_set_class: the kind of a page is its stride. */
+/** The kind of pages of a stride, for good. False: there are too many. */
+bool slc_byte_memory_kind(struct slc_byte_memory *memory, uint32_t stride, uint32_t *kind);
+
+/** For slc_residency_set_class. */
 struct slc_page_memory slc_byte_memory_interface(struct slc_byte_memory *memory);
 
 /** Where a place is: in the buffer of `*chunk`, from `*offset` on. */

@@ -75,13 +75,23 @@ SluiceResult slc_byte_pages_prepare(SluiceDemandLoader *loader, uint32_t page_si
                 SLC_MAX_BYTE_PAGE_SIZE);
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
+    uint32_t kind;
+    if (!slc_byte_memory_kind(&loader->bytes, slc_byte_stride(page_size), &kind)) {
+        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
+                "pageSize is %u; the loader has pages of %u other sizes already", page_size,
+                SLC_BYTE_KINDS);
+        return SLUICE_ERROR_LIMIT_EXCEEDED;
+    }
     return page_size > SLC_TILE_SIZE ? prepare_large(loader) : SLUICE_SUCCESS;
 }
 
-void slc_byte_pages_describe(const SluiceDemandLoader *loader, struct slc_demand_resource *resource)
+void slc_byte_pages_describe(SluiceDemandLoader *loader, struct slc_demand_resource *resource)
 {
     uint32_t size = resource->info.pageSize;
     resource->stride = slc_byte_stride(size);
+    resource->byte_kind = 0;
+    if (size)
+        slc_byte_memory_kind(&loader->bytes, resource->stride, &resource->byte_kind);
     resource->addresses = loader->bytes.get_address && !resource->info.byteOffsets;
     resource->job_kind = size == 0              ? SLC_JOB_RESOURCE
                          : size > SLC_TILE_SIZE ? SLC_JOB_LARGE

@@ -112,8 +112,9 @@ struct slc_demand_resource {
     SluiceDemandResourceCreateInfo info;
     uint32_t first_page, job_count;
     enum slc_job_kind job_kind;
-    uint32_t stride; ///< of byte pages; 0: values
-    bool addresses;  ///< of byte pages: values are addresses
+    uint32_t stride;    ///< of byte pages; 0: values
+    uint32_t byte_kind; ///< of these; see byte_memory.h
+    bool addresses;     ///< of byte pages: values are addresses
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
@@ -429,12 +430,11 @@ void slc_resources_finish(SluiceDemandLoader *loader);
 SluiceResult slc_byte_pages_init(SluiceDemandLoader *loader);
 /** Elements of the array of chunks in descriptor sets: 0 where the device has too few. */
 uint32_t slc_byte_pages_binding_count(const SluiceDemandLoader *loader);
-/** A resource of byte pages is about to be made. Errors: INVALID_ARGUMENT, logged;
+/** A resource of byte pages is about to be made. Errors: INVALID_ARGUMENT, LIMIT_EXCEEDED, logged;
  * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_byte_pages_prepare(SluiceDemandLoader *loader, uint32_t page_size);
 /** How the pages of a resource are read and shown, by its info. */
-void slc_byte_pages_describe(const SluiceDemandLoader *loader,
-                             struct slc_demand_resource *resource);
+void slc_byte_pages_describe(SluiceDemandLoader *loader, struct slc_demand_resource *resource);
 void slc_byte_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result);
 /** What shaders get for a page of a resource; `value` as the residency says it. */
 uint64_t slc_byte_pages_value(const SluiceDemandLoader *loader, uint32_t page, uint64_t value);

@@ -16,7 +16,7 @@ static struct slc_page_request request_for(const struct slc_demand_resource *res
                                      .class_index = resource->class_index,
                                      .rank = (uint8_t)resource->info.rank,
                                      .pinned = pinned,
-                                     .kind = resource->stride};
+                                     .kind = resource->byte_kind};
 }
 
 enum slc_request_answer slc_answer_request(SluiceDemandLoader *loader,

@@ -202,7 +202,7 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
     const struct slc_page_request request = {.page = page,
                                              .class_index = resource->class_index,
                                              .rank = (uint8_t)resource->info.rank,
-                                             .kind = resource->stride};
+                                             .kind = resource->byte_kind};
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     loader->unasked_count += *result != SLUICE_SUCCESS;
     if (answer != SLC_REQUEST_LOAD)

@@ -456,6 +456,12 @@ static void wrong_arguments_are_refused(void **state)
     CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
                  SLUICE_ERROR_INVALID_ARGUMENT);
     assert_non_null(strstr(h.last_message, "rank"));
+    for (uint32_t i = 0; i <= 256; i++) {
+        info = good;
+        info.pageSize = 16 + 16 * i;
+        CHECK_RESULT(sluiceAddDemandResource(r.loader, &info, &id, &first),
+                     i < 256 ? SLUICE_SUCCESS : SLUICE_ERROR_LIMIT_EXCEEDED);
+    }
     SluiceDemandLoaderCreateInfo create = {.structSize = sizeof create,
                                            .context = h.context,
                                            .memoryBudget = 8u << 20,

@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { IMAGES = 3, SIZE = 2048 };
 
@@ -84,6 +85,76 @@ static void a_recorded_run_replays_to_the_same_decisions(void **state)
     assert_true(statistics.evictedCount > 20); /* or the run shows little */
 }
 
+static SluiceResult read_bytes(void *user, uint32_t page, uint32_t size, void *bytes)
+{
+    (void)user;
+    memset(bytes, (int)page, size);
+    return page % 17 == 3 ? SLUICE_ERROR_UNSUPPORTED : SLUICE_SUCCESS;
+}
+
+/* Pages of two sizes that take each other's memory, and of a resource that is answered. */
+static void use_resources(struct runner *r)
+{
+    SluiceDemandResourceId ids[3];
+    uint32_t first[3], missed[64];
+    for (uint32_t i = 0; i < 3; i++) {
+        const SluiceDemandResourceCreateInfo info = {.structSize = sizeof info,
+                                                     .pageCount = 5000,
+                                                     .maxResidentPageCount = i == 2 ? 20 : 0,
+                                                     .pageSize = i == 2 ? 0 : 3000 + 200000 * i,
+                                                     .pfnRead = i == 2 ? NULL : read_bytes};
+        CHECK_OK(sluiceAddDemandResource(r->loader, &info, &ids[i], &first[i]));
+    }
+    CHECK_OK(sluiceSetDemandPageValue(r->loader, ids[2], 4999, 1, true));
+    for (uint32_t launch = 0; launch < 24; launch++) {
+        uint32_t count = 64, kind = launch / 8 % 2;
+        runner_clear(r);
+        for (uint32_t i = 0; i < (kind ? 8 : 600); i++)
+            runner_add_page(r, first[kind] + launch / 2 * 5 + i);
+        for (uint32_t i = 0; i < 6; i++)
+            runner_add_page(r, first[2] + launch * 3 + i);
+        runner_launch(r);
+        CHECK_OK(sluiceWaitDemandTicket(r->loader, r->ticket, UINT64_MAX, NULL));
+        CHECK_OK(sluiceGetMissedDemandPages(r->loader, ids[2], &count, missed));
+        for (uint32_t i = 0; i < count; i += 2)
+            CHECK_OK(sluiceSetDemandPageValue(r->loader, ids[2], missed[i], launch, false));
+        if (launch % 5 == 4)
+            CHECK_OK(sluiceInvalidateDemandPages(r->loader, ids[2], 0, 4000));
+    }
+}
+
+static void byte_pages_and_answers_replay_to_the_same_decisions(void **state)
+{
+    (void)state;
+    struct runner r;
+    SluiceRecorder *recorder;
+    SluiceReplayResult replayed = {.structSize = sizeof replayed};
+    const SluiceDemandLoaderCreateInfo small = {
+        .structSize = sizeof small, .memoryBudget = 8 << 20, .byteMemoryBudget = 2 << 20};
+    const SluiceFileRecordingInfo recording = {.structSize = sizeof recording, .pPath = path};
+    h.abandon_one_in = 5;
+    h.quiet = true; /* reads fail */
+    runner_init(&r, &h, &small);
+    CHECK_OK(sluiceBeginDemandRecording(r.loader, &recording, &recorder));
+    use_resources(&r);
+    CHECK_OK(sluiceEndRecording(recorder));
+    SluiceDemandStatistics statistics = runner_statistics(&r);
+    runner_finish(&r);
+    h.quiet = false;
+    h.abandon_one_in = 0;
+
+    SluiceReplayInfo info = {.structSize = sizeof info, .size = 0};
+    void *data = read_file(&info.size);
+    info.pData = data;
+    CHECK_OK(sluiceReplay(&info, &replayed));
+    free(data);
+    remove(path);
+    assert_int_equal(replayed.divergedEvent, 0);
+    assert_true(replayed.decisionHash == replayed.recordedHash);
+    assert_int_equal(replayed.demand.launchCount, 24);
+    assert_true(statistics.evictedCount > 100); /* or the run shows little */
+}
+
 static void a_loader_that_was_used_is_not_recorded(void **state)
 {
     (void)state;
@@ -133,6 +204,7 @@ int main(void)
         return status;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_recorded_run_replays_to_the_same_decisions),
+        cmocka_unit_test(byte_pages_and_answers_replay_to_the_same_decisions),
         cmocka_unit_test(a_loader_that_was_used_is_not_recorded),
         cmocka_unit_test(a_recording_survives_every_refused_allocation),
     };

@@ -7,10 +7,11 @@
 
 #include <stdio.h>
 
-/* Class 0: tiles, with places; class 1: values. A read ends when end_reads is called. */
+/* Class 0: tiles, with places; class 1: values; class 2: byte pages, with places. A read ends when
+ * end_reads is called. */
 struct scene {
     struct slc_demand_residency *residency;
-    struct fake_memory memory;
+    struct fake_memory memory, byte_memory;
     uint64_t launch;
     uint32_t loading[64];
     uint32_t loading_count;
@@ -219,13 +220,87 @@ static void play_resources(struct scene *scene)
     show(scene);
 }
 
+static void request_bytes(struct scene *scene, uint32_t first, uint32_t count, uint32_t kind)
+{
+    for (uint32_t i = 0; i < count; i++)
+        request(scene, &(struct slc_page_request){
+                           .page = first + i, .class_index = 2, .rank = 4, .kind = kind});
+}
+
+/* Byte pages of two sizes in slabs of four places: many of one size go for one of the other, and
+ * one comes back unread. */
+static void play_bytes(struct scene *scene)
+{
+    const struct slc_page_memory memory = fake_page_memory(&scene->byte_memory);
+    fake_memory_init(&scene->byte_memory, 12, 4);
+    CHECK_OK(slc_residency_set_class(scene->residency, 2, UINT64_MAX, &memory));
+    begin(scene);
+    request_bytes(scene, 300, 12, 0);
+    settle(scene, 12);
+    end_reads(scene);
+    begin(scene);
+    use(scene, 300, 2);
+    settle(scene, 0);
+    begin(scene);
+    use(scene, 300, 2);
+    request_bytes(scene, 400, 2, 1);
+    settle(scene, 2);
+    end_reads(scene);
+    begin(scene);
+    use(scene, 300, 2);
+    use(scene, 400, 2);
+    request_bytes(scene, 311, 1, 0);
+    settle(scene, 1);
+    end_reads(scene);
+    slc_residency_forget(scene->residency, 400, 1);
+    show(scene);
+}
+
+/* Pages that the application answers late, takes back, never answers; and sets, pinned or not,
+ * before they are missed. */
+static void play_answers(struct scene *scene)
+{
+    const struct slc_page_request pinned = {.page = 500, .class_index = 1, .pinned = 1};
+    const struct slc_page_request other = {.page = 501, .class_index = 1};
+    CHECK_OK(slc_residency_set_class(scene->residency, 1, 4, NULL));
+    request(scene, &pinned);
+    request(scene, &other);
+    end_reads(scene); /* set */
+    begin(scene);
+    use(scene, 500, 2);
+    for (uint32_t i = 0; i < 3; i++) /* the third has no room */
+        request(scene, &(struct slc_page_request){.page = 510 + i, .class_index = 1});
+    settle(scene, 3);
+    show(scene); /* none is answered yet */
+    begin(scene);
+    use(scene, 500, 2);
+    request(scene, &(struct slc_page_request){.page = 510, .class_index = 1}); /* pending */
+    settle(scene, 1);
+    slc_residency_loaded(scene->residency, 511, 99);
+    slc_residency_forget(scene->residency, 510, 1); /* no answer */
+    slc_residency_failed(scene->residency, 510, false);
+    scene->loading_count = 0;
+    begin(scene);
+    use(scene, 511, 1);
+    request(scene, &(struct slc_page_request){.page = 510, .class_index = 1});
+    settle(scene, 1);
+    end_reads(scene);
+    slc_residency_forget(scene->residency, 511, 1); /* taken back */
+    begin(scene);
+    for (uint32_t i = 0; i < 4; i++) /* all go but the one that is pinned */
+        request(scene, &(struct slc_page_request){.page = 520 + i, .class_index = 1});
+    settle(scene, 4);
+    end_reads(scene);
+    show(scene);
+}
+
 static void record(const char *folder, const char *name, void (*play)(struct scene *scene),
-                   bool no_lod_bias)
+                   uint32_t class_count, bool no_lod_bias)
 {
     char path[1024];
     struct scene scene = {0};
     SluiceRecorder *recorder;
-    const struct slc_page_residency_create_info info = {.class_count = 2,
+    const struct slc_page_residency_create_info info = {.class_count = class_count,
                                                         .no_lod_bias = no_lod_bias};
     snprintf(path, sizeof path, "%s/demand_%s.trace", folder, name);
     const SluiceFileRecordingInfo file = {.structSize = sizeof file, .pPath = path};
@@ -254,12 +329,14 @@ static void record_random(const char *folder)
 
 void write_golden_demand(const char *folder)
 {
-    record(folder, "first_launches", play_first_launches, false);
-    record(folder, "eviction", play_eviction, false);
-    record(folder, "bias", play_bias, false);
-    record(folder, "refusals", play_refusals, true);
-    record(folder, "formats", play_formats, false);
-    record(folder, "failures", play_failures, false);
-    record(folder, "resources", play_resources, false);
+    record(folder, "first_launches", play_first_launches, 2, false);
+    record(folder, "eviction", play_eviction, 2, false);
+    record(folder, "bias", play_bias, 2, false);
+    record(folder, "refusals", play_refusals, 2, true);
+    record(folder, "formats", play_formats, 2, false);
+    record(folder, "failures", play_failures, 2, false);
+    record(folder, "resources", play_resources, 2, false);
+    record(folder, "bytes", play_bytes, 3, false);
+    record(folder, "answers", play_answers, 3, false);
     record_random(folder);
 }
