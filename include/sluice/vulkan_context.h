@@ -118,6 +118,15 @@ typedef struct SluiceVulkanContextCreateInfo {
      * the streamers and demand loaders (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
      */
     uint64_t memoryBudget;
+    /**
+     * Ignore what the device says of its memory. Default: false. If the device has
+     * VK_EXT_memory_budget, which need not be enabled, every 16th frame or launch asks how much its
+     * largest local heap can spare, and tile memory is limited to that as it is by memoryBudget.
+     *
+     * 1/64 of the heap, at most 128 MiB, is left to others, and changes of less are ignored.
+     * Without the extension nothing is asked for.
+     */
+    bool noDeviceBudget;
     /** Cache for the compute pipelines of the library, so that the application can store it. Must
      *  outlive the context. Default: the context makes one of its own. */
     VkPipelineCache pipelineCache;
@@ -207,7 +216,7 @@ SLUICE_API SluiceResult sluiceSetVulkanMemoryBudget(SluiceVulkanContext *context
 typedef struct SluiceVulkanContextStatistics {
     uint32_t structSize;         ///< sizeof(SluiceVulkanContextStatistics).
     uint32_t memoryBlockCount;   ///< Blocks allocated at present.
-    uint64_t memoryBudget;       ///< Limit of tileMemorySize, in bytes. UINT64_MAX: none.
+    uint64_t memoryBudget;       ///< Limit in use of tileMemorySize, in bytes. UINT64_MAX: none.
     uint64_t tileMemorySize;     ///< Sum of the next three and byteMemorySize.
     uint64_t imageMemorySize;    ///< SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE
     uint64_t heapMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_HEAP
@@ -217,6 +226,9 @@ typedef struct SluiceVulkanContextStatistics {
     uint64_t readbackMemorySize; ///< SLUICE_DEVICE_MEMORY_PURPOSE_READBACK
     uint64_t refusedBlockCount;  ///< Blocks that did not fit into the budget, since creation.
     uint64_t byteMemorySize;     ///< SLUICE_DEVICE_MEMORY_PURPOSE_BYTES. Part of tileMemorySize.
+    /** Bytes of tile memory that the device can spare (noDeviceBudget). UINT64_MAX: unknown.
+     *  memoryBudget is not above it. */
+    uint64_t deviceMemoryBudget;
 } SluiceVulkanContextStatistics;
 
 /**

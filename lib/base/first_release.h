@@ -87,6 +87,6 @@
 #define SLC_FIRST_SluiceVulkanContextCreateInfo                                                    \
     SLC_UP_TO(SluiceVulkanContextCreateInfo, minStagingSize)
 #define SLC_FIRST_SluiceVulkanContextStatistics                                                    \
-    SLC_UP_TO(SluiceVulkanContextStatistics, byteMemorySize)
+    SLC_UP_TO(SluiceVulkanContextStatistics, deviceMemoryBudget)
 
 #endif /* SLC_BASE_FIRST_RELEASE_H */

@@ -216,6 +216,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     uint64_t launch = loader->launch + 1;
     slc_loader_settings_apply(loader);
     bool tracking = wants_used(loader);
+    slc_device_budget_turn(&loader->context->device_budget, &loader->context->budget);
     loader->memory_pressure = slc_memory_client_begin(&loader->memory);
     end_retired(loader);
     slc_byte_pages_begin(loader, launch);

@@ -150,15 +150,25 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
     return UINT32_MAX;
 }
 
-uint64_t slc_device_memory_size(const struct slc_caps *caps)
+uint32_t slc_device_memory_heap(const struct slc_caps *caps)
 {
     const VkPhysicalDeviceMemoryProperties *memory = &caps->memory;
+    uint32_t largest = 0;
     uint64_t size = 0;
-    for (uint32_t i = 0; i < memory->memoryTypeCount; i++)
+    for (uint32_t i = 0; i < memory->memoryTypeCount; i++) {
+        uint32_t heap = memory->memoryTypes[i].heapIndex;
         if (memory->memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT &&
-            memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size > size)
-            size = memory->memoryHeaps[memory->memoryTypes[i].heapIndex].size;
-    return size;
+            memory->memoryHeaps[heap].size > size) {
+            largest = heap;
+            size = memory->memoryHeaps[heap].size;
+        }
+    }
+    return largest;
+}
+
+uint64_t slc_device_memory_size(const struct slc_caps *caps)
+{
+    return caps->memory.memoryHeaps[slc_device_memory_heap(caps)].size;
 }
 
 static SluiceResidencyMode resolve_mode(const SluiceVulkanDeviceCapabilities *capabilities,

@@ -26,7 +26,9 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk);
 uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits,
                               VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred);
 
-/** Bytes of the largest device-local heap: more may not even be asked for. */
+/** Index of the largest device-local heap of memory. */
+uint32_t slc_device_memory_heap(const struct slc_caps *caps);
+/** Its bytes: more may not even be asked for. */
 uint64_t slc_device_memory_size(const struct slc_caps *caps);
 
 #define SLC_DEFAULT_TEXTURE_COUNT 1024u

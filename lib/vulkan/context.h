@@ -3,6 +3,7 @@
 #define SLC_VULKAN_CONTEXT_H
 
 #include "vulkan/caps.h"
+#include "vulkan/device_budget.h"
 #include "vulkan/memory_budget.h"
 #include "vulkan/shared_parts.h"
 
@@ -19,6 +20,7 @@ struct SluiceVulkanContext {
     struct slc_shared_parts shared;
     SluiceDeviceMemoryCallbacks memory_callbacks; ///< of vk, if the application has any
     struct slc_memory_budget budget;
+    struct slc_device_budget device_budget;
     struct slc_memory_client memory; ///< of vk: what all front ends share
     atomic_uint child_count;         ///< streamers and demand loaders
 };

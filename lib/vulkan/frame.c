@@ -225,6 +225,7 @@ SluiceResult sluiceBeginStreamingFrame(SluiceVulkanStreamer *streamer,
                                   .frameIndex = s->frame,
                                   .semaphore = s->semaphore,
                                   .signalValue = s->frame};
+    slc_device_budget_turn(&s->context->device_budget, &s->context->budget);
     s->manager_locked = false;
     result = decide(s);
     if (result >= 0)

@@ -51,6 +51,14 @@ static uint64_t tile_memory(const struct slc_memory_budget *budget)
            budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_BYTES];
 }
 
+uint64_t slc_memory_budget_tile_memory(struct slc_memory_budget *budget)
+{
+    pthread_mutex_lock(&budget->mutex);
+    uint64_t size = tile_memory(budget);
+    pthread_mutex_unlock(&budget->mutex);
+    return size;
+}
+
 void slc_memory_budget_get(struct slc_memory_budget *budget,
                            SluiceVulkanContextStatistics *statistics)
 {
@@ -67,6 +75,7 @@ void slc_memory_budget_get(struct slc_memory_budget *budget,
     s->readbackMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_READBACK];
     s->memoryBlockCount = budget->block_count;
     s->refusedBlockCount = budget->refused_count;
+    s->deviceMemoryBudget = budget->device_limit;
     pthread_mutex_unlock(&budget->mutex);
 }
 

@@ -211,14 +211,41 @@ static VKAPI_ATTR void VKAPI_CALL get_properties(VkPhysicalDevice device,
 static VKAPI_ATTR void VKAPI_CALL get_memory(VkPhysicalDevice device,
                                              VkPhysicalDeviceMemoryProperties *memory)
 {
-    (void)device;
+    const struct fake_vulkan *fake = fake_of(device);
     *memory = (VkPhysicalDeviceMemoryProperties){
         .memoryTypeCount = 1,
         .memoryTypes = {{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
                              VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
                          0}},
         .memoryHeapCount = 1,
-        .memoryHeaps = {{1ull << 40, 0}}};
+        .memoryHeaps = {{fake->heap_size ? fake->heap_size : 1ull << 40, 0}}};
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL list_extensions(VkPhysicalDevice device, const char *layer,
+                                                      uint32_t *count, VkExtensionProperties *list)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    (void)layer;
+    fake->extension_calls++;
+    if (list && fake->has_memory_budget && *count > 1)
+        list[1] = (VkExtensionProperties){VK_EXT_MEMORY_BUDGET_EXTENSION_NAME, 1};
+    if (list)
+        list[0] = (VkExtensionProperties){"VK_EXT_other", 1};
+    *count = fake->has_memory_budget ? 2 : 1;
+    return VK_SUCCESS;
+}
+
+/* Others may use more than there is: the budget of this program is smaller then. */
+static VKAPI_ATTR void VKAPI_CALL get_memory2(VkPhysicalDevice device,
+                                              VkPhysicalDeviceMemoryProperties2 *memory)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake->budget_calls++;
+    get_memory(device, &memory->memoryProperties);
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT *budget = memory->pNext;
+    uint64_t all = memory->memoryProperties.memoryHeaps[0].size;
+    budget->heapBudget[0] = all > fake->used_by_others ? all - fake->used_by_others : 0;
+    budget->heapUsage[0] = fake->live_memory;
 }
 
 static VKAPI_ATTR void VKAPI_CALL get_families(VkPhysicalDevice device, uint32_t *count,
@@ -771,6 +798,8 @@ static const struct {
     ENTRY(GetPhysicalDeviceFormatProperties, get_format_features),
     ENTRY(GetPhysicalDeviceImageFormatProperties, get_format),
     ENTRY(GetPhysicalDeviceMemoryProperties, get_memory),
+    ENTRY(GetPhysicalDeviceMemoryProperties2, get_memory2),
+    ENTRY(EnumerateDeviceExtensionProperties, list_extensions),
     ENTRY(GetPhysicalDeviceProperties2, get_properties),
     ENTRY(GetPhysicalDeviceQueueFamilyProperties, get_families),
     ENTRY(GetPhysicalDeviceSparseImageFormatProperties, get_sparse_format),

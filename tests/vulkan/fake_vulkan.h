@@ -80,6 +80,13 @@ struct fake_vulkan {
     uint64_t layer_size;   ///< bytes of a layer of an image; 0: 16 MiB for all layers together
     uint64_t memory_limit; ///< bytes that the device has; 0: as many as are asked for
     uint64_t refused_size; ///< allocations of so many bytes fail; 0: none
+    uint64_t heap_size;    ///< bytes of the only heap of memory; 0: 1 TiB
+
+    /** VK_EXT_memory_budget: what other programs use of the heap, which is all budget. */
+    bool has_memory_budget;
+    uint64_t used_by_others;  ///< bytes
+    uint32_t extension_calls; ///< lists of extensions
+    uint32_t budget_calls;
 
     /** Buffers that the test set, and what was filled in and updated there. */
     struct fake_watch {

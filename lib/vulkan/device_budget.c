@@ -1,0 +1,80 @@
+#include "vulkan/device_budget.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+#define STEPS_PER_HEAP 64u
+#define MAX_STEP (UINT64_C(128) << 20)
+
+/* Without host memory for the list it does not. */
+static bool has_extension(const struct slc_vk *vk, const SluiceAllocationCallbacks *cb,
+                          PFN_vkEnumerateDeviceExtensionProperties enumerate)
+{
+    uint32_t count = 0, written;
+    bool has = false;
+    if (!enumerate || enumerate(vk->physical_device, NULL, &count, NULL) < 0 || count == 0)
+        return false;
+    VkExtensionProperties *list = slc_alloc(cb, count, sizeof *list);
+    written = count;
+    if (list && enumerate(vk->physical_device, NULL, &written, list) >= 0)
+        for (uint32_t i = 0; i < written; i++)
+            has |= strcmp(list[i].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0;
+    slc_free(cb, list, count, sizeof *list);
+    return has;
+}
+
+static uint64_t min_u64(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* What is in use can stay, and what the heap can spare can come. */
+static uint64_t ask(const struct slc_device_budget *device, struct slc_memory_budget *budget)
+{
+    VkPhysicalDeviceMemoryBudgetPropertiesEXT answer = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
+    VkPhysicalDeviceMemoryProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2, .pNext = &answer};
+    device->get(device->physical_device, &properties);
+    uint64_t all = answer.heapBudget[device->heap], used = answer.heapUsage[device->heap];
+    uint64_t tiles = slc_memory_budget_tile_memory(budget);
+    if (used + device->step > all)
+        return tiles - min_u64(tiles, used + device->step - all);
+    return tiles + (all - used - device->step);
+}
+
+static void poll(struct slc_device_budget *device, struct slc_memory_budget *budget)
+{
+    uint64_t now = ask(device, budget);
+    uint64_t change = now > device->limit ? now - device->limit : device->limit - now;
+    device->turns = 0;
+    if (change < device->step)
+        return;
+    device->limit = now;
+    slc_memory_budget_set_device_limit(budget, now);
+}
+
+void slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
+                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                            PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget)
+{
+    *device = (struct slc_device_budget){.physical_device = vk->physical_device,
+                                         .limit = SLC_NO_MEMORY_LIMIT};
+    if (!has_extension(vk, cb,
+                       (PFN_vkEnumerateDeviceExtensionProperties)get(
+                           vk->instance, "vkEnumerateDeviceExtensionProperties")))
+        return;
+    device->get = (PFN_vkGetPhysicalDeviceMemoryProperties2)get(
+        vk->instance, "vkGetPhysicalDeviceMemoryProperties2");
+    device->heap = slc_device_memory_heap(caps);
+    device->step = min_u64(MAX_STEP, caps->memory.memoryHeaps[device->heap].size / STEPS_PER_HEAP);
+    if (device->get)
+        poll(device, budget);
+}
+
+void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget)
+{
+    if (device->get && ++device->turns >= SLC_DEVICE_BUDGET_TURNS)
+        poll(device, budget);
+}

@@ -1,0 +1,31 @@
+/**
+ * What the device can spare (VK_EXT_memory_budget), as a limit of the context's memory budget. It
+ * is asked for now and then; small changes are ignored, so that tiles do not come and go with them.
+ */
+#ifndef SLC_VULKAN_DEVICE_BUDGET_H
+#define SLC_VULKAN_DEVICE_BUDGET_H
+
+#include "vulkan/caps.h"
+#include "vulkan/memory_budget.h"
+
+struct slc_device_budget {
+    PFN_vkGetPhysicalDeviceMemoryProperties2 get; ///< NULL: the limit stays SLC_NO_MEMORY_LIMIT
+    VkPhysicalDevice physical_device;
+    uint32_t heap;  ///< the largest that is local to the device
+    uint64_t step;  ///< bytes; smaller changes are ignored, and so much is left to others
+    uint64_t limit; ///< bytes of tile memory
+    uint32_t turns; ///< frames and launches since it was asked for
+};
+
+/** Frames and launches, of all front ends together, between two polls. */
+#define SLC_DEVICE_BUDGET_TURNS 16u
+
+/** Polls for the first time, if the device has the extension. `get` is the application's. */
+void slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
+                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
+                            PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget);
+
+/** A frame or launch begins. */
+void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget);
+
+#endif /* SLC_VULKAN_DEVICE_BUDGET_H */
