@@ -413,17 +413,20 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
     SluiceVulkanStreamer *streamer, const SluiceVulkanStreamerSettings *pSettings);
 
 /**
- * Moves tiles together so that memory can be freed: at most `maxTileCount` tiles leave the heap
- * that is used least, if fuller heaps have room for them. Writes to `*pTileCount` how many; 0 means
- * that nothing is left to do.
+ * Moves at most `maxTileCount` tiles together, so that memory can be freed. Writes to `*pTileCount`
+ * how many; 0 means that nothing is left to do.
  *
- * Call it between frames, for example once per frame while the view stands still. Tiles on standby
- * are evicted. Wanted tiles are read again; until then shaders see a coarser level. Heaps without
- * tiles are released in the next frames, and freed when the GPU has finished with them. Packed
- * levels do not move.
+ * Call it between frames, for example before each frame while the view stands still. The tiles
+ * leave what holds the fewest, if there is room for them elsewhere:
  *
- * Under a memory budget nobody needs to call it: frames do the same while more memory is in use
- * than the budget allows (sluiceSetVulkanMemoryBudget). Does nothing in paged and dense mode.
+ * - Sparse mode: a heap. Its standby tiles are evicted. Its wanted tiles are read again; until then
+ *   shaders see a coarser level. Heaps with packed tiles stay.
+ * - Paged mode: an image of pages. The next frame copies the tiles on the GPU, at most 64, and
+ *   shaders see no difference. Tiles that changed in frames under way move later.
+ * - Dense mode: nothing moves.
+ *
+ * What is empty is freed in later frames, when the GPU has finished with it. While more memory is
+ * in use than the budget allows (sluiceSetVulkanMemoryBudget), frames do all this by themselves.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */

@@ -14,7 +14,7 @@
 #define SLC_VK_DEVICE_FUNCTIONS(X)                                                                 \
     X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
     X(CmdBindDescriptorSets)                                                                       \
-    X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDispatch)                     \
+    X(CmdBindPipeline) X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdCopyImage) X(CmdDispatch)                     \
     X(CmdFillBuffer)                                                        \
     X(CmdPipelineBarrier) X(CmdPushConstants) X(CmdUpdateBuffer) X(CreateBuffer)                   \
     X(CreateComputePipelines) X(CreateDescriptorPool) X(CreateDescriptorSetLayout) X(CreateImage)  \

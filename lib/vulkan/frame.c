@@ -105,10 +105,10 @@ static SluiceResult decide(SluiceVulkanStreamer *s)
 static void barrier_before(SluiceVulkanStreamer *s, VkCommandBuffer commands)
 {
     VkImageMemoryBarrier images[MAX_BARRIERS];
-    VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                              .srcAccessMask =
-                                  VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                              .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT};
+    VkMemoryBarrier memory = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+        .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT};
     uint32_t done = 0;
     do {
         uint32_t count = 0;

@@ -51,6 +51,14 @@ static uint64_t tile_memory(const struct slc_memory_budget *budget)
            budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_BYTES];
 }
 
+uint64_t slc_memory_budget_limit(struct slc_memory_budget *budget)
+{
+    pthread_mutex_lock(&budget->mutex);
+    uint64_t limit = smaller(budget->limit, budget->device_limit);
+    pthread_mutex_unlock(&budget->mutex);
+    return limit;
+}
+
 uint64_t slc_memory_budget_tile_memory(struct slc_memory_budget *budget)
 {
     pthread_mutex_lock(&budget->mutex);

@@ -51,6 +51,8 @@ void slc_memory_budget_finish(struct slc_memory_budget *budget);
 void slc_memory_budget_set_limit(struct slc_memory_budget *budget, uint64_t limit);
 /** What the device can spare at present, beside the limit that the application has set. */
 void slc_memory_budget_set_device_limit(struct slc_memory_budget *budget, uint64_t limit);
+/** The smaller limit. */
+uint64_t slc_memory_budget_limit(struct slc_memory_budget *budget);
 /** Bytes in use by tiles. */
 uint64_t slc_memory_budget_tile_memory(struct slc_memory_budget *budget);
 /** All fields but structSize. */

@@ -242,7 +242,7 @@ static uint32_t count_layers(const struct slc_page_chunk *chunk,
 
 static bool has_format(const struct slc_page_chunk *chunk, SluiceFormat format)
 {
-    return chunk->state == SLC_CHUNK_LIVE && chunk->format == format;
+    return chunk->state == SLC_CHUNK_LIVE && chunk->format == format && !chunk->leaving;
 }
 
 uint32_t slc_page_chunks_free_count(const struct slc_page_chunks *chunks,
@@ -310,7 +310,7 @@ bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page
 {
     const struct slc_page_chunk *chunk = &chunks->at[page >> 16];
     /* another chunk may be there by now, and smaller */
-    if (chunk->state != SLC_CHUNK_LIVE || (page & 0xFFFFu) >= chunk->layer_count)
+    if (chunk->state != SLC_CHUNK_LIVE || chunk->leaving || (page & 0xFFFFu) >= chunk->layer_count)
         return false;
     const struct slc_page_layer *layer = slc_page_layer(chunks, page);
     return layer->owner == owner && layer->user == user && !layer->held;

@@ -41,6 +41,7 @@ struct slc_page_chunk {
     VkImageView view;
     struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
     uint32_t free_count, layer_count;
+    bool leaving;          ///< LIVE: no page of it is taken any more, so that it runs empty
     bool fresh;            ///< not yet in the layout in which it stays
     uint8_t maker;         ///< user that puts it there; SLC_MAX_PAGE_USERS: whoever records next
     uint64_t layout_frame; ///< of the maker, that did; 0: none yet

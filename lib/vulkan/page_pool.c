@@ -2,6 +2,7 @@
 
 #include "base/checked.h"
 #include "base/struct_size.h"
+#include "vulkan/sparse_layout.h"
 
 #include <sluice/shared/texture_table.h>
 
@@ -17,6 +18,7 @@ SluiceResult slc_page_pool_init(struct slc_page_pool *pool, const struct slc_vk 
         pool->vk.memory_client = &pool->client;
     }
     pool->shared.free = SLC_NONE;
+    pool->leaving = SLC_NONE;
     pthread_mutex_init(&pool->mutex, NULL);
     SluiceResult result = slc_page_views_init(&pool->views, &pool->vk, caps, cb, chunk_count);
     if (result != SLUICE_SUCCESS)
@@ -299,6 +301,8 @@ static void leave_shared(struct slc_page_pool *pool, uint32_t user)
     }
 }
 
+static void stay(struct slc_page_pool *pool);
+
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
 {
     pthread_mutex_lock(&pool->mutex);
@@ -307,6 +311,8 @@ void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
     slc_page_chunks_drop_user(&pool->chunks, user);
     pool->empty_is_ready |= pool->users[user].empty_frame > 0;
     assert(pool->users[user].held_count == 0);
+    if (pool->leaving_user == user)
+        stay(pool);
     slc_memory_client_set_source(pool->users[user].client, NULL);
     slc_page_views_finish_copy(&pool->users[user].shown, pool->cb);
     pool->users[user] = (struct slc_page_user){0};
@@ -332,6 +338,174 @@ void slc_page_pool_hurry(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
+/* Pages of the chunk that are held; SLC_NONE if others hold any of them. */
+static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
+                          uint32_t user)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < chunk->layer_count; i++) {
+        const struct slc_page_layer *layer = &chunk->layers[i];
+        if (!layer->held)
+            continue;
+        bool own = layer->user == user;
+        if (layer->shared)
+            own = pool->shared.entries[layer->shared - 1].users == 1u << user;
+        if (!own)
+            return SLC_NONE;
+        count++;
+    }
+    return count;
+}
+
+static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user)
+{
+    uint32_t best = SLC_NONE, fewest = SLC_NONE;
+    for (uint32_t i = 0; i < pool->chunks.count; i++) {
+        const struct slc_page_chunk *chunk = &pool->chunks.at[i];
+        uint32_t held = chunk->layer_count - chunk->free_count;
+        if (chunk->state != SLC_CHUNK_LIVE || chunk->fresh || held == 0 || held >= fewest ||
+            !slc_page_chunk_is_ready(chunk, &pool->timelines, user) ||
+            count_own(pool, chunk, user) == SLC_NONE)
+            continue;
+        best = i;
+        fewest = held;
+    }
+    return best;
+}
+
+static void stay(struct slc_page_pool *pool)
+{
+    if (pool->leaving != SLC_NONE)
+        pool->chunks.at[pool->leaving].leaving = false;
+    pool->leaving = SLC_NONE;
+}
+
+void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user)
+{
+    pthread_mutex_lock(&pool->mutex);
+    if (pool->leaving_user == user)
+        stay(pool);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t leaving = pool->leaving_user == user ? pool->leaving : SLC_NONE;
+    pthread_mutex_unlock(&pool->mutex);
+    return leaving;
+}
+
+uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t chunk)
+{
+    pthread_mutex_lock(&pool->mutex);
+    const struct slc_page_chunk *c = &pool->chunks.at[chunk];
+    uint32_t held = c->state == SLC_CHUNK_LIVE ? c->layer_count - c->free_count : 0;
+    pthread_mutex_unlock(&pool->mutex);
+    return held;
+}
+
+/* One front end at a time empties a chunk. */
+static void choose_leaving(struct slc_page_pool *pool, uint32_t user)
+{
+    if (pool->leaving != SLC_NONE && pool->leaving_user == user &&
+        count_own(pool, &pool->chunks.at[pool->leaving], user) == SLC_NONE)
+        stay(pool);
+    if (pool->leaving != SLC_NONE)
+        return;
+    pool->leaving = find_leaving(pool, user);
+    pool->leaving_user = user;
+    if (pool->leaving != SLC_NONE)
+        pool->chunks.at[pool->leaving].leaving = true;
+}
+
+uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held)
+{
+    uint32_t lacking = SLC_NONE;
+    *held = 0;
+    pthread_mutex_lock(&pool->mutex);
+    choose_leaving(pool, user);
+    if (pool->leaving != SLC_NONE && pool->leaving_user == user) {
+        const struct slc_page_chunk *chunk = &pool->chunks.at[pool->leaving];
+        uint32_t room =
+            slc_page_chunks_free_count(&pool->chunks, &pool->timelines, user, chunk->format);
+        *held = chunk->layer_count - chunk->free_count;
+        lacking = *held > room ? *held - room : 0;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return lacking;
+}
+
+void slc_page_pool_ask_again(struct slc_page_pool *pool)
+{
+    pthread_mutex_lock(&pool->mutex);
+    pool->chunks.has_freed = true;
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
+{
+    uint64_t pages = 0;
+    pthread_mutex_lock(&pool->mutex);
+    for (uint32_t i = 0; i < pool->chunks.count; i++) {
+        const struct slc_page_chunk *chunk = &pool->chunks.at[i];
+        bool goes = chunk->state == SLC_CHUNK_RETIRING ||
+                    (chunk->state == SLC_CHUNK_LIVE && chunk->free_count == chunk->layer_count &&
+                     !chunk->fresh);
+        pages += goes ? chunk->layer_count : 0;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return pages * SLC_TILE_SIZE;
+}
+
+/* The tile's entry in the directory follows it. */
+static void move_entry(struct slc_page_pool *pool, uint32_t from, uint32_t to)
+{
+    struct slc_page_layer *old = slc_page_layer(&pool->chunks, from);
+    slc_page_layer(&pool->chunks, to)->shared = old->shared;
+    if (old->shared)
+        pool->shared.entries[old->shared - 1].page = to;
+    old->shared = 0;
+}
+
+bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
+                        uint32_t *to)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t shared = slc_page_layer(&pool->chunks, from)->shared;
+    struct slc_shared_tile *tile = shared ? &pool->shared.entries[shared - 1] : NULL;
+    *to = SLUICE_PAGE_NONE;
+    if (!tile || tile->users == 1u << user)
+        *to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
+                                   pool->chunks.at[from >> 16].format);
+    if (*to != SLUICE_PAGE_NONE) {
+        hold(pool, user, *to);
+        move_entry(pool, from, *to);
+        if (tile) { /* others can take it when the copy is complete */
+            tile->writer = (uint8_t)user;
+            tile->written = true;
+            tile->adopted = false;
+            tile->value = frame;
+        }
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return *to != SLUICE_PAGE_NONE;
+}
+
+void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to)
+{
+    pthread_mutex_lock(&pool->mutex);
+    uint32_t shared = slc_page_layer(&pool->chunks, to)->shared;
+    move_entry(pool, to, from);
+    if (shared) {
+        struct slc_shared_tile *tile = &pool->shared.entries[shared - 1];
+        tile->written = tile->adopted = true;
+        tile->value = pool->timelines.of[user].recorded;
+    }
+    give(pool, user, to, SLC_NO_OWNER);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
 void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t frame,
                           uint64_t completed_frame, VkCommandBuffer commands)
 {
@@ -343,6 +517,8 @@ void slc_page_pool_record(struct slc_page_pool *pool, uint32_t user, uint64_t fr
         slc_page_chunks_end_retired(chunks, i, &pool->timelines);
         slc_page_chunks_retire(chunks, i, &pool->timelines, pool->hurry);
     }
+    if (pool->leaving != SLC_NONE && chunks->at[pool->leaving].state != SLC_CHUNK_LIVE)
+        stay(pool); /* it has run empty */
     slc_page_timelines_record(&pool->timelines, user, frame);
     for (uint32_t i = 0; i < chunks->count; i++)
         slc_page_chunks_record(chunks, i, &pool->timelines, user, commands);

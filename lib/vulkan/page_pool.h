@@ -49,6 +49,8 @@ struct slc_page_pool {
     uint32_t held_count;            ///< pages, each once
     bool empty_is_ready;            ///< the image of empty places is in its layout
     bool hurry;                     ///< chunks that are empty are retired with the next record
+    uint32_t leaving;               ///< chunk that is to run empty; SLC_NONE: none is
+    uint32_t leaving_user;          ///< who empties it
 };
 
 /** After an error it can be finished. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
@@ -107,6 +109,31 @@ void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page
 /** True: nobody has taken the page since `owner` of this user gave it, and now the user has it
  *  again. */
 bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t page, uint32_t owner);
+/**
+ * Chooses the chunk to be emptied next, if none is yet: the one with the fewest pages, if the user
+ * alone holds them. Nobody takes pages of it any more. Returns how many pages of its format the
+ * user must give back until the others have room for its pages; SLC_NONE if no chunk can be
+ * emptied. `*held`: pages that are held in it.
+ */
+uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held);
+/** The user empties no chunk any more. */
+void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
+/** The chunk that the user empties; SLC_NONE if there is none. */
+uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
+/** Pages of the chunk that anybody holds. */
+uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t chunk);
+/** The device or the budget may have memory again: it is asked at once. */
+void slc_page_pool_ask_again(struct slc_page_pool *pool);
+/** Bytes of chunks that are empty, and go. */
+uint64_t slc_page_pool_going_size(struct slc_page_pool *pool);
+
+/** The tile on `from` is to be on `*to`, which the user holds from now on, too; `frame` copies it.
+ *  False if there is no page for it. */
+bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
+                        uint32_t *to);
+/** The copy was abandoned: the tile is on `from` alone. */
+void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to);
+
 /** Chunks that are empty may go to another format. */
 void slc_page_pool_hurry(struct slc_page_pool *pool);
 

@@ -53,6 +53,8 @@ SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_im
                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                 .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                 .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+    if (memory->purpose == SLUICE_DEVICE_MEMORY_PURPOSE_PAGES)
+        create.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT; /* tiles move from one to another */
     const char *trouble = check_format(vk, &create, texel_bytes(info, first_level));
     if (trouble) {
         slc_log(&vk->log, SLUICE_LOG_ERROR, "%s: %ux%u %s %s", info->pName ? info->pName : "image",

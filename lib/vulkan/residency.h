@@ -84,6 +84,16 @@ struct slc_residency_interface {
      *  slots of heaps are all they need. */
     uint32_t (*page_room)(const struct slc_residency *residency, uint32_t index);
 
+    /**
+     * Memory is to fall by `size` bytes: frames move tiles together, until the next call. Returns
+     * how many pages must be given back before that helps; SLC_NONE: nothing does, or nothing is
+     * needed. NULL, as the next one is then: pages are slots of heaps.
+     */
+    uint32_t (*gather)(struct slc_residency *residency, uint64_t size);
+    /** The next frame moves at most `most` tiles, if an image runs empty by that in the end.
+     *  Returns how many, if no frame under way stands against it. */
+    uint32_t (*compact)(struct slc_residency *residency, uint32_t most);
+
     /** As SluiceHeapAllocator. */
     SluiceResult (*allocate_heap)(struct slc_residency *residency, uint64_t size,
                                   uint32_t *heap_id);

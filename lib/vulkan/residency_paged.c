@@ -10,6 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/checked.h"
+#include "vulkan/page_moves.h"
 #include "vulkan/page_pool.h"
 #include "vulkan/page_table.h"
 #include "vulkan/sparse_layout.h"
@@ -42,7 +43,8 @@ struct paged_residency {
     struct paged_image *images;     ///< owned
     uint32_t max_image_count;
     struct slc_page_table table; ///< its parts are those of the images
-    uint32_t upload_reserve;     ///< changes that are kept for other than unmapping
+    struct slc_page_moves moves;
+    uint32_t upload_reserve; ///< changes that are kept for other than unmapping
     uint64_t frame, completed_frame;
     uint32_t next_heap, heap_count;
 };
@@ -163,6 +165,32 @@ static void release_heap(struct slc_residency *residency, uint32_t heap_id)
     paged(residency)->heap_count--;
 }
 
+static uint32_t gather(struct slc_residency *residency, uint64_t size)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t held;
+    if (size)
+        slc_page_pool_hurry(p->pool);
+    if (size <= slc_page_pool_going_size(p->pool)) {
+        slc_page_pool_stay(p->pool, p->user);
+        return SLC_NONE;
+    }
+    p->moves.left = UINT32_MAX;
+    return slc_page_pool_choose_leaving(p->pool, p->user, &held);
+}
+
+static uint32_t compact(struct slc_residency *residency, uint32_t most)
+{
+    struct paged_residency *p = paged(residency);
+    uint32_t held, lacking = slc_page_pool_choose_leaving(p->pool, p->user, &held);
+    slc_page_pool_hurry(p->pool);
+    p->moves.left = slc_min_u32(most, SLC_PAGE_MOVES_PER_FRAME);
+    if (lacking == 0)
+        return slc_min_u32(p->moves.left, held);
+    slc_page_pool_stay(p->pool, p->user);
+    return 0;
+}
+
 static uint32_t page_room(const struct slc_residency *residency, uint32_t index)
 {
     const struct paged_residency *p = (const struct paged_residency *)residency;
@@ -174,6 +202,7 @@ static SluiceResult update(struct slc_residency *residency, uint64_t frame,
 {
     paged(residency)->frame = frame;
     paged(residency)->completed_frame = completed_frame;
+    slc_page_moves_complete(&paged(residency)->moves, completed_frame);
     return SLUICE_SUCCESS;
 }
 
@@ -348,11 +377,13 @@ static void record_begin(struct slc_residency *residency, uint64_t frame, VkComm
 {
     struct paged_residency *p = paged(residency);
     slc_page_table_record_begin(&p->table, frame, commands);
+    slc_page_moves_record(&p->moves, frame, p->completed_frame, commands);
     count_memory(p);
 }
 
 static void abandon(struct slc_residency *residency, uint64_t frame)
 {
+    slc_page_moves_abandon(&paged(residency)->moves, frame);
     slc_page_table_abandon(&paged(residency)->table, frame);
 }
 
@@ -453,6 +484,8 @@ static const struct slc_residency_interface paged_interface = {
     .withdraw = withdraw,
     .leave_source = leave_source,
     .page_room = page_room,
+    .gather = gather,
+    .compact = compact,
     .allocate_heap = allocate_heap,
     .release_heap = release_heap,
     .update = update,
@@ -495,7 +528,9 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->pool = info->pages;
     p->user = info->page_user;
     p->max_image_count = info->max_image_count;
-    p->upload_reserve = 4 * info->max_changes; /* copied, revived, shared, deferred */
+    /* copied, revived, shared, deferred; and moved */
+    p->upload_reserve = 4 * info->max_changes + SLC_PAGE_MOVES_PER_FRAME;
+    p->moves = (struct slc_page_moves){.pool = p->pool, .table = &p->table, .user = p->user};
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);
     SluiceResult result = SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     if (p->images)

@@ -96,21 +96,89 @@ static SluiceResult evacuate(SluiceVulkanStreamer *s, uint32_t count)
                : slc_streamer_check(s, result, "sluiceEvacuateHeaps");
 }
 
-SluiceResult slc_shrink_step(SluiceVulkanStreamer *s)
+/* Heaps are only counted where pages have the memory, so their tiles move without any copy. */
+static SluiceResult count_together(SluiceVulkanStreamer *s)
+{
+    SluiceTileMove moves[MOVES_PER_FRAME];
+    SluiceResult result = SLUICE_SUCCESS;
+    uint32_t count = MOVES_PER_FRAME;
+    for (uint32_t i = 0; i < HEAPS_AT_ONCE && count == MOVES_PER_FRAME && result >= 0; i++)
+        result = sluiceDefragmentTiles(s->manager, 0, &count, moves);
+    return result == SLUICE_ERROR_OUT_OF_HOST_MEMORY
+               ? SLUICE_SUCCESS
+               : slc_streamer_check(s, result, "sluiceDefragmentTiles");
+}
+
+/* `count` pages are to be given back: standby tiles, and if these do not suffice and it must be,
+ * heaps of others. */
+static SluiceResult give_back(SluiceVulkanStreamer *s, const SluiceStreamedTextureStatistics *stats,
+                              uint32_t count, bool must, uint32_t *target)
+{
+    uint64_t standby = stats->standbyTileCount, capacity = s->info.heapTileCapacity;
+    if (!must && count > standby)
+        return SLUICE_SUCCESS;
+    SluiceResult result = sluiceTrimStandbyTiles(s->manager, (uint32_t)without(standby, count));
+    if (count > standby) {
+        uint64_t used = stats->heapCount * capacity - stats->freeSlotCount;
+        *target = slc_max_u32(1, (uint32_t)(without(used, count) / capacity));
+    }
+    return slc_streamer_check(s, result, "sluiceTrimStandbyTiles");
+}
+
+static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
+                                 const SluiceStreamedTextureStatistics *stats)
+{
+    const struct slc_memory_pressure *pressure = &s->memory_pressure;
+    bool must = pressure->beyond > 0, compacting = s->shrink.compacting;
+    uint32_t target = must ? s->shrink.target : 0, lacking = SLC_NONE;
+    uint64_t size = pressure->beyond + pressure->refused;
+    if (size || !compacting)
+        lacking = s->residency->interface->gather(s->residency, size);
+    s->shrink.compacting = false; /* the moves are of this frame */
+    SluiceResult result = SLUICE_SUCCESS;
+    if (lacking != SLC_NONE && lacking > 0)
+        result = give_back(s, stats, lacking, must, &target);
+    if (result >= 0)
+        result = set_target(s, target);
+    if (result < 0 || !s->shrink.target || stats->heapCount <= s->shrink.target)
+        return result;
+    result = count_together(s);
+    return result >= 0 ? release_empty_heaps(s) : result;
+}
+
+static SluiceResult shrink_heaps(SluiceVulkanStreamer *s,
+                                 const SluiceStreamedTextureStatistics *stats)
 {
     struct slc_shrink *shrink = &s->shrink;
-    if (!s->residency->interface->going_size)
-        return SLUICE_SUCCESS;
-    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
-    sluiceGetStatistics(s->manager, &stats);
-    SluiceResult result = set_target(s, choose_target(s, &stats));
-    bool too_many = shrink->target && stats.heapCount > shrink->target;
+    SluiceResult result = set_target(s, choose_target(s, stats));
+    bool too_many = shrink->target && stats->heapCount > shrink->target;
     if (result >= 0 && (too_many || shrink->compacting))
         result = release_empty_heaps(s);
     if (result >= 0 && too_many)
         result = evacuate(s, slc_min_u32(MOVES_PER_FRAME, s->info.tilesPerFrame));
-    if (stats.retiringSlotCount == 0 && count_evicted(s) == 0)
+    if (stats->retiringSlotCount == 0 && count_evicted(s) == 0)
         shrink->compacting = false;
+    return result;
+}
+
+SluiceResult slc_shrink_step(SluiceVulkanStreamer *s)
+{
+    const struct slc_residency_interface *interface = s->residency->interface;
+    if (!interface->going_size && !interface->gather)
+        return SLUICE_SUCCESS;
+    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
+    sluiceGetStatistics(s->manager, &stats);
+    return interface->gather ? shrink_pages(s, &stats) : shrink_heaps(s, &stats);
+}
+
+static SluiceResult compact_heaps(SluiceVulkanStreamer *s, uint32_t most, uint32_t *count)
+{
+    s->manager_locked = false;
+    uint32_t before = count_evicted(s);
+    SluiceResult result = sluiceEvacuateHeaps(s->manager, most);
+    *count = count_evicted(s) - before;
+    s->manager_locked = true;
+    s->shrink.compacting |= result == SLUICE_SUCCESS;
     return result;
 }
 
@@ -121,16 +189,11 @@ SluiceResult sluiceCompactVulkanStreamer(SluiceVulkanStreamer *streamer, uint32_
     if (!s || !pTileCount)
         return SLUICE_ERROR_NULL_POINTER;
     *pTileCount = 0;
-    if (!s->residency->interface->going_size)
-        return SLUICE_SUCCESS;
-    s->manager_locked = false;
-    uint32_t before = count_evicted(s);
-    SluiceResult result = sluiceEvacuateHeaps(s->manager, maxTileCount);
-    uint32_t after = count_evicted(s);
-    s->manager_locked = true;
-    if (result != SLUICE_SUCCESS)
-        return result;
-    *pTileCount = after - before;
-    s->shrink.compacting = true;
+    if (s->residency->interface->going_size)
+        return compact_heaps(s, maxTileCount, pTileCount);
+    if (s->residency->interface->compact) {
+        *pTileCount = s->residency->interface->compact(s->residency, maxTileCount);
+        s->shrink.compacting = true;
+    }
     return SLUICE_SUCCESS;
 }

@@ -13,6 +13,38 @@
 
 static struct harness h;
 static struct scene scene;
+static bool no_memory; ///< for tiles
+
+static VkResult allocate(void *user, const SluiceDeviceMemoryRequest *request,
+                         SluiceDeviceMemory *memory)
+{
+    (void)user;
+    if (no_memory && request->purpose <= SLUICE_DEVICE_MEMORY_PURPOSE_PAGES)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    const VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                       .allocationSize = request->size,
+                                       .memoryTypeIndex = request->memoryTypeIndex};
+    VkResult result = h.AllocateMemory(h.device, &info, NULL, &memory->memory);
+    if (result != VK_SUCCESS || !request->mapped)
+        return result;
+    return h.MapMemory(h.device, memory->memory, 0, VK_WHOLE_SIZE, 0, &memory->pMapped);
+}
+
+static void release(void *user, const SluiceDeviceMemory *memory)
+{
+    (void)user;
+    h.FreeMemory(h.device, memory->memory, NULL);
+}
+
+static const SluiceDeviceMemoryCallbacks callbacks = {NULL, allocate, release};
+
+static SluiceResult use_callbacks(void)
+{
+    SluiceVulkanContextCreateInfo info = harness_context_info(&h);
+    info.pDeviceMemory = &callbacks;
+    sluiceDestroyVulkanContext(h.context);
+    return sluiceCreateVulkanContext(&info, &h.context);
+}
 
 enum part { ALL = 16, CORNER = 2 }; /* tiles of level 0 along an edge */
 
@@ -146,12 +178,16 @@ static void unneeded_tiles_go_when_the_budget_falls(void **state)
     assert_true(memory().tileMemorySize >= before); /* kept: nobody needs it */
     uint32_t mapped = statistics().mappedTileCount;
     CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 12 * MIB));
-    run_until_memory_is(12 * MIB, 40);
+    if (h.mode == SLUICE_RESIDENCY_MODE_DENSE)
+        run_frames(20); /* images have all their memory as long as they are */
+    else
+        run_until_memory_is(12 * MIB, 40);
     run_until_sharp(40);
     assert_int_equal(statistics().mappedTileCount, mapped);
     check_texels(0, SIZE / 8);
     run_frames(10);
-    assert_true(memory().tileMemorySize <= 12 * MIB);
+    assert_true(memory().tileMemorySize <=
+                (h.mode == SLUICE_RESIDENCY_MODE_DENSE ? before : 12 * MIB));
 
     CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 0));
     look_at(0, ALL);
@@ -165,6 +201,8 @@ static void unneeded_tiles_go_when_the_budget_falls(void **state)
 static void what_is_seen_gets_blurrier_when_the_budget_falls_below_it(void **state)
 {
     (void)state;
+    if (h.mode == SLUICE_RESIDENCY_MODE_DENSE)
+        return;
     open_scene(0);
     look_at(0, ALL);
     look_at(1, ALL);
@@ -187,6 +225,8 @@ static void heaps_that_few_tiles_keep_are_emptied_on_request(void **state)
 {
     (void)state;
     uint32_t moved, most = 0, calls = 0;
+    if (h.mode == SLUICE_RESIDENCY_MODE_DENSE)
+        return;
     open_scene(0);
     look_at(0, ALL);
     look_at(1, ALL);
@@ -197,6 +237,7 @@ static void heaps_that_few_tiles_keep_are_emptied_on_request(void **state)
     scene.textures[1].sample_count = 0;
     run_frames(10);
     assert_true(memory().tileMemorySize == before);
+    uint64_t uploaded = statistics().bytesUploaded;
     do {
         CHECK_OK(sluiceCompactVulkanStreamer(scene.streamer, 8, &moved));
         assert_true(moved <= 8);
@@ -209,10 +250,56 @@ static void heaps_that_few_tiles_keep_are_emptied_on_request(void **state)
     assert_int_equal(most, 8);
     assert_true(calls < 200);
     SluiceVulkanStreamerStatistics stats = statistics();
-    assert_in_range(memory().heapMemorySize, stats.mappedTileCount * UINT64_C(65536),
-                    stats.mappedTileCount * UINT64_C(65536) + 8 * MIB);
+    uint64_t least = stats.mappedTileCount * UINT64_C(65536);
+    if (h.mode == SLUICE_RESIDENCY_MODE_SPARSE)
+        assert_in_range(memory().heapMemorySize, least, least + 8 * MIB);
+    else /* images of pages double in size, and tiles are copied from one to another */
+        assert_in_range(memory().pageMemorySize, least, before / 2);
+    if (h.mode == SLUICE_RESIDENCY_MODE_PAGED)
+        assert_true(statistics().bytesUploaded == uploaded);
     check_texels_of(0, SIZE, true);
     close_scene();
+}
+
+/* The device refuses all that is asked for while tiles move and come. */
+static void a_device_without_memory_in_the_midst_changes_no_picture(void **state)
+{
+    (void)state;
+    h.quiet = true;
+    open_scene(100);
+    look_at(0, ALL);
+    run_until_sharp(60);
+    CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 8 * MIB));
+    run_frames(2);
+    no_memory = true;
+    look_at(1, ALL);
+    run_frames(30);
+    look_at(1, CORNER);
+    run_frames(30);
+    if (h.mode != SLUICE_RESIDENCY_MODE_DENSE)
+        assert_true(memory().tileMemorySize <= 8 * MIB);
+    CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 0));
+    run_frames(4);
+    no_memory = false;
+    look_at(1, ALL);
+    run_until_sharp(200);
+    check_texels(0, SIZE);
+    check_texels(1, SIZE);
+    close_scene();
+    h.quiet = false;
+}
+
+/* One in two frames is recorded, given up and recorded again. */
+static void abandoned_frames_lose_no_tile_that_moves(void **state)
+{
+    (void)state;
+    uint32_t before = h.abandon_one_in, count = h.abandoned_count;
+    h.abandon_one_in = 2;
+    unneeded_tiles_go_when_the_budget_falls(state);
+    heaps_that_few_tiles_keep_are_emptied_on_request(state);
+    what_is_seen_gets_blurrier_when_the_budget_falls_below_it(state);
+    assert_true(h.abandoned_count > count + 50);
+    h.abandon_one_in = before;
 }
 
 int main(void)
@@ -220,10 +307,14 @@ int main(void)
     int status = harness_init(&h);
     if (status)
         return status;
+    if (use_callbacks() != SLUICE_SUCCESS)
+        return harness_finish(&h, 1);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(unneeded_tiles_go_when_the_budget_falls),
         cmocka_unit_test(heaps_that_few_tiles_keep_are_emptied_on_request),
         cmocka_unit_test(what_is_seen_gets_blurrier_when_the_budget_falls_below_it),
+        cmocka_unit_test(a_device_without_memory_in_the_midst_changes_no_picture),
+        cmocka_unit_test(abandoned_frames_lose_no_tile_that_moves),
     };
     return harness_finish(&h, RUN_TESTS(tests));
 }

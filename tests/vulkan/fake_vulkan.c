@@ -560,6 +560,26 @@ static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuff
     }
 }
 
+static VKAPI_ATTR void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage from,
+                                             VkImageLayout from_layout, VkImage to,
+                                             VkImageLayout to_layout, uint32_t count,
+                                             const VkImageCopy *regions)
+{
+    struct fake_vulkan *fake = fake_of(commands);
+    assert_false(fake->published);
+    assert_true(from_layout == VK_IMAGE_LAYOUT_GENERAL && OBJECT(from)->general);
+    assert_true(to_layout == VK_IMAGE_LAYOUT_GENERAL && OBJECT(to)->general);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(fake->copy_count < FAKE_EVENTS);
+        fake->copies[fake->copy_count++] =
+            (struct fake_copy){.image = to,
+                               .level = regions[i].dstSubresource.mipLevel,
+                               .layer = regions[i].dstSubresource.baseArrayLayer,
+                               .from = from,
+                               .from_layer = regions[i].srcSubresource.baseArrayLayer};
+    }
+}
+
 static void update_set(const VkWriteDescriptorSet *write)
 {
     struct fake_set *set = (struct fake_set *)write->dstSet;
@@ -814,6 +834,7 @@ static const struct {
     ENTRY(CmdPipelineBarrier, barrier),
     ENTRY(CmdUpdateBuffer, update_buffer),
     ENTRY(CmdCopyBufferToImage, copy_to_image),
+    ENTRY(CmdCopyImage, copy_image),
     ENTRY(CmdDispatch, dispatch),
     ENTRY(CmdPushConstants, push_constants),
     ENTRY(CreateBuffer, create_buffer),

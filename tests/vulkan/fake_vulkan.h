@@ -34,6 +34,8 @@ struct fake_copy {
     VkImage image;
     uint32_t level, layer, x, y; ///< in tiles
     uint32_t texel;              ///< the first four bytes
+    VkImage from;                ///< from this layer of an image; VK_NULL_HANDLE: from a buffer
+    uint32_t from_layer;
 };
 
 #define FAKE_SETS 16u

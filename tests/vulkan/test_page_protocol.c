@@ -9,6 +9,7 @@
  * Commands run in the order in which they were recorded, as on one queue behind barriers.
  */
 #include "vulkan/fake_vulkan.h"
+#include "vulkan/streamer.h"
 
 #include "support/roll.h"
 #include "support/streamer_manager.h"
@@ -41,6 +42,8 @@ struct model {
     uint64_t submitted;                        ///< frames up to this one are
     bool abandoned[HISTORY];
     uint32_t window;
+    uint32_t shrink_one_in;         ///< frames, before which the budget changes; 0: none
+    uint32_t moved;                 ///< tiles, from page to page
     VkImage shown[HISTORY][CHUNKS]; ///< by frame
     struct {
         const struct fake_set *set;
@@ -107,7 +110,13 @@ static void model_add(struct model *m)
                             .format = SLUICE_FORMAT_R8G8B8A8_UNORM};
     CHECK_OK(sluiceCreateProceduralImageSource(&image, &info, NULL, &t->source));
     SluiceVulkanTextureCreateInfo create = {.structSize = sizeof create, .source = t->source};
-    CHECK_OK(sluiceAddVulkanTexture(m->streamer, &create, &t->texture));
+    SluiceResult result = sluiceAddVulkanTexture(m->streamer, &create, &t->texture);
+    if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY && m->shrink_one_in) {
+        sluiceDestroyImageSource(t->source); /* its packed levels are beyond the budget */
+        *t = (struct texture){0};
+        return;
+    }
+    CHECK_OK(result);
     t->layout.structSize = sizeof t->layout;
     CHECK_OK(sluiceGetTextureLayout(manager_of(m->streamer), t->texture.textureId, &t->layout));
 }
@@ -157,6 +166,15 @@ static void check_sets(const struct model *m)
                              m->sets[f % HISTORY].write_count);
 }
 
+/* What is on a page of an image that is bound. */
+static uint32_t texel_of(const struct model *m, VkImage image, uint32_t layer)
+{
+    for (uint32_t c = 0; c < CHUNKS; c++)
+        if (m->chunks[c].image == image)
+            return m->chunks[c].texels[layer];
+    return 0;
+}
+
 static void take_copies(struct model *m)
 {
     for (uint32_t i = 0; i < m->fake.copy_count; i++) {
@@ -164,7 +182,9 @@ static void take_copies(struct model *m)
         for (uint32_t c = 0; c < CHUNKS; c++)
             if (m->chunks[c].image == copy->image) {
                 assert_true(copy->level == 0 && copy->layer < LAYERS);
-                m->chunks[c].texels[copy->layer] = copy->texel;
+                m->moved += copy->from != VK_NULL_HANDLE;
+                m->chunks[c].texels[copy->layer] =
+                    copy->from ? texel_of(m, copy->from, copy->from_layer) : copy->texel;
             }
     }
 }
@@ -305,13 +325,23 @@ static void check_buffers(const struct fake_vulkan *fake, const SluiceVulkanBuff
     }
 }
 
-static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
+/* What the context may have, in MiB; 0: all. */
+static void change_memory(struct model *m)
+{
+    static const uint64_t budgets[] = {0, 4, 5, 6, 8, 10, 12, 16};
+    uint64_t budget = budgets[roll() % 8] << 20;
+    CHECK_OK(sluiceSetVulkanMemoryBudget(m->streamer->context, budget));
+}
+
+static void run_plan(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t abandon_one_in,
+                     uint32_t shrink_one_in)
 {
     static struct model model; /* large */
     struct model *m = &model;
-    *m = (struct model){.fake = {.want = want, .user = m},
+    *m = (struct model){.fake = {.want = want, .user = m, .layer_size = 65536},
                         .submitted = UINT64_MAX,
-                        .abandon_one_in = abandon_one_in};
+                        .abandon_one_in = abandon_one_in,
+                        .shrink_one_in = shrink_one_in};
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
                                            .residencyMode = SLUICE_RESIDENCY_MODE_PAGED,
                                            .framesInFlight = FRAMES_IN_FLIGHT,
@@ -332,6 +362,8 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     uint64_t shown = 0, generation;
     for (uint64_t step = 1; step <= 2000; step++) {
         model_step(m, step);
+        if (shrink_one_in && (uint32_t)roll() % shrink_one_in == 0)
+            change_memory(m);
         shown += model_frame(m, step);
     }
     SluiceVulkanStreamerStatistics stats = {.structSize = sizeof stats};
@@ -343,6 +375,7 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
     assert_true(stats.tilesUnmapped > 50);
     assert_true(stats.tilesRestored > 500);
     assert_true(generation >= 6); /* images came, went, and came again */
+    assert_true((m->moved > 10) == (shrink_one_in > 0));
     check_buffers(&m->fake, &buffers);
     assert_true(!abandon_one_in || m->abandoned_in_all > 500);
     m->fake.destroyed_count = 0;
@@ -353,6 +386,19 @@ static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t 
         sluiceDestroyImageSource(m->textures[i].source);
     for (uint32_t i = 0; i < m->old_count; i++)
         sluiceDestroyImageSource(m->old_sources[i]);
+}
+
+static void run(uint32_t heap_capacity, uint32_t heaps, unsigned seed, uint32_t abandon_one_in)
+{
+    run_plan(heap_capacity, heaps, seed, abandon_one_in, 0);
+}
+
+static void promises_hold_while_the_budget_changes(void **state)
+{
+    (void)state;
+    run_plan(16, 0, 55, 0, 15);
+    run_plan(16, 0, 56, 2, 15);
+    run_plan(64, 0, 57, 3, 40);
 }
 
 static void devices_with_few_samplers_have_no_sets(void **state)
@@ -405,6 +451,7 @@ int main(void)
         cmocka_unit_test(promises_hold_with_little_memory),
         cmocka_unit_test(promises_hold_with_room_for_everything),
         cmocka_unit_test(promises_hold_where_frames_are_abandoned),
+        cmocka_unit_test(promises_hold_while_the_budget_changes),
     };
     return RUN_TESTS(tests);
 }

@@ -1,0 +1,42 @@
+/**
+ * Tiles move from one page to another, so that an array image runs empty and its memory is freed.
+ *
+ * The copy is recorded in a frame, and the page table of that frame shows the new page. The old
+ * page stays held until the frame is complete: if the frame is abandoned, the tile is shown from
+ * there again.
+ */
+#ifndef SLC_VULKAN_PAGE_MOVES_H
+#define SLC_VULKAN_PAGE_MOVES_H
+
+#include "vulkan/page_pool.h"
+#include "vulkan/page_table.h"
+
+#define SLC_PAGE_MOVES 1024u         /* that may be under way */
+#define SLC_PAGE_MOVES_PER_FRAME 64u /* 4 MiB */
+
+struct slc_page_move {
+    uint32_t part, word; ///< of the page table
+    uint32_t from, to;   ///< pages
+    uint64_t frame;      ///< that copies
+};
+
+struct slc_page_moves {
+    struct slc_page_pool *pool; ///< borrowed, as the next one
+    struct slc_page_table *table;
+    uint32_t user;                                  ///< of the pool
+    struct slc_page_move under_way[SLC_PAGE_MOVES]; ///< oldest first
+    uint32_t count;
+    uint32_t next_part; ///< where the search for tiles goes on
+    uint32_t left;      ///< that may still be made; UINT32_MAX: no limit
+};
+
+/** Frames up to `completed_frame` are complete: their old pages are given back. */
+void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_frame);
+/** Moves tiles out of the image that is to run empty, if there is one. Behind a barrier over all
+ *  that earlier frames do; the copies of the frame itself come later. */
+void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_t completed_frame,
+                           VkCommandBuffer commands);
+/** After slc_page_pool_abandon, before slc_page_table_abandon. */
+void slc_page_moves_abandon(struct slc_page_moves *moves, uint64_t frame);
+
+#endif /* SLC_VULKAN_PAGE_MOVES_H */
