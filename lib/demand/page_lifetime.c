@@ -74,6 +74,23 @@ void slc_residency_set_switches(struct slc_demand_residency *residency, bool no_
                    .answer = no_lod_bias);
 }
 
+void slc_residency_visit_placed(const struct slc_demand_residency *residency, uint32_t class_index,
+                                void (*visit)(void *user, const struct slc_placed_page *page),
+                                void *user)
+{
+    for (uint32_t i = 0; i < residency->nodes.end; i++) {
+        const struct slc_page_node *node = &residency->nodes.at[i];
+        bool resident = node->state == SLC_PAGE_RESIDENT;
+        if (node->class_index != class_index || (!resident && node->state != SLC_PAGE_LOADING))
+            continue;
+        const struct slc_placed_page page = {.page = node->page,
+                                             .place = node->place,
+                                             .stays = node->home != SLC_HOME_LRU,
+                                             .in_use = node->last_use >= residency->launch};
+        visit(user, &page);
+    }
+}
+
 void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
                               struct slc_residency_counts *counts)
 {

@@ -181,6 +181,16 @@ struct slc_residency_counts {
 void slc_residency_get_counts(const struct slc_demand_residency *residency, uint32_t class_index,
                               struct slc_residency_counts *counts);
 
+struct slc_placed_page {
+    uint32_t page, place;
+    bool stays;  ///< pinned, being loaded, or launches that are over did not know it
+    bool in_use; ///< by the last launch begun, as far as launches tell
+};
+/** Goes through all pages of the class that have a place, in any order. Changes nothing. */
+void slc_residency_visit_placed(const struct slc_demand_residency *residency, uint32_t class_index,
+                                void (*visit)(void *user, const struct slc_placed_page *page),
+                                void *user);
+
 /** Every invariant, slowly. For tests. */
 bool slc_residency_check(const struct slc_demand_residency *residency);
 

@@ -68,6 +68,8 @@ static bool wants_used(const SluiceDemandLoader *loader)
         return false;
     slc_residency_get_counts(loader->residency, SLC_CLASS_TILES, &counts);
     uint64_t held = counts.resident + counts.loading;
+    if (loader->memory_pressure.beyond + loader->memory_pressure.refused)
+        return true;
     return loader->limited_count || slc_byte_memory_is_filling(&loader->bytes) ||
            held + soon > limit || held > limit / 4 * 3;
 }
@@ -220,6 +222,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
     loader->memory_pressure = slc_memory_client_begin(&loader->memory);
     end_retired(loader);
     slc_byte_pages_begin(loader, launch);
+    slc_relieve_memory(loader);
     slc_staging_trim(&loader->staging); /* it counts launches */
     if (loader->large.blocks)
         slc_staging_trim(&loader->large);

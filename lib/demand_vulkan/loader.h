@@ -227,6 +227,7 @@ struct SluiceDemandLoader {
     struct slc_vk vk;                           ///< the context's, but for memory_client
     struct slc_memory_client memory;            ///< of vk
     struct slc_memory_pressure memory_pressure; ///< as of the last launch
+    uint64_t memory_limit;                      ///< bytes of all front ends, as of the last launch
     struct slc_caps caps;                       ///< the context's
     bool usable[SLUICE_FORMAT_COUNT];           ///< formats that the device samples and filters
     VkSemaphore semaphore;
@@ -520,5 +521,9 @@ void slc_preloads_continue(SluiceDemandLoader *loader);
 /** The image at the texture's index goes: pages that preloads know are not those of the next. */
 void slc_preloads_detach(SluiceDemandLoader *loader, uint32_t texture);
 void slc_preloads_finish(SluiceDemandLoader *loader);
+
+/* relief.c */
+/** Before a launch is recorded: gives images of pages back that the budget or others need. */
+void slc_relieve_memory(SluiceDemandLoader *loader);
 
 #endif /* SLC_DEMAND_VULKAN_LOADER_H */

@@ -1,0 +1,112 @@
+/*
+ * Under pressure the loader empties whole images of pages, since only these give memory back: the
+ * image with the fewest pages in use goes first. What was in use is missed by the next launch, and
+ * read again to where there is room.
+ */
+#include "base/alloc.h"
+#include "demand_vulkan/loader.h"
+#include "vulkan/sparse_layout.h"
+
+/* Pages of the loader on one image. */
+struct chunk_use {
+    uint32_t held, in_use;
+    bool stays; ///< some are pinned, are being loaded, or new
+};
+
+struct survey {
+    struct chunk_use chunks[SLC_MAX_PAGE_CHUNKS];
+    SluiceDemandLoader *loader;
+    uint32_t chunk;                               ///< whose pages are listed
+    uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< of these
+};
+
+static void count_page(void *user, const struct slc_placed_page *page)
+{
+    struct survey *survey = user;
+    struct chunk_use *use = &survey->chunks[page->place >> 16];
+    use->held++;
+    use->in_use += page->in_use;
+    use->stays |= page->stays;
+}
+
+static void list_page(void *user, const struct slc_placed_page *page)
+{
+    struct survey *survey = user;
+    if (page->place >> 16 == survey->chunk && survey->count < SLC_PAGE_CHUNK_LAYERS)
+        survey->pages[survey->count++] = page->page;
+}
+
+/* The pages of an image that others hold, too, or that are going, are not all the loader's. */
+static uint32_t choose_chunk(const struct survey *survey, bool unused_only)
+{
+    const struct slc_page_pool *pool = survey->loader->pages;
+    uint32_t best = SLC_NONE;
+    for (uint32_t i = 0; i < pool->chunks.count; i++) {
+        const struct slc_page_chunk *chunk = &pool->chunks.at[i];
+        const struct chunk_use *use = &survey->chunks[i];
+        const struct chunk_use *other = best == SLC_NONE ? NULL : &survey->chunks[best];
+        if (chunk->state != SLC_CHUNK_LIVE || use->held == 0 || use->stays ||
+            use->held != chunk->layer_count - chunk->free_count || (unused_only && use->in_use))
+            continue;
+        if (!other || use->in_use < other->in_use ||
+            (use->in_use == other->in_use && use->held < other->held))
+            best = i;
+    }
+    return best;
+}
+
+static void empty_chunk(struct survey *survey, uint32_t chunk)
+{
+    struct slc_demand_residency *residency = survey->loader->residency;
+    survey->chunk = chunk;
+    survey->count = 0;
+    slc_residency_visit_placed(residency, SLC_CLASS_TILES, list_page, survey);
+    for (uint32_t i = 0; i < survey->count; i++)
+        slc_residency_forget(residency, survey->pages[i], 1);
+    survey->chunks[chunk] = (struct chunk_use){0};
+}
+
+/* Whether it is known what the last launch used. */
+static bool knows_use(const SluiceDemandLoader *loader)
+{
+    return loader->processed > 0 &&
+           loader->tracked[loader->processed % loader->info.launchesInFlight];
+}
+
+/* The LOD bias remembers what did not fit, so in a view that does not change it would stay. */
+static void note_limit(SluiceDemandLoader *loader)
+{
+    uint64_t limit = slc_memory_budget_limit(&loader->context->budget);
+    if (limit > loader->memory_limit)
+        slc_page_pool_ask_again(loader->pages);
+    if (limit > loader->memory_limit && slc_residency_lod_bias(loader->residency) > 0) {
+        slc_residency_set_switches(loader->residency, loader->info.noEviction, true);
+        slc_residency_set_switches(loader->residency, loader->info.noEviction,
+                                   loader->info.noLodBias);
+    }
+    loader->memory_limit = limit;
+}
+
+void slc_relieve_memory(SluiceDemandLoader *loader)
+{
+    note_limit(loader);
+    const struct slc_memory_pressure *pressure = &loader->memory_pressure;
+    uint64_t beyond = pressure->beyond, size = beyond + (knows_use(loader) ? pressure->refused : 0);
+    if (beyond + pressure->refused == 0)
+        return;
+    slc_page_pool_hurry(loader->pages);
+    if (size == 0 || loader->info.noEviction || loader->admitted.first != SLC_NONE)
+        return;
+    struct survey *survey = slc_calloc(&loader->cb, 1, sizeof *survey);
+    if (!survey)
+        return; /* there is another launch */
+    survey->loader = loader;
+    slc_residency_visit_placed(loader->residency, SLC_CLASS_TILES, count_page, survey);
+    for (uint64_t going; (going = slc_page_pool_going_size(loader->pages)) < size;) {
+        uint32_t chunk = choose_chunk(survey, going >= beyond);
+        if (chunk == SLC_NONE)
+            break;
+        empty_chunk(survey, chunk);
+    }
+    slc_free(&loader->cb, survey, 1, sizeof *survey);
+}
