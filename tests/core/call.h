@@ -33,6 +33,7 @@ enum call_kind {
     CALL_LAYOUT,
     CALL_TEXTURE_LAYOUT,
     CALL_STATISTICS,
+    CALL_EVACUATE, ///< made of a CALL_TRIM, so that sequences from files keep their meaning
     CALL_KIND_COUNT
 };
 

@@ -44,11 +44,12 @@ static const enum call_null last_pointer[CALL_KIND_COUNT] = {
     [CALL_RETRY] = NULL_MANAGER,          [CALL_GIVEN_UP] = NULL_SECOND,
     [CALL_TILES_TO_CANCEL] = NULL_SECOND, [CALL_TILES_TO_UNMAP] = NULL_SECOND,
     [CALL_COMPLETE] = NULL_MANAGER,       [CALL_TRIM] = NULL_MANAGER,
-    [CALL_DEFRAGMENT] = NULL_SECOND,      [CALL_EMPTY_HEAPS] = NULL_SECOND,
-    [CALL_RELEASE_HEAP] = NULL_MANAGER,   [CALL_MINMIP_UPDATES] = NULL_SECOND,
-    [CALL_WRITE_MINMIP] = NULL_FIRST,     [CALL_WRITE_RECT] = NULL_SECOND,
-    [CALL_TILE_STATE] = NULL_SECOND,      [CALL_LAYOUT] = NULL_SECOND,
-    [CALL_TEXTURE_LAYOUT] = NULL_FIRST,   [CALL_STATISTICS] = NULL_FIRST,
+    [CALL_EVACUATE] = NULL_MANAGER,       [CALL_DEFRAGMENT] = NULL_SECOND,
+    [CALL_EMPTY_HEAPS] = NULL_SECOND,     [CALL_RELEASE_HEAP] = NULL_MANAGER,
+    [CALL_MINMIP_UPDATES] = NULL_SECOND,  [CALL_WRITE_MINMIP] = NULL_FIRST,
+    [CALL_WRITE_RECT] = NULL_SECOND,      [CALL_TILE_STATE] = NULL_SECOND,
+    [CALL_LAYOUT] = NULL_SECOND,          [CALL_TEXTURE_LAYOUT] = NULL_FIRST,
+    [CALL_STATISTICS] = NULL_FIRST,
 };
 
 void call_sequence_start(struct call_sequence *s, struct choice choice)
@@ -412,6 +413,8 @@ static void make_feedback(struct call_sequence *s, struct naive_manager *n, stru
 static void make_trim(struct call_sequence *s, struct call *call)
 {
     call->keep = choice_once_in(&s->choice, 3) ? 0 : choice_below(&s->choice, 30);
+    if (call->keep % 3 == 1) /* no choice of its own: files keep their meaning */
+        call->kind = CALL_EVACUATE;
 }
 
 static uint32_t any_tile(struct call_sequence *s, struct naive_manager *n, SluiceTextureId id)

@@ -529,6 +529,7 @@ static const char *const event_names[NAIVE_EVENT_COUNT] = {
     [NAIVE_EVICTED_UNWANTED] = "evicted and no longer wanted",
     [NAIVE_PROBED] = "textures probed for the tiles that they gave up",
     [NAIVE_PROBED_EARLY] = "textures to be probed because another tile came",
+    [NAIVE_EVACUATED] = "tiles evacuated",
     [NAIVE_RETRIED_ALL] = "textures whose given-up tiles were all tried again",
 };
 

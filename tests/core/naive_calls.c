@@ -299,6 +299,7 @@ static SluiceResult dispatch(struct naive_manager *n, const struct call *call,
         naive_list_standby(n, call->keep);
         return SLUICE_SUCCESS;
     case CALL_DEFRAGMENT: return naive_defragment(n, call, seen, out);
+    case CALL_EVACUATE: return naive_evacuate(n, call);
     case CALL_EMPTY_HEAPS: return empty_heaps(n, call, out);
     case CALL_RELEASE_HEAP: return release_heap(n, call);
     case CALL_MINMIP_UPDATES: return minmip_updates(n, call, seen, out);

@@ -70,6 +70,67 @@ static bool could_be_emptied(const struct naive_manager *n, const struct naive_h
     return used > 0 && movable == used && room >= used;
 }
 
+static struct naive_tile *tile_in(const struct naive_manager *n, const struct naive_heap *heap,
+                                  uint32_t slot)
+{
+    for (uint32_t i = 0; i < n->texture_room; i++)
+        for (uint32_t k = 0; n->textures[i] && k < n->textures[i]->layout.tileCount; k++) {
+            struct naive_tile *tile = &n->textures[i]->tiles[k];
+            if (naive_has_slot(tile) && tile->heap == heap->id && tile->slot == slot)
+                return tile;
+        }
+    return NULL;
+}
+
+static bool has_packed_tile(const struct naive_manager *n, const struct naive_heap *heap)
+{
+    for (uint32_t slot = 0; slot < n->capacity; slot++) {
+        const struct naive_tile *tile = tile_in(n, heap, slot);
+        if (tile && tile->packed)
+            return true;
+    }
+    return false;
+}
+
+/* The one with the fewest tiles, of equals the last one; NULL if none can be evacuated. */
+static const struct naive_heap *heap_to_evacuate(const struct naive_manager *n)
+{
+    const struct naive_heap *best = NULL;
+    uint32_t fewest = UINT32_MAX;
+    for (uint32_t i = 0; i < n->heap_count; i++) {
+        const struct naive_heap *heap = &n->heaps[i];
+        const uint32_t used = naive_count_slots(n, heap, NAIVE_SLOT_USED);
+        if (used > fewest || (best && used == fewest && heap->number < best->number) ||
+            !could_be_emptied(n, heap) || has_packed_tile(n, heap))
+            continue;
+        best = heap;
+        fewest = used;
+    }
+    return best;
+}
+
+SluiceResult naive_evacuate(struct naive_manager *n, const struct call *call)
+{
+    if (call->null != NULL_NONE)
+        return SLUICE_ERROR_NULL_POINTER;
+    const struct naive_heap *heap = heap_to_evacuate(n);
+    uint32_t left = call->keep;
+    for (uint32_t slot = 0; heap && slot < n->capacity && left > 0; slot++) {
+        struct naive_tile *tile = tile_in(n, heap, slot);
+        if (!tile || tile->listed)
+            continue;
+        if (tile->state == SLUICE_TILE_STATE_MAPPED) {
+            naive_evict(n, tile);
+        } else {
+            tile->listed = true;
+            tile->listed_at = ++n->stamp;
+        }
+        n->events[NAIVE_EVACUATED]++;
+        left--;
+    }
+    return SLUICE_SUCCESS;
+}
+
 SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
                               const struct outcome *seen, struct outcome *out)
 {

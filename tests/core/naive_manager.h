@@ -111,6 +111,7 @@ enum naive_event {
     NAIVE_PROBED,           ///< a texture, for the tiles that it gave up
     NAIVE_PROBED_EARLY,
     NAIVE_RETRIED_ALL,
+    NAIVE_EVACUATED, ///< tiles
     NAIVE_EVENT_COUNT
 };
 
@@ -260,6 +261,7 @@ void naive_note_success(struct naive_manager *n, struct naive_texture *t, bool h
 SluiceResult naive_retry(struct naive_manager *n, const struct call *call);
 SluiceResult naive_defragment(struct naive_manager *n, const struct call *call,
                               const struct outcome *seen, struct outcome *out);
+SluiceResult naive_evacuate(struct naive_manager *n, const struct call *call);
 void naive_retire_slot(struct naive_manager *n, struct naive_tile *tile, uint64_t retire);
 void naive_free_slot(struct naive_manager *n, struct naive_tile *tile);
 void *naive_alloc(size_t count, size_t size);
