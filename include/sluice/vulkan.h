@@ -256,8 +256,10 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     /** Most tiles mapped and uploaded per frame, and produced. 1 to 2^14. Default: 256. */
     uint32_t tilesPerFrame;
     uint32_t maxLoadsInFlight; ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
-    uint32_t heapTileCapacity; ///< Tiles per heap, 1 to 2^20. Default: 256.
-    uint32_t maxHeapCount;     ///< Default: as many as fit into device memory.
+    /** Tiles per heap, 1 to 2^20. Default: 256 (16 MiB). If no heap of that size can be allocated,
+     *  by the device's limits or the context's memoryBudget, it is made smaller, with a warning. */
+    uint32_t heapTileCapacity;
+    uint32_t maxHeapCount; ///< Default: as many as fit into device memory.
     /**
      * Tiles that stay resident after they are no longer requested. They are evicted first when
      * memory is short. Default: 1024 (64 MiB). For none, set noStandbyTiles.
@@ -783,8 +785,9 @@ typedef struct SluiceVulkanStreamerStatistics {
     uint64_t
         tilesRestored; ///< Tiles mapped again without a read: their texels were still resident.
     /**
-     * Bytes of deviceMemorySize that hold tiles. Sparse: heaps. Dense: images. Paged: pages, packed
-     * levels and the page table.
+     * Bytes of deviceMemorySize that count against the memory budget: heaps, pages, and images that
+     * are resident as a whole. As in SluiceVulkanContextStatistics, but only of this streamer, and
+     * of all pages of the context.
      */
     uint64_t tileMemorySize;
     /**

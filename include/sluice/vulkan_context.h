@@ -200,10 +200,15 @@ SLUICE_API void sluiceDestroyVulkanContext(SluiceVulkanContext *context);
 /**
  * Sets the memory budget (SluiceVulkanContextCreateInfo.memoryBudget), in bytes. 0: no limit.
  *
- * If more is in use, this call frees nothing, but the next frames do. No memory for tiles is
- * allocated until less is in use than the budget. Streamers in sparse mode evict tiles, standby
- * tiles first, and free heaps until the budget holds; heaps with packed tiles stay. Page images
- * that have run empty are freed in later frames and launches.
+ * If more is in use, this call frees nothing, but the next frames and launches do, until the budget
+ * holds. Each front end frees its share: tiles that are not wanted first, then wanted ones, finest
+ * first, so that the picture becomes coarser. Wanted tiles move together: in sparse mode they are
+ * read again, in paged mode they are copied on the GPU, for launches they are read again. Memory is
+ * freed when the GPU has finished with it. No memory for tiles is allocated meanwhile.
+ *
+ * These stay, whatever the budget: images of dense mode, packed levels, heaps with packed tiles,
+ * one heap of each streamer in sparse mode, pages that two front ends share, page images with the
+ * tail of a texture of a demand loader. Front ends that begin no frames or launches free nothing.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT, with a log message, below
  *         4 MiB.

@@ -39,14 +39,13 @@ static void list_page(void *user, const struct slc_placed_page *page)
 /* The pages of an image that others hold, too, or that are going, are not all the loader's. */
 static uint32_t choose_chunk(const struct survey *survey, bool unused_only)
 {
-    const struct slc_page_pool *pool = survey->loader->pages;
+    struct slc_page_pool *pool = survey->loader->pages;
     uint32_t best = SLC_NONE;
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
-        const struct slc_page_chunk *chunk = &pool->chunks.at[i];
         const struct chunk_use *use = &survey->chunks[i];
         const struct chunk_use *other = best == SLC_NONE ? NULL : &survey->chunks[best];
-        if (chunk->state != SLC_CHUNK_LIVE || use->held == 0 || use->stays ||
-            use->held != chunk->layer_count - chunk->free_count || (unused_only && use->in_use))
+        if (use->held == 0 || use->stays || (unused_only && use->in_use) ||
+            use->held != slc_page_pool_held_in(pool, i))
             continue;
         if (!other || use->in_use < other->in_use ||
             (use->in_use == other->in_use && use->held < other->held))

@@ -109,8 +109,10 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                           .pNext = &features12};
+    VkPhysicalDeviceMaintenance3Properties maintenance3 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
     VkPhysicalDeviceDriverProperties driver = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, .pNext = &maintenance3};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
     vk->GetPhysicalDeviceFeatures2(vk->physical_device, &features);
@@ -129,6 +131,7 @@ void slc_caps_init(struct slc_caps *caps, const struct slc_vk *vk)
     caps->buffer_device_address = features12.bufferDeviceAddress;
     caps->array_dynamic_indexing = features.features.shaderSampledImageArrayDynamicIndexing;
     caps->max_image_array_layers = out->maxImageArrayLayers;
+    caps->max_allocation_size = maintenance3.maxMemoryAllocationSize;
     caps->max_storage_buffer_range = out->maxStorageBufferRange;
     bool vulkan12 = out->apiVersion >= VK_API_VERSION_1_2;
     out->timelineSemaphore = vulkan12 && features12.timelineSemaphore;

@@ -7,6 +7,7 @@
 struct slc_caps {
     SluiceVulkanDeviceCapabilities public;
     VkPhysicalDeviceMemoryProperties memory;
+    uint64_t max_allocation_size;      ///< bytes of one block of memory; 0: unknown
     uint32_t max_storage_buffer_range; ///< bytes
     uint32_t max_image_array_layers;
     uint32_t max_stage_samplers, max_stage_images; ///< per shader stage; samplers: also combined

@@ -154,6 +154,7 @@ void sluiceDestroyVulkanContext(SluiceVulkanContext *context)
     }
     SluiceAllocationCallbacks cb = context->cb;
     slc_memory_client_finish(&context->memory);
+    slc_device_budget_finish(&context->device_budget);
     slc_memory_budget_finish(&context->budget);
     context->vk.DestroyPipelineCache(context->vk.device, context->pipeline_cache, NULL);
     slc_shared_parts_finish(&context->shared);

@@ -69,12 +69,24 @@ void slc_device_budget_init(struct slc_device_budget *device, const struct slc_v
         vk->instance, "vkGetPhysicalDeviceMemoryProperties2");
     device->heap = slc_device_memory_heap(caps);
     device->step = min_u64(MAX_STEP, caps->memory.memoryHeaps[device->heap].size / STEPS_PER_HEAP);
+    if (device->get && pthread_mutex_init(&device->mutex, NULL) != 0)
+        device->get = NULL;
     if (device->get)
         poll(device, budget);
 }
 
+void slc_device_budget_finish(struct slc_device_budget *device)
+{
+    if (device->get)
+        pthread_mutex_destroy(&device->mutex);
+}
+
 void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget)
 {
-    if (device->get && ++device->turns >= SLC_DEVICE_BUDGET_TURNS)
+    if (!device->get)
+        return;
+    pthread_mutex_lock(&device->mutex);
+    if (++device->turns >= SLC_DEVICE_BUDGET_TURNS)
         poll(device, budget);
+    pthread_mutex_unlock(&device->mutex);
 }

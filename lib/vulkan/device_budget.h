@@ -8,7 +8,9 @@
 #include "vulkan/caps.h"
 #include "vulkan/memory_budget.h"
 
+/** Zeroed: there is none, and nothing is asked. */
 struct slc_device_budget {
+    pthread_mutex_t mutex; ///< around what changes: front ends may be on different threads
     PFN_vkGetPhysicalDeviceMemoryProperties2 get; ///< NULL: the limit stays SLC_NO_MEMORY_LIMIT
     VkPhysicalDevice physical_device;
     uint32_t heap;  ///< the largest that is local to the device
@@ -24,6 +26,9 @@ struct slc_device_budget {
 void slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
                             const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                             PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget);
+
+/** A zeroed one is allowed. */
+void slc_device_budget_finish(struct slc_device_budget *device);
 
 /** A frame or launch begins. */
 void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget);

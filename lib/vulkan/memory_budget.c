@@ -236,6 +236,16 @@ struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *cli
     return pressure;
 }
 
+uint64_t slc_memory_client_tiles(struct slc_memory_client *client)
+{
+    if (!client->budget)
+        return 0;
+    pthread_mutex_lock(&client->budget->mutex);
+    uint64_t tiles = client->tiles;
+    pthread_mutex_unlock(&client->budget->mutex);
+    return tiles;
+}
+
 void slc_memory_client_get(struct slc_memory_client *client, uint64_t *device, uint64_t *host)
 {
     if (!client->budget) {

@@ -92,6 +92,8 @@ struct slc_memory_pressure {
 /** Once per frame or launch. Returns the pressure on this client; zeros while everything fits. */
 struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *client);
 
+/** Bytes of tile memory that the client has now. 0 without a budget. */
+uint64_t slc_memory_client_tiles(struct slc_memory_client *client);
 /** Bytes that the client has now. Either may be NULL. 0 without a budget. */
 void slc_memory_client_get(struct slc_memory_client *client, uint64_t *device, uint64_t *host);
 

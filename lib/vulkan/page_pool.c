@@ -301,7 +301,12 @@ static void leave_shared(struct slc_page_pool *pool, uint32_t user)
     }
 }
 
-static void stay(struct slc_page_pool *pool);
+static void stay(struct slc_page_pool *pool)
+{
+    if (pool->leaving != SLC_NONE)
+        pool->chunks.at[pool->leaving].leaving = false;
+    pool->leaving = SLC_NONE;
+}
 
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user)
 {
@@ -371,13 +376,6 @@ static uint32_t find_leaving(const struct slc_page_pool *pool, uint32_t user)
         fewest = held;
     }
     return best;
-}
-
-static void stay(struct slc_page_pool *pool)
-{
-    if (pool->leaving != SLC_NONE)
-        pool->chunks.at[pool->leaving].leaving = false;
-    pool->leaving = SLC_NONE;
 }
 
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user)
@@ -571,7 +569,8 @@ void slc_page_pool_abandon(struct slc_page_pool *pool, uint32_t user, uint64_t f
 struct slc_page_pool_counts slc_page_pool_get_counts(struct slc_page_pool *pool)
 {
     pthread_mutex_lock(&pool->mutex);
-    struct slc_page_pool_counts counts = {.tile_memory_size = pool->chunks.memory.total_size,
+    struct slc_page_pool_counts counts = {.tile_memory_size =
+                                              slc_memory_client_tiles(&pool->client),
                                           .chunk_count = pool->chunks.image_count,
                                           .shortages = pool->chunks.shortages};
     slc_memory_client_get(&pool->client, &counts.device_memory_size, NULL);

@@ -153,7 +153,7 @@ struct slc_residency_interface {
 
 /** What is counted for the public statistics. */
 struct slc_residency_counters {
-    uint64_t bind_calls, bind_runs, device_memory_size;
+    uint64_t bind_calls, bind_runs;
     uint64_t unbinds, unbinds_saved; ///< tiles
     uint32_t page_chunks;
     uint64_t page_chunk_shortages;

@@ -47,7 +47,6 @@ static SluiceResult create_image(struct slc_residency *residency, uint32_t index
     if (result == SLUICE_SUCCESS)
         result = slc_plain_image_create(&layers[0].own, &d->memory, d->vk, d->caps, d->cb, info, 0,
                                         layer_count, produced);
-    d->base.counters.device_memory_size = d->memory.total_size;
     if (result != SLUICE_SUCCESS)
         return result;
     layers[0].layer_count = layer_count;
@@ -67,7 +66,6 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     slc_plain_image_destroy(&layers[0].own, &d->memory, d->vk, d->cb);
     for (uint32_t i = layers[0].layer_count; i-- > 0;)
         layers[i] = (struct dense_image){0};
-    d->base.counters.device_memory_size = d->memory.total_size;
 }
 
 static bool image_is_idle(const struct slc_residency *residency, uint32_t index)

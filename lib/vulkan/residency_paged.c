@@ -57,8 +57,6 @@ static struct paged_residency *paged(struct slc_residency *residency)
 static void count_memory(struct paged_residency *p)
 {
     struct slc_page_pool_counts pool = slc_page_pool_get_counts(p->pool);
-    p->base.counters.device_memory_size =
-        p->memory.total_size + pool.tile_memory_size + p->table.buffer.size;
     p->base.counters.page_chunks = pool.chunk_count;
     p->base.counters.page_chunk_shortages = pool.shortages;
 }

@@ -194,7 +194,6 @@ static SluiceResult allocate_heap(struct slc_residency *residency, uint64_t size
         result = reserve_dying(s);
     if (result != SLUICE_SUCCESS)
         slc_device_heaps_release(&s->heaps, s->vk, *heap_id);
-    s->base.counters.device_memory_size = s->heaps.total_size;
     return result;
 }
 
@@ -230,7 +229,6 @@ static void release_dying(struct sparse_residency *s)
             s->dying[kept++] = heap;
     }
     s->dying_count = kept;
-    s->base.counters.device_memory_size = s->heaps.total_size;
 }
 
 static void release_heap(struct slc_residency *residency, uint32_t heap_id)

@@ -14,10 +14,29 @@
 
 #include <string.h>
 
+/* Without a single heap nothing is ever shown. */
+static void tell_of_refused_heap(SluiceVulkanStreamer *s, uint64_t size)
+{
+    SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
+    sluiceGetStatistics(s->manager, &stats);
+    if (s->told_of_heaps || stats.heapCount > 0 || !s->residency->interface->going_size)
+        return;
+    s->told_of_heaps = true;
+    slc_log(&s->vk.log, SLUICE_LOG_WARNING,
+            "no heap of %llu bytes can be allocated: heapTileCapacity is %u, the limit of tile "
+            "memory is %llu bytes, of which %llu are in use; nothing is loaded until there is one",
+            (unsigned long long)size, s->info.heapTileCapacity,
+            (unsigned long long)slc_memory_budget_limit(&s->context->budget),
+            (unsigned long long)slc_memory_budget_tile_memory(&s->context->budget));
+}
+
 static SluiceResult allocate_heap(void *user, uint64_t size, uint32_t *heap_id)
 {
     SluiceVulkanStreamer *s = user;
-    return s->residency->interface->allocate_heap(s->residency, size, heap_id);
+    SluiceResult result = s->residency->interface->allocate_heap(s->residency, size, heap_id);
+    if (result == SLUICE_ERROR_OUT_OF_DEVICE_MEMORY)
+        tell_of_refused_heap(s, size);
+    return result;
 }
 
 static void release_heap(void *user, uint32_t heap_id)
@@ -108,8 +127,29 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
     }
 }
 
+/* A heap that cannot be, by size alone: smaller ones serve as well. */
+static void fit_heaps(SluiceVulkanStreamer *s)
+{
+    uint64_t limit = slc_device_memory_size(&s->caps);
+    uint64_t budget = slc_memory_budget_limit(&s->context->budget);
+    limit = budget < limit ? budget : limit;
+    if (s->caps.max_allocation_size && s->caps.max_allocation_size < limit)
+        limit = s->caps.max_allocation_size;
+    uint64_t most = limit / SLC_TILE_SIZE, given = s->info.heapTileCapacity;
+    if (!s->residency->interface->going_size || given <= most)
+        return;
+    uint32_t fitting = slc_max_u32(1, (uint32_t)(most / 4));
+    s->info.heapTileCapacity = slc_min_u32(SLUICE_DEFAULT_HEAP_TILE_CAPACITY, fitting);
+    slc_log(&s->vk.log, SLUICE_LOG_WARNING,
+            "heapTileCapacity is %u, heaps of %llu bytes; the limit of a heap is %llu bytes: heaps "
+            "have %u tiles instead",
+            (unsigned)given, (unsigned long long)given * SLC_TILE_SIZE, (unsigned long long)limit,
+            s->info.heapTileCapacity);
+}
+
 static SluiceResult create_manager(SluiceVulkanStreamer *s)
 {
+    fit_heaps(s);
     SluiceStreamedTextureManagerCreateInfo info = {
         .structSize = sizeof info,
         .heapAllocator = {s, allocate_heap, release_heap},
@@ -496,7 +536,8 @@ SluiceResult sluiceGetVulkanStreamerStatistics(const SluiceVulkanStreamer *strea
     statistics.bindRuns = counters->bind_runs;
     statistics.unbinds = counters->unbinds;
     statistics.unbindsSaved = counters->unbinds_saved;
-    statistics.tileMemorySize = counters->device_memory_size;
+    statistics.tileMemorySize = slc_memory_client_tiles(streamer->vk.memory_client) +
+                                slc_page_pool_get_counts(streamer->pages).tile_memory_size;
     slc_memory_client_get(streamer->vk.memory_client, &statistics.deviceMemorySize,
                           &statistics.hostVisibleMemorySize);
     statistics.deviceMemorySize += slc_page_pool_get_counts(streamer->pages).device_memory_size;

@@ -170,6 +170,7 @@ struct SluiceVulkanStreamer {
     uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
     uint32_t packed_queue_count;
     uint32_t removed_count;
+    bool told_of_heaps; ///< that not even one can be allocated
     bool told_of_modes; ///< that a texture's address modes are not its source's
     struct slc_region_arena regions;
 
