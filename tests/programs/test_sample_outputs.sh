@@ -1,11 +1,11 @@
 #!/bin/bash
-# test_sample_outputs.sh FACTS STREAMING TRACER MINIMAL SHARED: what the samples leave behind at the names of their
+# test_sample_outputs.sh FACTS STREAMING TRACER MINIMAL SHARED VIRTUAL: what the samples leave behind at the names of their
 # outputs when something is in the way, in TAP.
 facts=$1
 mapfile -t programs < <(realpath "${@:2}")
 # shellcheck source=tests/bake/facts.sh
 source "$facts"
-streaming=${programs[0]} tracer=${programs[1]} minimal=${programs[2]} shared=${programs[3]}
+streaming=${programs[0]} tracer=${programs[1]} minimal=${programs[2]} shared=${programs[3]} virtual=${programs[4]}
 
 mkdir folder pictures && echo older >locked && chmod 444 locked
 printf 'P6 8 8 255\n%192s' '' >pictures/one.ppm
@@ -67,12 +67,12 @@ trace 1 --output sheets --contact-sheet sheets/picture.exr && grep -q 'picture.e
 fact two_outputs_of_a_tracer_under_one_name_are_refused_at_once
 
 good=0
-for tool in "$minimal" "$shared"; do
+for tool in "$minimal" "$shared" "$virtual"; do
     { run 1 --output folder && grep -q 'folder: is there already and is a folder' err && [ -d folder ] &&
         run 1 --output locked && grep -q 'locked: is there already and is read-only' err && [ "$(cat locked)" = older ]; } ||
         good=1
 done
 [ $good -eq 0 ]
-fact minimal_and_shared_remove_nothing_and_say_so_before_they_draw
+fact small_samples_remove_nothing_and_say_so_before_they_draw
 
 end_facts

@@ -285,6 +285,8 @@ static bool create_device(struct gpu *gpu)
     vkGetPhysicalDeviceFeatures(gpu->physical_device, &supported);
     features.features.samplerAnisotropy = supported.samplerAnisotropy;
     features.features.shaderResourceResidency = supported.shaderResourceResidency;
+    features.features.shaderStorageImageExtendedFormats =
+        supported.shaderStorageImageExtendedFormats;
     features.features.fragmentStoresAndAtomics = VK_TRUE;
 
     SluiceLogCallback log = {.pfnLog = log_say};
