@@ -1,9 +1,11 @@
 /* UDIM grids: textures that are sampled as one. Their cells are words in the buffer of levels. */
 #include "base/checked.h"
 #include "demand_vulkan/loader.h"
+#include "demand_vulkan/refusal.h"
 
 #include <sluice/shared/demand.h>
 
+#include <inttypes.h>
 #include <string.h>
 
 static uint32_t *grid_words(SluiceDemandLoader *loader, uint32_t element)
@@ -36,7 +38,7 @@ static SluiceResult check_cells(SluiceDemandLoader *loader, const SluiceDemandTe
         if (result != SLUICE_SUCCESS)
             return result;
         if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-            return SLUICE_ERROR_INVALID_ARGUMENT;
+            return slc_demand_refuse_grid(loader, "sluiceAddDemandUdim", ids[i]);
     }
     return SLUICE_SUCCESS;
 }
@@ -75,7 +77,9 @@ SluiceResult sluiceAddDemandUdim(SluiceDemandLoader *loader,
     if (!loader || !pTextureIds || !missingColor || !pTextureId)
         return SLUICE_ERROR_NULL_POINTER;
     if (columns == 0 || rows == 0)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse(loader, __func__,
+                                 "a grid of %" PRIu32 " x %" PRIu32 " textures is empty", columns,
+                                 rows);
     if ((uint64_t)columns * rows > loader->grid_arena.size * (uint64_t)16)
         return SLUICE_ERROR_LIMIT_EXCEEDED;
     SluiceResult result = check_cells(loader, pTextureIds, columns * rows);

@@ -7,12 +7,14 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/refusal.h"
 #include "image/half.h"
 #include "vulkan/compute.h"
 
 #include <sluice/shared/demand.h>
 
 #include <assert.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -207,7 +209,7 @@ SluiceResult sluiceBeginDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer
         return checked;
     if (loader->launch > loader->ended) {
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "launch %llu was neither ended nor abandoned: no other one can be prepared",
+                "launch %llu was neither ended nor abandoned: no other one can be begun",
                 (unsigned long long)loader->launch);
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
@@ -255,7 +257,7 @@ SluiceResult sluiceEndDemandLaunch(SluiceDemandLoader *loader, VkCommandBuffer c
         return SLUICE_ERROR_NULL_POINTER;
     if (loader->launch == loader->ended) {
         slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "no launch can be ended: none was prepared since the last one was ended or "
+                "no launch can be ended: none was begun since the last one was ended or "
                 "abandoned");
         return SLUICE_ERROR_INVALID_ARGUMENT;
     }
@@ -311,7 +313,7 @@ static SluiceResult check_abandoned(SluiceDemandLoader *loader, uint64_t launch)
     if (launch > loader->processed && launch <= loader->launch && value < launch)
         return SLUICE_SUCCESS;
     slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-            "launch %llu cannot be abandoned: it is over, was abandoned or never prepared",
+            "launch %llu cannot be abandoned: it is over, was abandoned or never begun",
             (unsigned long long)launch);
     return SLUICE_ERROR_INVALID_ARGUMENT;
 }
@@ -369,7 +371,11 @@ SluiceResult sluiceProcessDemandRequests(SluiceDemandLoader *loader,
     if (result != SLUICE_SUCCESS)
         return result;
     if (given.launchIndex <= loader->processed || given.launchIndex > loader->ended)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse(loader, __func__,
+                                 "launch %" PRIu64
+                                 " was not ended, or was processed before: %" PRIu64
+                                 " is processed, %" PRIu64 " is ended",
+                                 given.launchIndex, loader->processed, loader->ended);
     if (is_aborted(loader))
         return SLUICE_ERROR_CANCELED;
     result = wait_for(loader, given.launchIndex, timeoutNs);

@@ -1,6 +1,7 @@
 /* Levels that are loaded because the application says so, a few at a time: coarse ones first. */
 #include "base/alloc.h"
 #include "demand_vulkan/opening.h"
+#include "demand_vulkan/refusal.h"
 
 #include <string.h>
 
@@ -31,7 +32,7 @@ SluiceResult sluicePreloadDemandTexture(SluiceDemandLoader *loader, SluiceDemand
     if (loader->textures[index].kind == SLC_TEXTURE_VARIANT)
         index = loader->textures[index].base;
     if (loader->textures[index].kind == SLC_TEXTURE_GRID)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse_grid(loader, "sluicePreloadDemandTexture", textureId);
     result = reserve(loader);
     if (result == SLUICE_SUCCESS)
         result = slc_ticket_open(&loader->tickets, &ticket);

@@ -5,10 +5,12 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/refusal.h"
 #include "vulkan/create_checks.h"
 
 #include <sluice/shared/demand.h>
 
+#include <inttypes.h>
 #include <string.h>
 
 static SluiceResult get_info(SluiceImageSource *source, SluiceImageInfo *info)
@@ -371,7 +373,10 @@ SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
         return result;
     uint32_t page_count = resource->info.pageCount;
     if (firstPage > page_count || count > page_count - firstPage)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse(loader, __func__,
+                                 "%" PRIu32 " pages from page %" PRIu32
+                                 " on: the resource has %" PRIu32,
+                                 count, firstPage, page_count);
     if (count)
         forget(loader, resource, resource->first_page + firstPage, count);
     return SLUICE_SUCCESS;

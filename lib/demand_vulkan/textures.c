@@ -5,10 +5,12 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
+#include "demand_vulkan/refusal.h"
 #include "vulkan/address_mode.h"
 
 #include <sluice/shared/demand.h>
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -44,6 +46,18 @@ static bool sampler_is_valid(const SluiceDemandSampler *s)
                    (uint32_t)s->mipmapFilter <= SLUICE_DEMAND_FILTER_NEAREST;
     return modes && filters && s->maxAnisotropy >= 0 && s->maxAnisotropy <= 64 &&
            s->lodBias >= -16 && s->lodBias <= 16;
+}
+
+static SluiceResult refuse_sampler(const SluiceDemandLoader *loader, const char *function,
+                                   const SluiceDemandSampler *s)
+{
+    return slc_demand_refuse(
+        loader, function,
+        "sampler with address modes %d and %d, filters %d and %d, "
+        "maxAnisotropy %g, lodBias %g: a mode is unknown, maxAnisotropy is not "
+        "0 to 64, or lodBias is not -16 to 16",
+        (int)s->addressModeU, (int)s->addressModeV, (int)s->filter, (int)s->mipmapFilter,
+        (double)s->maxAnisotropy, (double)s->lodBias);
 }
 
 static struct SluiceDemandTexture *change_entry(SluiceDemandLoader *loader, uint32_t index)
@@ -132,7 +146,7 @@ SluiceResult sluiceAddDemandTexture(SluiceDemandLoader *loader,
     if (result != SLUICE_SUCCESS)
         return result;
     if (!sampler_is_valid(&sampler))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return refuse_sampler(loader, __func__, &sampler);
     uint32_t index;
     result = slc_texture_take(loader, &index);
     if (result != SLUICE_SUCCESS)
@@ -238,8 +252,10 @@ SluiceResult sluiceAddDemandTextureVariant(SluiceDemandLoader *loader, SluiceDem
     result = slc_texture_find(loader, baseId, &base);
     if (result != SLUICE_SUCCESS)
         return result;
-    if (loader->textures[base].kind == SLC_TEXTURE_GRID || !sampler_is_valid(&sampler))
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+    if (loader->textures[base].kind == SLC_TEXTURE_GRID)
+        return slc_demand_refuse_grid(loader, __func__, baseId);
+    if (!sampler_is_valid(&sampler))
+        return refuse_sampler(loader, __func__, &sampler);
     if (loader->textures[base].kind == SLC_TEXTURE_VARIANT)
         base = loader->textures[base].base;
     result = slc_texture_take(loader, &index);
@@ -346,7 +362,8 @@ SluiceResult sluiceReplaceDemandImage(SluiceDemandLoader *loader, SluiceDemandTe
         return result;
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->kind != SLC_TEXTURE_IMAGE)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse(loader, __func__, "texture %#" PRIx64 " is a grid or a variant",
+                                 textureId);
     if (texture->image != SLC_NONE)
         slc_image_detach(loader, loader->images[texture->image]);
     texture->source = *pImage;
@@ -368,7 +385,7 @@ SluiceResult sluiceInvalidateDemandTexture(SluiceDemandLoader *loader,
         index = loader->textures[index].base;
     struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->kind == SLC_TEXTURE_GRID)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse_grid(loader, __func__, textureId);
     if (!slc_texture_retry(loader, index) && texture->image != SLC_NONE)
         slc_image_invalidate(loader, loader->images[texture->image]);
     return SLUICE_SUCCESS;
@@ -393,12 +410,10 @@ SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader, SluiceDemandTe
         slc_retries_everything(loader);
         return SLUICE_SUCCESS;
     }
-    if (textureId == SLUICE_NO_DEMAND_TEXTURE) {
-        slc_log(&loader->vk.log, SLUICE_LOG_ERROR,
-                "sluiceRetryDemandTexture: textureId is SLUICE_NO_DEMAND_TEXTURE; for all textures "
-                "it is SLUICE_ALL_DEMAND_TEXTURES");
-        return SLUICE_ERROR_INVALID_ARGUMENT;
-    }
+    if (textureId == SLUICE_NO_DEMAND_TEXTURE)
+        return slc_demand_refuse(loader, __func__,
+                                 "textureId is SLUICE_NO_DEMAND_TEXTURE; for all textures it is "
+                                 "SLUICE_ALL_DEMAND_TEXTURES");
     SluiceResult result = slc_texture_find(loader, textureId, &index);
     if (result != SLUICE_SUCCESS)
         return result;
@@ -406,7 +421,7 @@ SluiceResult sluiceRetryDemandTexture(SluiceDemandLoader *loader, SluiceDemandTe
         index = loader->textures[index].base;
     const struct slc_demand_texture *texture = &loader->textures[index];
     if (texture->kind == SLC_TEXTURE_GRID)
-        return SLUICE_ERROR_INVALID_ARGUMENT;
+        return slc_demand_refuse_grid(loader, __func__, textureId);
     if (!slc_texture_retry(loader, index) && texture->image != SLC_NONE)
         slc_retries_all(loader, &loader->images[texture->image]->retry_group);
     return SLUICE_SUCCESS;

@@ -334,6 +334,39 @@ static void what_is_ended_without_a_begin_and_time_that_runs_back_are_named(void
     sluiceDestroyVulkanContext(demand.context);
 }
 
+static void what_demand_loading_refuses_is_named(void **state)
+{
+    (void)state;
+    static struct fake_vulkan fake; /* large */
+    struct lines lines = {0};
+    SluiceDemandLoader *loader;
+    small(&fake, &lines);
+    const SluiceDemandLoaderCreateInfo demand = {.structSize = sizeof demand,
+                                                 .context = create_context(&fake, &lines)};
+    const SluiceDemandTextureId none[1] = {SLUICE_NO_DEMAND_TEXTURE};
+    const float color[4] = {0};
+    const SluiceDemandSampler sampler = {.structSize = sizeof sampler, .lodBias = 17};
+    SluiceDemandTextureId grid, id;
+    const SluiceResult refused = SLUICE_ERROR_INVALID_ARGUMENT;
+    CHECK_OK(sluiceCreateDemandLoader(&demand, &loader));
+    CHECK_OK(sluiceAddDemandUdim(loader, none, 1, 1, color, &grid));
+    CHECK_RESULT(sluiceAddDemandUdim(loader, none, 0, 3, color, &id), refused);
+    check_line(&lines, "sluiceAddDemandUdim: a grid of 0 x 3 textures is empty");
+    CHECK_RESULT(sluiceAddDemandUdim(loader, &grid, 1, 1, color, &id), refused);
+    check_line(&lines, "sluiceAddDemandUdim: texture 0x");
+    CHECK_RESULT(sluiceAddDemandTextureVariant(loader, grid, &sampler, &id), refused);
+    check_line(&lines, "sluiceAddDemandTextureVariant: texture 0x");
+    CHECK_RESULT(sluiceInvalidateDemandTexture(loader, grid), refused);
+    check_line(&lines, "sluiceInvalidateDemandTexture: texture 0x");
+    CHECK_RESULT(sluicePreloadDemandTexture(loader, grid, 0, NULL), refused);
+    check_line(&lines, "sluicePreloadDemandTexture: texture 0x");
+    CHECK_RESULT(sluiceRetryDemandTexture(loader, SLUICE_NO_DEMAND_TEXTURE), refused);
+    check_line(&lines, "SLUICE_ALL_DEMAND_TEXTURES");
+    CHECK_OK(sluiceRetryDemandTexture(loader, SLUICE_ALL_DEMAND_TEXTURES));
+    sluiceDestroyDemandLoader(loader);
+    sluiceDestroyVulkanContext(demand.context);
+}
+
 /* What the streamer does itself nobody else does; what pages tell people to call goes on. */
 static void the_manager_of_a_streamer_takes_no_calls_of_its_loop(void **state)
 {
@@ -405,6 +438,7 @@ int main(void)
         cmocka_unit_test(sparse_mode_needs_a_context_with_a_sparse_queue),
         cmocka_unit_test(without_a_context_nothing_is_created),
         cmocka_unit_test(what_is_ended_without_a_begin_and_time_that_runs_back_are_named),
+        cmocka_unit_test(what_demand_loading_refuses_is_named),
         cmocka_unit_test(the_manager_of_a_streamer_takes_no_calls_of_its_loop),
     };
     return RUN_TESTS(tests);

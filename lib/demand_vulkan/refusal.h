@@ -1,0 +1,18 @@
+/** Says in the log why an argument is refused. */
+#ifndef SLC_DEMAND_VULKAN_REFUSAL_H
+#define SLC_DEMAND_VULKAN_REFUSAL_H
+
+#include "demand_vulkan/loader.h"
+
+/** Logs a message that begins with the name of the function. Returns INVALID_ARGUMENT. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+SluiceResult
+slc_demand_refuse(const SluiceDemandLoader *loader, const char *function, const char *format, ...);
+
+/** For calls that no grid can be given to. */
+SluiceResult slc_demand_refuse_grid(const SluiceDemandLoader *loader, const char *function,
+                                    SluiceDemandTextureId id);
+
+#endif /* SLC_DEMAND_VULKAN_REFUSAL_H */
