@@ -12,10 +12,10 @@ static const struct {
     measurement *measure;
 } measurements[] = {
     {"create", measure_create}, {"fill", measure_fill},     {"sampling", measure_sampling},
-    {"trips", measure_trips},   {"budget", measure_budget},
+    {"trips", measure_trips},   {"budget", measure_budget}, {"bytes", measure_bytes},
 };
 #define MEASUREMENT_COUNT (sizeof measurements / sizeof *measurements)
-#define MEASUREMENT_NAMES "create,fill,sampling,trips,budget"
+#define MEASUREMENT_NAMES "create,fill,sampling,trips,budget,bytes"
 
 bool check(SluiceResult result, const char *what)
 {

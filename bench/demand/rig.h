@@ -50,7 +50,7 @@ struct rig {
     VkPipelineLayout layout;
     VkDescriptorPool descriptor_pool;
     VkDescriptorSet set;
-    VkPipeline pipelines[3]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE until used
+    VkPipeline pipelines[4]; ///< by DEMAND_BENCH_NOTHING and so on; VK_NULL_HANDLE until used
     VkQueryPool queries;
     struct rig_slot slots[RIG_SLOTS];
     uint64_t begun, ended; ///< launches
@@ -98,6 +98,7 @@ bool rig_warm_up(struct rig *rig);
 uint32_t rig_load(struct rig *rig, uint32_t limit);
 
 typedef bool measurement(const struct bench *bench);
-measurement measure_create, measure_fill, measure_sampling, measure_trips, measure_budget;
+measurement measure_bytes, measure_create, measure_fill, measure_sampling, measure_trips,
+    measure_budget;
 
 #endif /* BENCH_DEMAND_RIG_H */

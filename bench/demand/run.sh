@@ -5,7 +5,7 @@
 #   bench/demand/run.sh [options]
 #
 #   --device NAME     an index or a part of a name; --list-devices prints them (default: the best)
-#   --only NAMES      some of create,fill,sampling,trips,budget (default: all)
+#   --only NAMES      some of create,fill,sampling,trips,budget,bytes (default: all)
 #   --json            one object per line (name, value, unit) instead of the table, and more of them
 #   --quick           few and small textures: to see that everything works
 #   --threads N       that load tiles (default: all processors but one)
@@ -59,6 +59,9 @@ budget.launches|437 MB in 256 MB: launches until complete|never|at most 30
 budget.missing|... samples that are missing then|43 to 57 %|0
 budget.uploads_later|... MB uploaded by 100 more launches|13 GB/s|0
 budget.lod_bias|... levels coarser||
+bytes.rate|cold fill of byte pages of 64 KiB, pages/s||
+bytes.tiles.rate|... of tiles, tiles/s||
+bytes.of_tiles|... byte pages per tile||
 END
 }
 

@@ -14,6 +14,7 @@
 #define DEMAND_BENCH_NOTHING 0 /* no sample at all */
 #define DEMAND_BENCH_SAMPLED 1 /* through the demand loader */
 #define DEMAND_BENCH_PLAIN 2   /* textureGrad of an ordinary image */
+#define DEMAND_BENCH_BYTES 3   /* looks up byte pages, one per invocation */
 
 /* Words that shaders write for the host. */
 #define DEMAND_BENCH_MISSING 0 /* samples that were not resident */
@@ -29,6 +30,7 @@ struct DemandBenchParams {
     float lod;                            /* of most samples */
     float fineLod;                        /* of those in the patch around the origin */
     float fineEdge;                       /* of the patch, in uv */
+    uint firstPage, pageCount;            /* byte pages */
     uint counting;                        /* 1: samples that are missing are counted */
 };
 

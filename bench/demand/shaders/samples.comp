@@ -47,7 +47,11 @@ void main()
     bool resident = true;
     if (kind == DEMAND_BENCH_SAMPLED)
         color = sluiceDemandGrad(params.textures[which], uv, dx, dy, resident);
-    else if (kind == DEMAND_BENCH_PLAIN)
+    else if (kind == DEMAND_BENCH_BYTES) {
+        uvec2 value;
+        uint page = at.y * params.edge + at.x;
+        resident = page >= params.pageCount || sluiceMapOrRequest(params.firstPage + page, value);
+    } else if (kind == DEMAND_BENCH_PLAIN)
         color = textureGrad(plain[nonuniformEXT(which)], uv, dx, dy);
     picture[at.y * params.edge + at.x] = packUnorm4x8(color);
     if (params.counting != 0u && !resident)
