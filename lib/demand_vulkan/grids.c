@@ -1,7 +1,7 @@
 /* UDIM grids: textures that are sampled as one. Their cells are words in the buffer of levels. */
 #include "base/checked.h"
 #include "demand_vulkan/loader.h"
-#include "demand_vulkan/refusal.h"
+#include "demand_vulkan/refused_arguments.h"
 
 #include <sluice/shared/demand.h>
 

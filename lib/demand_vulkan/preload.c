@@ -1,7 +1,7 @@
 /* Levels that are loaded because the application says so, a few at a time: coarse ones first. */
 #include "base/alloc.h"
 #include "demand_vulkan/opening.h"
-#include "demand_vulkan/refusal.h"
+#include "demand_vulkan/refused_arguments.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "base/struct_size.h"
 #include "demand_vulkan/loader.h"
 #include "demand_vulkan/pages.h"
-#include "demand_vulkan/refusal.h"
+#include "demand_vulkan/refused_arguments.h"
 #include "vulkan/address_mode.h"
 
 #include <sluice/shared/demand.h>

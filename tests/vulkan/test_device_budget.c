@@ -75,12 +75,12 @@ static void open_streamer(bool has_extension, bool ignored, uint64_t used_by_oth
     fake_vulkan_fill(&info);
     CHECK_OK(sluiceCreateVulkanStreamer(&info, &streamer));
     const SluiceProceduralImage image = {NULL, texel};
-    const SluiceImageInfo grey = {.structSize = sizeof grey,
+    const SluiceImageInfo gray = {.structSize = sizeof gray,
                                   .width = 4096,
                                   .height = 4096,
                                   .format = SLUICE_FORMAT_R8G8B8A8_UNORM,
-                                  .pName = "grey"};
-    CHECK_OK(sluiceCreateProceduralImageSource(&image, &grey, NULL, &source));
+                                  .pName = "gray"};
+    CHECK_OK(sluiceCreateProceduralImageSource(&image, &gray, NULL, &source));
     const SluiceVulkanTextureCreateInfo add = {.structSize = sizeof add, .source = source};
     SluiceVulkanTexture texture;
     CHECK_OK(sluiceAddVulkanTexture(streamer, &add, &texture));

@@ -1,4 +1,4 @@
-#include "demand_vulkan/refusal.h"
+#include "demand_vulkan/refused_arguments.h"
 
 #include "base/log.h"
 

@@ -1,6 +1,6 @@
 /** Says in the log why an argument is refused. */
-#ifndef SLC_DEMAND_VULKAN_REFUSAL_H
-#define SLC_DEMAND_VULKAN_REFUSAL_H
+#ifndef SLC_DEMAND_VULKAN_REFUSED_ARGUMENTS_H
+#define SLC_DEMAND_VULKAN_REFUSED_ARGUMENTS_H
 
 #include "demand_vulkan/loader.h"
 
@@ -15,4 +15,4 @@ slc_demand_refuse(const SluiceDemandLoader *loader, const char *function, const 
 SluiceResult slc_demand_refuse_grid(const SluiceDemandLoader *loader, const char *function,
                                     SluiceDemandTextureId id);
 
-#endif /* SLC_DEMAND_VULKAN_REFUSAL_H */
+#endif /* SLC_DEMAND_VULKAN_REFUSED_ARGUMENTS_H */
