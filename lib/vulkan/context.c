@@ -105,8 +105,14 @@ static SluiceResult init(SluiceVulkanContext *context, const SluiceVulkanContext
     if (info->memoryBudget)
         slc_memory_budget_set_limit(&context->budget, info->memoryBudget);
     if (!info->noDeviceBudget)
-        slc_device_budget_init(&context->device_budget, &context->vk, &context->caps, &context->cb,
-                               info->pfnGetInstanceProcAddr, &context->budget);
+        result =
+            slc_device_budget_init(&context->device_budget, &context->vk, &context->caps,
+                                   &context->cb, info->pfnGetInstanceProcAddr, &context->budget);
+    if (result != SLUICE_SUCCESS) {
+        slc_memory_budget_finish(&context->budget);
+        context->vk.DestroyPipelineCache(context->vk.device, context->pipeline_cache, NULL);
+        return result;
+    }
     slc_memory_client_init(&context->memory, &context->budget);
     context->vk.memory_client = &context->memory;
     return SLUICE_SUCCESS;

@@ -7,21 +7,23 @@
 #define STEPS_PER_HEAP 64u
 #define MAX_STEP (UINT64_C(128) << 20)
 
-/* Without host memory for the list it does not. */
-static bool has_extension(const struct slc_vk *vk, const SluiceAllocationCallbacks *cb,
-                          PFN_vkEnumerateDeviceExtensionProperties enumerate)
+/* Errors: OUT_OF_HOST_MEMORY. */
+static SluiceResult find_extension(const struct slc_vk *vk, const SluiceAllocationCallbacks *cb,
+                                   PFN_vkEnumerateDeviceExtensionProperties enumerate, bool *found)
 {
+    *found = false;
     uint32_t count = 0, written;
-    bool has = false;
     if (!enumerate || enumerate(vk->physical_device, NULL, &count, NULL) < 0 || count == 0)
-        return false;
+        return SLUICE_SUCCESS;
     VkExtensionProperties *list = slc_alloc(cb, count, sizeof *list);
+    if (!list)
+        return SLUICE_ERROR_OUT_OF_HOST_MEMORY;
     written = count;
-    if (list && enumerate(vk->physical_device, NULL, &written, list) >= 0)
+    if (enumerate(vk->physical_device, NULL, &written, list) >= 0)
         for (uint32_t i = 0; i < written; i++)
-            has |= strcmp(list[i].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0;
+            *found |= strcmp(list[i].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0;
     slc_free(cb, list, count, sizeof *list);
-    return has;
+    return SLUICE_SUCCESS;
 }
 
 static uint64_t min_u64(uint64_t a, uint64_t b)
@@ -55,16 +57,20 @@ static void poll(struct slc_device_budget *device, struct slc_memory_budget *bud
     slc_memory_budget_set_device_limit(budget, now);
 }
 
-void slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
-                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
-                            PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget)
+SluiceResult slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
+                                    const struct slc_caps *caps,
+                                    const SluiceAllocationCallbacks *cb,
+                                    PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget)
 {
     *device = (struct slc_device_budget){.physical_device = vk->physical_device,
                                          .limit = SLC_NO_MEMORY_LIMIT};
-    if (!has_extension(vk, cb,
-                       (PFN_vkEnumerateDeviceExtensionProperties)get(
-                           vk->instance, "vkEnumerateDeviceExtensionProperties")))
-        return;
+    bool found;
+    SluiceResult result = find_extension(vk, cb,
+                                         (PFN_vkEnumerateDeviceExtensionProperties)get(
+                                             vk->instance, "vkEnumerateDeviceExtensionProperties"),
+                                         &found);
+    if (!found)
+        return result;
     device->get = (PFN_vkGetPhysicalDeviceMemoryProperties2)get(
         vk->instance, "vkGetPhysicalDeviceMemoryProperties2");
     device->heap = slc_device_memory_heap(caps);
@@ -73,6 +79,7 @@ void slc_device_budget_init(struct slc_device_budget *device, const struct slc_v
         device->get = NULL;
     if (device->get)
         poll(device, budget);
+    return SLUICE_SUCCESS;
 }
 
 void slc_device_budget_finish(struct slc_device_budget *device)

@@ -22,10 +22,13 @@ struct slc_device_budget {
 /** Frames and launches, of all front ends together, between two polls. */
 #define SLC_DEVICE_BUDGET_TURNS 16u
 
-/** Polls for the first time, if the device has the extension. `get` is the application's. */
-void slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
-                            const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
-                            PFN_vkGetInstanceProcAddr get, struct slc_memory_budget *budget);
+/** Polls for the first time, if the device has the extension. `get` is the application's.
+ *  Errors: OUT_OF_HOST_MEMORY. */
+SluiceResult slc_device_budget_init(struct slc_device_budget *device, const struct slc_vk *vk,
+                                    const struct slc_caps *caps,
+                                    const SluiceAllocationCallbacks *cb,
+                                    PFN_vkGetInstanceProcAddr get,
+                                    struct slc_memory_budget *budget);
 
 /** A zeroed one is allowed. */
 void slc_device_budget_finish(struct slc_device_budget *device);

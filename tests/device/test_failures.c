@@ -222,7 +222,7 @@ static void working_set_beyond_the_heaps_is_coarser_but_right(void **state)
     sluiceGetVulkanStreamerStatistics(scene.streamer, &stats);
     assert_int_equal(stats.heapCount, 1);
     if (scene.h->mode == SLUICE_RESIDENCY_MODE_SPARSE)
-        assert_int_equal(stats.tileMemorySize, 48 * 65536);
+        assert_in_range(stats.tileMemorySize, 48 * 65536, 49 * 65536); /* with an empty page */
     assert_true(scene_missing(&scene) > 0);
     assert_true(stats.mappedTileCount > 20);
     for (uint32_t i = 0; i < SCENE_SAMPLES; i++)
