@@ -476,6 +476,9 @@ bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from
     if (!tile || tile->users == 1u << user)
         *to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
                                    pool->chunks.at[from >> 16].format);
+    /* Another thread may have made the image ready since this frame's array of views was filled. */
+    if (*to != SLUICE_PAGE_NONE && !slc_page_views_has(&pool->users[user].shown, *to >> 16))
+        *to = SLUICE_PAGE_NONE;
     if (*to != SLUICE_PAGE_NONE) {
         hold(pool, user, *to);
         move_entry(pool, from, *to);

@@ -102,6 +102,11 @@ void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageVie
     views->views[index] = now;
 }
 
+bool slc_page_views_has(const struct slc_page_views *views, uint32_t index)
+{
+    return index < views->count && views->views[index] != views->empty;
+}
+
 void slc_record_general_layout(const struct slc_vk *vk, VkCommandBuffer commands, VkImage image)
 {
     VkImageMemoryBarrier barrier = {
