@@ -1,11 +1,10 @@
 /**
- * Included before everything else where the encoders of BC6H and BC7 are compiled once more, with
- * eight lanes for processors that have AVX2. The bytes are those of four lanes.
+ * Included before everything else where the encoders of BC6H and BC7 are compiled once more, for
+ * processors that have AVX2: with eight lanes (meson.build). The bytes are those of four lanes.
  */
 #ifndef SLC_BAKE_AVX2_NAMES_H
 #define SLC_BAKE_AVX2_NAMES_H
 
-#define SLC_LANES 8
 #define slc_bc7_try_mode_1 slc_bc7_try_mode_1_avx2
 #define slc_bc7_try_mode_4 slc_bc7_try_mode_4_avx2
 #define slc_bc7_try_mode_5 slc_bc7_try_mode_5_avx2
