@@ -120,8 +120,9 @@ typedef struct SluiceVulkanContextCreateInfo {
     uint64_t memoryBudget;
     /**
      * Ignore what the device says of its memory. Default: false. If the device has
-     * VK_EXT_memory_budget, which need not be enabled, every 16th frame or launch asks how much its
-     * largest local heap can spare, and tile memory is limited to that as it is by memoryBudget.
+     * VK_EXT_memory_budget, which need not be enabled, every 256th frame or launch asks how much
+     * its largest local heap can spare, and tile memory is limited to that as it is by
+     * memoryBudget.
      *
      * 1/64 of the heap, at most 128 MiB, is left to others, and changes of less are ignored.
      * Without the extension nothing is asked for.

@@ -20,7 +20,7 @@ struct slc_device_budget {
 };
 
 /** Frames and launches, of all front ends together, between two polls. */
-#define SLC_DEVICE_BUDGET_TURNS 16u
+#define SLC_DEVICE_BUDGET_TURNS 256u
 
 /** Polls for the first time, if the device has the extension. `get` is the application's.
  *  Errors: OUT_OF_HOST_MEMORY. */

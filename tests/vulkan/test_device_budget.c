@@ -8,7 +8,7 @@
 #define HEAP (256 * MIB) /* of the device; so a step is 4 MiB */
 #define STEP (4 * MIB)
 
-enum { FRAMES_PER_POLL = 16 };
+enum { FRAMES_PER_POLL = 256 };
 
 static struct fake_vulkan fake; /* large */
 static SluiceVulkanContext *context;
