@@ -15,6 +15,10 @@
     VOID(CmdCopyBuffer,                                                                            \
          (VkCommandBuffer a, VkBuffer b, VkBuffer c, uint32_t d, const VkBufferCopy *e),           \
          (a, b, c, d, e))                                                                          \
+    VOID(CmdCopyImage,                                                                             \
+         (VkCommandBuffer a, VkImage b, VkImageLayout c, VkImage d, VkImageLayout e, uint32_t f,   \
+          const VkImageCopy *g),                                                                   \
+         (a, b, c, d, e, f, g))                                                                    \
     VOID(CmdCopyBufferToImage,                                                                     \
          (VkCommandBuffer a, VkBuffer b, VkImage c, VkImageLayout d, uint32_t e,                   \
           const VkBufferImageCopy *f),                                                             \
