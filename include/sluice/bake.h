@@ -56,7 +56,7 @@ typedef enum SluiceBakeAlpha {
     SLUICE_BAKE_ALPHA_PREMULTIPLIED = 2
 } SluiceBakeAlpha;
 
-/** Work that is spent on blocks of BC6H, BC7 and ASTC. docs/baking.md has figures. */
+/** Work that is spent on blocks of BC6H, BC7 and ASTC. Decisions 55 and 56 have figures. */
 typedef enum SluiceBakeQuality {
     SLUICE_BAKE_QUALITY_NORMAL = 0,
     SLUICE_BAKE_QUALITY_FAST = 1,
@@ -202,11 +202,12 @@ typedef struct SluiceBakeReport {
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range,
  *         including the source's info, and if the output or its .sluice-part file is the input,
- * also through links; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO; SLUICE_ERROR_BUSY if another
- *         writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated files and files that
- *         no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels, complex
- *         numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if maxMemory
- *         is too small for the picture; SLUICE_ERROR_CANCELED; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
+ *         also through links; SLUICE_ERROR_FILE_NOT_FOUND; SLUICE_ERROR_IO; SLUICE_ERROR_BUSY if
+ *         another writer has the output open; SLUICE_ERROR_CORRUPT_DATA for truncated files and
+ *         files that no reader understands; SLUICE_ERROR_UNSUPPORTED for more than four channels,
+ *         complex numbers, and formats that Sluice cannot encode; SLUICE_ERROR_LIMIT_EXCEEDED if
+ *         maxMemory is too small for the picture; SLUICE_ERROR_CANCELED;
+ *         SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  * Thread safety: any thread, several calls at the same time, but only one per output.
  */
 SLUICE_API SluiceResult sluiceBakeFile(SluiceBaker *baker, const SluiceBakeInfo *pInfo,

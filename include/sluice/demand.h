@@ -69,15 +69,14 @@ typedef struct SluiceDemandLoaderCreateInfo {
     uint64_t memoryBudget;
     /**
      * Most tiles of 64 KiB and byte pages of at most 64 KiB being read or waiting to be copied. At
-     * most 2^16. Default: 1024. A sixteenth of it, at least 4, is allowed of larger byte pages. The
-     * same number of openings and fills is allowed in addition, including those that wait for a
-     * retry.
+     * most 2^16. Default: 1024. In addition to these, as many openings and fills are allowed,
+     * including those that wait for a retry, and a sixteenth as many larger byte pages, at least 4.
      */
     uint32_t maxTilesInFlight;
     /**
-     * Bytes of memoryBudget for byte pages, in multiples of 2 MiB. Tiles get the rest from when the
-     * first resource of byte pages is added. Hard limit. At least 2 MiB. Default: a quarter of
-     * memoryBudget. Tiles need at least 4 MiB of the rest.
+     * Bytes of memoryBudget for byte pages, used in units of 2 MiB. While there are byte pages,
+     * tiles get the rest, of which they need at least 4 MiB. Hard limit. At least 2 MiB, at most
+     * memoryBudget. Default: a quarter of memoryBudget.
      */
     uint64_t byteMemoryBudget;
     /**
@@ -108,7 +107,8 @@ typedef struct SluiceDemandLoaderCreateInfo {
  * Creates a demand loader. Errors are logged to the context.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for values out of range or a
- *         budget below 4 MiB; SLUICE_ERROR_UNSUPPORTED if the device does not support paged mode;
+ *         budget below 4 MiB; SLUICE_ERROR_UNSUPPORTED if the device does not support paged mode,
+ *         or bufferDeviceAddress is set and the device has no such feature;
  *         SLUICE_ERROR_LIMIT_EXCEEDED if pageCapacity or maxTextureCount require a storage buffer
  *         above the device's maxStorageBufferRange, or if there are fewer pages than textures;
  *         SLUICE_ERROR_OUT_OF_HOST_MEMORY; SLUICE_ERROR_OUT_OF_DEVICE_MEMORY; SLUICE_ERROR_VULKAN.
@@ -417,8 +417,8 @@ SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
                                                     uint32_t firstPage, uint32_t count);
 
 /**
- * Lists pages of a resource without callback that launches missed, in the order in which they were
- * missed: by launch, then ascending.
+ * Lists pages that launches missed, of a resource without pfnFill and pfnRead. Pages of earlier
+ * launches come first, and those of one launch ascend.
  *
  * A page is listed once, and not again until you answer it and it is missed anew. Answer with
  * sluiceSetDemandPageValue or sluiceSetDemandPageBytes, whenever you like. Until then
@@ -426,11 +426,11 @@ SLUICE_API SluiceResult sluiceInvalidateDemandPages(SluiceDemandLoader *loader,
  * sluiceInvalidateDemandPages: it is listed again when it is missed again. That call also takes an
  * answer back.
  *
- * `*pPageCount` is the capacity of `pPages`, and then how many pages were written: 0 to pageCount -
- * 1 of the resource. Returns SLUICE_INCOMPLETE if there are more.
+ * Set `*pPageCount` to the capacity of `pPages`. The call sets it to the number of pages written.
+ * Pages count from 0 within the resource. Returns SLUICE_INCOMPLETE if there are more.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE or SLUICE_ERROR_STALE_TEXTURE for
- *         an unknown or destroyed resource.
+ *         an unknown or removed resource.
  */
 SLUICE_API SluiceResult sluiceGetMissedDemandPages(SluiceDemandLoader *loader,
                                                    SluiceDemandResourceId resourceId,
@@ -443,8 +443,9 @@ SLUICE_API SluiceResult sluiceGetMissedDemandPages(SluiceDemandLoader *loader,
  * The page is evicted like others, and then missed again. `pinned`: it is never evicted, until it
  * is set again or invalidated. Pinned pages count against maxResidentPageCount.
  *
- * Returns SLUICE_NOT_READY if the page is being filled, with nothing changed; or if all
- * maxResidentPageCount pages are pinned, awaited or used by the last launch.
+ * Returns SLUICE_NOT_READY, with nothing changed, if the page is being filled. Also returns it if
+ * all maxResidentPageCount pages are pinned, awaited or used by the last launch: the page is then
+ * missing.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_UNKNOWN_TEXTURE; SLUICE_ERROR_STALE_TEXTURE;
  *         SLUICE_ERROR_INVALID_ARGUMENT, with a log message, beyond pageCount or for a resource

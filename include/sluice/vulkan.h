@@ -234,8 +234,8 @@ SLUICE_API SluiceResult sluiceRequireVulkanFeatures(
 typedef struct SluiceVulkanStreamerDebugInfo {
     uint32_t structSize; ///< sizeof(SluiceVulkanStreamerDebugInfo).
     /**
-     * Every tile is always wanted. Makes the picture with everything resident that streamed
-     * pictures are compared with. Needs memory for all tiles, and reads no feedback back.
+     * Every tile is always wanted. Makes the fully resident picture that streamed pictures are
+     * compared with. Requires memory for all tiles, and reads no feedback back.
      */
     bool mapEverything;
     /**
@@ -253,11 +253,11 @@ typedef struct SluiceVulkanStreamerCreateInfo {
     uint32_t framesInFlight;           ///< 1 to 16. Default: 3.
     uint32_t maxTextureCount;          ///< 1 to 2^20. Default: 1024.
     uint32_t texturesPerFrame;         ///< Feedback maps read back per frame. Default: 10.
-    /** Most tiles mapped and uploaded per frame, and produced. 1 to 2^14. Default: 256. */
+    /** Most tiles mapped, uploaded and produced per frame. 1 to 2^14. Default: 256. */
     uint32_t tilesPerFrame;
     uint32_t maxLoadsInFlight; ///< 1 to 2^16. Default: 4 * tilesPerFrame, at least 64.
-    /** Tiles per heap, 1 to 2^20. Default: 256 (16 MiB). If no heap of that size can be allocated,
-     *  by the device's limits or the context's memoryBudget, it is made smaller, with a warning. */
+    /** Tiles per heap, 1 to 2^20. Default: 256 (16 MiB). Made smaller, with a warning, if the
+     *  device's limits or the context's memoryBudget allow no heap of that size. */
     uint32_t heapTileCapacity;
     uint32_t maxHeapCount; ///< Default: as many as fit into device memory.
     /**
@@ -499,9 +499,10 @@ typedef struct SluiceTileProducer {
      * On entry `pResults` holds SLUICE_SUCCESS for each tile. Set another value for tiles that are
      * not recorded. The returned value counts for all tiles unless it is SLUICE_SUCCESS. Values:
      * - SLUICE_SUCCESS: the tile is shown when this frame is complete.
-     * - SLUICE_NOT_READY: asked again in later frames, up to timeoutFrames; then the tile failed.
-     * - An error: the tile failed. Coarser levels stay on screen, and the tile is retried like a
-     *   failed read (manager.h).
+     * - SLUICE_NOT_READY: the tile is asked for again in later frames. It has failed after
+     *   timeoutFrames, or when more than half of maxLoadsInFlight is in use.
+     * - An error: the tile has failed. Coarser levels stay on screen, and the tile is retried like
+     *   a failed read (manager.h).
      *
      * For tiles that are not recorded, no command may write to their target. The same tile can be
      * asked for again: after eviction, and if its frame was abandoned. The callback must not call
@@ -518,7 +519,7 @@ typedef struct SluiceTileProducer {
 typedef struct SluiceVulkanTextureCreateInfo {
     uint32_t structSize; ///< sizeof(SluiceVulkanTextureCreateInfo).
     /**
-     * Required without pProducer. Must outlive the texture, and reads that are in progress when the
+     * Required, unless pProducer is set. Must outlive the texture, and reads in progress when the
      * texture is removed. sluiceWaitVulkanStreamerIdle and sluiceDestroyVulkanStreamer end those
      * reads.
      */

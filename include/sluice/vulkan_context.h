@@ -112,27 +112,26 @@ typedef struct SluiceVulkanContextCreateInfo {
     const SluiceDeviceMemoryCallbacks *pDeviceMemory;
     /**
      * Bytes of device memory for the tiles of all streamers and demand loaders together: the
-     * purposes IMAGE, HEAP, PAGES and BYTES of SluiceDeviceMemoryPurpose. Hard limit, at least 4
-     * MiB.
-     * Allocations that exceed it fail as on a device without memory. Default: no limit but those of
-     * the streamers and demand loaders (maxHeapCount, SluiceDemandLoaderCreateInfo.memoryBudget).
+     * purposes IMAGE, HEAP, PAGES and BYTES of SluiceDeviceMemoryPurpose. Hard limit, at least
+     * 4 MiB. Allocations that exceed it fail as on a device without memory. Default: no limit but
+     * those of the streamers and demand loaders (maxHeapCount,
+     * SluiceDemandLoaderCreateInfo.memoryBudget).
      */
     uint64_t memoryBudget;
     /**
      * Ignore what the device says of its memory. Default: false. If the device has
      * VK_EXT_memory_budget, which need not be enabled, every 256th frame or launch asks how much
-     * its largest local heap can spare, and tile memory is limited to that as it is by
-     * memoryBudget.
+     * its largest local heap can spare. That limits tile memory as memoryBudget does.
      *
-     * 1/64 of the heap, at most 128 MiB, is left to others, and changes of less are ignored.
-     * Without the extension nothing is asked for.
+     * 1/64 of the heap, at most 128 MiB, is left to others. Smaller changes are ignored. Without
+     * the extension the device is not asked.
      */
     bool noDeviceBudget;
     /** Cache for the compute pipelines of the library, so that the application can store it. Must
      *  outlive the context. Default: the context makes one of its own. */
     VkPipelineCache pipelineCache;
-    /** Threads that read for all streamers and demand loaders. At most 2^10. Default: processors -
-     * 1, at least 2. */
+    /** Threads that read for all streamers and demand loaders. At most 2^10. Default: one less than
+     *  there are processors, at least 2. */
     uint32_t loaderThreadCount;
     /**
      * Most concurrent reads of one source, and so most threads that a stalled source occupies. For
@@ -160,9 +159,9 @@ typedef struct SluiceVulkanContextCreateInfo {
     uint32_t maxPageChunkCount;
     /**
      * Bytes of staging memory that are kept while idle. A streamer or demand loader makes them at
-     * its creation, if there are fewer: at least 4 MiB, at most 64 KiB times its maxLoadsInFlight
-     * or maxTilesInFlight. Reads that need more get it in blocks of 4 MiB: an idle block of another
-     * front end, or a new one that is freed after 120 idle frames or launches.
+     * its creation if the context has fewer: at least 4 MiB, at most 64 KiB times its
+     * maxLoadsInFlight or maxTilesInFlight. Reads that need more get it in blocks of 4 MiB: an idle
+     * block of another front end, or a new one that is freed after 120 idle frames or launches.
      *
      * Making blocks halves the rate of the first fill of a streamer on an H200 (bench/vulkan,
      * fill.growing.rate), and costs that of a demand loader a third (bench/demand,
