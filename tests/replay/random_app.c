@@ -9,6 +9,8 @@
 #define LIST_ROOM 64
 #define MAP_ROOM 4096
 
+/* Draws stand in statements of their own: compilers differ in the order in which they evaluate
+ * arguments and initializers. */
 static uint32_t random_bits(struct random_app *app)
 {
     app->seed = app->seed * 6364136223846793005u + 1442695040888963407u;
@@ -54,13 +56,15 @@ void random_app_init(struct random_app *app, uint64_t seed, bool starved)
 {
     *app = (struct random_app){.seed = seed, .starved = starved};
     failing_allocator_init(&app->memory, UINT64_MAX);
+    uint32_t capacity = 5 + random_app_below(app, 40);
+    bool always_map_packed = one_in(app, 2);
     const SluiceStreamedTextureManagerCreateInfo info = {
         .structSize = sizeof info,
         .heapAllocator = {app, allocate_heap, release_heap},
         .pAllocator = &app->memory.callbacks,
-        .heapTileCapacity = 5 + random_app_below(app, 40),
+        .heapTileCapacity = capacity,
         .tileSize = 65536,
-        .alwaysMapPackedTiles = one_in(app, 2),
+        .alwaysMapPackedTiles = always_map_packed,
     };
     CHECK_OK(sluiceCreateStreamedTextureManager(&info, &app->manager));
 }
@@ -100,12 +104,10 @@ static uint64_t next_retire(struct random_app *app)
 
 static SluiceResult add_texture(struct random_app *app)
 {
-    SluiceStreamedTextureDesc desc = {
-        .width = 1 + random_app_below(app, one_in(app, 3) ? 2000 : 700),
-        .height = 1 + random_app_below(app, 700),
-        .tileWidth = 64u << random_app_below(app, 2),
-        .tileHeight = 64,
-    };
+    SluiceStreamedTextureDesc desc = {.tileHeight = 64};
+    desc.width = 1 + random_app_below(app, one_in(app, 3) ? 2000 : 700);
+    desc.height = 1 + random_app_below(app, 700);
+    desc.tileWidth = 64u << random_app_below(app, 2);
     uint32_t levels = 1;
     while (desc.width >> levels || desc.height >> levels)
         levels++;
@@ -165,8 +167,10 @@ static SluiceResult give_feedback(struct random_app *app)
         feedback.mipBias = (int32_t)random_app_below(app, 6) - 3;
     if (one_in(app, 6))
         feedback.streamedMipLevels = random_app_below(app, 4);
-    return sluiceUpdateWithSamplerFeedback(app->manager, id, one_in(app, 50) ? NULL : &feedback,
-                                           next_time(app), random_app_below(app, 12));
+    bool none = one_in(app, 50);
+    uint64_t time = next_time(app), timeout = random_app_below(app, 12);
+    return sluiceUpdateWithSamplerFeedback(app->manager, id, none ? NULL : &feedback, time,
+                                           timeout);
 }
 
 static SluiceResult get_tiles_to_map(struct random_app *app)
@@ -231,17 +235,17 @@ static SluiceResult get_tiles_to_cancel(struct random_app *app)
 {
     SluiceTile tiles[LIST_ROOM];
     uint32_t count = random_app_below(app, LIST_ROOM);
-    SluiceResult result = sluiceGetTilesToCancel(app->manager, id_or(app, SLUICE_ALL_TEXTURES),
-                                                 &count, one_in(app, 10) ? NULL : tiles);
-    return result;
+    SluiceTextureId id = id_or(app, SLUICE_ALL_TEXTURES);
+    return sluiceGetTilesToCancel(app->manager, id, &count, one_in(app, 10) ? NULL : tiles);
 }
 
 static SluiceResult get_tiles_to_unmap(struct random_app *app)
 {
     SluiceTile tiles[LIST_ROOM];
     uint32_t count = random_app_below(app, LIST_ROOM);
-    return sluiceGetTilesToUnmap(app->manager, id_or(app, SLUICE_ALL_TEXTURES), next_retire(app),
-                                 &count, one_in(app, 10) ? NULL : tiles);
+    SluiceTextureId id = id_or(app, SLUICE_ALL_TEXTURES);
+    uint64_t retire = next_retire(app);
+    return sluiceGetTilesToUnmap(app->manager, id, retire, &count, one_in(app, 10) ? NULL : tiles);
 }
 
 static SluiceResult get_other_list(struct random_app *app, enum slc_call_kind kind)
@@ -262,16 +266,14 @@ static SluiceResult get_other_list(struct random_app *app, enum slc_call_kind ki
 
 static SluiceResult set_config(struct random_app *app)
 {
-    const SluiceStreamedTextureManagerConfig config = {
-        .structSize = sizeof config,
-        .numExtraStandbyTiles = random_app_below(app, 30),
-        .maxHeapCount = random_app_below(app, RANDOM_APP_HEAPS),
-        .maxLoadAttempts = random_app_below(app, 3),
-        .retryDelayTicks = random_app_below(app, 4),
-        .missesToExpire = random_app_below(app, 3),
-        .prefetchLevels = random_app_below(app, 3),
-        .givenUpRetryDelayTicks = one_in(app, 3) ? UINT64_MAX : random_app_below(app, 10),
-    };
+    SluiceStreamedTextureManagerConfig config = {.structSize = sizeof config};
+    config.numExtraStandbyTiles = random_app_below(app, 30);
+    config.maxHeapCount = random_app_below(app, RANDOM_APP_HEAPS);
+    config.maxLoadAttempts = random_app_below(app, 3);
+    config.retryDelayTicks = random_app_below(app, 4);
+    config.missesToExpire = random_app_below(app, 3);
+    config.prefetchLevels = random_app_below(app, 3);
+    config.givenUpRetryDelayTicks = one_in(app, 3) ? UINT64_MAX : random_app_below(app, 10);
     return sluiceSetConfig(app->manager, one_in(app, 20) ? NULL : &config);
 }
 
@@ -292,19 +294,34 @@ static SluiceResult release_a_heap(struct random_app *app)
     return sluiceReleaseHeap(app->manager, 1000 * random_app_below(app, 2 * RANDOM_APP_HEAPS));
 }
 
+static SluiceResult match_primary(struct random_app *app)
+{
+    SluiceTextureId primary = some_id(app), follower = some_id(app);
+    uint64_t time = next_time(app), timeout = random_app_below(app, 12);
+    return sluiceMatchPrimaryTexture(app->manager, primary, follower, time, timeout);
+}
+
+static SluiceResult set_primary(struct random_app *app)
+{
+    SluiceTextureId follower = some_id(app), primary = id_or(app, SLUICE_NO_TEXTURE);
+    return sluiceSetPrimaryTexture(app->manager, follower, primary);
+}
+
+static SluiceResult remove_texture(struct random_app *app)
+{
+    SluiceTextureId id = some_id(app);
+    return sluiceRemoveStreamedTexture(app->manager, id, next_retire(app));
+}
+
 static SluiceResult make_call(struct random_app *app, enum slc_call_kind kind)
 {
     switch (kind) {
     case SLC_CALL_SET_CONFIG: return set_config(app);
     case SLC_CALL_ADD_TEXTURE: return add_texture(app);
-    case SLC_CALL_REMOVE_TEXTURE:
-        return sluiceRemoveStreamedTexture(app->manager, some_id(app), next_retire(app));
+    case SLC_CALL_REMOVE_TEXTURE: return remove_texture(app);
     case SLC_CALL_UPDATE_FEEDBACK: return give_feedback(app);
-    case SLC_CALL_MATCH_PRIMARY:
-        return sluiceMatchPrimaryTexture(app->manager, some_id(app), some_id(app), next_time(app),
-                                         random_app_below(app, 12));
-    case SLC_CALL_SET_PRIMARY:
-        return sluiceSetPrimaryTexture(app->manager, some_id(app), id_or(app, SLUICE_NO_TEXTURE));
+    case SLC_CALL_MATCH_PRIMARY: return match_primary(app);
+    case SLC_CALL_SET_PRIMARY: return set_primary(app);
     case SLC_CALL_GET_TILES_TO_MAP: return get_tiles_to_map(app);
     case SLC_CALL_UPDATE_MAPPING:
     case SLC_CALL_REPORT_FAILED:
