@@ -45,7 +45,7 @@ static uint32_t choose_chunk(const struct survey *survey, bool unused_only)
         const struct chunk_use *use = &survey->chunks[i];
         const struct chunk_use *other = best == SLC_NONE ? NULL : &survey->chunks[best];
         if (use->held == 0 || use->stays || (unused_only && use->in_use) ||
-            use->held != slc_page_pool_held_in(pool, i))
+            use->held != slc_page_pool_held_in(pool, survey->loader->page_user, i))
             continue;
         if (!other || use->in_use < other->in_use ||
             (use->in_use == other->in_use && use->held < other->held))

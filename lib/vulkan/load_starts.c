@@ -85,9 +85,10 @@ static SluiceResult start_deferred(SluiceVulkanStreamer *s)
     uint32_t left = s->info.maxLoadsInFlight;
     for (uint32_t level = SLUICE_MAX_MIP_LEVELS; s->deferred.count > 0 && level-- > 0;)
         for (uint32_t i = 0;
-             i < s->deferred.count && left > 0 && slc_units_are_ready(s, 1) && result >= 0;) {
+             i < s->deferred.count && left > 0 && s->free_unit_count > 0 && result >= 0;) {
             struct slc_deferred_tile deferred = s->deferred.tiles[i];
-            if (deferred.tile.mipLevel != level || slc_pages_left(s, deferred.texture) == 0) {
+            if (deferred.tile.mipLevel != level || slc_pages_left(s, deferred.texture) == 0 ||
+                !units_are_ready(s, deferred.texture, 1)) {
                 i++;
                 continue;
             }

@@ -11,8 +11,10 @@
 void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_frame)
 {
     uint32_t over = 0;
-    for (; over < moves->count && moves->under_way[over].frame <= completed_frame; over++)
-        slc_page_pool_give(moves->pool, moves->user, moves->under_way[over].from, SLC_NO_OWNER);
+    while (over < moves->count && moves->under_way[over].frame <= completed_frame &&
+           slc_page_pool_end_move(moves->pool, moves->user, moves->under_way[over].from,
+                                  &moves->under_way[over].readers))
+        over++;
     moves->count -= over;
     memmove(moves->under_way, moves->under_way + over, moves->count * sizeof *moves->under_way);
 }
@@ -34,13 +36,14 @@ static bool move_tile(struct slc_page_moves *moves, uint32_t part, uint32_t word
                       VkCommandBuffer commands)
 {
     uint32_t *entry = &moves->table->entries[word], from = slc_page_of_entry(*entry), to;
+    struct slc_page_readers readers;
     if (moves->count == SLC_PAGE_MOVES ||
-        !slc_page_pool_move(moves->pool, moves->user, from, frame, &to))
+        !slc_page_pool_move(moves->pool, moves->user, from, frame, &to, &readers))
         return false;
     record_copy(moves->pool, from, to, commands);
     *entry = to | SLC_PAGE_SHOWN;
     slc_page_table_store(moves->table, part, word, frame);
-    moves->under_way[moves->count++] = (struct slc_page_move){part, word, from, to, frame};
+    moves->under_way[moves->count++] = (struct slc_page_move){part, word, from, to, frame, readers};
     return true;
 }
 
@@ -85,9 +88,20 @@ void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_
     }
 }
 
+void slc_page_moves_forget(struct slc_page_moves *moves, uint32_t part)
+{
+    for (uint32_t i = 0; i < moves->count; i++)
+        if (moves->under_way[i].part == part)
+            moves->under_way[i].word = SLC_NONE;
+}
+
 /* The tile may have been unmapped since, and mapped again. */
 static void take_back(struct slc_page_moves *moves, const struct slc_page_move *move)
 {
+    if (move->word == SLC_NONE) {
+        slc_page_pool_give(moves->pool, moves->user, move->from, SLC_NO_OWNER);
+        return;
+    }
     uint32_t *entry = &moves->table->entries[move->word];
     if (*entry == (move->to | SLC_PAGE_SHOWN)) {
         slc_page_pool_move_back(moves->pool, moves->user, move->from, move->to);

@@ -15,9 +15,10 @@
 #define SLC_PAGE_MOVES_PER_FRAME 64u /* 4 MiB */
 
 struct slc_page_move {
-    uint32_t part, word; ///< of the page table
-    uint32_t from, to;   ///< pages
-    uint64_t frame;      ///< that copies
+    uint32_t part, word;             ///< of the page table
+    uint32_t from, to;               ///< pages
+    uint64_t frame;                  ///< that copies
+    struct slc_page_readers readers; ///< others whose frames may still read `from`
 };
 
 struct slc_page_moves {
@@ -36,6 +37,8 @@ void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_fr
  *  that earlier frames do; the copies of the frame itself come later. */
 void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_t completed_frame,
                            VkCommandBuffer commands);
+/** The part goes: its moves are over when they are complete, and nothing is taken back to it. */
+void slc_page_moves_forget(struct slc_page_moves *moves, uint32_t part);
 /** After slc_page_pool_abandon, before slc_page_table_abandon. */
 void slc_page_moves_abandon(struct slc_page_moves *moves, uint64_t frame);
 

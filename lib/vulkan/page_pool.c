@@ -394,11 +394,11 @@ uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user)
     return leaving;
 }
 
-uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t chunk)
+uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk)
 {
     pthread_mutex_lock(&pool->mutex);
     const struct slc_page_chunk *c = &pool->chunks.at[chunk];
-    uint32_t held = c->state == SLC_CHUNK_LIVE ? c->layer_count - c->free_count : 0;
+    uint32_t held = c->state == SLC_CHUNK_LIVE ? count_own(pool, c, user) : 0;
     pthread_mutex_unlock(&pool->mutex);
     return held;
 }
@@ -467,12 +467,13 @@ static void move_entry(struct slc_page_pool *pool, uint32_t from, uint32_t to)
 }
 
 bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
-                        uint32_t *to)
+                        uint32_t *to, struct slc_page_readers *readers)
 {
     pthread_mutex_lock(&pool->mutex);
     uint32_t shared = slc_page_layer(&pool->chunks, from)->shared;
     struct slc_shared_tile *tile = shared ? &pool->shared.entries[shared - 1] : NULL;
     *to = SLUICE_PAGE_NONE;
+    *readers = (struct slc_page_readers){tile ? tile->readers : 0, pool->timelines.tick};
     if (!tile || tile->users == 1u << user)
         *to = slc_page_chunks_find(&pool->chunks, &pool->timelines, user,
                                    pool->chunks.at[from >> 16].format);
@@ -491,6 +492,17 @@ bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from
     }
     pthread_mutex_unlock(&pool->mutex);
     return *to != SLUICE_PAGE_NONE;
+}
+
+bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t from,
+                            const struct slc_page_readers *readers)
+{
+    pthread_mutex_lock(&pool->mutex);
+    bool over = slc_page_timelines_passed(&pool->timelines, readers->users, user, readers->tick);
+    if (over)
+        give(pool, user, from, SLC_NO_OWNER);
+    pthread_mutex_unlock(&pool->mutex);
+    return over;
 }
 
 void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to)

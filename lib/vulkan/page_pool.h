@@ -120,17 +120,27 @@ uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user,
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
 /** The chunk that the user empties; SLC_NONE if there is none. */
 uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
-/** Pages of the chunk that anybody holds. */
-uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t chunk);
+/** Pages of the chunk that the user holds; SLC_NONE if others hold any of them, too, or read them.
+ */
+uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk);
 /** The device or the budget may have memory again: it is asked at once. */
 void slc_page_pool_ask_again(struct slc_page_pool *pool);
 /** Bytes of chunks that are empty, and go. */
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool);
 
+/** Users that have held a page, and the tick up to which their frames may read it. */
+struct slc_page_readers {
+    uint32_t users; ///< bits
+    uint64_t tick;
+};
+
 /** The tile on `from` is to be on `*to`, which the user holds from now on, too; `frame` copies it.
  *  False if there is no page for it. */
 bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
-                        uint32_t *to);
+                        uint32_t *to, struct slc_page_readers *readers);
+/** The copy is complete: gives `from` back. False: frames of other readers are under way. */
+bool slc_page_pool_end_move(struct slc_page_pool *pool, uint32_t user, uint32_t from,
+                            const struct slc_page_readers *readers);
 /** The copy was abandoned: the tile is on `from` alone. */
 void slc_page_pool_move_back(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint32_t to);
 

@@ -84,6 +84,7 @@ static void destroy_image(struct slc_residency *residency, uint32_t index)
     slc_plain_image_destroy(&layers[0].own_tail, &p->memory, p->vk, p->cb);
     for (uint32_t i = layers[0].layer_count; i-- > 0;) {
         give_pages(p, index + i);
+        slc_page_moves_forget(&p->moves, index + i);
         slc_page_table_remove(&p->table, index + i);
         layers[i] = (struct paged_image){0};
     }

@@ -136,7 +136,10 @@ static SluiceResult shrink_pages(SluiceVulkanStreamer *s,
         lacking = s->residency->interface->gather(s->residency, size);
     s->shrink.compacting = false; /* the moves are of this frame */
     SluiceResult result = SLUICE_SUCCESS;
-    if (lacking != SLC_NONE && lacking > 0)
+    if (lacking != SLC_NONE && lacking > stats->standbyTileCount && !must)
+        s->residency->interface->gather(s->residency,
+                                        0); /* the image stays: others use its pages */
+    else if (lacking != SLC_NONE && lacking > 0)
         result = give_back(s, stats, lacking, must, &target);
     if (result >= 0)
         result = set_target(s, target);

@@ -406,6 +406,33 @@ static void an_abandoned_frame_leaves_the_texels_that_came_back(void **state)
     }
 }
 
+static void a_page_that_was_left_waits_for_frames_of_all_readers(void **state)
+{
+    (void)state;
+    struct rig r;
+    const struct slc_tile_key key = key_of(1);
+    struct slc_page_readers readers;
+    uint32_t to;
+    init(&r, 0);
+    uint32_t page = copy_tile(&r, &key);
+    assert_int_equal(slc_page_share_take(&r.pool, r.users[1], &key), page);
+    record(&r, 1, 2);
+    assert_int_equal(slc_page_pool_held_in(&r.pool, r.users[0], 0), SLC_NONE);
+    slc_page_pool_give(&r.pool, r.users[1], page, SLC_NO_OWNER); /* frame 2 may read it */
+    assert_int_equal(slc_page_pool_held_in(&r.pool, r.users[0], 0), 1);
+    record(&r, 0, 2);
+    assert_true(slc_page_pool_move(&r.pool, r.users[0], page, 2, &to, &readers));
+    timelines[0] = 2;
+    assert_false(slc_page_pool_end_move(&r.pool, r.users[0], page, &readers));
+    for (uint32_t i = 2; i < LAYERS + 1; i++)
+        assert_int_not_equal(slc_page_pool_take(&r.pool, r.users[0], FORMAT), page);
+    timelines[1] = 2;
+    record(&r, 0, 3);
+    assert_true(slc_page_pool_end_move(&r.pool, r.users[0], page, &readers));
+    assert_false(slc_page_layer(&r.pool.chunks, page)->held);
+    finish(&r);
+}
+
 struct walker {
     struct rig *rig;
     uint32_t user;
@@ -492,6 +519,7 @@ int main(void)
         cmocka_unit_test(a_user_that_holds_a_shared_page_reads_the_tile_itself),
         cmocka_unit_test(a_texture_that_goes_takes_no_read_of_others_away),
         cmocka_unit_test(an_abandoned_frame_leaves_the_texels_that_came_back),
+        cmocka_unit_test(a_page_that_was_left_waits_for_frames_of_all_readers),
         cmocka_unit_test(users_may_be_on_threads_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
