@@ -42,6 +42,14 @@ uint64_t slc_residency_get_class(const struct slc_demand_residency *residency, u
     return residency->classes[class_index].limit;
 }
 
+bool slc_residency_class_is_empty(const struct slc_demand_residency *residency,
+                                  uint32_t class_index)
+{
+    assert(class_index < residency->class_count);
+    const struct slc_page_class *c = &residency->classes[class_index];
+    return c->held == 0 && c->restorable.count == 0;
+}
+
 uint32_t slc_residency_most_entries(const struct slc_demand_residency *residency)
 {
     return slc_max_u32(residency->nodes.count, residency->evicted_count);

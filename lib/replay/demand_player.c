@@ -137,8 +137,9 @@ static const char *find_misuse(const struct slc_demand_player *player,
             return "there is no such class";
         slc_residency_get_class(player->residency, call->class_index, &had_memory);
         /* pages of the class hold places, or do not */
-        return had_memory != call->flag && player->counts.requestCount > 0
-                   ? "a class that was used gets memory or loses it"
+        return had_memory != call->flag &&
+                       !slc_residency_class_is_empty(player->residency, call->class_index)
+                   ? "a class that has pages gets memory or loses it"
                    : NULL;
     case SLC_PAGE_CALL_BEGIN:
         return call->launch <= player->begun || call->launch == UINT64_MAX

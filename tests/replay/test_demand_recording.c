@@ -250,6 +250,45 @@ static void a_residency_that_was_used_says_so(void **state)
     trace_buffer_free(&trace);
 }
 
+/* A resource of byte pages that is added while tiles are loaded already, in a class that a resource
+ * of values had before. */
+static void a_class_that_gets_memory_while_others_are_used_is_replayed(void **state)
+{
+    (void)state;
+    struct slc_demand_residency *residency;
+    struct trace_buffer trace;
+    SluiceRecorder *recorder;
+    SluiceResult failure;
+    struct fake_memory memory[2];
+    SluiceReplayResult result = {.structSize = sizeof result};
+    const SluiceRecordWriter writer = trace_buffer_writer(&trace);
+    const struct slc_page_residency_create_info info = {.class_count = 2};
+    const struct slc_page_request tile = {.page = 5, .class_index = 0};
+    const struct slc_page_request bytes = {.page = 20, .class_index = 1};
+    CHECK_OK(slc_residency_create(&info, &residency));
+    for (uint32_t c = 0; c < 2; c++)
+        fake_memory_init(&memory[c], 10, 3);
+    const struct slc_page_memory first = fake_page_memory(&memory[0]);
+    const struct slc_page_memory second = fake_page_memory(&memory[1]);
+    CHECK_OK(slc_residency_set_class(residency, 0, 10, &first));
+    CHECK_OK(slc_residency_set_class(residency, 1, 10, NULL));
+    CHECK_OK(slc_begin_demand_recording(residency, &writer, NULL, &recorder));
+    slc_residency_prepare(residency, 1);
+    slc_residency_begin(residency, 1);
+    slc_residency_request(residency, &tile, &failure);
+    slc_residency_settle(residency, 1);
+    CHECK_OK(slc_residency_set_class(residency, 1, 4, &second));
+    slc_residency_request(residency, &bytes, &failure);
+    CHECK_OK(sluiceEndRecording(recorder));
+
+    const SluiceReplayInfo replay = replay_info(&trace);
+    CHECK_OK(sluiceReplay(&replay, &result));
+    assert_int_equal(result.divergedEvent, 0);
+    assert_true(result.decisionHash == result.recordedHash);
+    slc_residency_destroy(residency);
+    trace_buffer_free(&trace);
+}
+
 static void recording_without_memory_says_so_and_leaks_nothing(void **state)
 {
     (void)state;
@@ -397,6 +436,7 @@ int main(void)
         cmocka_unit_test(replay_recorded_again_is_the_same_trace),
         cmocka_unit_test(decision_hash_is_as_documented),
         cmocka_unit_test(a_residency_that_was_used_says_so),
+        cmocka_unit_test(a_class_that_gets_memory_while_others_are_used_is_replayed),
         cmocka_unit_test(recording_without_memory_says_so_and_leaks_nothing),
         cmocka_unit_test(replay_without_memory_says_so_and_leaks_nothing),
         cmocka_unit_test(every_truncation_is_found_at_or_before_the_cut),
