@@ -87,8 +87,11 @@ SLC_INLINE void slc_fit_line(const struct slc_fit_points *points, slc_floats end
     }
     slc_floats inverse = 1.0f / slc_greater(length, slc_all(1e-20f));
     for (int c = 0; c < count; c++) {
-        ends[0][c] = mean[c] + axis[c] * (low * inverse);
-        ends[1][c] = mean[c] + axis[c] * (high * inverse);
+        slc_floats first = mean[c] + axis[c] * (low * inverse);
+        slc_floats last = mean[c] + axis[c] * (high * inverse);
+        /* Where all texels are one color, rounding alone makes the axis, and it may overflow. */
+        ends[0][c] = slc_select(first - first == 0.0f, first, mean[c]);
+        ends[1][c] = slc_select(last - last == 0.0f, last, mean[c]);
     }
 }
 
