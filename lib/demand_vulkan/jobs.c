@@ -144,12 +144,12 @@ static void push_front(SluiceDemandLoader *loader, struct slc_job_list *list,
 }
 
 /* Makes a free job with staging memory the first of all. False: there is none. */
-static bool find_staged(SluiceDemandLoader *loader)
+static bool find_staged(SluiceDemandLoader *loader, struct slc_job_list *list)
 {
-    struct slc_job_list *list = &loader->free_tiles;
     for (uint32_t before = list->first; before != SLC_NONE; before = loader->jobs[before].next) {
         uint32_t index = loader->jobs[before].next;
-        if (index == SLC_NONE || !slc_staging_is_there(&loader->staging, index))
+        if (index == SLC_NONE ||
+            !slc_staging_is_there(staging_of(loader, index), slot_of(loader, index)))
             continue;
         loader->jobs[before].next = loader->jobs[index].next;
         if (list->last == index)
@@ -169,7 +169,7 @@ bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind)
     struct slc_staging *staging = staging_of(loader, list->first);
     if (!staging || slc_staging_ensure(staging, slot_of(loader, list->first)))
         return true;
-    return list == &loader->free_tiles && find_staged(loader);
+    return find_staged(loader, list); /* lists without staging have returned */
 }
 
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind)

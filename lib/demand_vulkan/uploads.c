@@ -63,7 +63,8 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
 void slc_uploads_drop(SluiceDemandLoader *loader)
 {
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
-        slc_residency_forget(loader->residency, job->page, 1);
+        if (!job->stale) /* else the page waits for another job's bytes */
+            slc_residency_forget(loader->residency, job->page, 1);
         release(loader, job);
         slc_job_free(loader, job);
     }
