@@ -77,6 +77,9 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * Bytes of memoryBudget for byte pages, used in units of 2 MiB. While there are byte pages,
      * tiles get the rest, of which they need at least 4 MiB. Hard limit. At least 2 MiB, at most
      * memoryBudget. Default: a quarter of memoryBudget.
+     *
+     * Tiles that fill memoryBudget when the first such resource is added give way as their images
+     * run empty. Until then both together may take more than memoryBudget.
      */
     uint64_t byteMemoryBudget;
     /**
