@@ -56,13 +56,13 @@ struct fake_vulkan {
     uint64_t metadata_size;   ///< of every image; 0: none
     uint64_t metadata_binds;
 
-    /** What the two timelines stand at; the test sets them. */
+    /** Values of the two timelines; the test sets them. */
     uint64_t frame_value, bind_value;
     uint64_t submitted_bind_value;
     VkSemaphore bind_semaphore;
     VkSemaphore frame_semaphore; ///< set by the test once a frame has told
 
-    /** What happened since the test last set the counts to 0. */
+    /** Events since the test last set the counts to 0. */
     struct fake_bind binds[FAKE_EVENTS];
     struct fake_copy copies[FAKE_EVENTS];
     VkImage destroyed_images[FAKE_EVENTS];
@@ -71,11 +71,11 @@ struct fake_vulkan {
     bool published;      ///< copies to images are over: MinMip maps were copied
     uint64_t copy_calls; ///< of MinMip maps, in all
 
-    /** What fake_vulkan_undo takes back: as it was at the last fake_vulkan_mark. */
+    /** Layouts that fake_vulkan_undo takes back to the last fake_vulkan_mark. */
     struct fake_object *general[FAKE_EVENTS]; ///< images that got their layout since
     uint32_t general_count;
 
-    /** The call that fails, counted from 1 among those that may; 0: none. And with what. */
+    /** The call that fails, counted from 1 among those that may; 0: none. And its result. */
     uint64_t calls, failing_call;
     VkResult failure;
     bool fails_on;         ///< and so do all later ones, vkDeviceWaitIdle among them
@@ -90,14 +90,14 @@ struct fake_vulkan {
     uint32_t extension_calls; ///< lists of extensions
     uint32_t budget_calls;
 
-    /** Buffers that the test set, and what was filled in and updated there. */
+    /** Buffers that the test set, and the words that were filled in and updated there. */
     struct fake_watch {
         VkBuffer buffer;
         uint32_t words[FAKE_WORDS];
         uint32_t marked[FAKE_WORDS];
     } watches[2];
 
-    /** Waits: each device wait, and what semaphores were waited for. */
+    /** Waits: each device wait, and the semaphores that were waited for. */
     uint32_t device_waits;
     struct fake_wait {
         VkSemaphore semaphore;
@@ -108,7 +108,7 @@ struct fake_vulkan {
     bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
     bool no_resolve;     ///< compute passes leave no trace: for the demand loader
 
-    /** Of the next context; zeroed: none, defaults, and one thread. */
+    /** Settings of the next context; zeroed: none, defaults, and one thread. */
     SluiceLogCallback log;
     const SluiceAllocationCallbacks *pAllocator;
     uint32_t loaderThreadCount, maxPageChunkCount;

@@ -1,0 +1,49 @@
+/**
+ * Objects that handles of the fake device point to, and calls that fail when the test says so.
+ *
+ * Dispatchable handles are the device itself.
+ */
+#ifndef TESTS_VULKAN_FAKE_OBJECTS_H
+#define TESTS_VULKAN_FAKE_OBJECTS_H
+
+#include "vulkan/fake_vulkan.h"
+
+/** Object behind a handle that is not dispatchable. */
+struct fake_object {
+    VkExtent3D extent;
+    uint32_t level_count, layer_count;
+    uint64_t size;
+    void *memory;
+    VkImage image; ///< of a view
+    bool general;  ///< the layout of an image
+    bool has_name, needs_name;
+    uint32_t first_image; ///< binding of a set layout; UINT32_MAX: it has buffers alone
+};
+
+#define FAKE_OBJECT(handle) ((struct fake_object *)(handle))
+
+/** Returns the device of a dispatchable handle. */
+static inline struct fake_vulkan *fake_of(void *handle)
+{
+    return handle;
+}
+
+/** Counts the calls of functions that may fail. Returns the test's error if this one fails. */
+VkResult fake_next_call(struct fake_vulkan *fake);
+
+/** Makes a function that may fail return its error. `handle` is dispatchable. */
+#define FAKE_MAY_FAIL(handle)                                                                      \
+    do {                                                                                           \
+        VkResult status = fake_next_call(fake_of(handle));                                         \
+        if (status != VK_SUCCESS)                                                                  \
+            return status;                                                                         \
+    } while (0)
+
+/** Creates a live object of `size` bytes. */
+void *fake_make(struct fake_vulkan *fake, uint64_t size);
+/** Creates an object of a kind that debuggers show. */
+void *fake_make_shown(struct fake_vulkan *fake, uint64_t size);
+/** Destroys an object. NULL is allowed. */
+void fake_drop(struct fake_vulkan *fake, void *object);
+
+#endif /* TESTS_VULKAN_FAKE_OBJECTS_H */

@@ -1,0 +1,128 @@
+#include "support/test.h"
+#include "vulkan/fake_functions.h"
+#include "vulkan/fake_objects.h"
+
+static VKAPI_ATTR VkResult VKAPI_CALL create_semaphore(VkDevice device,
+                                                       const VkSemaphoreCreateInfo *info,
+                                                       const VkAllocationCallbacks *cb,
+                                                       VkSemaphore *semaphore)
+{
+    FAKE_MAY_FAIL(device);
+    (void)info, (void)cb;
+    *semaphore = fake_make_shown(fake_of(device), 0);
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL destroy_semaphore(VkDevice device, VkSemaphore semaphore,
+                                                    const VkAllocationCallbacks *cb)
+{
+    (void)cb;
+    fake_drop(fake_of(device), semaphore);
+}
+
+static uint64_t value_of(const struct fake_vulkan *fake, VkSemaphore semaphore)
+{
+    /* until the first bind tells which one is its, both stand at 0 */
+    bool binds = fake->submitted_bind_value == 0 || semaphore == fake->bind_semaphore;
+    return semaphore == fake->frame_semaphore ? fake->frame_value : binds ? fake->bind_value : 0;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL counter_value(VkDevice device, VkSemaphore semaphore,
+                                                    uint64_t *value)
+{
+    FAKE_MAY_FAIL(device);
+    *value = value_of(fake_of(device), semaphore);
+    return VK_SUCCESS;
+}
+
+/* Both timelines stand still unless the test moves them. */
+static VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device,
+                                                      const VkSemaphoreWaitInfo *info,
+                                                      uint64_t timeout)
+{
+    FAKE_MAY_FAIL(device);
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_wait wait = {info->pSemaphores[0], info->pValues[0], timeout, fake->live_objects};
+    fake->waits[fake->wait_count++ % 64] = wait;
+    bool waits = fake->waits_time_out && value_of(fake, wait.semaphore) < wait.value;
+    return waits ? VK_TIMEOUT : VK_SUCCESS;
+}
+
+static void note_bind(struct fake_vulkan *fake, const struct fake_bind *bind)
+{
+    assert_true(fake->bind_count < FAKE_EVENTS);
+    fake->binds[fake->bind_count++] = *bind;
+}
+
+static void note_tiles(struct fake_vulkan *fake, VkImage image, const VkSparseImageMemoryBind *b)
+{
+    const struct fake_object *object = FAKE_OBJECT(image);
+    uint32_t level = b->subresource.mipLevel;
+    uint32_t width = object->extent.width >> level ? object->extent.width >> level : 1;
+    uint32_t height = object->extent.height >> level ? object->extent.height >> level : 1;
+    uint32_t x = (uint32_t)b->offset.x, y = (uint32_t)b->offset.y;
+    /* whole tiles, or up to the edge; one row */
+    assert_true(x % FAKE_TILE == 0 && y % FAKE_TILE == 0);
+    assert_true(b->extent.width % FAKE_TILE == 0 || x + b->extent.width == width);
+    assert_true(b->extent.height == FAKE_TILE || y + b->extent.height == height);
+    for (uint32_t i = 0; i * FAKE_TILE < b->extent.width; i++)
+        note_bind(fake, &(struct fake_bind){image, level, x / FAKE_TILE + i, y / FAKE_TILE,
+                                            b->memory, b->memoryOffset + i * 65536ull});
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL bind_sparse(VkQueue queue, uint32_t count,
+                                                  const VkBindSparseInfo *info, VkFence fence)
+{
+    FAKE_MAY_FAIL(queue);
+    (void)fence;
+    struct fake_vulkan *fake = fake_of(queue);
+    assert_int_equal(count, 1);
+    for (uint32_t i = 0; i < info->imageBindCount; i++)
+        for (uint32_t j = 0; j < info->pImageBinds[i].bindCount; j++)
+            note_tiles(fake, info->pImageBinds[i].image, &info->pImageBinds[i].pBinds[j]);
+    for (uint32_t i = 0; i < info->imageOpaqueBindCount; i++)
+        for (uint32_t j = 0; j < info->pImageOpaqueBinds[i].bindCount; j++) {
+            const VkSparseMemoryBind *b = &info->pImageOpaqueBinds[i].pBinds[j];
+            if (b->flags & VK_SPARSE_MEMORY_BIND_METADATA_BIT) {
+                assert_int_equal(b->resourceOffset % FAKE_TAIL_STRIDE, 0);
+                assert_true(b->resourceOffset >= 1ull << 31);
+                assert_int_equal((b->resourceOffset - (1ull << 31)) / FAKE_TAIL_STRIDE,
+                                 b->memoryOffset / fake->metadata_size); /* the layer */
+                assert_int_equal(b->size, fake->metadata_size);
+                assert_true(b->memory != VK_NULL_HANDLE);
+                fake->metadata_binds++;
+                continue;
+            }
+            assert_int_equal(b->size, 65536);
+            uint32_t page = (uint32_t)((b->resourceOffset - (1ull << 30)) / 65536);
+            note_bind(fake, &(struct fake_bind){info->pImageOpaqueBinds[i].image, FAKE_TAIL, page,
+                                                0, b->memory, b->memoryOffset});
+        }
+    const VkTimelineSemaphoreSubmitInfo *timeline = info->pNext;
+    assert_int_equal(timeline->pSignalSemaphoreValues[0], fake->submitted_bind_value + 1);
+    /* batches have no order but for this */
+    assert_int_equal(timeline->pWaitSemaphoreValues[0], fake->submitted_bind_value);
+    fake->bind_semaphore = info->pSignalSemaphores[0];
+    fake->submitted_bind_value++;
+    fake->bind_calls++;
+    return VK_SUCCESS;
+}
+
+/* Fails only if the device is lost. */
+static VKAPI_ATTR VkResult VKAPI_CALL wait_idle(VkDevice device)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake->device_waits++;
+    bool is_lost = fake->fails_on && fake->failing_call && fake->calls >= fake->failing_call;
+    return is_lost ? fake->failure : VK_SUCCESS;
+}
+
+const struct fake_function fake_queue_functions[] = {
+    FAKE_FUNCTION(CreateSemaphore, create_semaphore),
+    FAKE_FUNCTION(DestroySemaphore, destroy_semaphore),
+    FAKE_FUNCTION(DeviceWaitIdle, wait_idle),
+    FAKE_FUNCTION(GetSemaphoreCounterValue, counter_value),
+    FAKE_FUNCTION(QueueBindSparse, bind_sparse),
+    FAKE_FUNCTION(WaitSemaphores, wait_semaphores),
+    {NULL, NULL},
+};
