@@ -1,11 +1,12 @@
 /*
- * Streams one procedural texture into a compute shader (vulkan.comp): everything that a renderer
- * does for Sluice, without the rest of a renderer. Exit status 77: no device can stream.
+ * Streams one procedural texture into a compute shader (vulkan.comp). Shows all that a renderer
+ * does for Sluice; gpu.c has the plain Vulkan. Exit status 77: no device can stream.
  */
+#include "gpu.h"
+
 #include <sluice/vulkan.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "vulkan_comp.h" /* the SPIR-V */
 
@@ -18,112 +19,32 @@ struct answer {              /* as in vulkan.comp */
 };
 
 struct app {
-    VkInstance instance;
-    VkPhysicalDevice physical_device;
-    VkDevice device;
-    VkQueue queue;
-    uint32_t family;
+    struct gpu gpu;
     SluiceVulkanContext *context;
     SluiceVulkanStreamer *streamer;
     SluiceVulkanTexture texture;
-    VkBuffer answer_buffer;
-    VkDeviceMemory answer_memory;
     struct answer *answer; /* mapped */
-    VkDescriptorSetLayout set_layout;
-    VkDescriptorPool set_pool;
-    VkDescriptorSet set;
-    VkPipelineLayout pipeline_layout;
-    VkPipeline pipeline;
-    VkCommandPool command_pool;
-    VkCommandBuffer commands;
 };
 
-static void check(bool good, const char *what)
+static bool can_stream(VkInstance instance, VkPhysicalDevice device,
+                       VkPhysicalDeviceFeatures *features,
+                       VkPhysicalDeviceVulkan12Features *vulkan12)
 {
-    if (!good) {
-        fprintf(stderr, "%s failed\n", what);
-        exit(1);
-    }
-}
-#define VK(call) check((call) == VK_SUCCESS, #call)
-#define SLUICE(call) check((call) == SLUICE_SUCCESS, #call)
-
-static void print_message(void *pUserData, SluiceLogSeverity severity, const char *pMessage)
-{
-    (void)pUserData, (void)severity;
-    fprintf(stderr, "%s\n", pMessage);
-}
-static const SluiceLogCallback log_callback = {NULL, print_message};
-
-/* One family that draws and binds is simplest. Where they differ, create a queue of each. */
-static bool choose_family(struct app *app)
-{
-    VkQueueFamilyProperties families[16];
-    uint32_t count = 16;
-    vkGetPhysicalDeviceQueueFamilyProperties(app->physical_device, &count, families);
-    const VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT;
-    for (app->family = 0; app->family < count; app->family++)
-        if ((families[app->family].queueFlags & wanted) == wanted)
-            return true;
-    return false;
-}
-
-/** The first device that can stream; on success `*features`, `*vulkan12` are what it must have. */
-static bool choose_device(struct app *app, VkPhysicalDeviceFeatures *features,
-                          VkPhysicalDeviceVulkan12Features *vulkan12)
-{
-    VkPhysicalDevice devices[16];
-    uint32_t count = 16;
-    if (vkEnumeratePhysicalDevices(app->instance, &count, devices) < 0)
-        return false;
-    for (uint32_t i = 0; i < count; i++) {
-        app->physical_device = devices[i];
-        if (sluiceRequireVulkanFeatures(app->instance, devices[i], vkGetInstanceProcAddr,
-                                        SLUICE_RESIDENCY_MODE_SPARSE, &log_callback, features,
-                                        vulkan12) == SLUICE_SUCCESS &&
-            choose_family(app))
-            return true;
-    }
-    return false;
-}
-
-static void create_device(struct app *app)
-{
-    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                     .apiVersion = VK_API_VERSION_1_2};
-    VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                     .pApplicationInfo = &application};
-    VK(vkCreateInstance(&instance, NULL, &app->instance));
-
-    VkPhysicalDeviceVulkan12Features vulkan12 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                          .pNext = &vulkan12};
-    if (!choose_device(app, &features.features, &vulkan12))
-        exit(77);
-    const float priority = 1.0f;
-    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                     .queueFamilyIndex = app->family,
-                                     .queueCount = 1,
-                                     .pQueuePriorities = &priority};
-    VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                 .pNext = &features,
-                                 .queueCreateInfoCount = 1,
-                                 .pQueueCreateInfos = &queue};
-    VK(vkCreateDevice(app->physical_device, &device, NULL, &app->device));
-    vkGetDeviceQueue(app->device, app->family, 0, &app->queue);
+    return sluiceRequireVulkanFeatures(instance, device, vkGetInstanceProcAddr,
+                                       SLUICE_RESIDENCY_MODE_SPARSE, &log_callback, features,
+                                       vulkan12) == SLUICE_SUCCESS;
 }
 
 static void create_streamer(struct app *app, SluiceImageSource *source)
 {
     SluiceVulkanContextCreateInfo context = {.structSize = sizeof context,
-                                             .queueFamilyIndex = app->family,
-                                             .instance = app->instance,
-                                             .physicalDevice = app->physical_device,
-                                             .device = app->device,
+                                             .queueFamilyIndex = app->gpu.family,
+                                             .instance = app->gpu.instance,
+                                             .physicalDevice = app->gpu.physical_device,
+                                             .device = app->gpu.device,
                                              .pfnGetInstanceProcAddr = vkGetInstanceProcAddr,
-                                             .sparseQueue = app->queue,
-                                             .sparseQueueFamilyIndex = app->family,
+                                             .sparseQueue = app->gpu.queue,
+                                             .sparseQueueFamilyIndex = app->gpu.family,
                                              .log = log_callback};
     SLUICE(sluiceCreateVulkanContext(&context, &app->context));
     SluiceVulkanStreamerCreateInfo info = {.structSize = sizeof info,
@@ -137,117 +58,13 @@ static void create_streamer(struct app *app, SluiceImageSource *source)
     SLUICE(sluiceAddVulkanTexture(app->streamer, &texture, &app->texture));
 }
 
-static uint32_t find_host_memory(const struct app *app, uint32_t type_bits)
+/* Set 0 is Sluice's and has the textures. Set 1 is the program's and has the answer. */
+static void create_shader(struct app *app)
 {
-    const VkMemoryPropertyFlags wanted =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    VkPhysicalDeviceMemoryProperties memory;
-    vkGetPhysicalDeviceMemoryProperties(app->physical_device, &memory);
-    for (uint32_t i = 0; i < memory.memoryTypeCount; i++)
-        if ((type_bits >> i & 1) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted)
-            return i;
-    check(false, "finding host memory");
-    return 0;
-}
-
-static void create_answer(struct app *app)
-{
-    VkBufferCreateInfo buffer = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                 .size = sizeof(struct answer),
-                                 .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT};
-    VK(vkCreateBuffer(app->device, &buffer, NULL, &app->answer_buffer));
-    VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(app->device, app->answer_buffer, &needs);
-    VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                   .allocationSize = needs.size,
-                                   .memoryTypeIndex = find_host_memory(app, needs.memoryTypeBits)};
-    VK(vkAllocateMemory(app->device, &memory, NULL, &app->answer_memory));
-    VK(vkBindBufferMemory(app->device, app->answer_buffer, app->answer_memory, 0));
-    VK(vkMapMemory(app->device, app->answer_memory, 0, VK_WHOLE_SIZE, 0, (void **)&app->answer));
-}
-
-/* The program's own set, for the answer. Sluice has the set of the textures. */
-static void create_set(struct app *app)
-{
-    const VkDescriptorSetLayoutBinding binding = {0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1,
-                                                  VK_SHADER_STAGE_COMPUTE_BIT, NULL};
-    VkDescriptorSetLayoutCreateInfo layout = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 1,
-        .pBindings = &binding};
-    VK(vkCreateDescriptorSetLayout(app->device, &layout, NULL, &app->set_layout));
-    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
-    VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                       .maxSets = 1,
-                                       .poolSizeCount = 1,
-                                       .pPoolSizes = &size};
-    VK(vkCreateDescriptorPool(app->device, &pool, NULL, &app->set_pool));
-    VkDescriptorSetAllocateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                       .descriptorPool = app->set_pool,
-                                       .descriptorSetCount = 1,
-                                       .pSetLayouts = &app->set_layout};
-    VK(vkAllocateDescriptorSets(app->device, &set, &app->set));
-    const VkDescriptorBufferInfo buffer = {app->answer_buffer, 0, VK_WHOLE_SIZE};
-    const VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                        .dstSet = app->set,
-                                        .descriptorCount = 1,
-                                        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                        .pBufferInfo = &buffer};
-    vkUpdateDescriptorSets(app->device, 1, &write, 0, NULL);
-}
-
-static void create_pipeline(struct app *app)
-{
-    VkDescriptorSetLayout sets[2] = {VK_NULL_HANDLE, app->set_layout};
-    SLUICE(sluiceGetVulkanDescriptorSetLayout(app->streamer, &sets[0]));
-    const VkPushConstantRange constants = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(uint32_t)};
-    VkPipelineLayoutCreateInfo layout = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                         .setLayoutCount = 2,
-                                         .pSetLayouts = sets,
-                                         .pushConstantRangeCount = 1,
-                                         .pPushConstantRanges = &constants};
-    VK(vkCreatePipelineLayout(app->device, &layout, NULL, &app->pipeline_layout));
-    VkShaderModuleCreateInfo code = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                     .codeSize = sizeof vulkan_comp,
-                                     .pCode = vulkan_comp};
-    VkShaderModule module;
-    VK(vkCreateShaderModule(app->device, &code, NULL, &module));
-    VkComputePipelineCreateInfo pipeline = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main"},
-        .layout = app->pipeline_layout};
-    VK(vkCreateComputePipelines(app->device, VK_NULL_HANDLE, 1, &pipeline, NULL, &app->pipeline));
-    vkDestroyShaderModule(app->device, module, NULL);
-}
-
-static void create_commands(struct app *app)
-{
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                    .queueFamilyIndex = app->family};
-    VK(vkCreateCommandPool(app->device, &pool, NULL, &app->command_pool));
-    VkCommandBufferAllocateInfo buffers = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                           .commandPool = app->command_pool,
-                                           .commandBufferCount = 1};
-    VK(vkAllocateCommandBuffers(app->device, &buffers, &app->commands));
-}
-
-static void submit(const struct app *app, const SluiceStreamingFrame *frame)
-{
-    VkTimelineSemaphoreSubmitInfo values = {.sType =
-                                                VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                            .signalSemaphoreValueCount = 1,
-                                            .pSignalSemaphoreValues = &frame->signalValue};
-    VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                         .pNext = &values,
-                         .commandBufferCount = 1,
-                         .pCommandBuffers = &app->commands,
-                         .signalSemaphoreCount = 1,
-                         .pSignalSemaphores = &frame->semaphore};
-    VK(vkQueueSubmit(app->queue, 1, &info, VK_NULL_HANDLE));
+    VkDescriptorSetLayout set_0;
+    SLUICE(sluiceGetVulkanDescriptorSetLayout(app->streamer, &set_0));
+    app->answer = create_answer(&app->gpu, sizeof *app->answer);
+    create_pipeline(&app->gpu, vulkan_comp, sizeof vulkan_comp, set_0, sizeof(uint32_t));
 }
 
 static void wait_for(const struct app *app, const SluiceStreamingFrame *frame)
@@ -256,33 +73,23 @@ static void wait_for(const struct app *app, const SluiceStreamingFrame *frame)
                                 .semaphoreCount = 1,
                                 .pSemaphores = &frame->semaphore,
                                 .pValues = &frame->signalValue};
-    VK(vkWaitSemaphores(app->device, &info, UINT64_MAX));
+    VK(vkWaitSemaphores(app->gpu.device, &info, UINT64_MAX));
 }
 
 static void draw_frame(struct app *app, uint64_t time_stamp)
 {
     *app->answer = (struct answer){0};
-    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     SluiceStreamingFrame frame = {.structSize = sizeof frame};
-    VK(vkBeginCommandBuffer(app->commands, &begin));
-    SLUICE(sluiceBeginStreamingFrame(app->streamer, app->commands, time_stamp, &frame));
+    begin_commands(&app->gpu);
+    SLUICE(sluiceBeginStreamingFrame(app->streamer, app->gpu.commands, time_stamp, &frame));
 
-    vkCmdBindPipeline(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline);
-    const VkDescriptorSet sets[2] = {frame.descriptorSet, app->set};
-    vkCmdBindDescriptorSets(app->commands, VK_PIPELINE_BIND_POINT_COMPUTE, app->pipeline_layout, 0,
-                            2, sets, 0, NULL);
-    vkCmdPushConstants(app->commands, app->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+    bind_shader(&app->gpu, frame.descriptorSet);
+    vkCmdPushConstants(app->gpu.commands, app->gpu.pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                        sizeof app->texture.tableIndex, &app->texture.tableIndex);
-    vkCmdDispatch(app->commands, 8, 8, 1);
+    vkCmdDispatch(app->gpu.commands, 8, 8, 1);
 
-    SLUICE(sluiceEndStreamingFrame(app->streamer, app->commands));
-    VkMemoryBarrier to_host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                               .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
-                               .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    vkCmdPipelineBarrier(app->commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                         VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, NULL, 0, NULL);
-    VK(vkEndCommandBuffer(app->commands));
-    submit(app, &frame);
+    SLUICE(sluiceEndStreamingFrame(app->streamer, app->gpu.commands));
+    submit(&app->gpu, frame.semaphore, frame.signalValue);
 
     /* So that every run is the same. A renderer waits for an older frame, and for no reads. */
     wait_for(app, &frame);
@@ -291,17 +98,9 @@ static void draw_frame(struct app *app, uint64_t time_stamp)
 
 static void destroy(struct app *app)
 {
-    sluiceDestroyVulkanStreamer(app->streamer); /* waits for the device */
+    sluiceDestroyVulkanStreamer(app->streamer); /* waits for its frames */
     sluiceDestroyVulkanContext(app->context);
-    vkDestroyCommandPool(app->device, app->command_pool, NULL);
-    vkDestroyPipeline(app->device, app->pipeline, NULL);
-    vkDestroyPipelineLayout(app->device, app->pipeline_layout, NULL);
-    vkDestroyDescriptorPool(app->device, app->set_pool, NULL);
-    vkDestroyDescriptorSetLayout(app->device, app->set_layout, NULL);
-    vkDestroyBuffer(app->device, app->answer_buffer, NULL);
-    vkFreeMemory(app->device, app->answer_memory, NULL);
-    vkDestroyDevice(app->device, NULL);
-    vkDestroyInstance(app->instance, NULL);
+    destroy_gpu(&app->gpu);
 }
 
 static void paint_ramp(void *pUserData, uint32_t mipLevel, uint32_t x, uint32_t y, uint32_t width,
@@ -326,12 +125,10 @@ int main(void)
     SLUICE(sluiceCreateProceduralImageSource(&image, &info, NULL, &source));
 
     struct app app = {0};
-    create_device(&app);
+    /* One family that draws and binds is simplest. Where they differ, create a queue of each. */
+    create_gpu(&app.gpu, VK_QUEUE_COMPUTE_BIT | VK_QUEUE_SPARSE_BINDING_BIT, can_stream);
     create_streamer(&app, source);
-    create_answer(&app);
-    create_set(&app);
-    create_pipeline(&app);
-    create_commands(&app);
+    create_shader(&app);
     for (uint64_t frame = 0; frame < FRAME_COUNT; frame++) {
         draw_frame(&app, frame);
         SluiceVulkanStreamerStatistics now = {.structSize = sizeof now};

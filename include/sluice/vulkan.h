@@ -15,7 +15,7 @@
  *
  * Abandon a frame that you cannot submit with sluiceAbandonStreamingFrame. The streamer records the
  * barriers for its own images and buffers; you need none for them. docs/frame-loop.md explains each
- * step, docs/examples/vulkan.c is a whole program.
+ * step; docs/examples/vulkan.c is a program, with its plain Vulkan in docs/examples/gpu.c.
  *
  * Only sluiceDestroyVulkanStreamer and sluiceWaitVulkanStreamerIdle wait for the GPU. Both wait for
  * work of the streamer alone.
