@@ -253,23 +253,17 @@ static bool trace(struct tracer *t)
     return write_files(t) && print_summary(t, seconds) && t->film.missing_count == 0;
 }
 
-/* A status, unless what was printed did not get out. */
-static int ends_well(int status)
-{
-    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
-}
-
 int main(int argc, char **argv)
 {
     struct tracer tracer = {0};
     switch (tracer_options_parse(argc, argv, &tracer.options)) {
-    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
+    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
     descriptors_raise();
     if (tracer.options.list_devices)
-        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     tracer.sheet.marks_missing = !tracer.options.preview;
     bool opened = open_all(&tracer);
     bool done = opened && trace(&tracer);

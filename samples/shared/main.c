@@ -295,23 +295,17 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
     return outcome;
 }
 
-/* A status, unless what was printed did not get out. */
-static int ends_well(int status)
-{
-    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
-}
-
 int main(int argc, char **argv)
 {
     struct app app = {0};
     bool unsupported = false;
     switch (read_settings(&app.settings, argc, argv)) {
-    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
+    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
     if (app.settings.list_devices)
-        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     if (!output_can_write(app.settings.output))
         return EXIT_FAILURE;
     const struct gpu_request request = {
@@ -325,5 +319,5 @@ int main(int argc, char **argv)
     uint32_t messages = atomic_load(&app.gpu.validation_messages);
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);
-    return good && messages == 0 ? ends_well(EXIT_SUCCESS) : EXIT_FAILURE;
+    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
 }

@@ -305,26 +305,20 @@ static int generate_only(const struct settings *settings)
     return EXIT_SUCCESS;
 }
 
-/* A status, unless what was printed did not get out. */
-static int ends_well(int status)
-{
-    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
-}
-
 int main(int argc, char **argv)
 {
     struct gallery gallery = {0};
     setenv("VIPS_WARNING", "0", 0); /* what matters comes as an error, with the file's name */
     switch (settings_parse(argc, argv, &gallery.settings)) {
-    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
+    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
     descriptors_raise();
     if (gallery.settings.list_devices)
-        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     if (gallery.settings.generate_only)
-        return ends_well(generate_only(&gallery.settings));
+        return text_exit_status(generate_only(&gallery.settings));
     if (!can_write_outputs(&gallery.settings))
         return EXIT_FAILURE;
 

@@ -1,7 +1,6 @@
 /*
- * Zooms into a texture of 2^20 x 2^20 texels that is nowhere: a compute shader makes the tiles that
- * are looked at, when they are looked at. At the end every texel that is shown is compared with the
- * function that makes them.
+ * Zooms into a texture of 2^20 x 2^20 texels without a file: a compute shader makes the tiles that
+ * are looked at. At the end the program compares every texel shown with the function that makes it.
  */
 #include "../../tools/common/output_file.h"
 #include "../../tools/common/shared_options.h"
@@ -78,7 +77,7 @@ static bool create_streamer(struct app *app)
     return sluice(sluiceCreateVulkanStreamer(&info, &app->streamer), "streamer");
 }
 
-/* The callback takes the place of a source: there is no file, and no memory that holds it all. */
+/* The callback replaces a source: no file and no memory holds the whole texture. */
 static bool add_texture(struct app *app)
 {
     const SluiceImageInfo image = {.structSize = sizeof image,
@@ -109,7 +108,7 @@ static bool create(struct app *app)
            add_texture(app);
 }
 
-/* From all of the texture to a pixel per texel, at a steady pace. */
+/* Returns the view at `progress`, 0 to 1: from the whole texture to one pixel per texel. */
 static struct FractalView view_at(const struct app *app, double progress)
 {
     const double start = 1.0 / app->settings.height, end = ldexp(1, -(int)app->settings.size_log2);
@@ -193,7 +192,7 @@ static bool print_figures(const struct app *app)
     return true;
 }
 
-/* Until every pixel shows the level that it wants. */
+/* Draws frames until every pixel shows its requested level, at most SETTLE_FRAMES. */
 static bool settle(struct app *app)
 {
     for (uint32_t i = 0; i < SETTLE_FRAMES; i++) {
@@ -259,23 +258,17 @@ static enum option_outcome read_settings(struct settings *settings, int argc, ch
     return outcome;
 }
 
-/* A status, unless what was printed did not get out. */
-static int ends_well(int status)
-{
-    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
-}
-
 int main(int argc, char **argv)
 {
     struct app app = {0};
     bool unsupported = false;
     switch (read_settings(&app.settings, argc, argv)) {
-    case OPTIONS_HELP: return ends_well(EXIT_SUCCESS);
+    case OPTIONS_HELP: return text_exit_status(EXIT_SUCCESS);
     case OPTIONS_ERROR: return EXIT_USAGE;
     case OPTIONS_RUN: break;
     }
     if (app.settings.list_devices)
-        return ends_well(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
+        return text_exit_status(gpu_list_devices() > 0 ? EXIT_SUCCESS : EXIT_NO_DEVICE);
     if (!output_can_write(app.settings.output))
         return EXIT_FAILURE;
     const struct gpu_request request = {
@@ -289,5 +282,5 @@ int main(int argc, char **argv)
     uint32_t messages = atomic_load(&app.gpu.validation_messages);
     if (messages > 0)
         fprintf(stderr, "the validation layers had %u messages\n", messages);
-    return good && messages == 0 ? ends_well(EXIT_SUCCESS) : EXIT_FAILURE;
+    return good && messages == 0 ? text_exit_status(EXIT_SUCCESS) : EXIT_FAILURE;
 }

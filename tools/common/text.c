@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define NO_CHARACTER UINT32_MAX
@@ -75,6 +76,11 @@ bool text_flush(const char *speaker)
     text_say("%scannot write the answer%s%s", speaker, errno ? ": " : "",
              errno ? strerror(errno) : "");
     return false;
+}
+
+int text_exit_status(int status)
+{
+    return text_flush("") || status != EXIT_SUCCESS ? status : EXIT_FAILURE;
 }
 
 void text_write_json(FILE *out, const char *text)

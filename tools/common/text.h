@@ -21,6 +21,9 @@ void text_write(FILE *out, const char *text);
  */
 bool text_flush(const char *speaker);
 
+/** Returns `status`, or EXIT_FAILURE instead of EXIT_SUCCESS if text_flush("") fails. */
+int text_exit_status(int status);
+
 /** A line on stderr, as printf makes it, written as above; at most 8 KiB of it. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
