@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether a benchmark that builds the library itself still builds, runs and prints figures.
+# Checks that a benchmark that builds the library itself still builds, runs and prints figures.
 #
 #   bench/test_builds.sh RUN.SH [OPTION]...
 

@@ -1,4 +1,4 @@
-/* Byte pages of 64 KiB per second from nothing, against tiles of the same size in the same run. */
+/* Cold fill with byte pages of 64 KiB, in turns with tiles of the same size. */
 #include "rig.h"
 
 #include "../../tools/common/clock.h"
@@ -9,14 +9,14 @@
 #define MAX_LAUNCHES 100000u
 #define PAGE_SIZE 65536u
 
-/* As the source of the tiles: bytes that cost nothing. */
+/* Writes nothing, like the source of the tiles. */
 static SluiceResult read_page(void *pUserData, uint32_t page, uint32_t size, void *pBytes)
 {
     (void)pUserData, (void)page, (void)size, (void)pBytes;
     return SLUICE_SUCCESS;
 }
 
-/* Two launches are under way, until one misses nothing; negative: it failed. */
+/* Returns the seconds until a launch misses nothing, with two launches under way; -1 on failure. */
 static double fill(struct rig *rig, uint32_t kind)
 {
     struct rig_outcome outcome;
@@ -30,7 +30,7 @@ static double fill(struct rig *rig, uint32_t kind)
     return done && rig_end(rig, &outcome) && all ? seconds : -1;
 }
 
-/* Pages per second of a new loader; 0: it failed. */
+/* Returns the pages per second of a new loader; 0 on failure. */
 static double fill_pages(const struct bench *bench, uint32_t pages, uint32_t kind)
 {
     struct rig rig;
@@ -60,7 +60,7 @@ bool measure_bytes(const struct bench *bench)
 {
     uint32_t pages = options.quick ? 256 : bench->wall ? 1024 : 4096;
     double bytes = 0, tiles = 0;
-    for (uint32_t i = 0; i < (options.quick ? 1u : 3u); i++) { /* in turns; the best of each */
+    for (uint32_t i = 0; i < (options.quick ? 1u : 3u); i++) { /* the best of each counts */
         double rates[2] = {fill_pages(bench, pages, DEMAND_BENCH_BYTES),
                            fill_pages(bench, pages, DEMAND_BENCH_SAMPLED)};
         if (!(rates[0] > 0) || !(rates[1] > 0))

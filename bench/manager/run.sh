@@ -248,7 +248,7 @@ run_against_clairvoyant() {
     run_prefetching t10000 40000
 }
 
-# The micro program, or the parts of it that are asked for and what their ratios refer to.
+# Runs the micro program, or the parts that --only names and those that their ratios refer to.
 run_micro() {
     local options=() parts='' part
     [ "$quick" = no ] || options+=(--quick)

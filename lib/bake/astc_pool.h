@@ -1,4 +1,4 @@
-/** Contexts of astcenc, which cost milliseconds to make and serve one thread at a time. */
+/** Contexts of astcenc, kept for reuse: they are slow to make and serve one thread at a time. */
 #ifndef SLC_BAKE_ASTC_POOL_H
 #define SLC_BAKE_ASTC_POOL_H
 
@@ -8,7 +8,7 @@
 
 struct slc_astc_context;
 
-/** Zeroed and then initialized; finished when no thread is in it. */
+/** Initialize before use. Finish it when no thread encodes. */
 struct slc_astc_pool {
     SluiceAllocationCallbacks allocator;
     pthread_mutex_t mutex;
@@ -17,11 +17,11 @@ struct slc_astc_pool {
 };
 
 void slc_astc_pool_init(struct slc_astc_pool *pool, const SluiceAllocationCallbacks *cb);
-/** A zeroed pool is allowed. */
+/** Destroys all contexts. A zeroed pool is allowed. */
 void slc_astc_pool_finish(struct slc_astc_pool *pool);
 
 /**
- * Rows of RGBA bytes, `pitch` bytes apart, to blocks of `extent` x `extent` texels.
+ * Encodes rows of RGBA bytes, `pitch` bytes apart, to blocks of `extent` x `extent` texels.
  * Errors: OUT_OF_HOST_MEMORY. Thread safety: any thread.
  */
 SluiceResult slc_astc_pool_encode(struct slc_astc_pool *pool, uint32_t extent, bool srgb,

@@ -1,6 +1,7 @@
 /**
- * Included before everything else where the encoders of BC6H and BC7 are compiled once more, for
- * processors that have AVX2: with eight lanes (meson.build). The bytes are those of four lanes.
+ * Renames the encoders of BC6H and BC7 for their second build, with eight lanes and AVX2.
+ * meson.build includes this header before everything else. Blocks have the same bytes in both
+ * builds.
  */
 #ifndef SLC_BAKE_AVX2_NAMES_H
 #define SLC_BAKE_AVX2_NAMES_H

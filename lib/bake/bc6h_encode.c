@@ -12,12 +12,12 @@
 #define PARTITIONS 32
 #define LARGEST 0x7bff /* 65504 as a half */
 
-/* Work per quality, from bench/bake. */
+/* Work per quality. tests/bake/encoder_figures measures time and PSNR. */
 struct effort {
-    int rounds;     ///< of improving ends
-    int tries;      ///< partitions that are fitted
-    int64_t enough; ///< error of one region that two are not tried below
-    bool all_modes; ///< not only the most precise one that holds the ends
+    int rounds;     ///< how often the ends are improved
+    int tries;      ///< partitions whose two regions are fitted
+    int64_t enough; ///< two regions are tried if one region has a larger error
+    bool all_modes; ///< false: only the most precise mode that holds the ends
 };
 
 static const struct effort efforts[] = {
@@ -26,18 +26,18 @@ static const struct effort efforts[] = {
     [SLUICE_BAKE_QUALITY_BEST] = {3, 4, 0, true},
 };
 
-/* Halves as whole numbers: steps from 0. */
+/* Texels as whole numbers: steps between a half and 0. */
 struct texels {
     bool is_signed;
     int32_t steps[16][3];
 };
 
-/* What a block may become. */
+/* One way to encode a block. */
 struct candidate {
     const struct slc_bc6h_mode *mode;
     int64_t error; ///< sum of squared steps; -1: none
     int partition;
-    int32_t codes[4][3]; ///< of the ends w, x, y and z
+    int32_t codes[4][3]; ///< codes of the ends w, x, y and z
     uint8_t indices[16];
 };
 
@@ -56,7 +56,7 @@ static int32_t min_i32(int32_t a, int32_t b)
     return a < b ? a : b;
 }
 
-/* The specification's conversion of a code to 16 bits. */
+/* Converts a code to 16 bits, as the specification does. */
 static int32_t unquantize(int32_t code, int bits, bool is_signed)
 {
     if (!is_signed)
@@ -71,7 +71,7 @@ static int32_t unquantize(int32_t code, int bits, bool is_signed)
     return code < 0 ? -value : value;
 }
 
-/* And of an interpolated number to steps. */
+/* Converts an interpolated 16-bit number to steps. */
 static int32_t finish(int32_t value, bool is_signed)
 {
     if (!is_signed)
@@ -79,7 +79,7 @@ static int32_t finish(int32_t value, bool is_signed)
     return value < 0 ? -((-value * 31) >> 5) : (value * 31) >> 5;
 }
 
-/* The code whose number is nearest, or next to it. */
+/* Returns the code with the nearest number, or a code next to it. */
 static int32_t quantize(float steps, int bits, bool is_signed)
 {
     float magnitude = steps < 0.0f ? -steps : steps;
@@ -96,7 +96,7 @@ static int region_of(const struct slc_bc6h_mode *mode, int partition, int texel)
     return mode->regions == 2 ? slc_partitions[partition] >> texel & 1 : 0;
 }
 
-/* Colors between two ends. */
+/* Writes the colors between two ends, in steps. */
 static void make_palette(const struct texels *texels, int bits, int count,
                          const int32_t codes[2][3], int32_t palette[16][3])
 {
@@ -118,7 +118,7 @@ static int64_t distance(const int32_t a[3], const int32_t b[3])
     return sum;
 }
 
-/* The nearest color of a palette: by projection, and one to either side of that. */
+/* Returns the nearest of three colors: the one by projection and its two neighbors. */
 static int find_index(const int32_t texel[3], const int32_t palette[16][3], int count,
                       int64_t *error)
 {
@@ -143,7 +143,8 @@ static int find_index(const int32_t texel[3], const int32_t palette[16][3], int 
     return best;
 }
 
-/* The first index of a region has no highest bit: its ends change places where it would be set. */
+/* Swaps the ends of a region if the highest bit of its anchor index is set: blocks do not store
+ * that bit. */
 static void turn(struct candidate *candidate, int region, int anchor, int count)
 {
     if (candidate->indices[anchor] < count / 2)
@@ -171,7 +172,7 @@ static bool deltas_fit(const struct candidate *candidate)
     return true;
 }
 
-/* Ends as the mode stores them, and indices. False where the mode does not hold the ends. */
+/* Makes codes and indices. Returns false if the mode cannot hold the ends. */
 static bool make_candidate(const struct texels *texels, const float ends[4][3],
                            struct candidate *candidate)
 {
@@ -181,7 +182,7 @@ static bool make_candidate(const struct texels *texels, const float ends[4][3],
     for (int e = 0; e < 2 * mode->regions; e++)
         for (int c = 0; c < 3; c++)
             candidate->codes[e][c] = quantize(ends[e][c], mode->bits, texels->is_signed);
-    struct candidate widest = *candidate; /* turning swaps ends, after which the base is another */
+    struct candidate widest = *candidate; /* with the ends swapped, the base of the differences */
     bool may_fit = deltas_fit(candidate);
     for (int c = 0; c < 3; c++) {
         int32_t code = widest.codes[0][c];
@@ -205,7 +206,7 @@ static bool make_candidate(const struct texels *texels, const float ends[4][3],
     return deltas_fit(candidate);
 }
 
-/* Ends of least squared error for the indices of a region. */
+/* Finds the ends with the least squared error for the indices of a region. */
 static void solve(const struct texels *texels, const struct candidate *candidate, int region,
                   float ends[2][3])
 {
@@ -253,13 +254,14 @@ static void try_ends(const struct effort *effort, const struct texels *texels, i
     }
 }
 
-/* SLC_LANES blocks as vectors, less each block's first texel, so that sums keep their digits. */
+/* SLC_LANES blocks. Each block's first texel is subtracted from its channels, so that sums stay
+ * precise. */
 struct lanes {
     slc_floats channels[3][16];
     struct texels texels[SLC_LANES];
 };
 
-/* Ends of all regions of a partition. */
+/* Finds the ends of one or two regions of each block. Bit i of `mask`: texel i is in region 1. */
 static void find_ends(const struct lanes *lanes, int regions, slc_ints mask,
                       float ends[SLC_LANES][4][3])
 {

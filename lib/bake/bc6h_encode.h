@@ -5,13 +5,12 @@
 #include <sluice/bake.h>
 
 /**
- * `count` blocks of 16 texels of four halves each, row by row, to `count` blocks of 16 bytes.
+ * Encodes `count` blocks of 16 texels, four halves each, row by row. Writes 16 bytes per block.
  *
  * Alpha is ignored. NaN becomes 0, larger magnitudes become 65504, and negative numbers become 0
- * if `is_signed` is false. Halves are compared by the steps between them, so that dark texels
- * count as much as bright ones. A block becomes the same bytes on every machine and beside any
- * others. Source: Khronos Data Format Specification 1.3, chapter "BPTC Compressed Texture Image
- * Formats".
+ * if `is_signed` is false. The error counts steps between halves, so that dark texels count as much
+ * as bright ones. The bytes of a block depend on its texels, `is_signed` and the quality alone.
+ * Source: Khronos Data Format Specification 1.3, chapter "BPTC Compressed Texture Image Formats".
  */
 void slc_encode_bc6h(bool is_signed, SluiceBakeQuality quality, const uint16_t (*rgba)[64],
                      size_t count, uint8_t *blocks);

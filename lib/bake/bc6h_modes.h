@@ -8,13 +8,13 @@
 
 struct slc_bc6h_mode {
     uint8_t number;            ///< 1 to 14, as Direct3D counts them
-    uint8_t value, value_bits; ///< the block's first bits
+    uint8_t value, value_bits; ///< mode bits, the first bits of the block
     uint8_t regions;
-    uint8_t bits;      ///< of a channel of the first end, or of all ends
-    uint8_t deltas[3]; ///< bits of the differences of other ends from the first; 0: all are stored
+    uint8_t bits;      ///< per channel of the first end; of all ends if deltas are 0
+    uint8_t deltas[3]; ///< bits per difference from the first end; 0: ends are stored
     /**
-     * Bits that follow the first ones: channel, end (w and x of region 0, y and z of region 1) and
-     * bit numbers, in the order in which they come.
+     * Fields after the mode bits, in file order: channel, end (w and x of region 0, y and z of
+     * region 1) and bit numbers.
      */
     const char *layout;
 };

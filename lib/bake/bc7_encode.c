@@ -10,14 +10,15 @@
 
 #define BATCH 64
 
-/* Work per quality, from bench/bake. Errors are sums of squares of a block. */
+/* Work per quality. tests/bake/encoder_figures measures time and PSNR. Errors are sums of squares
+ * over a block. */
 struct effort {
-    int rounds;           ///< of improving the ends of mode 6
-    float enough;         ///< error of mode 6 that no other mode is tried below
-    int partitions;       ///< of mode 1 that are looked at
-    int tries;            ///< and fitted
-    int rounds_of_others; ///< of improving the ends of modes 1, 4 and 5
-    int rotations[2];     ///< of modes 4 and 5, for blocks with alpha
+    int rounds;           ///< how often the ends of mode 6 are improved
+    float enough;         ///< other modes are tried if mode 6 has a larger error
+    int partitions;       ///< partitions of mode 1 that are ranked
+    int tries;            ///< best ranked partitions that are fitted
+    int rounds_of_others; ///< how often the ends of modes 1, 4 and 5 are improved
+    int rotations[2];     ///< rotations of modes 4 and 5, for blocks with alpha
     int opaque_rotations[2];
 };
 
@@ -45,7 +46,7 @@ static void load_lanes(const uint8_t (*rgba)[64], const uint8_t *which, size_t c
     }
 }
 
-/* Modes 4 and 5 for some lanes alone. */
+/* Tries modes 4 and 5 in the lanes of `which`. */
 static void try_rotations(const struct slc_bc7_texels *texels, int rounds, const int rotations[2],
                           slc_ints which, struct slc_bc7_block *blocks[SLC_LANES])
 {
@@ -70,7 +71,7 @@ static void try_others(const struct effort *effort, const struct slc_bc7_texels 
     if (any_opaque)
         slc_bc7_try_mode_1(texels, effort->rounds_of_others, effort->partitions, effort->tries,
                            blocks);
-    /* Mode 6 makes opaque black a little lighter: its p bits are 1 because of alpha. */
+    /* Mode 6 cannot store opaque black: alpha 255 sets the p bits of all channels. */
     static const int for_black[2] = {0, 1};
     int rounds = effort->rounds_of_others;
     try_rotations(texels, rounds, for_black, texels->is_opaque & texels->has_black, blocks);
@@ -78,7 +79,8 @@ static void try_others(const struct effort *effort, const struct slc_bc7_texels 
     try_rotations(texels, rounds, effort->rotations, ~texels->is_opaque, blocks);
 }
 
-/* Indices of a region begin with a bit of 0, for which its ends may have to change places. */
+/* Swaps the ends of a region if the highest bit of its anchor index is set: blocks do not store
+ * that bit. */
 static void turn_region(struct slc_bc7_block *block, int set, uint16_t region, int anchor,
                         int last_index, uint8_t *ends[2], int first, int count)
 {
@@ -165,7 +167,8 @@ static void pack(struct slc_bc7_block *block, uint8_t out[16])
     slc_store_bits(&bits, out);
 }
 
-/* Mode 5 has each color at a third of the way between two ends of 7 bits. */
+/* Encodes a block of one color exactly: in mode 5, every value of R, G and B is a third of the way
+ * between two ends of 7 bits. */
 static bool find_plain(const uint8_t rgba[64], struct slc_bc7_block *block)
 {
     for (int i = 1; i < 16; i++)
@@ -181,8 +184,8 @@ static bool find_plain(const uint8_t rgba[64], struct slc_bc7_block *block)
     return true;
 }
 
-/* Whether modes other than 6 are tried. Black, and alpha of 0 and 255 beside others, should be
- * exact, for which the p bits of mode 6 stand in the way. */
+/* Whether to try modes other than 6. The p bits of mode 6 cannot store opaque black, nor alpha 0 or
+ * 255 beside other alphas, exactly. */
 static bool is_poor(const struct effort *effort, const uint8_t rgba[64], float error)
 {
     bool is_opaque = true, has_extreme = false, has_black = false;

@@ -5,10 +5,10 @@
 #include <sluice/bake.h>
 
 /**
- * `count` blocks of 16 texels each, row by row, to `count` blocks of 16 bytes.
+ * Encodes `count` blocks of 16 RGBA texels, row by row. Writes 16 bytes per block.
  *
- * A block becomes the same bytes on every machine and beside any others. Blocks of one color are
- * exact. Source: Khronos Data Format Specification 1.3, chapter "BPTC Compressed Texture Image
+ * The bytes of a block depend on its texels and the quality alone. Blocks of one color are exact.
+ * Source: Khronos Data Format Specification 1.3, chapter "BPTC Compressed Texture Image
  * Formats".
  */
 void slc_encode_bc7(SluiceBakeQuality quality, const uint8_t (*rgba)[64], size_t count,

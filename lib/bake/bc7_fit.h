@@ -1,4 +1,4 @@
-/** Puts texels of SLC_LANES blocks between two ends that a mode of BC7 can store. */
+/** Fits texels of SLC_LANES blocks by two ends that a mode of BC7 can store. */
 #ifndef SLC_BAKE_BC7_FIT_H
 #define SLC_BAKE_BC7_FIT_H
 
@@ -6,12 +6,12 @@
 
 #include <stdbool.h>
 
-/** Lowest bits that the channels of one end (OWN) or of both ends (SHARED) have in common. */
+/** p bits: the lowest bit of all channels, per end (OWN) or of both ends (SHARED). */
 enum slc_p_bits { SLC_P_BITS_NONE, SLC_P_BITS_OWN, SLC_P_BITS_SHARED };
 
 /** How a mode stores ends and indices. */
 struct slc_bc7_precision {
-    int bits; ///< of a channel of an end, with the p bit
+    int bits; ///< per channel of an end, p bit included
     enum slc_p_bits p_bits;
     int index_count; ///< 4, 8 or 16
 };
@@ -22,13 +22,13 @@ struct slc_bc7_fit {
     slc_floats error; ///< sum of squares over texels and channels
 };
 
-/* The number that a code stands for. */
+/* Decodes a code to 0 to 255. */
 SLC_INLINE slc_floats slc_bc7_value(slc_ints code, int bits)
 {
     return slc_to_floats((code << (8 - bits)) | (code >> (2 * bits - 8)));
 }
 
-/* Nearest code with the p bit `p`; adds the square of the distance. */
+/* Returns the nearest code with the p bit `p`. Adds the squared distance to `error`. */
 SLC_INLINE slc_ints slc_bc7_code(slc_floats value, const struct slc_bc7_precision *precision, int p,
                                  slc_floats *error)
 {
@@ -70,14 +70,14 @@ SLC_INLINE void slc_bc7_quantize(const struct slc_fit_points *points,
     }
 }
 
-/* round(64 index / (count - 1)), as the format's tables of weights have it. */
+/* Returns round(64 index / (count - 1)), which equals the weight tables of the specification. */
 SLC_INLINE slc_floats slc_bc7_weight(slc_ints index, int count)
 {
     slc_floats scaled = slc_to_floats(index) * (64.0f / (float)(count - 1)) + 0.5f;
     return slc_to_floats(slc_to_ints(scaled));
 }
 
-/* Nearest indices and the error of what is decoded from them. */
+/* Finds the nearest indices and the error of the decoded block. */
 SLC_INLINE void slc_bc7_index(const struct slc_fit_points *points,
                               const struct slc_bc7_precision *precision, struct slc_bc7_fit *fit)
 {
@@ -110,7 +110,7 @@ SLC_INLINE void slc_bc7_index(const struct slc_fit_points *points,
     }
 }
 
-/* Ends of least squared error for the indices; those of before where all indices are the same. */
+/* Finds the ends with the least squared error. Ends stay as they are if all indices are equal. */
 SLC_INLINE void slc_bc7_solve(const struct slc_fit_points *points,
                               const struct slc_bc7_precision *precision,
                               const struct slc_bc7_fit *fit, slc_floats ends[2][4])
@@ -144,7 +144,7 @@ SLC_INLINE void slc_bc7_solve(const struct slc_fit_points *points,
 
 /**
  * Fits texels and improves the ends `rounds` times. p bits are 1 in lanes where `sets_p` is -1, so
- * that an alpha of 255 is stored as such.
+ * that alpha 255 is exact.
  */
 SLC_INLINE void slc_bc7_fit_points(const struct slc_fit_points *points,
                                    const struct slc_bc7_precision *precision, slc_ints sets_p,

@@ -71,7 +71,7 @@ void slc_bc7_try_mode_1(const struct slc_bc7_texels *texels, int rounds, int par
     }
 }
 
-/* Modes that store one channel apart: its fit and that of the other three. */
+/* Stores the two fits of modes 4 and 5, of three channels and of the separate one, if better. */
 static void take_two(const struct slc_bc7_fit *colors, const struct slc_bc7_fit *alpha,
                      const struct slc_bc7_block *kind, struct slc_bc7_block *blocks[SLC_LANES])
 {
@@ -91,7 +91,7 @@ static void take_two(const struct slc_bc7_fit *colors, const struct slc_bc7_fit 
     }
 }
 
-/* Channels of colors and of what is apart: a rotation swaps alpha with a color. */
+/* Separates one channel from three. `rotation` 1 to 3 swaps alpha with R, G or B. */
 static void split(const struct slc_bc7_texels *texels, int rotation, struct slc_fit_points *colors,
                   struct slc_fit_points *alpha)
 {
@@ -114,7 +114,7 @@ void slc_bc7_try_mode_4(const struct slc_bc7_texels *texels, int rounds, int rot
     const slc_ints none = {0};
     struct slc_bc7_block kind = {.mode = 4, .rotation = (uint8_t)rotation};
     split(texels, rotation, &colors, &alpha);
-    colors.channel_count = 3; /* known to be constant where it is used */
+    colors.channel_count = 3; /* a constant for the inlined fit */
     alpha.channel_count = 1;
     slc_bc7_fit_points(&colors, &color_4, none, rounds, &color_fit);
     slc_bc7_fit_points(&alpha, &alpha_8, none, rounds, &alpha_fit);

@@ -12,11 +12,14 @@ extern "C" {
 
 enum slc_astc_quality { SLC_ASTC_FAST, SLC_ASTC_MEDIUM, SLC_ASTC_THOROUGH };
 
-/** Tables for blocks of `extent` x `extent` texels; for one thread at a time. NULL: no memory. */
+/**
+ * Creates tables for blocks of `extent` x `extent` texels. NULL: no memory.
+ * Thread safety: one thread at a time.
+ */
 void *slc_astc_open(uint32_t extent, bool srgb, enum slc_astc_quality quality);
 void slc_astc_close(void *context);
 
-/** [height][width] RGBA bytes to `size` bytes of blocks. False: no memory. */
+/** Encodes [height][width] RGBA bytes to `size` bytes of blocks. Returns false without memory. */
 bool slc_astc_compress(void *context, uint8_t *rgba, uint32_t width, uint32_t height, void *blocks,
                        size_t size);
 

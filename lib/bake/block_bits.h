@@ -6,10 +6,10 @@
 
 struct slc_block_bits {
     uint64_t low, high;
-    uint32_t count; ///< written
+    uint32_t count; ///< bits written so far
 };
 
-/** `count` is 0 to 32; `value` has no other bits. */
+/** Appends the lowest `count` bits of `value`, 0 to 32. Its other bits must be 0. */
 static inline void slc_put_bits(struct slc_block_bits *bits, uint32_t value, uint32_t count)
 {
     if (bits->count < 64) {

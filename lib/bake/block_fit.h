@@ -11,10 +11,10 @@ struct slc_fit_points {
     const slc_floats *weights;     ///< [16]: 1 for texels that count, 0 for others; NULL: all 1
 };
 
-/** Inlined, so that counts and precision are constants. */
+/** Always inlined, so that the compiler sees counts and precision as constants. */
 #define SLC_INLINE static inline __attribute__((always_inline))
 
-/** Sums of products of channels, less those of the means. */
+/** Computes the covariance of the channels, times the number of texels. */
 SLC_INLINE void slc_fit_covariance(const struct slc_fit_points *points, slc_floats mean[4],
                                    slc_floats cov[4][4])
 {
@@ -38,7 +38,7 @@ SLC_INLINE void slc_fit_covariance(const struct slc_fit_points *points, slc_floa
     }
 }
 
-/** Power iteration from the column of the largest variance. */
+/** Finds the main axis by power iteration, from the column with the largest variance. */
 SLC_INLINE void slc_fit_axis(int count, slc_floats cov[4][4], int rounds, slc_floats axis[4])
 {
     slc_floats largest = cov[0][0], trace = cov[0][0];
@@ -64,7 +64,7 @@ SLC_INLINE void slc_fit_axis(int count, slc_floats cov[4][4], int rounds, slc_fl
     }
 }
 
-/** Where the outermost texels lie on the axis through the mean. */
+/** Finds the two ends: the outermost texels, projected on the axis through the mean. */
 SLC_INLINE void slc_fit_line(const struct slc_fit_points *points, slc_floats ends[2][4])
 {
     slc_floats mean[4], cov[4][4], axis[4];
@@ -89,7 +89,7 @@ SLC_INLINE void slc_fit_line(const struct slc_fit_points *points, slc_floats end
     for (int c = 0; c < count; c++) {
         slc_floats first = mean[c] + axis[c] * (low * inverse);
         slc_floats last = mean[c] + axis[c] * (high * inverse);
-        /* Where all texels are one color, rounding alone makes the axis, and it may overflow. */
+        /* If all texels are one color, the axis is rounding error and may overflow. */
         ends[0][c] = slc_select(first - first == 0.0f, first, mean[c]);
         ends[1][c] = slc_select(last - last == 0.0f, last, mean[c]);
     }

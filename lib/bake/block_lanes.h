@@ -1,8 +1,8 @@
 /**
  * Arithmetic on SLC_LANES blocks at a time: lane l of every vector belongs to block l.
  *
- * Lanes never mix, every operation is one of IEEE 754, and nothing is reordered. So a block encodes
- * to the same bytes on every machine, with every compiler, and beside any other blocks.
+ * Lanes never mix, every operation is one of IEEE 754, and nothing is reordered. So the bytes of a
+ * block do not depend on the machine, the compiler or the blocks in other lanes.
  */
 #ifndef SLC_BAKE_BLOCK_LANES_H
 #define SLC_BAKE_BLOCK_LANES_H
@@ -21,7 +21,7 @@ static inline slc_floats slc_all(float value)
     return (slc_floats){0} + value;
 }
 
-/** Lanes of `a` where `mask` is -1, of `b` where it is 0. */
+/** Returns the lanes of `a` where `mask` is -1, and of `b` where it is 0. */
 static inline slc_floats slc_select(slc_ints mask, slc_floats a, slc_floats b)
 {
     return (slc_floats)((mask & (slc_ints)a) | (~mask & (slc_ints)b));

@@ -20,7 +20,8 @@ static const uint16_t slc_partitions[SLC_PARTITION_COUNT] = {
 };
 
 /**
- * Texel of region 1 whose index has no highest bit in the block. That of region 0 is texel 0.
+ * Anchor of region 1: the texel whose index is stored without its highest bit. The anchor of region
+ * 0 is texel 0.
  * Source: the same specification, table "BPTC anchor index values for the second subset".
  */
 static const uint8_t slc_partition_anchors[SLC_PARTITION_COUNT] = {

@@ -10,7 +10,7 @@ struct moments {
     slc_floats count, sums[9];
 };
 
-/* Sum of squared distances from the line that fits best. */
+/* Returns the sum of squared distances from the best line. */
 static slc_floats line_error(const struct moments *m)
 {
     static const int at[3][3] = {{3, 4, 5}, {4, 6, 7}, {5, 7, 8}};

@@ -67,13 +67,14 @@ SluiceFormat slc_block_texel_format(SluiceFormat format)
                                              : SLUICE_FORMAT_R8G8B8A8_UNORM;
 }
 
-/* Blocks of texels: bytes or halves. */
+/* Texels of RUN blocks. */
 union run {
     uint8_t bytes[RUN][64];
     uint16_t halves[RUN][64];
 };
 
-/* Bit 4 y + x of the mask: the texel is inside. Those outside repeat the last one inside. */
+/* Copies a block. Texels outside repeat the last one inside. Bit 4 y + x of the returned mask: the
+ * texel is inside. */
 static uint32_t load_block(const char *texels, size_t texel_size, size_t pitch, uint32_t width,
                            uint32_t height, char *block)
 {
@@ -145,7 +146,7 @@ static void encode_run(const struct encoding *encoding, SluiceBakeQuality qualit
     }
 }
 
-/* All blocks in one call. */
+/* Encodes all blocks in one call of astcenc. */
 static SluiceResult encode_astc(const struct slc_block_encoder *encoder, const void *texels,
                                 size_t pitch, uint32_t width, uint32_t height, void *blocks)
 {

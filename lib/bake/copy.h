@@ -21,7 +21,7 @@ struct slc_copy {
 /** Bytes that slc_copy_run allocates. */
 uint64_t slc_copy_memory(const SluiceStoreLayout *layout, uint32_t thread_count);
 
-/** Errors: what reading and writing say; CANCELED; OUT_OF_HOST_MEMORY. */
+/** Errors: those of reading and writing; CANCELED; OUT_OF_HOST_MEMORY. */
 SluiceResult slc_copy_run(struct slc_copy *copy);
 
 #endif /* SLC_BAKE_COPY_H */

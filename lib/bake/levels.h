@@ -28,13 +28,15 @@ struct slc_baking {
 uint64_t slc_baking_memory(const struct slc_picture *picture, const struct slc_plan *plan,
                            const SluiceStoreLayout *layout);
 
-/** What is set: allocator, picture, astc, plan, user, progress. Errors: OUT_OF_HOST_MEMORY; finish
- * it then, too. */
+/**
+ * Initializes the other fields. Set allocator, picture, astc, plan, user and progress first. Finish
+ * it even after an error. Errors: OUT_OF_HOST_MEMORY.
+ */
 SluiceResult slc_baking_init(struct slc_baking *baking, struct slc_bake_jobs *jobs,
                              const SluiceStoreLayout *layout);
 void slc_baking_finish(struct slc_baking *baking);
 
-/** All levels into the writer. Errors: what reading and writing say; CANCELED. */
+/** Writes all levels. Errors: those of reading and writing; CANCELED. */
 SluiceResult slc_baking_run(struct slc_baking *baking, SluiceStoreWriter *writer);
 
 #endif /* SLC_BAKE_LEVELS_H */

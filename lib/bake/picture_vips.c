@@ -39,8 +39,8 @@ static SluiceResult unsupported(const struct vips_picture *picture, const char *
     return SLUICE_ERROR_UNSUPPORTED;
 }
 
-/* Takes the place of the image it is made from. `made` is a pointer, because it is set in the
- * argument before it. */
+/* Replaces an image by the one made from it. `made` is a pointer because the call in the argument
+ * before sets it. */
 static bool replace(VipsImage **image, int status, VipsImage *const *made)
 {
     if (status != 0)
@@ -81,7 +81,8 @@ static bool convert(VipsImage **image, bool *was_short)
     return is_kept || replace(image, vips_cast_float(*image, &made, NULL), &made);
 }
 
-/* Turns the picture as its EXIF tag says, for which it is read again, not from top to bottom. */
+/* Turns the picture as its EXIF tag says. It is opened again, because turning reads in any order.
+ */
 static bool turn(struct vips_picture *picture)
 {
     VipsImage *made = NULL;

@@ -57,7 +57,7 @@ static SluiceFormat natural_format(const struct slc_picture *picture, bool norma
                      : SLUICE_FORMAT_R32G32B32A32_SFLOAT;
 }
 
-/* Of texels in memory, which blocks are made from. */
+/* Returns the format of texels in memory: those of `format`, or those that blocks are made from. */
 static SluiceFormat texel_format(SluiceFormat format, bool srgb)
 {
     SluiceFormatInfo info = {.structSize = sizeof info};

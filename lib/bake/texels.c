@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What colors count where alpha is 0. */
+/* Weight of colors with alpha 0. */
 #define LEAST_WEIGHT 0x1p-24f
 /* What is divided by at least where alpha may ring. */
 #define LEAST_RINGING 0x1p-10f
@@ -60,7 +60,7 @@ static float color_value(const struct slc_rules *rules, const char *sample)
     return isinf(decoded) && isfinite(value) ? FLT_MAX : decoded;
 }
 
-/* Gray stands for R, G and B. */
+/* Converts samples to RGBA floats. Gray becomes R, G and B. */
 static void expand(const struct slc_rules *rules, const char *samples, float *rgba, uint32_t count)
 {
     uint32_t size = slc_sample_size(rules->sample), channels = rules->channels;

@@ -48,7 +48,7 @@ void slc_read_texels(const struct slc_rules *rules, const void *samples, float *
 void slc_write_texels(const struct slc_rules *rules, const float *rgba, float alpha_scale,
                       void *texels, uint32_t count);
 
-/** Whether samples are stored as they are, but for a missing A: integers. */
+/** Whether level 0 stores the samples unchanged: integers. A missing alpha is added. */
 bool slc_keeps_samples(const struct slc_rules *rules);
 
 /** Texels of samples that are kept. */

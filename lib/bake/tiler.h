@@ -44,8 +44,8 @@ struct slc_tiler {
     SluiceAllocationCallbacks allocator;
     struct slc_bake_jobs *jobs;
     SluiceStoreLayout layout;
-    SluiceFormat texel_format;        ///< of rows: the layout's, or what blocks are made from
-    struct slc_block_encoder encoder; ///< of blocks; set after init
+    SluiceFormat texel_format; ///< texels in rows: the layout's format, or the encoder's input
+    struct slc_block_encoder encoder; ///< set it after init
     SluiceStoreWriter *writer;
     SluiceResult result;       ///< the first failure; under the pool's mutex
     uint64_t found_tile_count; ///< written by an earlier run; under the pool's mutex

@@ -172,8 +172,8 @@ SluiceResult sluiceUpdateWithSamplerFeedback(SluiceStreamedTextureManager *manag
         return slc_refuse_locked(manager, __func__);
     const SluiceFeedbackDesc *feedback = pFeedback;
     SluiceFeedbackDesc given;
-    /* No copy if the size is right: the caller has just written the fields one by one, and to read
-     * several at once then takes longer than all other work on an unchanged map. */
+    /* No copy if the size is right. The caller has just written the fields one by one, so a copy
+     * with wide loads would wait for all these stores: longer than the work on an unchanged map. */
     if (feedback && feedback->structSize != sizeof given) {
         SluiceResult result =
             slc_struct_read(SLC_STRUCT(SluiceFeedbackDesc), &given, feedback, &manager->info.log);

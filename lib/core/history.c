@@ -305,7 +305,7 @@ struct now {
     uint32_t needed;  ///< maps to believe
 };
 
-/** Expires what is too old and believed to be gone. */
+/** Expires requests that timed out and that enough newer maps missed. */
 static void lapse(struct slc_managed_texture *t, const struct now *now, struct slc_range *changed)
 {
     struct slc_history *h = t->history;

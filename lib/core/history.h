@@ -11,7 +11,7 @@ static inline size_t slc_region_count(const struct slc_managed_texture *t)
 
 /** Whether the texture's last map asks for the tile; packed tiles always are. */
 bool slc_is_asked_for(const slc_manager *m, uint32_t node);
-/** The same for a regular tile or one of its neighbors: chance hides one, not all of them. */
+/** Whether the last map asks for a regular tile or a neighbor: chance rarely hides all of them. */
 bool slc_is_seen(const slc_manager *m, uint32_t node);
 
 /** Destroys the state if it says no more than none does. */

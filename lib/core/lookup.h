@@ -6,7 +6,7 @@
 
 SluiceResult slc_find_texture(const slc_manager *m, SluiceTextureId id,
                               struct slc_managed_texture **out);
-/** SLUICE_ALL_TEXTURES gives NULL. SLUICE_NO_TEXTURE is refused, in the name of `function`. */
+/** Finds one texture, or NULL for SLUICE_ALL_TEXTURES. Refuses SLUICE_NO_TEXTURE and logs why. */
 SluiceResult slc_find_scope(const slc_manager *m, const char *function, SluiceTextureId id,
                             struct slc_managed_texture **out);
 

@@ -4,14 +4,14 @@
 
 #include "core/state.h"
 
-/** Logs a message that begins with the name of the function. Returns INVALID_ARGUMENT. */
+/** Logs "FUNCTION: message". Returns INVALID_ARGUMENT. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
 SluiceResult
 slc_refuse(const slc_manager *m, const char *function, const char *format, ...);
 
-/** For calls that only the owner of a locked manager makes. */
+/** Refuses a call that only the owner of a locked manager may make. */
 SluiceResult slc_refuse_locked(const slc_manager *m, const char *function);
 
 #endif /* SLC_CORE_REFUSAL_H */

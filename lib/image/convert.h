@@ -1,9 +1,9 @@
 /**
  * Texels of any format that is not compressed from and to linear RGBA floats.
  *
- * Towards half, values saturate at +-65504; towards 8, 10 and 16 bits they are clamped to [0, 1]
- * and rounded to nearest, sRGB formats encode R, G and B; small floats as small_float.h says; in
- * all NaN becomes 0. Towards 32-bit float nothing changes.
+ * Halves saturate at +-65504. Integers of 8, 10 and 16 bits are clamped to [0, 1] and rounded to
+ * nearest; sRGB formats encode R, G and B. small_float.h has the rules of small floats. NaN becomes
+ * 0 in all of these. 32-bit floats are stored unchanged.
  */
 #ifndef SLC_IMAGE_CONVERT_H
 #define SLC_IMAGE_CONVERT_H

@@ -63,7 +63,7 @@ static const struct format formats[SLUICE_FORMAT_COUNT] = {
     BLOCKS_OF(ASTC_8x8_SRGB, 8, 16, 4),
 };
 
-/* Formats that differ in whether they hold sRGB. */
+/* Pairs of formats that differ only in the transfer function: linear, sRGB. */
 static const SluiceFormat twins[][2] = {
     {SLUICE_FORMAT_R8G8B8A8_UNORM, SLUICE_FORMAT_R8G8B8A8_SRGB},
     {SLUICE_FORMAT_BC1_RGB_UNORM_BLOCK, SLUICE_FORMAT_BC1_RGB_SRGB_BLOCK},

@@ -31,14 +31,14 @@ static inline bool slc_format_is_packed(SluiceFormat format)
            format == SLUICE_FORMAT_E5B9G9R9_UFLOAT_PACK32;
 }
 
-/** Integers of 16 bits from 0 to 1. */
+/** Whether channels are 16-bit UNORM. */
 static inline bool slc_format_is_unorm16(SluiceFormat format)
 {
     return format == SLUICE_FORMAT_R16_UNORM || format == SLUICE_FORMAT_R16G16_UNORM ||
            format == SLUICE_FORMAT_R16G16B16A16_UNORM;
 }
 
-/** The format of the same bytes that holds sRGB, or that does not; itself where there is none. */
+/** Returns the sRGB or the linear format with the same bytes; `format` itself if there is none. */
 SluiceFormat slc_format_twin(SluiceFormat format, bool srgb);
 bool slc_format_has_srgb_twin(SluiceFormat format);
 bool slc_format_is_srgb(SluiceFormat format);

@@ -24,7 +24,7 @@ struct slc_read_pool {
     SluiceTileLoader *turn;    ///< which starts the next read if it can
     bool stopping;
     uint32_t waiting_count;  ///< threads that wait for `work`
-    uint32_t signaled_count; ///< of which so many were told, and have not woken yet
+    uint32_t signaled_count; ///< of these, threads that were signaled and have not woken yet
     uint32_t thread_count;
     pthread_t *threads;
 };

@@ -1,4 +1,4 @@
-/** What a loader counts, of a source or of all. Not synchronized. */
+/** Statistics of one source, or of all sources of a loader. Not synchronized. */
 #ifndef SLC_IMAGE_READ_STATISTICS_H
 #define SLC_IMAGE_READ_STATISTICS_H
 

@@ -34,8 +34,8 @@ uint32_t slc_call_fields(uint32_t kind)
     return kind < sizeof fields / sizeof *fields ? fields[kind] : 0;
 }
 
-/* Recordings hold 0 for all textures, as they did when 0 was the value. So SLUICE_ALL_TEXTURES and
- * SLUICE_NO_TEXTURE change places, on the way in and on the way out, in calls that take both. */
+/* Swaps SLUICE_ALL_TEXTURES and SLUICE_NO_TEXTURE in calls that take both, when writing and when
+ * reading: recordings hold 0 for all textures, which SLUICE_ALL_TEXTURES was before. */
 static SluiceTextureId swap_all(uint32_t kind, SluiceTextureId id)
 {
     switch (kind) {

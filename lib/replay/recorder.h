@@ -34,9 +34,11 @@ struct SluiceRecorder {
 /** NULL without memory. */
 SluiceRecorder *slc_recorder_create(const SluiceAllocationCallbacks *cb, void *source,
                                     void (*stop)(void *source));
-/** Reads what a recording to a file is begun with. `name` is what is recorded, and `used`: it was
- *  used before, so that a trace could not be played. Errors, with a message: INVALID_ARGUMENT;
- *  those of slc_struct_read. */
+/**
+ * Reads and checks the info of a recording to a file. `name` is the recorded object, for messages.
+ * `used`: the object was used before, so that its trace could not be played.
+ * Errors, with a message: INVALID_ARGUMENT; those of slc_struct_read.
+ */
 SluiceResult slc_recorder_read_info(const SluiceFileRecordingInfo *given, const char *name,
                                     bool used, SluiceFileRecordingInfo *info);
 /** The file becomes the writer. After an error the recorder is gone. */

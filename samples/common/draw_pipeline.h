@@ -1,4 +1,4 @@
-/** A graphics pipeline as the samples draw: triangles, opaque, the nearest one wins. */
+/** A graphics pipeline for the samples: opaque triangles with a depth test. */
 #ifndef SAMPLES_COMMON_DRAW_PIPELINE_H
 #define SAMPLES_COMMON_DRAW_PIPELINE_H
 
@@ -11,10 +11,10 @@ struct draw_pipeline_info {
     VkShaderModule vertex, fragment;
     const VkPipelineVertexInputStateCreateInfo *input; ///< NULL: the vertex shader reads none
     VkCullModeFlags culled;
-    bool no_color; ///< only depth is written, and what the shader writes to buffers
+    bool no_color; ///< writes depth, and buffers of the shader, but no color
 };
 
-/** Says on stderr why it failed. */
+/** Creates the pipeline. If it returns false, it has printed why on stderr. */
 bool draw_pipeline_create(const struct gpu *gpu, const struct draw_pipeline_info *info,
                           VkPipeline *pipeline);
 

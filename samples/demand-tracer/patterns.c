@@ -19,7 +19,7 @@ static void scale(float rgb[3], float factor)
         rgb[i] = noise_clamp(rgb[i] * factor, 0.0f, 1.0f);
 }
 
-/** What a field of the three colors looks like from afar, where fields of it are chosen evenly. */
+/** Mixes in a field's mean color, as seen from afar; the three colors are chosen evenly. */
 static void mix_mean(const struct pattern *p, float rgb[3], float share)
 {
     for (int i = 0; i < 3; i++) {

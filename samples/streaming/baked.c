@@ -51,7 +51,7 @@ static char *store_path(const char *picture, const char *cache)
     return path;
 }
 
-/** Of photographs and drawings colors are sRGB, also gray ones; others hold light itself. */
+/** Chooses sRGB for photographs and drawings, also gray ones, and linear light for HDR files. */
 static SluiceResult choose_settings(const struct picture_path *picture, enum pixel_format pixels,
                                     SluiceBakeSettings *settings)
 {

@@ -53,7 +53,7 @@ static bool create_context(struct view *view)
         .loaderThreadCount = view->request.settings->threads,
         .maxPageChunkCount = GALLERY_PAGE_CHUNKS,
     };
-    if (view->slowness.on) /* what is on its way is asked for once more, then in the next frame */
+    if (view->slowness.on) /* two attempts per read; later frames request the tile again */
         info.readRetry = (SluiceTileRetryPolicy){2, 1000000, 1000000};
     return check(sluiceCreateVulkanContext(&info, &view->context), "sluiceCreateVulkanContext");
 }

@@ -1,11 +1,11 @@
 /*
- * The texture: how many steps a point of the plane takes to leave the Mandelbrot set. In whole
- * numbers, so that every device gives every texel the same byte.
+ * The texture: how many steps a point of the plane takes to leave the Mandelbrot set. Computed in
+ * integers, so that every device gives every texel the same byte.
  */
 
-#define FRACTAL_ONE 28 /* bits behind the point: numbers are below 8 */
+#define FRACTAL_ONE 28 /* bits behind the binary point: numbers are below 8 */
 
-/* a * b, both below 8 and the product, too. */
+/* Returns a * b. Both factors and the product must be below 8. */
 int multiply(int a, int b)
 {
     int high, low;
@@ -13,10 +13,11 @@ int multiply(int a, int b)
     return int(uint(high) << (32 - FRACTAL_ONE) | uint(low) >> FRACTAL_ONE);
 }
 
-/* Of the center of texel (x, y) of a level of 2^bits x 2^bits texels; the texture is 3 x 3 wide. */
+/* Returns the steps of the center of a texel, in a level of 2^bits x 2^bits texels. The texture is 3
+ * by 3 units of the plane. */
 uint fractalSteps(uint bits, uvec2 texel)
 {
-    int halfTexel = (3 << (FRACTAL_ONE - 1 - 20)) << (20 - int(bits)); /* of a texel */
+    int halfTexel = (3 << (FRACTAL_ONE - 1 - 20)) << (20 - int(bits)); /* half the width of a texel */
     ivec2 corner = ivec2(9 << (FRACTAL_ONE - 2), 6 << (FRACTAL_ONE - 2)); /* (2.25, 1.5) */
     ivec2 c = ivec2(2u * texel + 1u) * halfTexel - corner;
     int x = 0, y = 0;

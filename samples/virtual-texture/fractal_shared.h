@@ -1,4 +1,4 @@
-/* What C and the shaders of virtual-texture share. */
+/* Structs and constants that C and the shaders of virtual-texture share. */
 #ifndef FRACTAL_SHARED_H
 #define FRACTAL_SHARED_H
 
@@ -11,7 +11,7 @@
 #define FRACTAL_GROUP 8u
 #define FRACTAL_MOST_STEPS 255u /* a texel is a byte */
 
-/* Texels to be made, and where they go. */
+/* A tile: its texels in the texture, and where to write them. */
 struct FractalTile {
     uint level;
     uint x, y;
@@ -23,26 +23,26 @@ SLUICE_SHARED_SIZE(struct FractalTile, 32)
 /* Push constants of make.comp. */
 struct FractalMake {
     uint firstTile;
-    uint sizeLog2; /* of the texture */
+    uint sizeLog2; /* log2 of the width of the texture */
 };
 SLUICE_SHARED_SIZE(struct FractalMake, 8)
 
 /* Push constants of view.comp. */
 struct FractalView {
-    float centerX, centerY; /* 0 to 1 */
-    float scale;            /* of a pixel, in the same unit */
+    float centerX, centerY; /* in texture coordinates, 0 to 1 */
+    float scale;            /* width of a pixel, in texture coordinates */
     uint width, height;     /* pixels */
     uint tableIndex;
     uint sizeLog2;
-    uint compares; /* counts texels that are not what the function gives */
+    uint compares; /* not 0: compares each texel with the function */
 };
 SLUICE_SHARED_SIZE(struct FractalView, 32)
 
 struct FractalCounts {
     uint compared; /* texels */
     uint wrong;
-    uint coarse; /* pixels that show a coarser level than they want */
-    uint finest; /* level that a pixel shows */
+    uint coarse; /* pixels that show a coarser level than requested */
+    uint finest; /* finest level that a pixel shows */
 };
 SLUICE_SHARED_SIZE(struct FractalCounts, 16)
 

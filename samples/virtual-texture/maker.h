@@ -1,12 +1,11 @@
-/** The producer of the texture: a compute shader that writes tiles where the streamer wants them.
- */
+/** The producer of the texture: a compute shader writes the tiles that the streamer asks for. */
 #ifndef SAMPLES_VIRTUAL_TEXTURE_MAKER_H
 #define SAMPLES_VIRTUAL_TEXTURE_MAKER_H
 
 #include "../../tools/common/gpu.h"
 
-#define MAKER_SETS 64u    /* batches of a frame; further ones wait for the next frame */
-#define MAKER_TILES 4096u /* of a frame */
+#define MAKER_SETS 64u    /* batches per frame; further ones wait for the next frame */
+#define MAKER_TILES 4096u /* tiles per frame */
 
 struct maker {
     const struct gpu *gpu; ///< NULL: not created
@@ -23,7 +22,7 @@ struct maker {
 bool maker_create(struct maker *maker, const struct gpu *gpu, uint32_t size_log2);
 void maker_destroy(struct maker *maker);
 
-/** The frame before is complete: what it used may be used again. */
+/** Reuses sets and tile records. Call it when the previous frame is complete. */
 void maker_begin_frame(struct maker *maker);
 
 /** SluiceTileProducer.pfnRecordTiles; the user data is the maker. */

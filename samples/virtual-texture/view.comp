@@ -24,7 +24,7 @@ vec3 paletteColor(float steps)
     return 0.5 + 0.5 * cos(6.2831853 * (sqrt(steps / 255.0) * 2.0 + vec3(0.55, 0.45, 0.3)));
 }
 
-/* The texel of the level that is shown here, and the one that the function gives. */
+/* Compares the texel shown here with the value of the function. */
 void compareTexel(vec2 uv, vec2 dx, vec2 dy)
 {
     SluiceSampling s = sluiceResolveSampling(view.tableIndex, uv, dx, dy, 0.0, 1.0);

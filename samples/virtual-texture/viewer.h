@@ -17,7 +17,7 @@ struct viewer {
     VkCommandBuffer commands;
 };
 
-/** `streamer_layout` is that of the frames' sets. */
+/** `streamer_layout` is the layout of the streamer's descriptor sets. */
 bool viewer_create(struct viewer *viewer, const struct gpu *gpu, uint32_t width, uint32_t height,
                    VkDescriptorSetLayout streamer_layout);
 void viewer_destroy(struct viewer *viewer);
@@ -25,7 +25,7 @@ void viewer_destroy(struct viewer *viewer);
 void viewer_record(const struct viewer *viewer, VkDescriptorSet frame_set,
                    const struct FractalView *view);
 
-/** Of the last frame that compared. */
+/** Returns the counts of the last frame that compared. */
 static inline struct FractalCounts *viewer_counts(const struct viewer *viewer)
 {
     return (struct FractalCounts *)viewer->counts.mapped;

@@ -69,7 +69,7 @@ import_circles() {
     done
 }
 
-# Names that files share may be seen by every file of lib. Names without the prefix belong to one file.
+# Names with the prefix are unique in lib, and so are names of files. Other names belong to one file.
 names_in_two_places() {
     files 'lib/*.c' 'lib/*.h' |
         xargs grep -H -o -E '^((struct|enum|union) slc_[a-z0-9_]+ \{|#define SLC_[A-Za-z0-9_]+)' |
@@ -95,7 +95,7 @@ search '\b(s?rand(om)?|rand_r|s?[delmnj]rand48|arc4random(_uniform|_buf)?)[[:bla
 
 import_circles residency core demand vulkan demand_vulkan | report files_of_a_folder_do_not_import_in_circles
 
-# Words that the field has others for: retire, evict, restore. CHANGELOG.md may name what was.
+# Words for which the field says retire, evict and restore. CHANGELOG.md may hold old names.
 search '\b(bur[y]|burie[ds]|exhum[e]|ghos[t]s?|displac(e[ds]?|ing))\b' "${text[@]}" |
     grep -v '^CHANGELOG.md:' | report memory_is_retired_and_tiles_are_evicted
 

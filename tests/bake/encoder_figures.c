@@ -1,11 +1,11 @@
 /*
  * PSNR and Mpixel/s of block encoders on pictures: one JSON object per picture, format and quality.
  *
- *     build/tests/bake/encoder_figures FORMAT[,FORMAT...] PICTURE...
+ *     BUILD/tests/bake/encoder_figures FORMAT[,FORMAT...] PICTURE...
  *
- * Time is the processor's, of one thread and the encoder alone. PSNR of bytes is that of R, G and
- * B, and of A where there is one. BC6H has the root mean square of steps between halves, and the
- * PSNR of colors clamped to [0, 1] and encoded as sRGB.
+ * mpixel_per_s is processor time of one thread in the encoder, not wall time. psnr is over R, G and
+ * B, and A if the picture has it; for BC6H, over colors clamped to [0, 1] and encoded as sRGB.
+ * rms_steps, for BC6H alone, is the root mean square of steps between halves.
  */
 #define _XOPEN_SOURCE 700
 
@@ -34,7 +34,7 @@
 static const struct {
     const char *name;
     SluiceFormat format;
-    int squish; ///< kind of squish_back; -1: not of libsquish
+    int squish; ///< kind for squish_back; -1: another decoder
 } formats[] = {
     {"bc1", SLUICE_FORMAT_BC1_RGBA_UNORM_BLOCK, 0},
     {"bc3", SLUICE_FORMAT_BC3_UNORM_BLOCK, 1},
@@ -115,7 +115,7 @@ static int steps_of(uint16_t half)
     return half & 0x8000 ? -(half & 0x7fff) : half;
 }
 
-/* Sums of squared errors: of bytes or of sRGB, and of steps between halves. */
+/* Sums of squared errors: in bytes or sRGB, and in steps between halves. */
 struct errors {
     double bytes, steps;
 };
@@ -155,7 +155,7 @@ static void add_errors(const struct texels *texels, int squish, const uint8_t *b
     }
 }
 
-/* Through astcenc's own decoder. */
+/* Adds the errors of ASTC blocks, as astcenc's decoder decodes them. */
 static void add_astc_errors(const struct texels *texels, uint32_t extent, uint8_t *blocks,
                             size_t size, struct errors *errors)
 {

@@ -21,7 +21,7 @@ static uint32_t next_random(uint32_t *random)
     return *random >> 16;
 }
 
-/* Two colors with a gradient or an edge between them, near or far from each other. */
+/* Two colors, near or far from each other, with a gradient or an edge between them. */
 static void make_block(uint32_t number, bool is_signed, uint16_t rgba[64])
 {
     uint32_t random = number * 2654435761u + 777u, shape = next_random(&random);
@@ -61,7 +61,7 @@ static uint64_t hash_of(const uint8_t *bytes, size_t count)
     return hash;
 }
 
-/* Mean over blocks of the error in steps, relative to the block's range of them. */
+/* Returns the mean over blocks of the error, relative to the range of the block. Both in steps. */
 static double relative_error(const uint16_t texels[64], const uint16_t rgb[48])
 {
     double sum = 0, range = 1;

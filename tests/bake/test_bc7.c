@@ -56,7 +56,7 @@ static double square_error(const uint8_t *a, const uint8_t *b, size_t count)
     return sum;
 }
 
-/* FNV-1a: the same number says that every byte is the same. */
+/* FNV-1a. Equal hashes stand for equal bytes. */
 static uint64_t hash_of(const uint8_t *bytes, size_t count)
 {
     uint64_t hash = 14695981039346656037u;

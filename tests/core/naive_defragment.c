@@ -92,7 +92,7 @@ static bool has_packed_tile(const struct naive_manager *n, const struct naive_he
     return false;
 }
 
-/* The one with the fewest tiles, of equals the last one; NULL if none can be evacuated. */
+/* Returns the heap with the fewest tiles, the last one of equals; NULL if none can be evacuated. */
 static const struct naive_heap *heap_to_evacuate(const struct naive_manager *n)
 {
     const struct naive_heap *best = NULL;

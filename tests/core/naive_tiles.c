@@ -144,7 +144,7 @@ void naive_become_unwanted(struct naive_manager *n, struct naive_tile *tile)
         break;
     case SLUICE_TILE_STATE_MAPPED: naive_stand_by(n, tile); break;
     case SLUICE_TILE_STATE_CANCELED: break;
-    case SLUICE_TILE_STATE_STANDBY: /* a evicted one stays listed */
+    case SLUICE_TILE_STATE_STANDBY: /* an evicted one stays listed */
         n->events[NAIVE_EVICTED_UNWANTED]++;
         break;
     case SLUICE_TILE_STATE_FREE: abort(); /* it was not wanted */

@@ -49,7 +49,7 @@ static void count_levels(const struct run *r, uint32_t counts[SLUICE_MAX_MIP_LEV
                 counts[fixture_tile(&r->f, r->ids[i], tile).mipLevel]++;
 }
 
-/* What is evicted for the last texture must not go to the first one, and again the next frame. */
+/* Slots that were evicted for the last texture must not go to the first one, frame after frame. */
 static void a_still_picture_ends_all_uploads_and_is_that_of_calls_for_all(void **state)
 {
     (void)state;

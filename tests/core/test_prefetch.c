@@ -29,7 +29,7 @@ static void check_totals(void)
     assert_int_equal(now.unmappedTotal, s.unmapped);
 }
 
-/* What a list holds beside what was requested is CANCELED at once: no one waits for it. */
+/* Counts the tiles of the list that were not requested: they are CANCELED at once. */
 static uint32_t prefetched(void)
 {
     uint32_t count = 0;

@@ -227,8 +227,8 @@ static void request_bytes(struct scene *scene, uint32_t first, uint32_t count, u
                            .page = first + i, .class_index = 2, .rank = 4, .kind = kind});
 }
 
-/* Byte pages of two sizes in slabs of four places: many of one size go for one of the other, and
- * one comes back unread. */
+/* Byte pages of two sizes in slabs of four places. A whole slab of one size is evicted for a page
+ * of the other size, and one page comes back without a read. */
 static void play_bytes(struct scene *scene)
 {
     const struct slc_page_memory memory = fake_page_memory(&scene->byte_memory);
@@ -256,8 +256,8 @@ static void play_bytes(struct scene *scene)
     show(scene);
 }
 
-/* Pages that the application answers late, takes back, never answers; and sets, pinned or not,
- * before they are missed. */
+/* Pages without a callback: answered late, never answered, and taken back. Two more pages, one of
+ * them pinned, are set before they are missed. */
 static void play_answers(struct scene *scene)
 {
     const struct slc_page_request pinned = {.page = 500, .class_index = 1, .pinned = 1};

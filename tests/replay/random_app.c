@@ -9,8 +9,8 @@
 #define LIST_ROOM 64
 #define MAP_ROOM 4096
 
-/* Draws stand in statements of their own: compilers differ in the order in which they evaluate
- * arguments and initializers. */
+/* Every random number is drawn in a statement of its own: C leaves the order open in which
+ * arguments and initializers are evaluated. */
 static uint32_t random_bits(struct random_app *app)
 {
     app->seed = app->seed * 6364136223846793005u + 1442695040888963407u;

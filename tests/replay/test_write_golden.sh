@@ -1,6 +1,6 @@
 #!/bin/sh
 # test_write_golden.sh WRITE_GOLDEN DATA: the recordings in DATA are what the program writes, in TAP.
-# So a change of the program or of the format cannot be forgotten in them.
+# So nobody can change the program or the format and forget the recordings.
 write_golden=$1
 data=$2
 n=0

@@ -29,7 +29,7 @@ struct option option_validation(bool *validation);
 /* What a program does. */
 struct option option_seed(uint32_t *seed);
 struct option option_json(bool *json);
-/** `known`: what there is, with commas between. See chosen_names.h. */
+/** `known`: all names, with commas between. See chosen_names.h. */
 struct option option_only(const char **only, const char *known);
 
 #endif /* TOOLS_COMMON_SHARED_OPTIONS_H */

@@ -109,7 +109,7 @@ static bool parse_cutout(const char *text, void *value)
     return end != text && *end == '\0' && *cutout > 0.0f && *cutout <= 1.0f;
 }
 
-/* Pictures cannot be written; a folder may have such a name. */
+/* sluice-bake cannot write pictures. A folder may be named like one. */
 static bool is_named_as_picture(const char *output)
 {
     struct stat status;

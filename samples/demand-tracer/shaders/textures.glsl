@@ -1,5 +1,5 @@
-/* Sampling on demand, with the library's descriptor set at 0. notes.glsl, which only --needs wants,
- * looks at the words that are read on the way. */
+/* Sampling on demand, with the library's descriptor set at 0. notes.glsl, for --needs alone, notes
+ * the words that sampling reads. */
 #ifndef TRACER_TEXTURES_GLSL
 #define TRACER_TEXTURES_GLSL
 

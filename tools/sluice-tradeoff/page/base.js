@@ -128,7 +128,7 @@ const varied = sweep.settings.map((setting, i) => i).filter(i => points.some((p,
   return d.length === 1 && d[0] === i;
 }));
 
-/** What a point's color and shape stand for: the one setting that differs, several, or none. */
+/** Returns the group of a point, for color and shape: the one setting that differs, 'several' or 'base'. */
 function groupOf(index) {
   const d = differences(index);
   return d.length === 0 ? 'base' : d.length > 1 ? 'several' : d[0];
