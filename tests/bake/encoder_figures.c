@@ -14,6 +14,8 @@
 #include "bake/plan.h"
 #include "support/bptc_decode.h"
 
+#include "../../tools/common/chosen_names.h"
+
 #include "base/alloc.h"
 #include "image/half.h"
 #ifdef HAVE_SQUISH
@@ -222,10 +224,7 @@ int main(int argc, char **argv)
     for (int a = 2; a < argc; a++)
         for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
             struct texels texels;
-            char list[256], name[32];
-            snprintf(list, sizeof list, ",%s,", argv[1]);
-            snprintf(name, sizeof name, ",%s,", formats[f].name);
-            if (!strstr(list, name) || !slc_can_encode_blocks(formats[f].format))
+            if (!names_have(argv[1], formats[f].name) || !slc_can_encode_blocks(formats[f].format))
                 continue;
             if (!load(argv[a], formats[f].format, &texels)) {
                 fprintf(stderr, "encoder_figures: %s cannot be read\n", argv[a]);
