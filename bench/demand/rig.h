@@ -19,7 +19,7 @@ struct bench {
     uint32_t columns;      ///< columns x columns textures
     uint32_t threads;      ///< that load; 0: as the library does
     uint64_t min_staging_size;
-    bool wall; ///< time stamps are no use
+    bool wall; ///< measures wall time: time stamps are unusable
 };
 
 /** Says on stderr what it is about, and returns false unless `result` is a success or news. */

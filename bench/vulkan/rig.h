@@ -17,7 +17,7 @@ struct rig_info {
     const struct bench *bench;
     /** Handles are filled in, and pfnGetInstanceProcAddr if it is NULL. */
     SluiceVulkanContextCreateInfo context;
-    /** Fields that are not zero; the context is filled in. */
+    /** Set fields that shall differ from their defaults. The rig sets `context`. */
     SluiceVulkanStreamerCreateInfo streamer;
     SluiceFormat format;
     uint32_t texture_size, texture_count;

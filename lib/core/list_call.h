@@ -5,7 +5,7 @@
 #include "core/state.h"
 
 struct slc_list_call {
-    const char *function; ///< its name
+    const char *function; ///< name of the public function, for messages
     enum slc_call_kind kind;
     SluiceTextureId texture_id;
     uint64_t retire_value;

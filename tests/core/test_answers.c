@@ -110,7 +110,7 @@ static void a_tile_twice_in_a_list_refuses_the_whole_list(void **state)
         check_answer_refused(&f, id, 4, lists[i], SLUICE_ERROR_INVALID_TILE_STATE);
     for (uint32_t i = 0; i < 6; i++)
         CHECK_STATE(&f, id, i, ALLOCATED);
-    fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1, 0); /* the same of canceled ones */
+    fixture_feed(&f, id, SLUICE_MIP_UNTOUCHED, 1, 0); /* now for canceled tiles */
     for (uint32_t i = 0; i < 4; i++)
         check_answer_refused(&f, id, 4, lists[i], SLUICE_ERROR_INVALID_TILE_STATE);
     fixture_close(&f);

@@ -107,7 +107,7 @@ static void check_id_refused(struct fixture *f, SluiceTextureId good, SluiceText
     CHECK_RESULT(sluiceSetPrimaryTexture(m, bad, good), expected);
     CHECK_RESULT(sluiceSetPrimaryTexture(m, good, bad),
                  bad == SLUICE_NO_TEXTURE ? SLUICE_SUCCESS : expected);
-    if (bad == SLUICE_NO_TEXTURE) /* where all textures are meant, it is no unknown one */
+    if (bad == SLUICE_NO_TEXTURE) /* refused as an argument, not as unknown */
         expected = SLUICE_ERROR_INVALID_ARGUMENT;
     if (bad != SLUICE_ALL_TEXTURES) {
         CHECK_RESULT(sluiceGetTilesToMap(m, bad, &count, tiles), expected);

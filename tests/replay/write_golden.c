@@ -246,7 +246,7 @@ static void record_random(const char *folder)
     struct random_app app;
     SluiceRecorder *recorder;
     snprintf(path, sizeof path, "%s/random_application.trace", folder);
-    /* Memory does not run out: when it does depends on how often the manager allocates. */
+    /* No allocation fails: the failing call would depend on how often the manager allocates. */
     random_app_init(&app, 2024, false);
     CHECK_OK(sluiceBeginRecordingToFile(app.manager, path, NULL, &recorder));
     random_app_run(&app, 400);

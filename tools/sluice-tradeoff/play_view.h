@@ -13,8 +13,8 @@ struct view_counts {
     uint64_t missing_regions; ///< of them, those that got a coarser level than they asked for
     uint64_t
         missing_levels; ///< summed; one more than to the packed levels if not even these are there
-    /** Regions that had the level that the map before asked for, and now get a coarser one than
-     * either map asks for: they are in view, and tiles of theirs were evicted. */
+    /** Regions in view that lost tiles: they had the level that the previous map asked for, and now
+     * get a coarser level than either map asks for. */
     uint64_t wrong_evictions;
     uint64_t needed_tiles; ///< distinct ones in one frame
 };
