@@ -78,8 +78,8 @@ typedef struct SluiceDemandLoaderCreateInfo {
      * tiles get the rest, of which they need at least 4 MiB. Hard limit. At least 2 MiB, at most
      * memoryBudget. Default: a quarter of memoryBudget.
      *
-     * Tiles that fill memoryBudget when the first such resource is added give way as their images
-     * run empty. Until then both together may take more than memoryBudget.
+     * Tiles may fill memoryBudget when the first such resource is added. They are then evicted as
+     * their images run empty. Until then tiles and byte pages together may exceed memoryBudget.
      */
     uint64_t byteMemoryBudget;
     /**
@@ -354,9 +354,9 @@ typedef struct SluiceDemandResourceCreateInfo {
     /**
      * Computes the value that shaders get for a page, 0 to pageCount - 1. Must be NULL if pageSize
      * is not 0. NULL: you answer pages that were missed (sluiceGetMissedDemandPages). Called on
-     * worker threads, several at the same time. SLUICE_NOT_READY: called again (readRetry), and
-     * later when a shader next misses the page. After other failures: called again when
-     * failureRetryDelayNs has passed.
+     * worker threads, several at the same time. SLUICE_NOT_READY: called again at once (readRetry),
+     * and later when a shader next misses the page. Other failures: called again after
+     * failureRetryDelayNs.
      */
     SluiceResult (*pfnFill)(void *pUserData, uint32_t page, uint64_t *pValue);
     /**

@@ -415,11 +415,11 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
     SluiceVulkanStreamer *streamer, const SluiceVulkanStreamerSettings *pSettings);
 
 /**
- * Moves at most `maxTileCount` tiles together, so that memory can be freed. Writes to `*pTileCount`
- * how many; 0 means that nothing is left to do.
+ * Moves at most `maxTileCount` tiles together, so that memory can be freed. Writes the number of
+ * moved tiles to `*pTileCount`; 0 means that nothing is left to do.
  *
- * Call it between frames, for example before each frame while the view stands still. The tiles
- * leave what holds the fewest, if there is room for them elsewhere:
+ * Call it between frames, for example before each frame while the view stands still. The heap
+ * or image with the fewest tiles is emptied, if there is room for its tiles elsewhere:
  *
  * - Sparse mode: a heap. Its standby tiles are evicted. Its wanted tiles are read again; until then
  *   shaders see a coarser level. Heaps with packed tiles stay.
@@ -427,8 +427,9 @@ SLUICE_API SluiceResult sluiceSetVulkanStreamerSettings(
  *   shaders see no difference. Tiles that changed in frames under way move later.
  * - Dense mode: nothing moves.
  *
- * What is empty is freed in later frames, when the GPU has finished with it. While more memory is
- * in use than the budget allows (sluiceSetVulkanMemoryBudget), frames do all this by themselves.
+ * Empty heaps and images are freed in later frames, when the GPU has finished with them. While
+ * more memory is in use than the budget allows (sluiceSetVulkanMemoryBudget), frames move tiles and
+ * free memory by themselves.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_OUT_OF_HOST_MEMORY.
  */
@@ -563,7 +564,7 @@ typedef struct SluiceVulkanTexture {
 
 /**
  * Adds a texture: creates the image of a source or producer and starts to stream it. The format
- * is the source's.
+ * is that of the source, or of SluiceTileProducer.pImage.
  *
  * Errors: SLUICE_ERROR_NULL_POINTER; SLUICE_ERROR_INVALID_ARGUMENT for both a source and a
  *         producer, an unknown address mode, a primary that follows another texture, or an image

@@ -119,9 +119,9 @@ typedef struct SluiceVulkanContextCreateInfo {
      */
     uint64_t memoryBudget;
     /**
-     * Ignore what the device says of its memory. Default: false. If the device has
-     * VK_EXT_memory_budget, which need not be enabled, every 256th frame or launch asks how much
-     * its largest local heap can spare. That limits tile memory as memoryBudget does.
+     * Ignores VK_EXT_memory_budget. Default: false. If the device has the extension, which need not
+     * be enabled, every 256th frame or launch asks how much the largest local heap can spare. The
+     * answer limits tile memory as memoryBudget does.
      *
      * 1/64 of the heap, at most 128 MiB, is left to others. Smaller changes are ignored. Without
      * the extension the device is not asked.

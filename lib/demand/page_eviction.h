@@ -4,7 +4,8 @@
 
 #include "demand/page_state.h"
 
-/** The page that goes next, of one LRU list or all of the class; false if all are in use. */
+/** Evicts one page of an LRU list, or of all lists of the class (SLC_NO_LRU). Returns false if all
+ *  pages are in use. */
 bool slc_residency_evict(struct slc_demand_residency *r, uint32_t class_index, uint32_t lru);
 /** Evicts until the class is within its limit, or nothing is left that may go. */
 void slc_residency_trim(struct slc_demand_residency *r, uint32_t class_index);

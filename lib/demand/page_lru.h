@@ -6,9 +6,10 @@
 
 /** The LRU list of that class and kind; SLC_NO_LRU without memory. */
 uint32_t slc_residency_lru(struct slc_demand_residency *r, uint32_t class_index, uint32_t kind);
-/** A resident page that is not pinned, and in no list, was used by launch `last_use`. */
+/** Puts a page into its LRU list: resident, not pinned, in no list, last used by launch
+ *  `last_use`. */
 void slc_residency_enter_lru(struct slc_demand_residency *r, uint32_t index, uint64_t last_use);
-/** Takes a node out of whatever list is its home. */
+/** Takes a node out of its home list, if any. */
 void slc_residency_leave_home(struct slc_demand_residency *r, uint32_t index);
 
 #endif /* SLC_DEMAND_PAGE_LRU_H */

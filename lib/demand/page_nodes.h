@@ -19,7 +19,7 @@ enum slc_page_state {
 enum slc_page_home {
     SLC_HOME_NONE,
     SLC_HOME_LRU,        ///< resident, in the order of the last use: may be evicted
-    SLC_HOME_UNSEEN,     ///< resident, but the launches so far did not know
+    SLC_HOME_UNSEEN,     ///< resident, but no launch has seen it yet
     SLC_HOME_RESTORABLE, ///< absent, its place may be retaken
     SLC_HOME_OVERFLOW    ///< refused for want of memory
 };
@@ -33,7 +33,7 @@ enum slc_page_link {
 struct slc_page_node {
     uint64_t value;        ///< RESIDENT
     uint64_t shown_value;  ///< of SLC_SHOW_RESIDENT
-    uint64_t last_use;     ///< launch; for its place in an LRU list
+    uint64_t last_use;     ///< launch; orders the LRU list
     uint64_t touched;      ///< the last launch that used it or asked for it
     uint64_t visible_from; ///< UNSEEN: the first launch that sees it
     uint32_t page, place, lru;

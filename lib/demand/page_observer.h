@@ -16,7 +16,7 @@ void slc_residency_get_info(const struct slc_demand_residency *residency,
 /** What slc_residency_set_class was given last. */
 uint64_t slc_residency_get_class(const struct slc_demand_residency *residency, uint32_t class_index,
                                  bool *has_memory);
-/** The class holds no page, and no place from which a page could be restored. */
+/** True if the class holds no page, and no evicted page could be restored. */
 bool slc_residency_class_is_empty(const struct slc_demand_residency *residency,
                                   uint32_t class_index);
 /** At least as many as slc_residency_take_changes or slc_residency_take_evicted would return. */

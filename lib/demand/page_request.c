@@ -6,7 +6,7 @@
 
 #include <assert.h>
 
-#define MOST_OTHERS 32u /* pages of other kinds that go for one */
+#define MOST_OTHERS 32u /* pages of other kinds that may be evicted for one page */
 
 /* The launch needs a resident page: it is not evicted before the next one. */
 static void touch(struct slc_demand_residency *r, uint32_t index)
@@ -96,8 +96,8 @@ static bool retake(struct slc_demand_residency *r, const struct slc_page_memory 
     return answer;
 }
 
-/* Pages of other kinds, of which several may have to go before their memory is of use: byte pages
- * are smaller than what changes its kind. */
+/* Evicts pages of other kinds until their memory can be used. That may take several byte pages: a
+ * slab changes its kind as a whole. */
 static bool evict_others(struct slc_demand_residency *r, uint32_t class_index)
 {
     uint32_t count = 0, most = class_index == SLC_TILES ? 1 : MOST_OTHERS;
@@ -210,7 +210,7 @@ static enum slc_request_answer answer_absent(struct slc_demand_residency *r, uin
     const struct slc_page_memory *memory = &r->classes[request->class_index].memory;
     uint32_t old_place = SLC_NO_PLACE, place;
     count_missing(r, request);
-    if (index != SLC_NO_NODE) { /* no restorable while others go: it could be dropped for them */
+    if (index != SLC_NO_NODE) { /* not restorable for now: evictions could drop it */
         slc_residency_leave_home(r, index);
         if (slc_node(r, index)->class_index == request->class_index)
             old_place = slc_node(r, index)->place;

@@ -183,10 +183,10 @@ void slc_residency_get_counts(const struct slc_demand_residency *residency, uint
 
 struct slc_placed_page {
     uint32_t page, place;
-    bool stays;  ///< pinned, being loaded, or launches that are over did not know it
-    bool in_use; ///< by the last launch begun, as far as launches tell
+    bool stays;  ///< pinned, being loaded, or not seen by any launch that is over
+    bool in_use; ///< used by the last launch begun, if launches report use
 };
-/** Goes through all pages of the class that have a place, in any order. Changes nothing. */
+/** Visits all pages of the class that have a place, in any order. Changes nothing. */
 void slc_residency_visit_placed(const struct slc_demand_residency *residency, uint32_t class_index,
                                 void (*visit)(void *user, const struct slc_placed_page *page),
                                 void *user);

@@ -5,11 +5,11 @@
 
 #include <assert.h>
 
-#define SLOT_SHIFT 17u /* of the slab in a place; below is the slot */
+#define SLOT_SHIFT 17u /* a place is slab << SLOT_SHIFT | slot */
 #define SLOT_MASK ((1u << SLOT_SHIFT) - 1)
-#define CHUNK_SHIFT 9u /* of the chunk in a slab's number */
+#define CHUNK_SHIFT 9u /* a slab's number is chunk << CHUNK_SHIFT | index in the chunk */
 #define MAX_SLABS (1u << CHUNK_SHIFT)
-#define IDLE_TICKS 60u    /* that an empty chunk is kept */
+#define IDLE_TICKS 60u    /* for which an empty chunk is kept */
 #define REFUSED_TICKS 60u /* until the device is asked for memory again */
 
 static struct slc_byte_slab *slab_at(struct slc_byte_memory *m, uint32_t index)
@@ -80,7 +80,7 @@ static VkResult allocate_buffer(struct slc_byte_memory *m, struct slc_byte_chunk
                                 chunk->memory.offset);
 }
 
-/* Not logged: less memory will do, or other pages go. */
+/* Failure is not logged: a smaller chunk is tried, or pages are evicted. */
 static bool create_chunk(struct slc_byte_memory *m, struct slc_byte_chunk *chunk, uint32_t slabs)
 {
     const struct slc_vk *vk = m->vk;
@@ -127,7 +127,7 @@ static uint32_t slabs_left(const struct slc_byte_memory *m)
     return left < MAX_SLABS ? (uint32_t)left : MAX_SLABS;
 }
 
-/* False if asking the device is of no use now. */
+/* Makes a chunk. Returns false without one: too many chunks, no budget, or refused a while ago. */
 static bool grow(struct slc_byte_memory *m)
 {
     uint32_t at = find_free_chunk(m), slabs = (uint32_t)(m->size / SLC_BYTE_SLAB_SIZE);
@@ -172,7 +172,8 @@ static bool cut(struct slc_byte_memory *m, struct slc_byte_slab *slab, uint32_t 
     return true;
 }
 
-/* The first slab with a free slot; else one that is not in use; else one that has no page. */
+/* Sets `last` to the first slab with a free slot of the stride. Otherwise cuts an unused slab, or a
+ * slab without pages. Returns false if there is none. */
 static bool find_slab(struct slc_byte_memory *m, uint32_t stride)
 {
     uint32_t unused = SLC_NO_PLACE, empty = SLC_NO_PLACE;
@@ -287,7 +288,7 @@ uint64_t slc_byte_value(const struct slc_byte_memory *memory, uint32_t place, ui
     return address ? memory->chunks[chunk].address + offset : (uint64_t)chunk << 32 | offset;
 }
 
-/* A chunk that was made a moment ago is still empty. */
+/* Even in a hurry a chunk stays for two ticks: a new chunk is empty at first. */
 static void retire(struct slc_byte_memory *m, struct slc_byte_chunk *chunk, uint64_t last_launch,
                    bool hurry)
 {

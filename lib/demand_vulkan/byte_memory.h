@@ -6,9 +6,9 @@
  * no slab is left, each as large as all before it, and destroyed when they were empty for a while.
  *
  * A slot that was given back can be taken at once, because launches run in the order of their
- * submission: the copy into it is behind all shaders that read it. It keeps its bytes until then,
- * and those that were given back longest ago are taken first, so that its last page can have it
- * back as it was. Externally synchronized.
+ * submission: the copy into the slot runs after all shaders that read it. A free slot keeps its
+ * bytes until it is taken. The slot that was given back longest ago is taken first, so that evicted
+ * pages can be restored for long. Externally synchronized.
  */
 #ifndef SLC_DEMAND_VULKAN_BYTE_MEMORY_H
 #define SLC_DEMAND_VULKAN_BYTE_MEMORY_H
@@ -22,11 +22,11 @@
 #define SLC_BYTE_ALIGNMENT 16u
 #define SLC_BYTE_SLAB_SIZE (2u << 20)
 #define SLC_MAX_BYTE_PAGE_SIZE (1u << 20)
-#define SLC_BYTE_KINDS 256u /* strides; recordings have no more */
+#define SLC_BYTE_KINDS 256u /* strides; recordings allow no more */
 
 struct slc_byte_slot {
     uint32_t previous, next; ///< free: in the ring
-    uint32_t owner;          ///< free: the page whose bytes it has, SLC_NO_PAGE for nobody's
+    uint32_t owner;          ///< free: page whose bytes it has; SLC_NO_PAGE: none
     bool held;
 };
 
@@ -39,7 +39,7 @@ struct slc_byte_slab {
 enum slc_byte_chunk_state {
     SLC_BYTE_CHUNK_FREE = 0,
     SLC_BYTE_CHUNK_LIVE,
-    SLC_BYTE_CHUNK_RETIRING ///< new launches do not see it; waits for the others
+    SLC_BYTE_CHUNK_RETIRING ///< new launches do not see it; waits for earlier launches
 };
 
 struct slc_byte_chunk {
@@ -49,8 +49,8 @@ struct slc_byte_chunk {
     VkDeviceAddress address;     ///< 0 without addresses
     struct slc_byte_slab *slabs; ///< owned
     uint32_t slab_count, held_count;
-    uint64_t tick;   ///< LIVE: the last in which it was not empty
-    uint64_t launch; ///< RETIRING: the last that may see it
+    uint64_t tick;   ///< LIVE: the last tick in which it was not empty
+    uint64_t launch; ///< RETIRING: the last launch that may see it
 };
 
 struct slc_byte_memory {
@@ -68,16 +68,16 @@ struct slc_byte_memory {
     uint32_t last;         ///< slab that a slot was taken from last
     uint64_t held_size;    ///< bytes of slots that are held
     uint64_t tick;         ///< launches that were begun, abandoned ones included
-    uint64_t refused_tick; ///< 1 + the last in which the device had no memory; 0: it had some then
+    uint64_t refused_tick; ///< 1 + the tick in which the device refused a chunk; 0: not refused
     uint64_t evicted_count;
-    bool short_of; ///< a slot was asked for and not there since the last launch
+    bool short_of; ///< a request found no slot since the last launch
 };
 
 /** `addresses`: the device has bufferDeviceAddress enabled. Nothing is allocated. */
 void slc_byte_memory_init(struct slc_byte_memory *memory, const struct slc_vk *vk,
                           const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                           uint64_t budget, bool addresses);
-/** No commands in progress use it. Zeroed: nothing to do. */
+/** No commands in progress use the memory. It may be zeroed. */
 void slc_byte_memory_finish(struct slc_byte_memory *memory);
 
 /** Bytes from one page of this size to the next. */
@@ -86,25 +86,24 @@ static inline uint32_t slc_byte_stride(uint32_t page_size)
     return (page_size + SLC_BYTE_ALIGNMENT - 1) / SLC_BYTE_ALIGNMENT * SLC_BYTE_ALIGNMENT;
 }
 
-/** The kind of pages of a stride, for good. False: there are too many. */
+/** Gets the kind of pages of a stride; it never changes. Returns false if all kinds are taken. */
 bool slc_byte_memory_kind(struct slc_byte_memory *memory, uint32_t stride, uint32_t *kind);
 
 /** For slc_residency_set_class. */
 struct slc_page_memory slc_byte_memory_interface(struct slc_byte_memory *memory);
 
-/** Where a place is: in the buffer of `*chunk`, from `*offset` on. */
+/** Gets buffer and byte offset of a place. */
 void slc_byte_place(uint32_t place, uint32_t stride, uint32_t *chunk, uint64_t *offset);
-/** What shaders get for a place: its address, or its byte offset and, in the high half, its chunk.
- */
+/** Value of a place for shaders: its address, or chunk << 32 | byte offset. */
 uint64_t slc_byte_value(const struct slc_byte_memory *memory, uint32_t place, uint32_t stride,
                         bool address);
 
-/** Launch `launch` begins and launches up to `processed` are over: chunks that have been empty for
- *  a while go, under `pressure` sooner. */
+/** Frees chunks that have been empty for a while, under `pressure` sooner. `launch` begins, and
+ *  launches up to `processed` are over. */
 void slc_byte_memory_begin(struct slc_byte_memory *memory, uint64_t launch, uint64_t processed,
                            bool pressure);
 
-/** Pages may soon be evicted: shaders are to say what they use. */
+/** True if pages may soon be evicted: shaders should then report the pages that they use. */
 bool slc_byte_memory_is_filling(const struct slc_byte_memory *memory);
 
 #endif /* SLC_DEMAND_VULKAN_BYTE_MEMORY_H */

@@ -19,7 +19,7 @@ static void list_buffers(SluiceDemandLoader *loader)
         const struct slc_byte_chunk *chunk = &loader->bytes.chunks[i];
         list->buffers[i] = chunk->state == SLC_BYTE_CHUNK_LIVE
                                ? chunk->buffer
-                               : loader->directory.blocks.buffer; /* shaders never read it so */
+                               : loader->directory.blocks.buffer; /* not read by shaders */
     }
     list->generation = loader->bytes.generation;
 }
@@ -55,7 +55,7 @@ uint32_t slc_byte_pages_binding_count(const SluiceDemandLoader *loader)
     return needed <= loader->caps.max_stage_storage_buffers ? SLUICE_DEMAND_BYTE_CHUNKS : 0;
 }
 
-/* Staging memory for pages above 64 KiB is made for the first resource that has such. */
+/* Makes staging memory for pages above 64 KiB with the first resource that has such pages. */
 static SluiceResult prepare_large(SluiceDemandLoader *loader)
 {
     if (loader->large.blocks)
@@ -125,7 +125,7 @@ uint64_t slc_byte_pages_value(const SluiceDemandLoader *loader, uint32_t page, u
     return slc_byte_value(&loader->bytes, (uint32_t)value, resource->stride, resource->addresses);
 }
 
-/* Byte pages have their share as soon as there is a resource of such, until the last chunk goes. */
+/* Byte pages have their share of the budget from the first resource to the last chunk. */
 static void share_budget(SluiceDemandLoader *loader)
 {
     bool shared = loader->byte_resource_count || loader->bytes.size;

@@ -330,7 +330,7 @@ void slc_images_refresh(SluiceDemandLoader *loader)
     for (uint32_t slot = loader->first_refresh; slot != SLC_NONE; slot = next) {
         struct slc_demand_image *image = loader->images[slot];
         next = image->next;
-        /* One at a time writes the color. */
+        /* One job at a time writes the color. */
         image->refresh = image->job_count || submit_opening(loader, image, 0) != SLUICE_SUCCESS;
         if (!image->refresh)
             continue;

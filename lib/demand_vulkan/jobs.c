@@ -96,7 +96,7 @@ static struct slc_staging *staging_of(SluiceDemandLoader *loader, uint32_t index
     return index < loader->info.maxTilesInFlight ? &loader->staging : NULL;
 }
 
-/* Its first slot there. */
+/* First slot of a job in its staging memory. */
 static uint32_t slot_of(const SluiceDemandLoader *loader, uint32_t index)
 {
     return index < loader->first_large ? index : (index - loader->first_large) * SLC_LARGE_SLOTS;
@@ -108,7 +108,7 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader)
     const struct slc_job_list empty = {SLC_NONE, SLC_NONE};
     loader->free_tiles = loader->free_others = loader->free_large = empty;
     loader->arrived = loader->admitted = loader->copied = empty;
-    loader->first_large = 2 * tiles; /* the second of the tiles opens images and finds values */
+    loader->first_large = 2 * tiles; /* the second `tiles` jobs open images and compute values */
     loader->free_large_count = slc_max_u32(LEAST_LARGE, tiles / SLC_LARGE_SLOTS);
     loader->job_count = loader->first_large + loader->free_large_count;
     loader->jobs = slc_calloc(&loader->cb, loader->job_count, sizeof *loader->jobs);
@@ -169,7 +169,7 @@ bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind)
     struct slc_staging *staging = staging_of(loader, list->first);
     if (!staging || slc_staging_ensure(staging, slot_of(loader, list->first)))
         return true;
-    return find_staged(loader, list); /* lists without staging have returned */
+    return find_staged(loader, list); /* jobs without staging returned above */
 }
 
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind)
@@ -226,7 +226,8 @@ static void begin_task(SluiceDemandLoader *loader, struct slc_demand_job *job,
     slc_ticket_task_begins(&loader->tickets, ticket);
 }
 
-/* With the lock held, once the tile loader has the read. True: it was canceled meanwhile. */
+/* Notes the number of a submitted read, with the lock held. True if the ticket was canceled
+ * meanwhile. */
 static bool note_read(SluiceDemandLoader *loader, struct slc_demand_job *job,
                       SluiceDemandTicket ticket, uint64_t number)
 {

@@ -104,7 +104,7 @@ enum slc_job_kind {
     SLC_JOB_LARGE     ///< a larger one
 };
 
-/* An image of one row, whose texels are the pages: so the tile loader reads it. */
+/* Image source of one row, whose texels are the pages: the tile loader reads it. */
 struct slc_demand_resource {
     SluiceImageSource base; ///< must be first
     enum slc_resource_state state;
@@ -112,15 +112,15 @@ struct slc_demand_resource {
     SluiceDemandResourceCreateInfo info;
     uint32_t first_page, job_count;
     enum slc_job_kind job_kind;
-    uint32_t stride;    ///< of byte pages; 0: values
-    uint32_t byte_kind; ///< of these; see byte_memory.h
-    bool addresses;     ///< of byte pages: values are addresses
+    uint32_t stride;    ///< bytes from one byte page to the next; 0: pages are values
+    uint32_t byte_kind; ///< kind of byte pages; see byte_memory.h
+    bool addresses;     ///< values of byte pages are addresses
     uint32_t
         eviction_count; ///< values that pfnEvict is still to be told of, when launches are over
     uint8_t class_index;
-    struct slc_missed_pages missed; ///< loading, and the application is to answer them
+    struct slc_missed_pages missed; ///< loading pages that the application answers
     uint32_t retry_group;           ///< pages that have no value; 0: none
-    bool told;                      ///< of the first of them
+    bool told;                      ///< logged the first of them
 };
 
 /* A value that no new launch sees. */
@@ -129,8 +129,8 @@ struct slc_eviction {
     uint64_t value, launch;
 };
 
-/* A read. Jobs below maxTilesInFlight have a tile of staging memory at their index; those from
- * first_large on have SLC_LARGE_SLOTS of the other staging memory. */
+/* A read. A job below maxTilesInFlight has the slot of `staging` at its index. A job from
+ * first_large on has SLC_LARGE_SLOTS slots of `large`. */
 struct slc_demand_job {
     enum slc_job_kind kind;
     uint32_t page, owner;           ///< image slot, or index of the resource
@@ -278,11 +278,11 @@ struct SluiceDemandLoader {
     struct slc_demand_resource **resources; ///< owned, by index
     uint32_t resource_high, resource_capacity, free_resource;
     bool classes[SLC_DEMAND_CLASSES];      ///< in use
-    bool byte_classes[SLC_DEMAND_CLASSES]; ///< ... or last used for byte pages
+    bool byte_classes[SLC_DEMAND_CLASSES]; ///< in use or last used for byte pages
     struct slc_eviction *evictions;        ///< owned; a ring in the order of their launches
     uint32_t eviction_first, eviction_count, eviction_capacity;
-    uint32_t unasked_count; ///< pages of the last launch that the residency was not asked for
-    uint32_t held_count;    ///< values of resources that are resident: each will need a place there
+    uint32_t unasked_count; ///< requests of the last launch that did not reach the residency
+    uint32_t held_count; ///< resident values of resources: each will need an entry of `evictions`
 
     SluiceTileLoader *reader;
     struct slc_demand_job *jobs; ///< owned
@@ -373,10 +373,10 @@ void slc_grid_empty(SluiceDemandLoader *loader, const struct slc_demand_texture 
 /** Begins to open the image of a texture, unless that is done. */
 enum slc_request_answer slc_image_request(SluiceDemandLoader *loader, uint32_t texture,
                                           SluiceDemandTicket ticket, SluiceResult *result);
-/** The job that opens it, or reads its base color again, is over. */
+/** Ends a job that opened the image or read its base color. */
 void slc_image_job_back(SluiceDemandLoader *loader, struct slc_demand_image *image,
                         const struct slc_demand_job *job, SluiceResult result);
-/** A job of it is over, of whatever kind. */
+/** Ends a job of the image, of any kind. Retires a detached image after its last job. */
 void slc_image_release(SluiceDemandLoader *loader, struct slc_demand_image *image);
 /** It cannot be sampled after all: the texture shows its failureColor from now on. */
 void slc_image_fail(SluiceDemandLoader *loader, struct slc_demand_image *image);
@@ -391,11 +391,11 @@ void slc_images_finish(SluiceDemandLoader *loader);
 void slc_image_opener_init(SluiceImageSource *opener);
 
 /* page_answers.c */
-/** A page of a resource without a callback. */
+/** Requests a page of a resource without a callback: the application answers it. */
 enum slc_request_answer slc_answer_request(SluiceDemandLoader *loader,
                                            struct slc_demand_resource *resource, uint32_t page,
                                            SluiceResult *result);
-/** These pages were forgotten, and are not awaited any more. */
+/** Ends the wait for answers to these pages, which the residency has forgotten. */
 void slc_answers_forget(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                         uint32_t first, uint32_t count);
 
@@ -403,20 +403,20 @@ void slc_answers_forget(SluiceDemandLoader *loader, struct slc_demand_resource *
 /** Errors: UNKNOWN_TEXTURE, STALE_TEXTURE. */
 SluiceResult slc_resource_find(SluiceDemandLoader *loader, SluiceDemandResourceId id,
                                struct slc_demand_resource **resource);
-/** Room to remember that every value that is resident, and one more, went. */
+/** Makes room in `evictions` for all resident values and one more. False without memory. */
 bool slc_resource_reserve_eviction(SluiceDemandLoader *loader);
 enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
                                              uint32_t page, SluiceDemandTicket ticket,
                                              SluiceResult *result);
 void slc_resource_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job,
                            SluiceResult result);
-/** A page could be read. */
+/** Resets the retries of the resource after a page could be read. */
 void slc_resource_note_success(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                                uint32_t page);
-/** The job brought nothing, or nothing that is wanted. */
+/** Ends a job that failed, or whose page is not wanted any more. */
 void slc_resource_fail(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                        const struct slc_demand_job *job, SluiceResult result);
-/** A job of it is over, of whatever kind. */
+/** Ends a job of the resource, of any kind. Frees a removed resource after its last job. */
 void slc_resource_release(SluiceDemandLoader *loader, uint32_t index);
 /** The value of a page is not resident any more. */
 void slc_resource_evicted(SluiceDemandLoader *loader, uint32_t index, uint32_t page,
@@ -426,25 +426,26 @@ void slc_resources_end_retired(SluiceDemandLoader *loader);
 void slc_resources_finish(SluiceDemandLoader *loader);
 
 /* byte_pages.c */
-/** What byte pages need of the loader; allocates nothing. Errors, logged: UNSUPPORTED,
+/** Checks the settings of byte pages. Allocates nothing. Errors, logged: UNSUPPORTED,
  *  INVALID_ARGUMENT. */
 SluiceResult slc_byte_pages_init(SluiceDemandLoader *loader);
-/** Elements of the array of chunks in descriptor sets: 0 where the device has too few. */
+/** Elements of the array of chunks in descriptor sets. 0 if the device allows too few storage
+ *  buffers. */
 uint32_t slc_byte_pages_binding_count(const SluiceDemandLoader *loader);
-/** A resource of byte pages is about to be made. Errors: INVALID_ARGUMENT, LIMIT_EXCEEDED, logged;
- * OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+/** Checks the page size of a new resource, and makes staging memory for large pages. Errors:
+ * INVALID_ARGUMENT, LIMIT_EXCEEDED, logged; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_byte_pages_prepare(SluiceDemandLoader *loader, uint32_t page_size);
-/** How the pages of a resource are read and shown, by its info. */
+/** Sets from its info how pages of the resource are read and shown. */
 void slc_byte_pages_describe(SluiceDemandLoader *loader, struct slc_demand_resource *resource);
 void slc_byte_job_back(SluiceDemandLoader *loader, struct slc_demand_job *job, SluiceResult result);
-/** What shaders get for a page of a resource; `value` as the residency says it. */
+/** Value of a page for shaders. `value`: the value or place that the residency has. */
 uint64_t slc_byte_pages_value(const SluiceDemandLoader *loader, uint32_t page, uint64_t value);
-/** A resource of byte pages was made, or is gone. */
+/** Count the resources of byte pages, which share memoryBudget with tiles. */
 void slc_byte_pages_add_resource(SluiceDemandLoader *loader);
 void slc_byte_pages_remove_resource(SluiceDemandLoader *loader);
-/** A launch begins: empty chunks go, and tiles get what byte pages do not. */
+/** Frees empty chunks and divides memoryBudget when a launch begins. */
 void slc_byte_pages_begin(SluiceDemandLoader *loader, uint64_t launch);
-/** The set of a launch has all chunks. */
+/** Writes all chunks to the descriptor set of a launch. */
 void slc_byte_pages_bind(SluiceDemandLoader *loader, uint32_t slot);
 void slc_byte_pages_count(const SluiceDemandLoader *loader, SluiceDemandStatistics *statistics);
 
@@ -453,7 +454,8 @@ SluiceResult slc_jobs_init(SluiceDemandLoader *loader);
 void slc_jobs_finish(SluiceDemandLoader *loader);
 /** Whether a job of the kind can be taken. Makes staging memory for it. */
 bool slc_job_is_ready(SluiceDemandLoader *loader, enum slc_job_kind kind);
-/** NULL: too much is under way. Jobs with staging memory: only if one is ready. */
+/** Takes a free job. NULL if there is none. For kinds with staging memory slc_job_is_ready must be
+ *  true. */
 struct slc_demand_job *slc_job_take(SluiceDemandLoader *loader, enum slc_job_kind kind);
 void slc_job_free(SluiceDemandLoader *loader, struct slc_demand_job *job);
 /** Staging memory of the job. */
@@ -523,7 +525,8 @@ void slc_preloads_detach(SluiceDemandLoader *loader, uint32_t texture);
 void slc_preloads_finish(SluiceDemandLoader *loader);
 
 /* relief.c */
-/** Before a launch is recorded: gives images of pages back that the budget or others need. */
+/** Empties images of pages whose memory the budget or other front ends need. Call it before a
+ *  launch is recorded. */
 void slc_relieve_memory(SluiceDemandLoader *loader);
 
 #endif /* SLC_DEMAND_VULKAN_LOADER_H */

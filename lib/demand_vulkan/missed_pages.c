@@ -16,7 +16,7 @@ void slc_missed_pages_finish(struct slc_missed_pages *missed, const SluiceAlloca
     *missed = (struct slc_missed_pages){0};
 }
 
-/* Leaves out what was removed. */
+/* Leaves out removed pages. */
 static void compact(struct slc_missed_pages *m)
 {
     uint32_t count = 0, taken = 0;

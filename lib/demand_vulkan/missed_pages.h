@@ -1,6 +1,6 @@
 /**
- * Pages of one resource that shaders missed and that the application is to answer, in the order in
- * which they were missed. Each is listed once. Knows nothing of the loader.
+ * Pages of one resource that shaders missed and the application answers, in the order of the
+ * misses. Each page is listed once. Knows nothing of the loader.
  */
 #ifndef SLC_DEMAND_VULKAN_MISSED_PAGES_H
 #define SLC_DEMAND_VULKAN_MISSED_PAGES_H
@@ -9,25 +9,26 @@
 
 /** Zeroed: empty. */
 struct slc_missed_pages {
-    uint32_t *pages; ///< owned; [0, taken) were listed; SLC_MISSED_NONE: removed since
+    uint32_t *pages; ///< owned; [0, taken) were listed; UINT32_MAX: removed since
     uint32_t count, capacity, taken;
-    struct slc_map index; ///< of those that were not removed; before the first: zeroed
+    struct slc_map index; ///< page -> index in `pages`; zeroed until the first page
 };
 
 void slc_missed_pages_finish(struct slc_missed_pages *missed, const SluiceAllocationCallbacks *cb);
-/** Room for one more. False without memory, with nothing changed. */
+/** Makes room for one more page. Returns false, with nothing changed, without memory. */
 bool slc_missed_pages_reserve(struct slc_missed_pages *missed, const SluiceAllocationCallbacks *cb);
-/** There is room, and it is not in there. */
+/** Adds a page that is not in the list. Requires room. */
 void slc_missed_pages_add(struct slc_missed_pages *missed, uint32_t page);
 bool slc_missed_pages_has(const struct slc_missed_pages *missed, uint32_t page);
-/** It is in there. */
+/** Removes a page that is in the list. */
 void slc_missed_pages_remove(struct slc_missed_pages *missed, uint32_t page);
-/** Up to `capacity` pages that were not listed yet; how many. */
+/** Lists up to `capacity` pages that were not listed yet. Returns how many. */
 uint32_t slc_missed_pages_take(struct slc_missed_pages *missed, uint32_t *pages, uint32_t capacity);
-/** There are pages that were not listed yet. */
+/** True if some pages were not listed yet. */
 bool slc_missed_pages_has_more(const struct slc_missed_pages *missed);
-/** Removes one page of [first, first + count), the one that was missed first. False: there is none.
- *  `*at`: 0 at first, and then as it was left. */
+/** Removes the page of [first, first + count) that was missed first. Returns false if there is
+ * none.
+ *  `*at`: 0 in the first call; leave it to later calls. */
 bool slc_missed_pages_remove_any(struct slc_missed_pages *missed, uint32_t first, uint32_t count,
                                  uint32_t *at, uint32_t *page);
 

@@ -8,9 +8,9 @@
 /** Largest width and height of images. */
 
 /**
- * The color of the last level of a texture: its first texel, in linear light. Of BC6H, which takes
- * a decoder, a mid gray: such a texture has to be less than a pixel to show it. `texel`: a block of
- * compressed formats.
+ * Gets the first texel of the last level of a texture, in linear light. `texel`: a block of
+ * compressed formats. BC6H: mid gray, because it takes a decoder; the color is visible only if the
+ * texture covers less than a pixel.
  */
 void slc_base_color(SluiceFormat format, const void *texel, float rgba[4]);
 /** The first texel of a BC7 block, as the format stores it: sRGB ones are not decoded. */

@@ -1,5 +1,4 @@
-/* Pages that the application answers: those that it is told were missed, and those that it sets
- * before anybody misses them. */
+/* Pages that the application answers, after shaders missed them or before. */
 #include "base/log.h"
 #include "demand/page_observer.h"
 #include "demand_vulkan/loader.h"
@@ -79,7 +78,8 @@ static SluiceResult find(SluiceDemandLoader *loader, SluiceDemandResourceId id, 
     return SLUICE_ERROR_INVALID_ARGUMENT;
 }
 
-/* The page is loading, and nobody reads it: it was missed, or is what it was no more. */
+/* Makes the page loading, without a reader: a missed page as it is, any other after it is
+ * forgotten. */
 static SluiceResult begin(SluiceDemandLoader *loader, struct slc_demand_resource *resource,
                           uint32_t page, bool pinned)
 {

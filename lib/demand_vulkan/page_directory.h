@@ -89,7 +89,7 @@ SluiceResult slc_page_directory_refuse(struct slc_page_directory *dir, uint32_t 
 void slc_page_directory_hide(struct slc_page_directory *dir, uint32_t page);
 /** Shown with this value, of which the low 32 bits count. */
 bool slc_page_directory_shows(const struct slc_page_directory *dir, uint32_t page, uint32_t value);
-/** Shown with this value, wide. */
+/** True if shaders see the page with this 64-bit value. */
 bool slc_page_directory_shows_wide(const struct slc_page_directory *dir, uint32_t page,
                                    uint64_t value);
 /** Shown or refused. */

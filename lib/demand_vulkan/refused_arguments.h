@@ -11,7 +11,7 @@ __attribute__((format(printf, 3, 4)))
 SluiceResult
 slc_demand_refuse(const SluiceDemandLoader *loader, const char *function, const char *format, ...);
 
-/** For calls that no grid can be given to. */
+/** Refuses a grid in calls that do not accept grids. */
 SluiceResult slc_demand_refuse_grid(const SluiceDemandLoader *loader, const char *function,
                                     SluiceDemandTextureId id);
 

@@ -1,7 +1,7 @@
 /*
- * Under pressure the loader empties whole images of pages, since only these give memory back: the
- * image with the fewest pages in use goes first. What was in use is missed by the next launch, and
- * read again to where there is room.
+ * Under pressure the loader empties whole images of pages, because only empty images free memory.
+ * The image with the fewest pages in use goes first. The next launch misses its used pages, and
+ * they are read again into other images.
  */
 #include "base/alloc.h"
 #include "demand_vulkan/loader.h"
@@ -16,8 +16,8 @@ struct chunk_use {
 struct survey {
     struct chunk_use chunks[SLC_MAX_PAGE_CHUNKS];
     SluiceDemandLoader *loader;
-    uint32_t chunk;                               ///< whose pages are listed
-    uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< of these
+    uint32_t chunk;                               ///< chunk whose pages are listed
+    uint32_t pages[SLC_PAGE_CHUNK_LAYERS], count; ///< pages of `chunk`
 };
 
 static void count_page(void *user, const struct slc_placed_page *page)
@@ -36,7 +36,7 @@ static void list_page(void *user, const struct slc_placed_page *page)
         survey->pages[survey->count++] = page->page;
 }
 
-/* The pages of an image that others hold, too, or that are going, are not all the loader's. */
+/* Skips images with pages that others hold, or that are going: `held` counts only own pages. */
 static uint32_t choose_chunk(const struct survey *survey, bool unused_only)
 {
     struct slc_page_pool *pool = survey->loader->pages;
@@ -65,14 +65,15 @@ static void empty_chunk(struct survey *survey, uint32_t chunk)
     survey->chunks[chunk] = (struct chunk_use){0};
 }
 
-/* Whether it is known what the last launch used. */
+/* True if the last launch reported the pages that it used. */
 static bool knows_use(const SluiceDemandLoader *loader)
 {
     return loader->processed > 0 &&
            loader->tracked[loader->processed % loader->info.launchesInFlight];
 }
 
-/* The LOD bias remembers what did not fit, so in a view that does not change it would stay. */
+/* Resets the LOD bias if the limit has risen: it remembers what did not fit, and would stay in a
+ * view that does not change. */
 static void note_limit(SluiceDemandLoader *loader)
 {
     uint64_t limit = slc_memory_budget_limit(&loader->context->budget);
@@ -98,7 +99,7 @@ void slc_relieve_memory(SluiceDemandLoader *loader)
         return;
     struct survey *survey = slc_calloc(&loader->cb, 1, sizeof *survey);
     if (!survey)
-        return; /* there is another launch */
+        return; /* the next launch tries again */
     survey->loader = loader;
     slc_residency_visit_placed(loader->residency, SLC_CLASS_TILES, count_page, survey);
     for (uint64_t going; (going = slc_page_pool_going_size(loader->pages)) < size;) {

@@ -84,7 +84,7 @@ void slc_requests_process(SluiceDemandLoader *loader, uint64_t launch, SluiceDem
         now.missingCount -= answer == SLC_REQUEST_REFUSED && is_resource(loader, pages[i]);
     }
     slc_jobs_end_batch(loader);
-    /* Pages that it was not asked for count as tiles there; these are none. */
+    /* The residency counts requests that did not reach it as tiles; unasked pages are no tiles. */
     slc_residency_settle(loader->residency, scan.requestCount - loader->unasked_count);
     slc_evicted_take(loader);
     add_counts(&loader->counts, &now);

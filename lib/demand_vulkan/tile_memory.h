@@ -22,7 +22,7 @@ struct slc_tile_memory {
 void slc_tile_memory_init(struct slc_tile_memory *memory, struct slc_page_pool *pool, uint32_t user,
                           uint64_t budget);
 
-/** Another budget, bytes. */
+/** Sets the budget, in bytes. */
 void slc_tile_memory_set_budget(struct slc_tile_memory *memory, uint64_t budget);
 
 /** For slc_residency_set_class: the kind of a page is its format. */

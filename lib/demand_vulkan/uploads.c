@@ -1,4 +1,4 @@
-/* From staging memory to the layers that are the tiles' places, and the slots of byte pages. */
+/* Copies from staging memory to the pages of tiles and the slots of byte pages. */
 #include "base/checked.h"
 #include "demand_vulkan/tiles.h"
 #include "vulkan/sparse_layout.h"
@@ -22,7 +22,7 @@ struct byte_copies {
     VkBufferCopy list[COPY_BATCH];
 };
 
-/* The job is no longer one of its owner's. */
+/* Takes the job off the count of its owner. */
 static void release(SluiceDemandLoader *loader, const struct slc_demand_job *job)
 {
     if (job->image)
@@ -63,7 +63,7 @@ void slc_uploads_admit(SluiceDemandLoader *loader)
 void slc_uploads_drop(SluiceDemandLoader *loader)
 {
     for (struct slc_demand_job *job; (job = slc_job_list_pop(loader, &loader->admitted));) {
-        if (!job->stale) /* else the page waits for another job's bytes */
+        if (!job->stale) /* a stale job's page waits for another job */
             slc_residency_forget(loader->residency, job->page, 1);
         release(loader, job);
         slc_job_free(loader, job);

@@ -29,7 +29,7 @@ uint32_t slc_find_memory_type(const VkPhysicalDeviceMemoryProperties *memory, ui
 
 /** Index of the largest device-local heap of memory. */
 uint32_t slc_device_memory_heap(const struct slc_caps *caps);
-/** Its bytes: more may not even be asked for. */
+/** Bytes of the largest device-local heap. Larger allocations are not allowed. */
 uint64_t slc_device_memory_size(const struct slc_caps *caps);
 
 #define SLC_DEFAULT_TEXTURE_COUNT 1024u

@@ -29,12 +29,12 @@ struct slc_descriptors_create_info {
 /** All elements of the array of storage buffers. */
 struct slc_buffer_array {
     VkBuffer buffers[SLC_DESCRIPTOR_ARRAY];
-    uint64_t generation; ///< from 1 on; another one for other buffers
+    uint64_t generation; ///< from 1 on; changes with `buffers`
 };
 
 struct slc_descriptor_set {
     VkDescriptorSet set;
-    /** Of what it holds; 0: nothing yet. */
+    /** Generations of the arrays that the set holds; 0: none yet. */
     uint64_t page_generation, texture_generation, array_generation;
 };
 
@@ -58,13 +58,13 @@ SluiceResult slc_descriptors_init(struct slc_descriptors *descriptors, const str
                                   const struct slc_descriptors_create_info *info);
 void slc_descriptors_finish(struct slc_descriptors *descriptors, const struct slc_vk *vk);
 
-/** Makes set `index` current, which no commands in progress use, and returns it. `pages`: what the
- *  front end's frames see; `textures` as given at creation. */
+/** Makes set `index` current, and returns it. No commands in progress use the set. `pages`: the
+ *  array that the front end's frames see. `textures`: as given at creation. */
 VkDescriptorSet slc_descriptors_update(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                        uint32_t index, const struct slc_page_views *pages,
                                        const struct slc_texture_array *textures);
 
-/** The array of storage buffers of set `index`, which no commands in progress use. */
+/** Writes the array of storage buffers of set `index`. No commands in progress use the set. */
 void slc_descriptors_update_array(struct slc_descriptors *descriptors, const struct slc_vk *vk,
                                   uint32_t index, const struct slc_buffer_array *array);
 

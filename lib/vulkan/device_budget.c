@@ -31,7 +31,7 @@ static uint64_t min_u64(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* What is in use can stay, and what the heap can spare can come. */
+/* Tile memory in use, plus what the heap can spare or less what it lacks. */
 static uint64_t ask(const struct slc_device_budget *device, struct slc_memory_budget *budget)
 {
     VkPhysicalDeviceMemoryBudgetPropertiesEXT answer = {

@@ -1,6 +1,7 @@
 /**
- * What the device can spare (VK_EXT_memory_budget), as a limit of the context's memory budget. It
- * is asked for now and then; small changes are ignored, so that tiles do not come and go with them.
+ * Limits the context's memory budget to the memory that the device can spare
+ * (VK_EXT_memory_budget). The device is polled every SLC_DEVICE_BUDGET_TURNS frames and launches.
+ * Changes below a step are ignored, so that they do not make tiles come and go.
  */
 #ifndef SLC_VULKAN_DEVICE_BUDGET_H
 #define SLC_VULKAN_DEVICE_BUDGET_H
@@ -8,15 +9,15 @@
 #include "vulkan/caps.h"
 #include "vulkan/memory_budget.h"
 
-/** Zeroed: there is none, and nothing is asked. */
+/** Zeroed: no limit, and the device is not polled. */
 struct slc_device_budget {
-    pthread_mutex_t mutex; ///< around what changes: front ends may be on different threads
+    pthread_mutex_t mutex; ///< around `limit` and `turns`: front ends may be on different threads
     PFN_vkGetPhysicalDeviceMemoryProperties2 get; ///< NULL: the limit stays SLC_NO_MEMORY_LIMIT
     VkPhysicalDevice physical_device;
     uint32_t heap;  ///< the largest that is local to the device
-    uint64_t step;  ///< bytes; smaller changes are ignored, and so much is left to others
+    uint64_t step;  ///< bytes that are left to others; smaller changes are ignored
     uint64_t limit; ///< bytes of tile memory
-    uint32_t turns; ///< frames and launches since it was asked for
+    uint32_t turns; ///< frames and launches since the last poll
 };
 
 /** Frames and launches, of all front ends together, between two polls. */
@@ -30,10 +31,10 @@ SluiceResult slc_device_budget_init(struct slc_device_budget *device, const stru
                                     PFN_vkGetInstanceProcAddr get,
                                     struct slc_memory_budget *budget);
 
-/** A zeroed one is allowed. */
+/** `device` may be zeroed. */
 void slc_device_budget_finish(struct slc_device_budget *device);
 
-/** A frame or launch begins. */
+/** Polls every SLC_DEVICE_BUDGET_TURNS calls. Call it when a frame or launch begins. */
 void slc_device_budget_turn(struct slc_device_budget *device, struct slc_memory_budget *budget);
 
 #endif /* SLC_VULKAN_DEVICE_BUDGET_H */

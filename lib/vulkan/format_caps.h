@@ -13,7 +13,7 @@
 void slc_format_caps_init(SluiceVulkanFormatCapabilities *caps, const struct slc_vk *vk,
                           SluiceFormat format);
 
-/** Shaders could store to the image if it had that usage, too. */
+/** True if the device supports the image with VK_IMAGE_USAGE_STORAGE_BIT added. */
 bool slc_image_may_store(const struct slc_vk *vk, const VkImageCreateInfo *image);
 
 #endif /* SLC_VULKAN_FORMAT_CAPS_H */

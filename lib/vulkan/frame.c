@@ -79,7 +79,7 @@ static SluiceResult bind(SluiceVulkanStreamer *s)
 static SluiceResult decide(SluiceVulkanStreamer *s)
 {
     SluiceResult result = retire(s);
-    s->memory_pressure = slc_memory_client_begin(&s->memory); /* without what was just freed */
+    s->memory_pressure = slc_memory_client_begin(&s->memory); /* after memory was freed above */
     if (result >= 0)
         result = slc_productions_publish(s);
     if (result >= 0)

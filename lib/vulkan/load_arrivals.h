@@ -11,12 +11,12 @@ SluiceResult slc_tile_back(SluiceVulkanStreamer *s, uint32_t unit, SluiceResult 
 /** Ends one read of a texture's packed levels with `answer`. */
 SluiceResult slc_packed_unit_back(SluiceVulkanStreamer *s, uint32_t unit, SluiceResult answer);
 
-/** All packed units are back and packed_result says that one of them failed: frees them. Nothing is
- *  bound, and the manager tries again later. */
+/** Frees the packed units of a texture after one of them failed (packed_result). All of them are
+ *  back. Nothing is bound, and the manager tries again later. */
 SluiceResult slc_packed_fail(SluiceVulkanStreamer *s, uint32_t texture);
 
-/** Sources that are not ready may hold half of the units. The others are for sources that are: what
- *  is not ready then fails, and the manager asks again later. */
+/** True while at least half of the units are free. A load that is not ready may then keep its unit.
+ *  Otherwise it fails, and the manager asks again later. */
 bool slc_loads_can_wait(const SluiceVulkanStreamer *s);
 
 #endif /* SLC_VULKAN_LOAD_ARRIVALS_H */

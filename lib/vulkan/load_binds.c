@@ -44,7 +44,7 @@ void slc_loads_bind(SluiceVulkanStreamer *s)
             slc_unit_free(s, unit);
             continue;
         }
-        if (u->canceled) { /* it has nothing that was paid for: nobody has filled it */
+        if (u->canceled) { /* a producer has not filled it yet, so nothing is lost */
             slc_load_give_back(s, u->texture, &u->tile);
             slc_unit_forget_tile(s, u);
             slc_unit_free(s, unit);

@@ -12,7 +12,7 @@
 
 #define BATCH 64u /* tiles of a call */
 
-/* Commands that were recorded in this frame, and what the next ones may have to wait for. */
+/* Commands of this frame. The last batch decides whether the next one needs a barrier. */
 struct recording {
     VkCommandBuffer commands;
     VkImage image; ///< of the last batch; VK_NULL_HANDLE: there was none
@@ -28,7 +28,7 @@ void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const Sluic
     slc_unit_list_append(s, &s->arrived, unit);
 }
 
-/* All levels are one unit, as there is no staging slot that it must fit into. */
+/* All levels are one unit: no staging slot limits its size. */
 void slc_production_start_packed(SluiceVulkanStreamer *s, uint32_t index)
 {
     struct slc_texture *texture = &s->textures[index];
@@ -83,7 +83,7 @@ static SluiceResult fail_packed(SluiceVulkanStreamer *s, uint32_t index, SluiceR
     return slc_packed_fail(s, at);
 }
 
-/* What becomes of a unit with the producer's answer. */
+/* Moves a unit on as the producer's answer says: recorded, asked again later, or failed. */
 static SluiceResult answered(SluiceVulkanStreamer *s, uint32_t index, SluiceResult answer)
 {
     struct slc_unit *unit = &s->units[index];
@@ -120,8 +120,9 @@ static void barrier(const SluiceVulkanStreamer *s, VkCommandBuffer commands, boo
                              0, NULL, 0, NULL);
 }
 
-/* Batches write other texels than each other. But a view has all layers of a level, so validation
- * takes two batches with one view for a hazard. */
+/* Puts a barrier before the first batch of a texture, and before a batch with the view of the last
+ * one. Batches never write the same texels, but a view has all layers of a level, so validation
+ * layers report two batches with one view as a hazard. */
 static void order(const SluiceVulkanStreamer *s, struct recording *r, uint32_t texture,
                   const SluiceTileBatch *batch)
 {
@@ -151,7 +152,7 @@ static void ask(SluiceVulkanStreamer *s, struct recording *r, uint32_t index,
         results[i] = result;
 }
 
-/* Of texels that lie at their place in the texture's image. */
+/* Target of texels that have their place in the texture's image. */
 static void place_in_image(const SluiceVulkanStreamer *s, const struct slc_texture *texture,
                            const SluiceImageRegion *region, SluiceTileBatch *batch,
                            SluiceTileTarget *target)
@@ -181,7 +182,7 @@ static void place(const SluiceVulkanStreamer *s, const struct slc_unit *unit,
     *target = (SluiceTileTarget){.region = region, .layer = page.layer};
 }
 
-/* By texture, and of each the tiles of one batch together: one image and level. */
+/* Sorts by texture, then by image or level: units with equal keys make a batch. */
 static uint64_t batch_key(const SluiceVulkanStreamer *s, uint32_t index)
 {
     const struct slc_unit *unit = &s->units[index];
@@ -194,7 +195,7 @@ static uint64_t batch_key(const SluiceVulkanStreamer *s, uint32_t index)
     return (uint64_t)unit->texture << 32 | part;
 }
 
-/* Those of one key; the manager may hear of failures. */
+/* Records units of one key in one batch. Reports failures to the manager. */
 static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
                                  const uint32_t *units, uint32_t count)
 {
@@ -210,7 +211,7 @@ static SluiceResult record_tiles(SluiceVulkanStreamer *s, struct recording *r,
     return result;
 }
 
-/* Level by level, until the first answer that is no success. */
+/* Records the mip tail level by level. Stops at the first answer that is not SLUICE_SUCCESS. */
 static SluiceResult record_packed(SluiceVulkanStreamer *s, struct recording *r, uint32_t index)
 {
     uint32_t at = s->units[index].texture;
@@ -232,7 +233,7 @@ static SluiceResult record_packed(SluiceVulkanStreamer *s, struct recording *r, 
     return answered(s, index, answer);
 }
 
-/* As many as a frame may have, into frame_units; the others go on waiting. */
+/* Takes at most tilesPerFrame units into frame_units. The other units go on waiting. */
 static SluiceResult take(SluiceVulkanStreamer *s, uint32_t *count)
 {
     struct slc_unit_list later = {SLC_NONE, SLC_NONE};

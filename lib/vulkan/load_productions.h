@@ -1,9 +1,11 @@
 /**
- * Tiles that commands of the application fill: from a slot of the manager to a page, to the
- * producer, and to the manager again when the frame that wrote them is complete.
+ * Tiles that commands of the application fill. The manager gives a tile a slot, the residency gives
+ * it a page, and the producer records its commands. The manager maps the tile when that frame is
+ * complete.
  *
- * Such a tile is published later than one that is uploaded. If its frame is abandoned nobody has
- * shown it, and the producer may answer otherwise when it is asked again
+ * An uploaded tile is published in the frame that copies it, a produced tile only after its frame.
+ * So no frame has shown the tile if its frame is abandoned, and the producer may answer differently
+ * when it is asked again
  * (docs/decisions/0058-producers-record-into-pages.md).
  */
 #ifndef SLC_VULKAN_LOAD_PRODUCTIONS_H
@@ -11,15 +13,15 @@
 
 #include "vulkan/streamer.h"
 
-/** A tile of a texture with a producer has a slot. There is a free unit. */
+/** Starts a tile that has a slot. Its texture has a producer. Requires a free unit. */
 void slc_production_start(SluiceVulkanStreamer *s, uint32_t texture, const SluiceTile *tile);
-/** So have all of its packed tiles. */
+/** Starts all packed tiles of the texture, which have slots. Requires a free unit. */
 void slc_production_start_packed(SluiceVulkanStreamer *s, uint32_t texture);
-/** Asks producers for tiles whose pages are there. Behind the uploads. */
+/** Asks producers for the tiles that are bound. Call it after the uploads are recorded. */
 SluiceResult slc_productions_record(SluiceVulkanStreamer *s, VkCommandBuffer commands);
 /** Tells the manager of tiles that complete frames wrote. */
 SluiceResult slc_productions_publish(SluiceVulkanStreamer *s);
-/** What frames from `frame` on wrote was never written. */
+/** Asks again for tiles that `frame` or later frames recorded: these frames never run. */
 void slc_productions_abandon(SluiceVulkanStreamer *s, uint64_t frame);
 
 #endif /* SLC_VULKAN_LOAD_PRODUCTIONS_H */

@@ -7,7 +7,7 @@
 /** Gives the unit to the tile loader; again, if its source was not ready. */
 SluiceResult slc_unit_submit(SluiceVulkanStreamer *s, uint32_t unit);
 
-/** Texels of a tile; those at the edge end with their level. */
+/** Texels of a tile. Tiles at the edge end with their level. */
 SluiceImageRegion slc_tile_region(const struct slc_texture *texture, const SluiceTile *tile);
 
 #endif /* SLC_VULKAN_LOAD_READS_H */

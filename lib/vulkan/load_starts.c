@@ -77,8 +77,8 @@ static SluiceResult start_tile(SluiceVulkanStreamer *s, uint32_t texture, const 
     return result == SLUICE_SUCCESS ? result : slc_tile_back(s, unit, result);
 }
 
-/* Those for which there is a page now, coarse ones first. Shared tiles take no unit: they are
- * counted. */
+/* Starts deferred tiles that can have a page now, coarse tiles first. At most maxLoadsInFlight per
+ * call: shared tiles take no unit, so units do not bound their number. */
 static SluiceResult start_deferred(SluiceVulkanStreamer *s)
 {
     SluiceResult result = SLUICE_SUCCESS;

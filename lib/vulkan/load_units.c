@@ -72,7 +72,6 @@ uint32_t slc_unit_take_empty(SluiceVulkanStreamer *s, uint32_t texture, uint32_t
     return unit;
 }
 
-/* One that is ready. */
 uint32_t slc_unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit)
 {
     uint32_t unit = slc_unit_take_empty(s, texture, packed_unit);

@@ -11,7 +11,7 @@ uint32_t slc_unit_list_pop(SluiceVulkanStreamer *s, struct slc_unit_list *list);
 /** True if `count` units can be taken. Makes memory for them. Without device memory it puts units
  *  that have memory first. */
 bool slc_units_are_ready(SluiceVulkanStreamer *s, uint32_t count);
-/** Takes any free unit, and no staging memory. */
+/** Takes any free unit, without staging memory. */
 uint32_t slc_unit_take_empty(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit);
 /** Takes a unit that is ready. `packed_unit`: SLC_NONE for a tile. */
 uint32_t slc_unit_take(SluiceVulkanStreamer *s, uint32_t texture, uint32_t packed_unit);

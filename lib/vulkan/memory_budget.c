@@ -205,7 +205,8 @@ void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory
     pthread_mutex_unlock(&source->budget->mutex);
 }
 
-/* Of `amount`, in proportion to `own` of `all`; rounded up, so that what is left of it ends. */
+/* The part of `amount` that `own` is of `all`. Rounded up, so that the shares of all clients reach
+ * `amount`. */
 static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
 {
     const uint64_t unit = 1 << 16; /* products of bytes could be beyond 64 bits */

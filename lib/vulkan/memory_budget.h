@@ -51,7 +51,7 @@ void slc_memory_budget_finish(struct slc_memory_budget *budget);
 void slc_memory_budget_set_limit(struct slc_memory_budget *budget, uint64_t limit);
 /** What the device can spare at present, beside the limit that the application has set. */
 void slc_memory_budget_set_device_limit(struct slc_memory_budget *budget, uint64_t limit);
-/** The smaller limit. */
+/** The smaller one of the two limits. */
 uint64_t slc_memory_budget_limit(struct slc_memory_budget *budget);
 /** Bytes in use by tiles. */
 uint64_t slc_memory_budget_tile_memory(struct slc_memory_budget *budget);
@@ -85,7 +85,7 @@ void slc_memory_client_blame(struct slc_memory_client *source, struct slc_memory
 
 /** Bytes of tile memory that a client should release; at most what it and its source have. */
 struct slc_memory_pressure {
-    uint64_t beyond;  ///< must go: the client's share of what is in use beyond the limit
+    uint64_t beyond;  ///< must go: the client's share of the bytes beyond the limit
     uint64_t refused; ///< should go if the client does not need it: others were refused it lately
 };
 

@@ -34,7 +34,7 @@ SluiceResult slc_packed_units_init(struct slc_packed_units *packed,
                                    const SluiceAllocationCallbacks *cb,
                                    const SluiceStreamedTextureDesc *desc,
                                    const SluiceFormatInfo *format, uint32_t slot_size);
-/** Makes all of them one unit: nothing is to be read into a slot. */
+/** Merges all units into one. For producers, which read nothing into staging slots. */
 void slc_packed_units_join(struct slc_packed_units *packed);
 void slc_packed_units_finish(struct slc_packed_units *packed, const SluiceAllocationCallbacks *cb);
 

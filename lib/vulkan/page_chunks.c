@@ -12,7 +12,7 @@
 #include <assert.h>
 
 #define MIN_LAYERS 64u    /* 4 MiB */
-#define IDLE_TICKS 60u    /* that an empty chunk is kept */
+#define IDLE_TICKS 60u    /* for which an empty chunk is kept */
 #define REFUSED_TICKS 60u /* until the device is asked for memory again */
 
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers)
@@ -106,7 +106,7 @@ uint32_t slc_page_chunks_present(const struct slc_page_chunks *chunks)
     return count;
 }
 
-/* By the cap alone; small chunks share blocks of memory that are larger than they are. */
+/* Layers that max_size allows. Counts whole blocks of memory, which small chunks share. */
 static uint32_t layers_left(const struct slc_page_chunks *chunks)
 {
     if (!chunks->max_size)
@@ -154,7 +154,8 @@ static void log_shortage(struct slc_page_chunks *chunks, SluiceFormat format)
                 sluiceGetFormatName(texel_format(format)));
 }
 
-/* Fewer and fewer layers, until the device has memory for them and the cap holds. */
+/* Tries fewer and fewer layers until the device has memory for them and max_size holds. Returns how
+ * many; 0: none. */
 static uint32_t create_largest(struct slc_page_chunks *chunks, struct slc_page_chunk *chunk,
                                SluiceFormat format, uint32_t layers)
 {
@@ -213,8 +214,8 @@ static bool may_write(const struct slc_page_layer *layer,
     return layer->user == user || slc_page_timelines_reached(timelines, layer->user, layer->value);
 }
 
-/* The one that was freed longest ago, of those that the user may write to; layer_count if there is
- * none. */
+/* Finds the layer that was freed longest ago among those that the user may write to. Returns
+ * layer_count if there is none. */
 static uint32_t find_layer(const struct slc_page_chunk *chunk,
                            const struct slc_page_timelines *timelines, uint32_t user)
 {
@@ -262,7 +263,7 @@ static bool has_layer(const struct slc_page_chunk *chunk,
     return find_layer(chunk, timelines, user) < chunk->layer_count;
 }
 
-/* The fullest with a page for the user, so that others run empty. */
+/* Takes pages from the fullest chunk with a page for the user, so that other chunks run empty. */
 static bool find_fullest(struct slc_page_chunks *chunks, const struct slc_page_timelines *timelines,
                          uint32_t user, SluiceFormat format)
 {
@@ -298,7 +299,7 @@ void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_
     struct slc_page_layer *taken = slc_page_layer(chunks, page);
     chunk->layers[taken->previous].next = taken->next;
     chunk->layers[taken->next].previous = taken->previous;
-    taken->owner = SLC_NO_OWNER; /* nobody can take it again */
+    taken->owner = SLC_NO_OWNER; /* its texels cannot be restored any more */
     taken->user = (uint8_t)user;
     taken->held = true;
     taken->shared = 0;

@@ -12,24 +12,24 @@
 #include "vulkan/plain_image.h"
 
 #define SLC_PAGE_FORMATS 256u
-/* In a format: of pages that commands of the application write. They lie in chunks of their own,
+/* Bit of a format: commands of the application write these pages. They lie in chunks of their own,
  * which shaders can store to. */
 #define SLC_PAGE_PRODUCED 128u
-#define SLC_PAGE_CHUNK_LAYERS 2048u /* 128 MiB, at most, and what the device allows */
+#define SLC_PAGE_CHUNK_LAYERS 2048u /* at most, 128 MiB; fewer if the device has fewer layers */
 #define SLC_MAX_PAGE_CHUNKS (1u << 10)
 #define SLC_NO_OWNER UINT32_MAX
 
 enum slc_page_chunk_state {
     SLC_CHUNK_FREE = 0,
     SLC_CHUNK_LIVE,
-    SLC_CHUNK_RETIRING, ///< no shader of new frames sees it; waits for the others
+    SLC_CHUNK_RETIRING, ///< new frames do not see it; waits for earlier frames
 };
 
 struct slc_page_layer {
     uint16_t previous, next; ///< free: in the ring
-    uint32_t owner;          ///< free: whose texels it has, SLC_NO_OWNER for nobody's
+    uint32_t owner;          ///< free: owner of its texels; SLC_NO_OWNER: none
     uint64_t value;          ///< free: the last frame of `user` that could read it; 0: none could
-    uint8_t user;            ///< that holds it, or gave it back
+    uint8_t user;            ///< user that holds it, or gave it back
     bool held;
     uint32_t shared; ///< held: 1 + the index of its entry in the directory; 0: it has none
 };
@@ -41,11 +41,11 @@ struct slc_page_chunk {
     VkImageView view;
     struct slc_page_layer *layers; ///< owned; layer_count, and the head of the ring of free ones
     uint32_t free_count, layer_count;
-    bool leaving;          ///< LIVE: no page of it is taken any more, so that it runs empty
-    bool fresh;            ///< not yet in the layout in which it stays
-    uint8_t maker;         ///< user that puts it there; SLC_MAX_PAGE_USERS: whoever records next
-    uint64_t layout_frame; ///< of the maker, that did; 0: none yet
-    uint64_t tick;         ///< LIVE: the last in which it was not empty
+    bool leaving;  ///< LIVE: runs empty; no page of it may be taken
+    bool fresh;    ///< its layout transition is not recorded yet
+    uint8_t maker; ///< user that records the transition; SLC_MAX_PAGE_USERS: whoever records next
+    uint64_t layout_frame; ///< the maker's frame with the transition; 0: none yet
+    uint64_t tick;         ///< LIVE: the last tick in which it was not empty
     uint64_t retire_values[SLC_MAX_PAGE_USERS]; ///< RETIRING: each user's last frame that sees it
 };
 
@@ -56,14 +56,14 @@ struct slc_page_chunks {
     const struct slc_caps *caps;
     const SluiceAllocationCallbacks *cb;
     struct slc_image_memory memory;
-    uint32_t last[SLC_PAGE_FORMATS];       ///< that a page was taken from
+    uint32_t last[SLC_PAGE_FORMATS];       ///< chunk that the last page was taken from
     uint32_t page_count[SLC_PAGE_FORMATS]; ///< of all live chunks of the format
-    uint64_t refused_tick; ///< the last in which the device had no memory; 0: it had some then
-    bool has_freed;        ///< a chunk has gone since then: one may be made at once
+    uint64_t refused_tick; ///< 1 + the tick in which the device refused a chunk; 0: not refused
+    bool has_freed;        ///< a chunk was freed since then: the device may be asked at once
     uint32_t max_layer_count;
     uint64_t max_size;    ///< bytes of device memory, a hard limit; 0: none
     uint32_t image_count; ///< chunks that have an image
-    uint64_t shortages;   ///< pages that were not there because all chunks were in use
+    uint64_t shortages;   ///< pages that were missing because all chunks were in use
 };
 
 /** The format of the pages of a texture. `produced`: commands of the application write them. */
@@ -72,10 +72,10 @@ static inline SluiceFormat slc_page_format(SluiceFormat format, bool produced)
     return (SluiceFormat)((uint32_t)format | (produced ? SLC_PAGE_PRODUCED : 0u));
 }
 
-/** Pages that so many chunks hold, at most: if all are of one format. */
+/** Most pages that `chunk_count` chunks hold: all chunks are of one format then. */
 uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array_layers);
 
-/** After an error it can be finished. Errors: OUT_OF_HOST_MEMORY. */
+/** Finish it after an error, too. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_page_chunks_init(struct slc_page_chunks *chunks, const struct slc_vk *vk,
                                   const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                                   uint32_t count);
@@ -101,20 +101,21 @@ bool slc_page_chunk_is_ready(const struct slc_page_chunk *chunk,
 uint32_t slc_page_chunks_free_count(const struct slc_page_chunks *chunks,
                                     const struct slc_page_timelines *timelines, uint32_t user,
                                     SluiceFormat format);
-/** One of them; SLUICE_PAGE_NONE if there is none. It stays free until slc_page_chunks_take. */
+/** Finds a free page that the user may write to now; SLUICE_PAGE_NONE if there is none. The page
+ *  stays free until slc_page_chunks_take. */
 uint32_t slc_page_chunks_find(struct slc_page_chunks *chunks,
                               const struct slc_page_timelines *timelines, uint32_t user,
                               SluiceFormat format);
 
 /** False if asking the device for another chunk is of no use now. */
 bool slc_page_chunks_can_grow(const struct slc_page_chunks *chunks, uint64_t tick);
-/** Makes a chunk of the user: as many pages again as the format has, or fewer if the device has no
- *  memory for them. False if it has none at all, or all chunks are in use. */
+/** Makes a chunk for the user. It doubles the pages of the format, or has fewer pages if the device
+ *  lacks memory. Returns false if the device has no memory, or all chunks are in use. */
 bool slc_page_chunks_grow(struct slc_page_chunks *chunks, uint64_t tick, uint32_t user,
                           SluiceFormat format);
 
 void slc_page_chunks_take(struct slc_page_chunks *chunks, uint32_t page, uint32_t user);
-/** True if the page is still free as `owner` of this user left it. */
+/** True if the page is free and still has the texels of `owner` of this user. */
 bool slc_page_chunks_is_left(const struct slc_page_chunks *chunks, uint32_t page, uint32_t user,
                              uint32_t owner);
 /** `value`: the last frame of `user` that may read the page. */
@@ -129,14 +130,14 @@ void slc_page_chunks_retire(struct slc_page_chunks *chunks, uint32_t index,
 void slc_page_chunks_end_retired(struct slc_page_chunks *chunks, uint32_t index,
                                  const struct slc_page_timelines *timelines);
 
-/** Puts a new chunk into its layout, if that is for the user to do. */
+/** Records the layout transition of a new chunk, if the user is its maker. */
 void slc_page_chunks_record(struct slc_page_chunks *chunks, uint32_t index,
                             const struct slc_page_timelines *timelines, uint32_t user,
                             VkCommandBuffer commands);
-/** The user's frames from `frame` on will never be complete; `last` is the last that will. */
+/** The user abandons its frames from `frame` on. `last` is its last frame that will complete. */
 void slc_page_chunks_abandon(struct slc_page_chunks *chunks, uint32_t user, uint64_t frame,
                              uint64_t last);
-/** The user goes, and holds no page: no value of its timeline stays. */
+/** Removes all values of the timeline of a user, which holds no page and is removed. */
 void slc_page_chunks_drop_user(struct slc_page_chunks *chunks, uint32_t user);
 
 #endif /* SLC_VULKAN_PAGE_CHUNKS_H */

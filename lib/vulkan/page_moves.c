@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define WORDS_PER_FRAME 65536u /* of the table that are looked at, about */
+#define WORDS_PER_FRAME 65536u /* words of the table that a frame scans, about */
 
 void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_frame)
 {
@@ -31,7 +31,7 @@ static void record_copy(const struct slc_page_pool *pool, uint32_t from, uint32_
                           slc_page_image(pool, to), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
 }
 
-/* False if there is no page for it, or no room in the list. */
+/* Returns false if there is no page for the tile, or no room in the list. */
 static bool move_tile(struct slc_page_moves *moves, uint32_t part, uint32_t word, uint64_t frame,
                       VkCommandBuffer commands)
 {
@@ -79,7 +79,7 @@ void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_
         const struct slc_page_table_part *p = &table->parts[part];
         moves->next_part = (part + 1) % table->part_count;
         words += p->word_count;
-        /* What was stored by frames under way could be taken back with them. */
+        /* Abandoning a frame under way takes back the words that it stored. */
         if (p->word_count == 0 || p->is_lost || p->stored_frame > completed_frame)
             continue;
         uint32_t moved = move_tiles(moves, leaving, part, room, frame, commands);
@@ -108,7 +108,7 @@ static void take_back(struct slc_page_moves *moves, const struct slc_page_move *
         *entry = move->from | SLC_PAGE_SHOWN;
         return;
     }
-    if (*entry == (move->to | SLC_PAGE_GIVEN)) /* its texels never came there */
+    if (*entry == (move->to | SLC_PAGE_GIVEN)) /* the copy never ran */
         *entry = SLUICE_PAGE_NONE;
     slc_page_pool_give(moves->pool, moves->user, move->from, SLC_NO_OWNER);
 }

@@ -11,13 +11,13 @@
 #include "vulkan/page_pool.h"
 #include "vulkan/page_table.h"
 
-#define SLC_PAGE_MOVES 1024u         /* that may be under way */
+#define SLC_PAGE_MOVES 1024u         /* under way at a time */
 #define SLC_PAGE_MOVES_PER_FRAME 64u /* 4 MiB */
 
 struct slc_page_move {
     uint32_t part, word;             ///< of the page table
     uint32_t from, to;               ///< pages
-    uint64_t frame;                  ///< that copies
+    uint64_t frame;                  ///< frame that copies
     struct slc_page_readers readers; ///< others whose frames may still read `from`
 };
 
@@ -28,18 +28,19 @@ struct slc_page_moves {
     struct slc_page_move under_way[SLC_PAGE_MOVES]; ///< oldest first
     uint32_t count;
     uint32_t next_part; ///< where the search for tiles goes on
-    uint32_t left;      ///< that may still be made; UINT32_MAX: no limit
+    uint32_t left;      ///< moves that may still be made; UINT32_MAX: no limit
 };
 
 /** Frames up to `completed_frame` are complete: their old pages are given back. */
 void slc_page_moves_complete(struct slc_page_moves *moves, uint64_t completed_frame);
-/** Moves tiles out of the image that is to run empty, if there is one. Behind a barrier over all
- *  that earlier frames do; the copies of the frame itself come later. */
+/** Moves tiles out of the image that is to run empty, if there is one. Record it after a barrier
+ *  that waits for all earlier frames, and before the other copies of the frame. */
 void slc_page_moves_record(struct slc_page_moves *moves, uint64_t frame, uint64_t completed_frame,
                            VkCommandBuffer commands);
-/** The part goes: its moves are over when they are complete, and nothing is taken back to it. */
+/** The part is removed. Its moves still end when they are complete, but none is undone. */
 void slc_page_moves_forget(struct slc_page_moves *moves, uint32_t part);
-/** After slc_page_pool_abandon, before slc_page_table_abandon. */
+/** Undoes the moves of `frame` and later frames. Call it after slc_page_pool_abandon, and before
+ *  slc_page_table_abandon. */
 void slc_page_moves_abandon(struct slc_page_moves *moves, uint64_t frame);
 
 #endif /* SLC_VULKAN_PAGE_MOVES_H */

@@ -53,8 +53,8 @@ static void sum_limits(struct slc_page_pool *pool)
     pool->chunks.max_size = unlimited ? 0 : sum;
 }
 
-/* Images that shaders of the user's next frame may find in its array. Only calls of the user change
- * the array: its thread may be reading it while others record. */
+/* Sets the images that the user's next frame sees in its array. Only calls of the user change the
+ * array: its thread may read it while other users record. */
 static void show_chunks(struct slc_page_pool *pool, uint32_t user)
 {
     for (uint32_t i = 0; i < pool->chunks.count; i++) {
@@ -179,7 +179,7 @@ static bool grow(struct slc_page_pool *pool, uint32_t user, SluiceFormat format)
     if (!slc_page_chunks_can_grow(&pool->chunks, tick))
         return false;
     bool grown = slc_page_chunks_grow(&pool->chunks, tick, user, format);
-    /* a smaller one than was asked for will do */
+    /* a smaller chunk than asked for counts as success */
     slc_memory_client_blame(&pool->client, grown ? NULL : pool->users[user].client);
     return grown;
 }
@@ -271,7 +271,7 @@ void slc_page_pool_give(struct slc_page_pool *pool, uint32_t user, uint32_t page
     pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Shared pages are left by leave_shared. */
+/* Gives back all pages of the user but shared ones: leave_shared does those. */
 static void give_all(struct slc_page_pool *pool, uint32_t user)
 {
     for (uint32_t i = 0; i < pool->chunks.count; i++)
@@ -343,7 +343,7 @@ void slc_page_pool_hurry(struct slc_page_pool *pool)
     pthread_mutex_unlock(&pool->mutex);
 }
 
-/* Pages of the chunk that are held; SLC_NONE if others hold any of them. */
+/* Number of held pages of the chunk; SLC_NONE if another user holds any of them. */
 static uint32_t count_own(const struct slc_page_pool *pool, const struct slc_page_chunk *chunk,
                           uint32_t user)
 {
@@ -456,7 +456,7 @@ uint64_t slc_page_pool_going_size(struct slc_page_pool *pool)
     return pages * SLC_TILE_SIZE;
 }
 
-/* The tile's entry in the directory follows it. */
+/* Moves the tile's entry in the directory to the new page. */
 static void move_entry(struct slc_page_pool *pool, uint32_t from, uint32_t to)
 {
     struct slc_page_layer *old = slc_page_layer(&pool->chunks, from);

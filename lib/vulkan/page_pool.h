@@ -26,9 +26,9 @@
 
 struct slc_page_user {
     struct slc_memory_client *client; ///< for whom the pool allocates; NULL: nobody counts
-    /** What its shaders get; owns the array of views alone. A new image is in its maker's array as
-     *  soon as a frame of the maker puts it into its layout, and in others when that is complete.
-     *  A retired one leaves with the user's next frame. */
+    /** Views for the user's shaders; owns only the array. A new image enters the array of its maker
+     *  with the frame that records its layout transition, and other arrays when that frame is
+     *  complete. A retired image leaves with the user's next frame. */
     struct slc_page_views shown;
     uint32_t held_count;  ///< pages
     uint64_t max_size;    ///< bytes; 0: no limit of its own
@@ -41,7 +41,7 @@ struct slc_page_pool {
     const SluiceAllocationCallbacks *cb;
     pthread_mutex_t mutex; ///< around everything below; users may be on different threads
     bool has_mutex;
-    struct slc_page_views views; ///< what the users' arrays are made of
+    struct slc_page_views views; ///< sampler and empty image for the users' arrays
     struct slc_page_chunks chunks;
     struct slc_page_timelines timelines;
     struct slc_page_user users[SLC_MAX_PAGE_USERS];
@@ -50,7 +50,7 @@ struct slc_page_pool {
     bool empty_is_ready;            ///< the image of empty places is in its layout
     bool hurry;                     ///< chunks that are empty are retired with the next record
     uint32_t leaving;               ///< chunk that is to run empty; SLC_NONE: none is
-    uint32_t leaving_user;          ///< who empties it
+    uint32_t leaving_user;          ///< user that empties it
 };
 
 /** After an error it can be finished. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
@@ -66,7 +66,7 @@ void slc_page_pool_finish(struct slc_page_pool *pool);
 SluiceResult slc_page_pool_add_user(struct slc_page_pool *pool, VkSemaphore semaphore,
                                     uint64_t max_size, struct slc_memory_client *client,
                                     uint32_t *user);
-/** As at slc_page_pool_add_user. Nothing that is allocated is freed by this. */
+/** Changes the `max_size` of slc_page_pool_add_user. Frees no chunk. */
 void slc_page_pool_set_max_size(struct slc_page_pool *pool, uint32_t user, uint64_t max_size);
 /** The user's frames are complete. Pages that it still holds are given back. */
 void slc_page_pool_remove_user(struct slc_page_pool *pool, uint32_t user);
@@ -116,16 +116,15 @@ bool slc_page_pool_retake(struct slc_page_pool *pool, uint32_t user, uint32_t pa
  * emptied. `*held`: pages that are held in it.
  */
 uint32_t slc_page_pool_choose_leaving(struct slc_page_pool *pool, uint32_t user, uint32_t *held);
-/** The user empties no chunk any more. */
+/** Stops emptying the chunk that the user chose, if any. */
 void slc_page_pool_stay(struct slc_page_pool *pool, uint32_t user);
 /** The chunk that the user empties; SLC_NONE if there is none. */
 uint32_t slc_page_pool_leaving(struct slc_page_pool *pool, uint32_t user);
-/** Pages of the chunk that the user holds; SLC_NONE if others hold any of them, too, or read them.
- */
+/** Number of held pages of a chunk; SLC_NONE if another user holds any of them. */
 uint32_t slc_page_pool_held_in(struct slc_page_pool *pool, uint32_t user, uint32_t chunk);
-/** The device or the budget may have memory again: it is asked at once. */
+/** Lets the next shortage ask the device again: it or the budget may have memory now. */
 void slc_page_pool_ask_again(struct slc_page_pool *pool);
-/** Bytes of chunks that are empty, and go. */
+/** Bytes of chunks that are empty or retiring: they will be freed. */
 uint64_t slc_page_pool_going_size(struct slc_page_pool *pool);
 
 /** Users that have held a page, and the tick up to which their frames may read it. */
@@ -134,8 +133,8 @@ struct slc_page_readers {
     uint64_t tick;
 };
 
-/** The tile on `from` is to be on `*to`, which the user holds from now on, too; `frame` copies it.
- *  False if there is no page for it. */
+/** Takes a page `*to` for the tile on `from`; `frame` copies it. The user holds both pages until
+ *  slc_page_pool_end_move. Returns false if there is no page. */
 bool slc_page_pool_move(struct slc_page_pool *pool, uint32_t user, uint32_t from, uint64_t frame,
                         uint32_t *to, struct slc_page_readers *readers);
 /** The copy is complete: gives `from` back. False: frames of other readers are under way. */
@@ -157,7 +156,7 @@ static inline VkImage slc_page_image(const struct slc_page_pool *pool, uint32_t 
     return pool->chunks.at[page >> 16].image.image;
 }
 
-/** For stores of shaders: all layers of that image. VK_NULL_HANDLE if they cannot. */
+/** View of all layers of the image of a page. VK_NULL_HANDLE if shaders cannot store. */
 static inline VkImageView slc_page_storage_view(const struct slc_page_pool *pool, uint32_t page)
 {
     const struct slc_page_chunk *chunk = &pool->chunks.at[page >> 16];

@@ -134,7 +134,7 @@ void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struc
     if (index != SLC_NONE) {
         place(pool, user, index, page);
         pool->shared.entries[index].written = pool->shared.entries[index].adopted = true;
-        /* that of its copy at most: only texels that a frame had copied were given back */
+        /* a frame at or after the copy: only copied texels can be taken back */
         pool->shared.entries[index].value = slc_page_layer(&pool->chunks, page)->value;
     }
     pthread_mutex_unlock(&pool->mutex);

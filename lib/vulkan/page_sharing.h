@@ -35,8 +35,8 @@ void slc_page_share_place(struct slc_page_pool *pool, uint32_t user, const struc
 /** `frame` copies the texels to the page. Of a page that is the user's own: ignored. */
 void slc_page_share_written(struct slc_page_pool *pool, uint32_t user, uint32_t page,
                             uint64_t frame);
-/** The user has the tile on this page again, with the texels that were there: for others, once the
- *  frames that the user had recorded when it gave the page are complete. */
+/** Shares a page that the user has taken back, with its texels. Other users may read it when the
+ *  frames are complete that the user had recorded when it gave the page. */
 void slc_page_share_adopt(struct slc_page_pool *pool, uint32_t user, const struct slc_tile_key *key,
                           uint32_t page);
 

@@ -14,7 +14,7 @@
 /* A word of the table that changes with this frame. */
 struct slc_page_store {
     uint32_t word, value;
-    uint32_t turn; ///< of equal words the last one counts
+    uint32_t turn; ///< order of the stores: the last store to a word counts
 };
 
 SluiceResult slc_page_table_init(struct slc_page_table *table, const struct slc_vk *vk,
@@ -151,7 +151,7 @@ static void record_no_pages(struct slc_page_table *table, const struct slc_page_
     fill_none(table, part->first_word + levels, part->word_count - levels, commands);
 }
 
-/* Every word of its tiles, as they are before this frame's stores or already with them. */
+/* Records all tile words of the part, with or without the stores of this frame. */
 static void record_words(struct slc_page_table *table, const struct slc_page_table_part *part,
                          VkCommandBuffer commands)
 {
@@ -195,7 +195,7 @@ void slc_page_table_record_begin(struct slc_page_table *table, uint64_t frame,
         record_lost(table, frame, commands);
 }
 
-/* By word. Stores of one word stay in their order. */
+/* Sorts by word. Stores to one word keep their order. */
 static int compare_stores(const void *a, const void *b)
 {
     const struct slc_page_store *x = a, *y = b;
@@ -227,7 +227,7 @@ void slc_page_table_record_publish(struct slc_page_table *table, VkCommandBuffer
 
 void slc_page_table_abandon(struct slc_page_table *table, uint64_t frame)
 {
-    table->store_count = 0; /* of a begin that failed: lost parts are written again */
+    table->store_count = 0; /* left by a begin that failed: lost parts are written again */
     for (uint32_t i = 0; i < table->part_count; i++) {
         struct slc_page_table_part *part = &table->parts[i];
         if (part->recorded_frame >= frame) {

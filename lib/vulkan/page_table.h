@@ -14,18 +14,17 @@
 
 #include <sluice/manager.h>
 
-/* In an entry: the tile was unmapped, and may still be on that page. Also a bit of
- * SLUICE_PAGE_NONE.
- */
+/* Bit of an entry: the tile was unmapped, and may still be on that page. SLUICE_PAGE_NONE has this
+ * bit, too. */
 #define SLC_PAGE_GIVEN 0x8000u
-/* In an entry: the table shows the page, as its texels are there. */
+/* Bit of an entry: shaders see the page, because its texels are there. */
 #define SLC_PAGE_SHOWN 0x4000u
 
 struct slc_page_table_part {
     SluiceStreamedTextureDesc desc;
     uint32_t first_word, word_count; ///< 0: all levels are packed
-    uint64_t recorded_frame;         ///< that wrote the part; 0: none did
-    uint64_t stored_frame;           ///< the last that stored words there
+    uint64_t recorded_frame;         ///< frame that wrote the part; 0: none
+    uint64_t stored_frame;           ///< last frame that stored words of the part
     bool is_lost;                    ///< the device may have other words than are in `entries`
 };
 
@@ -38,26 +37,26 @@ struct slc_page_table {
     struct slc_region_arena arena;     ///< its words
     struct slc_page_table_part *parts; ///< owned; by texture
     uint32_t part_count;
-    uint32_t *new_parts; ///< owned; that are not written yet
+    uint32_t *new_parts; ///< owned; parts that are not written yet
     uint32_t new_part_count;
     uint32_t *entries; ///< owned; by word: the page that was taken, shown or not; or, with
                        ///< SLC_PAGE_GIVEN, that was given back
     struct slc_page_store *stores; ///< owned
     uint32_t store_count, store_capacity;
-    bool has_lost; ///< some part is
+    bool has_lost; ///< some part has is_lost set
 };
 
-/** `change_count`: calls of slc_page_table_store between two publications, at most. After an error
- *  it can be finished. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+/** `change_count`: most calls of slc_page_table_store between two publications. Finish the table
+ *  after an error, too. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_page_table_init(struct slc_page_table *table, const struct slc_vk *vk,
                                  const struct slc_caps *caps, const SluiceAllocationCallbacks *cb,
                                  uint32_t word_count, uint32_t part_count, uint32_t change_count);
 void slc_page_table_finish(struct slc_page_table *table);
 
-/** Nothing of the part is on a page. Errors: LIMIT_EXCEEDED. */
+/** Adds a part. None of its tiles is on a page. Errors: LIMIT_EXCEEDED. */
 SluiceResult slc_page_table_add(struct slc_page_table *table, uint32_t part,
                                 const SluiceStreamedTextureDesc *desc);
-/** The part is unused again. Its pages have been given back, or are given back next. */
+/** Removes a part. Does not give its pages back. */
 void slc_page_table_remove(struct slc_page_table *table, uint32_t part);
 
 uint32_t slc_page_table_word(const struct slc_page_table *table, uint32_t part, uint32_t level,
@@ -73,16 +72,17 @@ static inline uint32_t slc_page_of_entry(uint32_t entry)
     return entry & ~(SLC_PAGE_GIVEN | SLC_PAGE_SHOWN);
 }
 
-/** The device gets what the entry says now, from `frame` on. */
+/** Stores the entry of the word for the device. Its shaders see it from `frame` on. */
 void slc_page_table_store(struct slc_page_table *table, uint32_t part, uint32_t word,
                           uint64_t frame);
 
-/** Before anything is drawn: parts that are new, or that abandoned frames wrote to. */
+/** Records whole parts: new ones, and those that abandoned frames wrote to. Call it before
+ *  anything is drawn. */
 void slc_page_table_record_begin(struct slc_page_table *table, uint64_t frame,
                                  VkCommandBuffer commands);
-/** After copies to pages: what was stored since the last call. */
+/** Records the words stored since the last call. Call it after the copies to pages. */
 void slc_page_table_record_publish(struct slc_page_table *table, VkCommandBuffer commands);
-/** Nothing that the frames from `frame` on recorded has happened. */
+/** Records again later whatever `frame` and later frames recorded: these frames never run. */
 void slc_page_table_abandon(struct slc_page_table *table, uint64_t frame);
 
 #endif /* SLC_VULKAN_PAGE_TABLE_H */

@@ -12,7 +12,7 @@ void slc_page_timelines_add(struct slc_page_timelines *timelines, uint32_t user,
                             VkSemaphore semaphore)
 {
     timelines->of[user].semaphore = semaphore;
-    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) /* of the last one in this place */
+    for (uint32_t i = 0; i < SLC_MAX_PAGE_USERS; i++) /* values of the last user in this place */
         timelines->of[i].seen[user] = timelines->of[i].still[user] = 0;
     timelines->user_count++;
 }
@@ -23,7 +23,7 @@ void slc_page_timelines_remove(struct slc_page_timelines *timelines, uint32_t us
     timelines->user_count--;
 }
 
-/* Pages of frames that others have finished can be taken, and their chunks destroyed. */
+/* Pages can be taken, and chunks destroyed, when other users have finished their frames. */
 static void poll_others(struct slc_page_timelines *timelines, const struct slc_vk *vk,
                         uint32_t user)
 {
@@ -56,7 +56,7 @@ static void advance_safe_ticks(struct slc_page_timelines *timelines)
     }
 }
 
-/* Whether the others go on, as the user sees it. */
+/* Notes which other users have made progress since the user's last frame. */
 static void look_at_others(const struct slc_page_timelines *timelines,
                            struct slc_page_timeline *self)
 {

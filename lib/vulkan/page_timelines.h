@@ -11,17 +11,19 @@
 #include "vulkan/dispatch.h"
 
 #define SLC_MAX_PAGE_USERS 16u
-#define SLC_PAGE_FRAMES 16u /* at least what a user may have in flight */
+#define SLC_PAGE_FRAMES 16u /* at least as many as a user may have in flight */
 
 struct slc_page_timeline {
     VkSemaphore semaphore;            ///< VK_NULL_HANDLE: the place is free
     uint64_t recorded;                ///< the last frame that was recorded, and not abandoned
-    uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last that were recorded
-    uint64_t frame_count;             ///< that went through it, but for abandoned ones
+    uint64_t frames[SLC_PAGE_FRAMES]; ///< ring of the last recorded frames
+    uint64_t frame_count;             ///< frames put into the ring, without abandoned ones
     uint64_t completed;
-    uint64_t safe_tick;             ///< frames that were recorded up to this tick are complete
-    uint64_t mark_frame, mark_tick; ///< what comes next there; 0: nothing
-    /** By user: its progress as this one saw it last, and for how many frames it stood still. */
+    uint64_t safe_tick;  ///< frames that were recorded up to this tick are complete
+    uint64_t mark_frame; ///< safe_tick becomes mark_tick when this frame is complete; 0: none
+    uint64_t mark_tick;
+    /** By other user: its progress when this user last looked, and for how many frames of this user
+     *  it has not changed. */
     uint64_t seen[SLC_MAX_PAGE_USERS];
     uint32_t still[SLC_MAX_PAGE_USERS];
 };
@@ -32,7 +34,7 @@ struct slc_page_timelines {
     uint64_t tick; ///< frames recorded, of all users
 };
 
-/** SLC_MAX_PAGE_USERS if all places are taken. */
+/** Returns a free place for a user; SLC_MAX_PAGE_USERS if there is none. */
 uint32_t slc_page_timelines_free_place(const struct slc_page_timelines *timelines);
 /** `semaphore`: timeline that the user's frames signal with their numbers. */
 void slc_page_timelines_add(struct slc_page_timelines *timelines, uint32_t user,
@@ -54,11 +56,12 @@ static inline bool slc_page_timelines_reached(const struct slc_page_timelines *t
     return timelines->of[user].completed >= frame;
 }
 
-/** All frames of the users in the bit set, but for `except`, that were recorded up to now are
- *  complete. */
+/** True if all recorded frames of the users in the bit set are complete, without those of
+ *  `except`. */
 bool slc_page_timelines_are_idle(const struct slc_page_timelines *timelines, uint32_t users,
                                  uint32_t except);
-/** As slc_page_timelines_are_idle, but for frames that were recorded up to the tick. */
+/** True if all frames that these users recorded up to the tick are complete, without those of
+ *  `except`. */
 bool slc_page_timelines_passed(const struct slc_page_timelines *timelines, uint32_t users,
                                uint32_t except, uint64_t tick);
 

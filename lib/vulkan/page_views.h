@@ -40,7 +40,7 @@ void slc_page_views_finish_copy(struct slc_page_views *copy, const SluiceAllocat
 /** VK_NULL_HANDLE: the place is empty again. Nothing happens if it is what it was. */
 void slc_page_views_set(struct slc_page_views *views, uint32_t index, VkImageView view);
 
-/** Whether the place holds pages. */
+/** True if the place has an image of pages. */
 bool slc_page_views_has(const struct slc_page_views *views, uint32_t index);
 
 /** A view of all layers of an image of one level. */

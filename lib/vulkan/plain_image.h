@@ -11,9 +11,9 @@ struct slc_plain_image {
 };
 
 /**
- * The levels of `info` from `first_level` on; `layer_count` layers. `storage`: shaders are to store
- * to it, if the device can do that with the format. Errors: UNSUPPORTED with a
- * message that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
+ * Creates an image of the levels of `info` from `first_level` on, with `layer_count` layers.
+ * `storage`: lets shaders store to it, if the device can with this format. Errors: UNSUPPORTED,
+ * with a log message; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN.
  */
 SluiceResult slc_plain_image_create(struct slc_plain_image *image, struct slc_image_memory *memory,
                                     const struct slc_vk *vk, const struct slc_caps *caps,

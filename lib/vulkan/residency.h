@@ -33,10 +33,10 @@ struct slc_residency_image {
     uint32_t first_level; ///< of the texture that `image` has
 };
 
-/** The page of one tile, which has an image of its own. */
+/** Layer of an image that holds one tile. */
 struct slc_tile_page {
     VkImage image;
-    VkImageView view; ///< all layers, for stores; VK_NULL_HANDLE if there are none
+    VkImageView view; ///< all layers, for stores; VK_NULL_HANDLE if shaders cannot store
     uint32_t image_index, layer;
 };
 
@@ -85,13 +85,13 @@ struct slc_residency_interface {
     uint32_t (*page_room)(const struct slc_residency *residency, uint32_t index);
 
     /**
-     * Memory is to fall by `size` bytes: frames move tiles together, until the next call. Returns
-     * how many pages must be given back before that helps; SLC_NONE: nothing does, or nothing is
-     * needed. NULL, as the next one is then: pages are slots of heaps.
+     * Moves tiles together until memory has fallen by `size` bytes: frames do so until the next
+     * call. Returns how many pages must be given back first. Returns SLC_NONE if no image can be
+     * emptied, or none has to be. NULL if pages are slots of heaps; `compact` is NULL then, too.
      */
     uint32_t (*gather)(struct slc_residency *residency, uint64_t size);
-    /** The next frame moves at most `most` tiles, if an image runs empty by that in the end.
-     *  Returns how many, if no frame under way stands against it. */
+    /** Lets the next frame move at most `most` tiles, if the moves can empty an image in the end.
+     *  Returns how many tiles can move; frames under way may hold some of them back. */
     uint32_t (*compact)(struct slc_residency *residency, uint32_t most);
 
     /** As SluiceHeapAllocator. */
@@ -112,8 +112,8 @@ struct slc_residency_interface {
      *  texels may not be there, so it cannot be revived. Only room_to_unmap times. */
     void (*unmap)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile,
                   uint64_t frame, bool filled);
-    /** A tile whose map is over was never shown, and is not going to be: no frame reads or writes
-     *  it. NULL: nothing is to be done. */
+    /** Takes back a map that is complete. The tile was never shown, and no frame reads or writes
+     *  it. NULL: nothing to do. */
     void (*discard)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
     /** How many unmaps may be collected. */
     uint32_t (*room_to_unmap)(const struct slc_residency *residency);
@@ -132,11 +132,11 @@ struct slc_residency_interface {
 
     /* What follows may be NULL: there is nothing to do. */
 
-    /** Where commands write a tile whose map is over. Of regular tiles. NULL: at its place in the
-     *  texture's image. */
+    /** Finds the page to which commands write a regular tile. The map of the tile is complete.
+     *  NULL: tiles have their places in the texture's image. */
     struct slc_tile_page (*find_page)(const struct slc_residency *residency, uint32_t index,
                                       const SluiceTile *tile);
-    /** Texels that a complete frame wrote there are shown by the frame that begins. */
+    /** Shows a tile from the frame that begins on. A complete frame wrote its texels. */
     void (*show)(struct slc_residency *residency, uint32_t index, const SluiceTile *tile);
 
     /** Of the frame being begun, behind a barrier over all that earlier ones do. */

@@ -25,10 +25,10 @@
 struct paged_image {
     struct slc_plain_image own_tail; ///< the packed levels; owned by layer 0, of all layers
     VkImage tail;
-    uint32_t layer_count;            ///< 0 but for layer 0
+    uint32_t layer_count;            ///< of layer 0; 0 in all others
     const SluiceImageSource *source; ///< borrowed
     uint32_t source_layer;
-    SluiceFormat page_format;           ///< of its pages
+    SluiceFormat page_format;           ///< may have SLC_PAGE_PRODUCED
     uint32_t block_width, block_height; ///< texels
 };
 
@@ -44,7 +44,7 @@ struct paged_residency {
     uint32_t max_image_count;
     struct slc_page_table table; ///< its parts are those of the images
     struct slc_page_moves moves;
-    uint32_t upload_reserve; ///< changes that are kept for other than unmapping
+    uint32_t upload_reserve; ///< changes that unmapping must leave to uploads and moves
     uint64_t frame, completed_frame;
     uint32_t next_heap, heap_count;
 };
@@ -527,7 +527,7 @@ SluiceResult slc_create_paged_residency(const struct slc_residency_create_info *
     p->pool = info->pages;
     p->user = info->page_user;
     p->max_image_count = info->max_image_count;
-    /* copied, revived, shared, deferred; and moved */
+    /* four kinds of changes: copied, revived, shared, deferred tiles; and moves */
     p->upload_reserve = 4 * info->max_changes + SLC_PAGE_MOVES_PER_FRAME;
     p->moves = (struct slc_page_moves){.pool = p->pool, .table = &p->table, .user = p->user};
     p->images = slc_calloc(p->cb, p->max_image_count, sizeof *p->images);

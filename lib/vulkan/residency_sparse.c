@@ -211,7 +211,7 @@ static bool unbind_heap(struct sparse_residency *s, struct dying_heap *heap)
         s->images[image].last_value = s->submitted_value + 1;
         heap->value = s->submitted_value + 1;
     }
-    /* The last ones may have been unbound along with neighbors from other heaps, just now. */
+    /* Its last tiles may have been unbound just now, as neighbors of tiles of other heaps. */
     if (!heap->unbound && last_value(s) > heap->value)
         heap->value = last_value(s);
     heap->unbound = true;

@@ -1,6 +1,6 @@
 /**
  * Threads and pages that the front ends of a context share. Made with the settings of the context
- * when there is a front end, and destroyed with the last one.
+ * when a front end first needs them, and destroyed with the last front end that uses them.
  */
 #ifndef SLC_VULKAN_SHARED_PARTS_H
 #define SLC_VULKAN_SHARED_PARTS_H
@@ -37,13 +37,14 @@ void slc_shared_parts_init(struct slc_shared_parts *shared, const struct slc_vk 
 /** There are no front ends. */
 void slc_shared_parts_finish(struct slc_shared_parts *shared);
 
-/** Pages of the context. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY, VULKAN. */
+/** Returns the pages of the context; makes them for the first user. Errors: OUT_OF_HOST_MEMORY,
+ * OUT_OF_DEVICE_MEMORY, VULKAN. */
 SluiceResult slc_use_pages(struct slc_shared_parts *shared, struct slc_page_pool **pool);
 /** Ends what slc_use_pages began. NULL is allowed. */
 void slc_drop_pages(struct slc_shared_parts *shared, struct slc_page_pool *pool);
 
-/** A tile loader on the context's threads. Uses requestCapacity, maxSourceCount and the callbacks
- * of `info`; the context decides about the rest. Errors: OUT_OF_HOST_MEMORY. */
+/** Creates a tile loader on the context's threads. Uses requestCapacity, maxSourceCount and the
+ * callbacks of `info`; all other settings are the context's. Errors: OUT_OF_HOST_MEMORY. */
 SluiceResult slc_create_shared_loader(struct slc_shared_parts *shared,
                                       const SluiceTileLoaderCreateInfo *info,
                                       SluiceTileLoader **loader);

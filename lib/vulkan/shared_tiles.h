@@ -26,7 +26,7 @@ struct slc_shared_tile {
     uint8_t last_user; ///< `going`: that held it last
     bool listed;       ///< it can be found by its key
     bool written;      ///< a frame copies its texels
-    bool adopted;      ///< they were there before; `value`: the last frame that can copy them
+    bool adopted;      ///< texels of an earlier use; `value`: the last frame that can copy them
     bool going;        ///< nobody holds it; frames may still read it
 };
 

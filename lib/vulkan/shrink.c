@@ -4,7 +4,7 @@
 #include "core/observer.h"
 
 #define HEAPS_AT_ONCE 16u
-/* Wanted tiles that move show a coarser level until they are there again. */
+/* Few, because a wanted tile that moves shows a coarser level until it is read again. */
 #define MOVES_PER_FRAME 64u
 
 static uint64_t without(uint64_t amount, uint64_t taken)
@@ -22,7 +22,7 @@ static uint64_t div_up(uint64_t a, uint64_t b)
     return a / b + (a % b > 0);
 }
 
-/* Heaps that hold what is wanted, with the slots that the manager keeps for packed tiles. */
+/* Heaps needed for all wanted tiles and for the slots reserved for packed tiles. */
 static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
                              const SluiceStreamedTextureStatistics *stats)
 {
@@ -32,7 +32,7 @@ static uint64_t needed_heaps(const SluiceVulkanStreamer *s,
     return div_up(tiles, s->info.heapTileCapacity);
 }
 
-/* How many heaps are to be left; 0: as many as there are. Memory of released heaps comes later. */
+/* How many heaps to keep; 0: all. Released heaps count as freed before their memory is. */
 static uint32_t choose_target(const SluiceVulkanStreamer *s,
                               const SluiceStreamedTextureStatistics *stats)
 {
@@ -50,11 +50,11 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     if (beyond)
         target = min_u64(target, without(live, div_up(beyond, size)));
     if (!pressure->beyond && target == live)
-        return 0; /* else no heap may come before the last ones are freed */
+        return 0; /* a target would keep new heaps from coming before the last ones are freed */
     return target ? (uint32_t)target : 1;
 }
 
-/* The application may have a target of its own; the smaller one counts. */
+/* Sets the smaller one of this target and the application's own target. */
 static SluiceResult set_target(SluiceVulkanStreamer *s, uint32_t target)
 {
     struct slc_shrink *shrink = &s->shrink;
@@ -87,7 +87,7 @@ static SluiceResult release_empty_heaps(SluiceVulkanStreamer *s)
     return slc_streamer_check(s, result, "sluiceReleaseHeap");
 }
 
-/* Without memory for it there is another frame. */
+/* Out of memory is no error: the next frame tries again. */
 static SluiceResult evacuate(SluiceVulkanStreamer *s, uint32_t count)
 {
     SluiceResult result = sluiceEvacuateHeaps(s->manager, count);
@@ -96,7 +96,8 @@ static SluiceResult evacuate(SluiceVulkanStreamer *s, uint32_t count)
                : slc_streamer_check(s, result, "sluiceEvacuateHeaps");
 }
 
-/* Heaps are only counted where pages have the memory, so their tiles move without any copy. */
+/* Moves tiles together in the manager's heaps. In paged mode heaps have no memory, so nothing is
+ * copied. */
 static SluiceResult count_together(SluiceVulkanStreamer *s)
 {
     SluiceTileMove moves[MOVES_PER_FRAME];
@@ -109,8 +110,8 @@ static SluiceResult count_together(SluiceVulkanStreamer *s)
                : slc_streamer_check(s, result, "sluiceDefragmentTiles");
 }
 
-/* `count` pages are to be given back: standby tiles, and if these do not suffice and it must be,
- * heaps of others. */
+/* Gives `count` pages back: standby tiles first. If they do not suffice and `must` is set, lowers
+ * `*target`, so that wanted tiles are evicted. */
 static SluiceResult give_back(SluiceVulkanStreamer *s, const SluiceStreamedTextureStatistics *stats,
                               uint32_t count, bool must, uint32_t *target)
 {

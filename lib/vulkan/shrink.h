@@ -1,14 +1,14 @@
 /**
- * Heaps go back to the device: when the budget or another front end needs their memory, or the
- * application asks for it. Tiles of the least used heap are evicted, and read again into fuller
- * heaps if they are wanted; the empty heap is released, and freed when the GPU is done with it.
+ * Gives heaps back to the device, if the budget or another front end needs their memory or the
+ * application asks for it. The tiles of the least used heap are evicted. Wanted tiles are read
+ * again into fuller heaps. The empty heap is released, and freed when the GPU has finished with it.
  */
 #ifndef SLC_VULKAN_SHRINK_H
 #define SLC_VULKAN_SHRINK_H
 
 #include "vulkan/streamer.h"
 
-/** A frame begins, and what the GPU has finished is known: heaps are released, or made empty. */
+/** Empties and releases heaps. Call it when a frame begins, after completed work is collected. */
 SluiceResult slc_shrink_step(SluiceVulkanStreamer *s);
 
 #endif /* SLC_VULKAN_SHRINK_H */

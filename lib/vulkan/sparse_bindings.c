@@ -120,7 +120,7 @@ static void put_unbind(struct slc_sparse_bindings *bindings, struct slc_bind_lis
     forget(bindings, page);
 }
 
-/* Evicted neighbors in a row, too: one run now instead of more runs later. */
+/* Unbinds evicted neighbors in the row, too: one run now instead of several later. */
 static void put_unbinds_beside(struct slc_sparse_bindings *bindings, struct slc_bind_list *list,
                                uint32_t image, struct slc_tile_place place, int step)
 {
@@ -155,7 +155,7 @@ bool slc_sparse_bindings_restore(struct slc_sparse_bindings *bindings, uint32_t 
     uint32_t page = (uint32_t)(page_of(bindings, heap_id, slot) - pages);
     assert(pages[page].image == SLC_NO_IMAGE || !pages[page].live);
     uint32_t other = pages[old].slot, given = pages[page].slot;
-    pages[other].page_of_slot = page; /* nothing changes where both are one */
+    pages[other].page_of_slot = page; /* a swap; no change if both are the same slot */
     pages[page].slot = other;
     pages[given].page_of_slot = old;
     pages[old].slot = given;

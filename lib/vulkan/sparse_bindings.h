@@ -7,8 +7,8 @@
  * as one tile. No unbind is paid for if the tile is bound again first, or its image is destroyed.
  * Knows nothing of Vulkan handles, frames or time.
  *
- * Slots are what others call pages. Which slot of a heap stands for which of its pages may change
- * while neither is in use, so that a tile gets its old page back whatever slot it was given.
+ * The manager assigns slots; here each slot stands for a page of its heap. Two slots may swap their
+ * pages while neither is in use. So a tile gets its old page back whatever slot it was given.
  */
 #ifndef SLC_VULKAN_SPARSE_BINDINGS_H
 #define SLC_VULKAN_SPARSE_BINDINGS_H
@@ -19,7 +19,7 @@
 #define SLC_NO_BOUND_PAGE UINT32_MAX
 #define SLC_NO_IMAGE UINT32_MAX
 
-/** Of one tile of one image among all. */
+/** Key of one tile among the tiles of all images. */
 static inline uint64_t slc_place_key(uint32_t image, struct slc_tile_place place)
 {
     /* 5 bits of level, 13 and 14 of column and row: 2^20 texels are 2^14 tiles of 64 texels */
@@ -31,9 +31,9 @@ struct slc_bound_page {
     uint32_t image; ///< SLC_NO_IMAGE: bound nowhere
     struct slc_tile_place place;
     bool live;               ///< false: evicted
-    bool spoiled;            ///< it may hold other texels than the tile's
+    bool spoiled;            ///< the page may hold other texels than the tile's
     uint32_t previous, next; ///< pages of the same image
-    uint32_t slot;           ///< that stands for this page; an index, as the next
+    uint32_t slot;           ///< index of the slot that stands for this page
     uint32_t page_of_slot;   ///< the page that the slot of this index stands for
 };
 
@@ -44,8 +44,8 @@ struct slc_sparse_bindings {
     struct slc_map places;    ///< (image, place) -> page
     uint32_t *first_pages;    ///< owned; by image
     uint32_t image_count;
-    uint64_t unbind_count;  ///< put into lists
-    uint64_t unbinds_saved; ///< of evicted tiles: none was needed
+    uint64_t unbind_count;  ///< unbinds put into lists
+    uint64_t unbinds_saved; ///< evicted tiles that needed no unbind
 };
 
 SluiceResult slc_sparse_bindings_init(struct slc_sparse_bindings *bindings,
@@ -87,8 +87,7 @@ bool slc_sparse_bindings_restore(struct slc_sparse_bindings *bindings, uint32_t 
 void slc_sparse_bindings_evict(struct slc_sparse_bindings *bindings, uint32_t image,
                                struct slc_tile_place place);
 
-/** What is on the page of the tile, which is bound, may not be its texels; until it is bound again.
- */
+/** Marks a bound tile: its page may hold other texels. Holds until the tile is bound again. */
 void slc_sparse_bindings_spoil(struct slc_sparse_bindings *bindings, uint32_t image,
                                struct slc_tile_place place);
 bool slc_sparse_bindings_is_spoiled(const struct slc_sparse_bindings *bindings, uint32_t image,
@@ -101,7 +100,7 @@ bool slc_sparse_bindings_is_spoiled(const struct slc_sparse_bindings *bindings, 
 bool slc_sparse_bindings_unbind(struct slc_sparse_bindings *bindings, struct slc_bind_list *list,
                                 uint32_t heap_id, uint32_t slot, uint32_t *image);
 
-/** The image is gone, and all of its bindings with it. */
+/** Drops all bindings of an image that is destroyed. */
 void slc_sparse_bindings_drop_image(struct slc_sparse_bindings *bindings, uint32_t image);
 
 #endif /* SLC_VULKAN_SPARSE_BINDINGS_H */

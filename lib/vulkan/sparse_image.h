@@ -21,9 +21,9 @@ struct slc_sparse_image {
 };
 
 /**
- * `images` are as many as info->arrayLayerCount, or one for 0. `storage`: shaders are to store to
- * them, if the device can do that with the format. Errors: UNSUPPORTED with a message
- * that says why; OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY.
+ * Creates info->arrayLayerCount `images`, one for 0. `storage`: lets shaders store to them, if the
+ * device can with this format. Errors: UNSUPPORTED, with a log message; OUT_OF_HOST_MEMORY,
+ * OUT_OF_DEVICE_MEMORY.
  */
 SluiceResult slc_sparse_image_create(struct slc_sparse_image *images, const struct slc_vk *vk,
                                      const struct slc_caps *caps, uint32_t memory_type,

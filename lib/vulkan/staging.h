@@ -6,7 +6,7 @@
  * The staging memories of a group share blocks: one that needs a block takes an idle one from
  * another before it allocates. A group keeps some memory: its members make it at their start, and
  * free idle blocks only beyond that size. The first block of each member is its own, made at its
- * start and never taken or freed, so that each can always go on.
+ * start and never taken or freed, so that every member can always upload.
  */
 #ifndef SLC_VULKAN_STAGING_H
 #define SLC_VULKAN_STAGING_H
@@ -44,7 +44,7 @@ struct slc_staging {
     bool refused; ///< since the last tick: the device is not asked again before the next
 };
 
-/** Keeps at least `kept_size` bytes, as far as members have slots for them. */
+/** Keeps at least `kept_size` bytes, if its members have as many slots. */
 void slc_staging_group_init(struct slc_staging_group *group, uint64_t kept_size);
 /** It has no members. */
 void slc_staging_group_finish(struct slc_staging_group *group);

@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-/* Without a single heap nothing is ever shown. */
+/* Warns once if the streamer cannot allocate its first heap: nothing is shown without one. */
 static void tell_of_refused_heap(SluiceVulkanStreamer *s, uint64_t size)
 {
     SluiceStreamedTextureStatistics stats = {.structSize = sizeof stats};
@@ -127,7 +127,7 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
     }
 }
 
-/* A heap that cannot be, by size alone: smaller ones serve as well. */
+/* Makes heaps smaller if one heap of heapTileCapacity tiles is larger than any limit allows. */
 static void fit_heaps(SluiceVulkanStreamer *s)
 {
     uint64_t limit = slc_device_memory_size(&s->caps);

@@ -55,7 +55,7 @@ struct slc_texture {
     SluiceTextureId primary_id;
     SluiceImageSource *source; ///< borrowed; NULL: it has a producer
     struct slc_tile_producer producer;
-    VkImageView *level_views; ///< owned by layer 0; of `image`, for stores; NULL: there are none
+    VkImageView *level_views; ///< owned by layer 0; levels of `image`, for stores; NULL: none
     SluiceImageInfo info;
     struct slc_residency_image image;
     uint32_t first, layer, layer_count; ///< of an array: the index of layer 0; else itself, 0, 1
@@ -107,7 +107,7 @@ struct slc_unit {
     bool published; ///< the manager counts it as mapped: copied by a frame that was abandoned
     bool dropped;   ///< its tile was unmapped, and is not in tile_units; what it copied is no use
     bool produced;  ///< the application's commands fill it: it has no memory in its staging slot
-    uint64_t asked_frame; ///< in which its producer was asked first; 0: in none
+    uint64_t asked_frame; ///< frame that first asked its producer; 0: none
     uint64_t ticket;
     uint64_t value; ///< BINDING: of the bind; UPLOADED: the frame
     uint32_t next;  ///< in its list
@@ -120,7 +120,7 @@ struct slc_unit_list {
 /** See shrink.h. */
 struct slc_shrink {
     uint32_t own_target; ///< targetHeapCount that the application has set; 0: none
-    uint32_t target;     ///< that the manager has
+    uint32_t target;     ///< targetHeapCount that the manager has
     bool compacting;     ///< heaps that become empty are released without any pressure
 };
 
@@ -135,7 +135,7 @@ struct SluiceVulkanStreamer {
     struct slc_shrink shrink;
     struct slc_caps caps;        ///< the context's
     struct slc_page_pool *pages; ///< of the context; NULL: not yet
-    uint32_t page_user;          ///< of these; SLC_MAX_PAGE_USERS: not yet
+    uint32_t page_user;          ///< user of `pages`; SLC_MAX_PAGE_USERS: not yet
     struct slc_residency *residency;
     SluiceStreamedTextureManager *manager;
     bool manager_locked; ///< for the application, but inside of the streamer's own calls
@@ -170,14 +170,15 @@ struct SluiceVulkanStreamer {
     uint32_t *packed_queue; ///< owned; textures whose packed levels are READY or MAPPING
     uint32_t packed_queue_count;
     uint32_t removed_count;
-    bool told_of_heaps; ///< that not even one can be allocated
+    bool told_of_heaps; ///< logged that no heap can be allocated
     bool told_of_modes; ///< that a texture's address modes are not its source's
     struct slc_region_arena regions;
 
     struct slc_unit *units;          ///< owned; maxLoadsInFlight
     struct slc_unit_list free_units; ///< used last, first
     struct slc_unit_list arrived, binding, uploaded;
-    struct slc_unit_list unproduced, produced; ///< bound; recorded, not complete
+    struct slc_unit_list unproduced; ///< bound, not recorded
+    struct slc_unit_list produced;   ///< recorded, not complete
     uint32_t free_unit_count;
     struct slc_map tile_units; ///< (texture, tile) -> unit, until the unit is free
     struct slc_deferred_tiles deferred;

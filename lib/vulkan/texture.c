@@ -304,7 +304,7 @@ static void publish(SluiceVulkanStreamer *s, uint32_t index, SluiceVulkanTexture
                               s->samplers.list[texture->sampler].sampler);
 }
 
-/* The image of the source, or of the producer. */
+/* Gets the image info from the source or the producer. */
 static SluiceResult describe(const SluiceVulkanStreamer *s,
                              const SluiceVulkanTextureCreateInfo *info,
                              struct slc_tile_producer *producer, SluiceImageInfo *image)

@@ -1,4 +1,4 @@
-/** The producer of a texture: what the application said, checked, and views for its stores. */
+/** The producer of a texture: checks its description, and makes image views for its stores. */
 #ifndef SLC_VULKAN_TILE_PRODUCER_H
 #define SLC_VULKAN_TILE_PRODUCER_H
 
@@ -11,13 +11,13 @@ struct slc_tile_producer {
     uint32_t timeout_frames;
 };
 
-/** Reads `given` and the image that it describes, with all of its levels. Errors, logged:
+/** Reads `given` and the image that it describes; 0 levels become the full chain. Errors, logged:
  *  NULL_POINTER, INVALID_ARGUMENT, UNSUPPORTED. */
 SluiceResult slc_tile_producer_read(struct slc_tile_producer *producer, SluiceImageInfo *image,
                                     const SluiceTileProducer *given, const SluiceLogCallback *log);
 
-/** One view of each level of `image`, of all layers. `*views` stays NULL if nothing can be stored.
- *  Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY; finish them then, too. */
+/** Creates a view of each level of `image`, with all layers. `*views` stays NULL if shaders cannot
+ *  store to the image. Errors: OUT_OF_HOST_MEMORY, OUT_OF_DEVICE_MEMORY; finish them then, too. */
 SluiceResult slc_level_views_init(VkImageView **views, const struct slc_vk *vk,
                                   const SluiceAllocationCallbacks *cb,
                                   const struct slc_residency_image *image, VkFormat format,

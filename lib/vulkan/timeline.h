@@ -4,7 +4,8 @@
 
 #include "vulkan/dispatch.h"
 
-/** At value 0. `*semaphore` is VK_NULL_HANDLE after an error. `name`: for debuggers. */
+/** Creates a timeline semaphore of value 0. `*semaphore` is VK_NULL_HANDLE after an error. `name`:
+ * for debuggers. */
 SluiceResult slc_timeline_create(const struct slc_vk *vk, const char *name, VkSemaphore *semaphore);
 
 /**

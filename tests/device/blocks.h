@@ -8,8 +8,8 @@
 SluiceImageSource *block_source(uint32_t width, uint32_t height, SluiceFormat format);
 
 /**
- * What decoders may make of a texel, with linear color: endpoints as fractions or widened to 8
- * bits first, sRGB decoded to within half a step of its 8 bits.
+ * Range of values that decoders may return for a texel, in linear light. Endpoints may be fractions
+ * or widened to 8 bits first. sRGB may be off by half a step of its 8 bits.
  */
 struct block_range {
     float low[4], high[4];

@@ -23,7 +23,7 @@ struct runner {
     VkDescriptorSet sets[RUNNER_LAUNCHES];
     uint64_t generations[RUNNER_LAUNCHES];      ///< of the pages in each set
     uint64_t byte_generations[RUNNER_LAUNCHES]; ///< of the chunks of byte pages
-    bool reads_bytes;                           ///< the shader does, too
+    bool reads_bytes;                           ///< the shader reads byte pages
     struct harness_buffer inputs, outputs;
     uint32_t count; ///< samples
     SluiceDemandLaunch launch;

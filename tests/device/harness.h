@@ -66,7 +66,7 @@ struct harness {
     bool min_lod;                  ///< probers have samplers clamp: caps.shaderResourceMinLod
     bool page_loop;                ///< probers find pages by a loop instead of an index
     bool anisotropy, mirror_clamp; ///< features that are enabled because they are there
-    bool reads_bytes;              ///< ... that shaders need for addresses and arrays of buffers
+    bool reads_bytes;              ///< features for addresses and arrays of buffers
     bool runs_bytes;               ///< runners read byte pages, where reads_bytes
     /** Shared by all probers and painters of a kind: to compile one takes longer than to run it. */
     VkPipeline probe_pipelines[HARNESS_PROBE_KINDS], paint_pipelines[HARNESS_PAINT_KINDS];

@@ -168,7 +168,7 @@ static SluiceResult record_tiles(void *user, const SluiceTileBatch *batch, Sluic
 {
     struct maker *m = user;
     for (uint32_t i = 0; i < batch->tileCount; i++) {
-        if (batch->pTiles[i].region.mipLevel > 2) /* the mip tail comes as one */
+        if (batch->pTiles[i].region.mipLevel > 2) /* the mip tail is all or nothing */
             continue;
         uint32_t turn = ++m->turn;
         if (m->unready_one_in && turn % m->unready_one_in == 0)

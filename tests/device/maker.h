@@ -18,11 +18,11 @@ struct maker {
     VkDescriptorSet sets[MAKER_SETS]; ///< used in turn, as the places in the buffers
     uint32_t next_set, next_tile;
     uint32_t tile_count, batch_count;
-    /** Of each so many tiles one is not ready, and one fails; 0: none. */
+    /** One in so many tiles is not ready, or fails; 0: none. */
     uint32_t unready_one_in, failing_one_in, turn;
 };
 
-/** `source` as above. No more batches and tiles than there are may be under way. */
+/** `source`: see struct maker. At most MAKER_SETS batches, MAKER_TILES tiles may be under way. */
 void maker_init(struct maker *maker, struct harness *h, SluiceImageSource *source);
 /** The device is idle. */
 void maker_finish(struct maker *maker);

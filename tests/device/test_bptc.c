@@ -1,4 +1,4 @@
-/* The decoders that encoders are tested with say what a device shows of random blocks. */
+/* Random blocks: the decoders that test the encoders agree with the device. */
 #include "device/scene.h"
 
 #include "bake/bc6h_modes.h"

@@ -15,8 +15,8 @@ struct store {
     atomic_uint reads;
     atomic_uint wrong;
     uint32_t failing_page; ///< UINT32_MAX: none
-    atomic_uint failures;  ///< so many reads of it fail
-    atomic_uint later;     ///< so many NOT_READY first
+    atomic_uint failures;  ///< number of its reads that fail
+    atomic_uint later;     ///< number of reads that return NOT_READY first
     SluiceDemandResourceId id;
     uint32_t first;
 };
@@ -107,7 +107,7 @@ static void open_runner(struct runner *r, uint64_t budget, uint64_t bytes, bool 
     runner_init(r, &h, &create);
 }
 
-/* Sizes around what decides: words, the alignment, staging slots, slabs. */
+/* Sizes around those of words, the alignment, staging slots and slabs. */
 static const uint32_t sizes[] = {1,     3,     4,     15,     16,      17,      100,
                                  65535, 65536, 65537, 131072, 1000000, 1048575, 1048576};
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
@@ -157,7 +157,7 @@ static void a_loader_with_addresses_has_resources_with_offsets(void **state)
     check_every_size(true, true);
 }
 
-/* More than fits, in turns: each page is right whenever it is resident. */
+/* Uses more pages than fit, in turns. Each page is right whenever it is resident. */
 static void evicted_pages_come_back_right(void **state)
 {
     (void)state;

@@ -20,7 +20,7 @@ static uint64_t tile_memory(void)
     return s.tileMemorySize;
 }
 
-/* A texel in each of so many tiles along an edge. */
+/* Samples a texel in each of tiles x tiles tiles. */
 static void look_at(uint32_t tiles)
 {
     runner_clear(&r);
@@ -92,7 +92,7 @@ static void unused_pages_go_when_the_budget_falls(void **state)
     close_loader();
 }
 
-/* All that is missed again has room where others were. */
+/* Tiles that are missed again have room in other images. */
 static void launches_get_blurrier_when_the_budget_falls_below_what_they_use(void **state)
 {
     (void)state;

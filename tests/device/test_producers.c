@@ -81,7 +81,7 @@ static SluiceVulkanStreamerCreateInfo everything(void)
                                             .pDebug = &map_everything};
 }
 
-/* All of a texture that the maker makes. */
+/* All tiles and levels of a produced texture have the right texels. */
 static void check_made(struct harness *h, struct maker *maker, SluiceFormat format)
 {
     const SluiceImageInfo image = image_info(format);

@@ -405,7 +405,7 @@ static void an_idle_front_end_is_not_waited_for(void **state)
 
 static pthread_mutex_t queue_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-/* The application's part: one queue for two threads. */
+/* Locks the queue that two threads share, as applications must. */
 static VKAPI_ATTR VkResult VKAPI_CALL submit_alone(VkQueue queue, uint32_t count,
                                                    const VkSubmitInfo *submits, VkFence fence)
 {
@@ -453,7 +453,7 @@ static uint32_t shown_level(const float color[4])
     return (uint32_t)lroundf(color[0] * 16) - 1;
 }
 
-/* Samples of tiles that there is no memory for show coarser ones. */
+/* Samples show coarser levels if there is no memory for their tiles. */
 static void check_resident(const struct stage *s)
 {
     uint32_t sample = 0;
@@ -518,7 +518,7 @@ static void front_ends_may_be_on_two_threads(void **state)
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, trace, &tracing), 0);
     for (uint32_t i = 0; i < 240; i++) {
-        bool looks = i / 40 % 2 == 0; /* away for so long that empty images go */
+        bool looks = i / 40 % 2 == 0; /* looks away until empty images are freed */
         s.scene.textures[s.streamed].sample_count = looks ? SCENE_SAMPLES : 0;
         scene_settle(&s.scene, 1);
         scene_check_levels(&s.scene);

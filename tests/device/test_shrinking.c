@@ -94,7 +94,7 @@ static void look_at(uint32_t texture, enum part part)
     }
 }
 
-/* Every level that is seen on the way is right. */
+/* Runs frames. Every level that is seen meanwhile is right. */
 static void run_frames(uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -179,7 +179,7 @@ static void unneeded_tiles_go_when_the_budget_falls(void **state)
     uint32_t mapped = statistics().mappedTileCount;
     CHECK_OK(sluiceSetVulkanMemoryBudget(h.context, 12 * MIB));
     if (h.mode == SLUICE_RESIDENCY_MODE_DENSE)
-        run_frames(20); /* images have all their memory as long as they are */
+        run_frames(20); /* dense images keep all their memory */
     else
         run_until_memory_is(12 * MIB, 40);
     run_until_sharp(40);
@@ -261,7 +261,7 @@ static void heaps_that_few_tiles_keep_are_emptied_on_request(void **state)
     close_scene();
 }
 
-/* The device refuses all that is asked for while tiles move and come. */
+/* The device refuses all allocations while tiles move and are loaded. */
 static void a_device_without_memory_in_the_midst_changes_no_picture(void **state)
 {
     (void)state;

@@ -84,10 +84,11 @@ struct fake_vulkan {
     uint64_t refused_size; ///< allocations of so many bytes fail; 0: none
     uint64_t heap_size;    ///< bytes of the only heap of memory; 0: 1 TiB
 
-    /** VK_EXT_memory_budget: what other programs use of the heap, which is all budget. */
+    /** The device has VK_EXT_memory_budget. The budget is the whole heap; other programs use
+     *  used_by_others. */
     bool has_memory_budget;
     uint64_t used_by_others;  ///< bytes
-    uint32_t extension_calls; ///< lists of extensions
+    uint32_t extension_calls; ///< calls that list extensions
     uint32_t budget_calls;
 
     /** Buffers that the test set, and the words that were filled in and updated there. */
@@ -108,7 +109,7 @@ struct fake_vulkan {
     bool waits_time_out; ///< where the timeline has not reached the value; else all waits succeed
     bool no_resolve;     ///< compute passes leave no trace: for the demand loader
 
-    /** Settings of the next context; zeroed: none, defaults, and one thread. */
+    /** Settings of the next context. Zeroed: no callbacks, defaults, and one thread. */
     SluiceLogCallback log;
     const SluiceAllocationCallbacks *pAllocator;
     uint32_t loaderThreadCount, maxPageChunkCount;

@@ -1,4 +1,4 @@
-/* What lies around each region of a MinMip map, against a look at every neighbor. */
+/* slc_around against a search of every neighbor of each region of a MinMip map. */
 #include "support/roll.h"
 #include "support/test.h"
 #include "vulkan/around.h"

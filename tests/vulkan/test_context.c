@@ -424,7 +424,7 @@ static void two_streamers_stay_within_one_budget(void **state)
     sluiceDestroyImageSource(source);
 }
 
-/* The smaller one has 32 slots of staging memory, half a block. */
+/* A small front end has 32 slots of staging memory, half a block. */
 static void create_front_end(SluiceVulkanContext *context, bool demand,
                              SluiceVulkanStreamer **streamer, SluiceDemandLoader **loader)
 {

@@ -1,4 +1,4 @@
-/* Tiles that wait for a page, and that another user of the pool has at last. */
+/* Tiles that wait for a page until another user of the pool shares them. */
 #include "vulkan/fake_vulkan.h"
 
 #include "vulkan/page_sharing.h"
@@ -40,7 +40,7 @@ static struct slc_page_pool *pool_of(struct stage *s)
     return s->streamer->pages;
 }
 
-/* All pages that there can be. */
+/* Takes all pages of the pool. */
 static void take_all(struct stage *s)
 {
     struct slc_page_pool *pool = pool_of(s);

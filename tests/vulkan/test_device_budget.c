@@ -97,7 +97,8 @@ static void close_streamer(void)
     assert_int_equal(fake.live_memory, 0);
 }
 
-/* What all of the context may have, less what it has beside tiles, and a step that is left. */
+/* Tile memory that the heap can spare: without other programs, other memory of the context, and a
+ * step. */
 static uint64_t spare(void)
 {
     SluiceVulkanContextStatistics s = statistics();

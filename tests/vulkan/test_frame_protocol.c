@@ -49,7 +49,7 @@ struct model {
     uint32_t window; ///< seed of what the camera sees
     uint32_t
         shrink_one_in; ///< frames, before which the budget changes or heaps are emptied; 0: none
-    uint32_t moved;    ///< tiles, by the latter
+    uint32_t moved;    ///< tiles moved by emptying heaps
 };
 
 static void texel(void *user, uint32_t level, uint32_t x, uint32_t y, uint32_t width,
@@ -375,7 +375,7 @@ static void release_heaps(struct model *m)
 
 #define HEAP_SIZE (64u * 65536u)
 
-/* From one heap to none too few. */
+/* Sets a budget of 1 to 5 heaps or none, or moves tiles together. */
 static void change_memory(struct model *m)
 {
     uint32_t count = 0;

@@ -437,7 +437,7 @@ struct walker {
     struct rig *rig;
     uint32_t user;
     uint32_t pages[LAYERS];
-    uint32_t taken, wrong; ///< pages in all; that another one had, too
+    uint32_t taken, wrong; ///< pages taken; pages that another user had, too
 };
 
 static atomic_uint owners[CHUNKS][LAYERS * 4]; ///< user + 1; 0: nobody has the page
@@ -447,7 +447,7 @@ static atomic_uint *owner_of(uint32_t page)
     return &owners[page >> 16][page & 0xFFFFu];
 }
 
-/* Frames of one user, on a thread of its own: half of its pages go and others come. */
+/* Frames of one user on its own thread. Each frame replaces half of its pages. */
 static void *walk(void *argument)
 {
     struct walker *w = argument;

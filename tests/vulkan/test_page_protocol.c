@@ -166,7 +166,7 @@ static void check_sets(const struct model *m)
                              m->sets[f % HISTORY].write_count);
 }
 
-/* What is on a page of an image that is bound. */
+/* Texel on a page of an image that is bound. */
 static uint32_t texel_of(const struct model *m, VkImage image, uint32_t layer)
 {
     for (uint32_t c = 0; c < CHUNKS; c++)
@@ -325,7 +325,7 @@ static void check_buffers(const struct fake_vulkan *fake, const SluiceVulkanBuff
     }
 }
 
-/* What the context may have, in MiB; 0: all. */
+/* Sets a random memory budget, in MiB; 0: no limit. */
 static void change_memory(struct model *m)
 {
     static const uint64_t budgets[] = {0, 4, 5, 6, 8, 10, 12, 16};

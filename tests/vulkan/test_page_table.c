@@ -64,7 +64,7 @@ static void change_tile(struct rig *r, uint32_t part)
     slc_page_table_store(&r->table, part, word, r->frame);
 }
 
-/* What shaders find: the words before the tiles of a level, then a page or none for each tile. */
+/* Checks the words that shaders read: the first word of each level, and a page or none per tile. */
 static void check(const struct rig *r)
 {
     const uint32_t *words = fake.watches[0].words;

@@ -210,7 +210,7 @@ static void check_covered(const struct fixture *f, uint32_t level, uint8_t times
                          covered[y][x], times);
 }
 
-/* No two lie at one place, and all lie in an image that they fit into. */
+/* Targets do not overlap, and lie within their images. */
 static void check_targets(const struct fixture *f, SluiceResidencyMode mode)
 {
     for (uint32_t i = 0; i < f->call_count; i++) {
@@ -440,7 +440,7 @@ static void tiles_that_are_not_ready_and_not_wanted_are_given_back(void **state)
     }
 }
 
-/* What their commands were to write. */
+/* The commands of an abandoned frame never wrote its tiles. */
 static void tiles_of_abandoned_frames_are_asked_for_again(void **state)
 {
     (void)state;

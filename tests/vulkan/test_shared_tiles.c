@@ -11,7 +11,7 @@ struct model {
     struct failing_allocator memory;
     struct slc_shared_tiles tiles;
     struct slc_tile_key keys[KEYS];
-    uint32_t listed[KEYS];       ///< the entry that the key finds; SLC_NONE: none
+    uint32_t listed[KEYS];       ///< entry of each key; SLC_NONE: none
     uint32_t unlisted[4 * KEYS]; ///< entries that are not found any more
     uint32_t unlisted_count, live_count, most;
 };

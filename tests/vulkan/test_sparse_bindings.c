@@ -87,7 +87,7 @@ static void neighbors_that_were_given_up_are_unbound_in_the_same_run(void **stat
     assert_int_equal(bind(f, 2, 9, 1, 13 - 2 * 4), 0);
     slc_bind_list_build_runs(&f->list);
     assert_int_equal(f->list.run_count, 2);
-    const struct slc_bind_run *run = &f->list.runs[0]; /* up to the one that is wanted still */
+    const struct slc_bind_run *run = &f->list.runs[0]; /* up to the neighbor that is not evicted */
     assert_int_equal(run->heap_id, SLC_UNBIND);
     assert_int_equal(run->place.x, 2);
     assert_int_equal(run->count, 5);
@@ -234,7 +234,7 @@ static void heaps_have_one_size(void **state)
     assert_int_equal(bind(f, 1, 2, 100, 15), SLC_NO_IMAGE);
 }
 
-/* What a device would hold: by image and column the page, or -1; and who wants it. */
+/* Bindings of a device: the page of each image and column, or -1. `live`: not evicted. */
 struct model {
     int device[IMAGES][COLUMNS];
     bool live[IMAGES][COLUMNS];

@@ -20,7 +20,8 @@
  *
  *     #define SLUICE_DEMAND_BYTE_WORD(chunk, i) chunks[nonuniformEXT(chunk)].words[i] // uint, read
  *
- * Define SLUICE_PAGE_LOOP, as anything, if arrays cannot be indexed like that (demand_bindings.glsl).
+ * Define SLUICE_PAGE_LOOP, with any value, if arrays cannot have non-uniform indices
+ * (demand_bindings.glsl).
  * Any stage. Pages may differ between invocations.
  */
 #ifndef SLUICE_DEMAND_BYTES_GLSL

@@ -1,4 +1,4 @@
-/* What the maker shader writes, for C and GLSL. */
+/* Tiles that the maker shader writes, for C and GLSL. */
 #ifndef MAKER_SHARED_H
 #define MAKER_SHARED_H
 
