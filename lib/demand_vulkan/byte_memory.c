@@ -123,8 +123,7 @@ static uint32_t slabs_left(const struct slc_byte_memory *m)
 {
     uint64_t left = (m->budget - m->size) / SLC_BYTE_SLAB_SIZE;
     uint64_t range = m->caps->max_storage_buffer_range / SLC_BYTE_SLAB_SIZE;
-    left = left < range ? left : range;
-    return left < MAX_SLABS ? (uint32_t)left : MAX_SLABS;
+    return (uint32_t)slc_min_u64(MAX_SLABS, slc_min_u64(left, range));
 }
 
 /* Makes a chunk. Returns false without one: too many chunks, no budget, or refused a while ago. */
@@ -151,10 +150,9 @@ static bool grow(struct slc_byte_memory *m)
     return true;
 }
 
-static bool has_slot(struct slc_byte_memory *m, uint32_t index, uint32_t stride)
+static bool has_slot(const struct slc_byte_slab *slab, uint32_t stride)
 {
-    const struct slc_byte_slab *slab = slab_at(m, index);
-    return slab && slab->slots && slab->stride == stride && slab->free_count;
+    return slab->slots && slab->stride == stride && slab->free_count;
 }
 
 static bool cut(struct slc_byte_memory *m, struct slc_byte_slab *slab, uint32_t stride)
@@ -182,7 +180,7 @@ static bool find_slab(struct slc_byte_memory *m, uint32_t stride)
         for (uint32_t i = 0; chunk->state == SLC_BYTE_CHUNK_LIVE && i < chunk->slab_count; i++) {
             uint32_t index = c << CHUNK_SHIFT | i;
             const struct slc_byte_slab *slab = &chunk->slabs[i];
-            if (slab->slots && slab->stride == stride && slab->free_count) {
+            if (has_slot(slab, stride)) {
                 m->last = index;
                 return true;
             }
@@ -207,26 +205,33 @@ bool slc_byte_memory_kind(struct slc_byte_memory *memory, uint32_t stride, uint3
     return true;
 }
 
+static void hold(struct slc_byte_memory *m, uint32_t place)
+{
+    struct slc_byte_slab *slab = slab_at(m, place >> SLOT_SHIFT);
+    struct slc_byte_slot *slots = slab->slots, *slot = &slots[place & SLOT_MASK];
+    slots[slot->previous].next = slot->next;
+    slots[slot->next].previous = slot->previous;
+    *slot = (struct slc_byte_slot){.owner = SLC_NO_PAGE, .held = true};
+    slab->free_count--;
+    m->chunks[place >> (SLOT_SHIFT + CHUNK_SHIFT)].held_count++;
+    m->held_size += slab->stride;
+}
+
 static uint32_t take(void *user, uint32_t kind)
 {
     struct slc_byte_memory *m = user;
     uint32_t stride = m->strides[kind];
-    if (!has_slot(m, m->last, stride) && !find_slab(m, stride) &&
+    const struct slc_byte_slab *slab = slab_at(m, m->last);
+    if (!(slab && has_slot(slab, stride)) && !find_slab(m, stride) &&
         !(grow(m) && find_slab(m, stride))) {
         m->last = 0;
         m->short_of = true;
         return SLC_NO_PLACE;
     }
-    struct slc_byte_slab *slab = slab_at(m, m->last);
-    struct slc_byte_slot *slots = slab->slots;
-    uint32_t slot = slots[slab->slot_count].next;
-    slots[slots[slot].previous].next = slots[slot].next;
-    slots[slots[slot].next].previous = slots[slot].previous;
-    slots[slot] = (struct slc_byte_slot){.owner = SLC_NO_PAGE, .held = true};
-    slab->free_count--;
-    m->chunks[m->last >> CHUNK_SHIFT].held_count++;
-    m->held_size += stride;
-    return m->last << SLOT_SHIFT | slot;
+    slab = slab_at(m, m->last);
+    uint32_t place = m->last << SLOT_SHIFT | slab->slots[slab->slot_count].next;
+    hold(m, place);
+    return place;
 }
 
 static void give(void *user, uint32_t place, uint32_t page)
@@ -250,19 +255,13 @@ static void give(void *user, uint32_t place, uint32_t page)
 static bool retake(void *user, uint32_t place, uint32_t page)
 {
     struct slc_byte_memory *m = user;
-    struct slc_byte_slab *slab = slab_at(m, place >> SLOT_SHIFT);
+    const struct slc_byte_slab *slab = slab_at(m, place >> SLOT_SHIFT);
     uint32_t slot = place & SLOT_MASK;
     /* another chunk or stride may be there by now */
     if (!slab || !slab->slots || slot >= slab->slot_count || slab->slots[slot].held ||
         slab->slots[slot].owner != page)
         return false;
-    struct slc_byte_slot *slots = slab->slots;
-    slots[slots[slot].previous].next = slots[slot].next;
-    slots[slots[slot].next].previous = slots[slot].previous;
-    slots[slot] = (struct slc_byte_slot){.owner = SLC_NO_PAGE, .held = true};
-    slab->free_count--;
-    m->chunks[place >> (SLOT_SHIFT + CHUNK_SHIFT)].held_count++;
-    m->held_size += slab->stride;
+    hold(m, place);
     return true;
 }
 

@@ -8,6 +8,8 @@
 
 #include <assert.h>
 
+_Static_assert(SLUICE_DEMAND_BYTE_CHUNKS <= SLC_DESCRIPTOR_ARRAY, "chunks fit");
+
 #define SPARE_BUFFERS 16u /* storage buffers of a stage that are left to the application */
 
 static void list_buffers(SluiceDemandLoader *loader)

@@ -405,6 +405,9 @@ SluiceResult slc_resource_find(SluiceDemandLoader *loader, SluiceDemandResourceI
                                struct slc_demand_resource **resource);
 /** Makes room in `evictions` for all resident values and one more. False without memory. */
 bool slc_resource_reserve_eviction(SluiceDemandLoader *loader);
+/** Request for a page of the resource. */
+struct slc_page_request slc_resource_page_request(const struct slc_demand_resource *resource,
+                                                  uint32_t page, bool pinned);
 enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
                                              uint32_t page, SluiceDemandTicket ticket,
                                              SluiceResult *result);

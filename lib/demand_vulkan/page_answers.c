@@ -8,16 +8,6 @@
 
 #include <string.h>
 
-static struct slc_page_request request_for(const struct slc_demand_resource *resource,
-                                           uint32_t page, bool pinned)
-{
-    return (struct slc_page_request){.page = page,
-                                     .class_index = resource->class_index,
-                                     .rank = (uint8_t)resource->info.rank,
-                                     .pinned = pinned,
-                                     .kind = resource->byte_kind};
-}
-
 enum slc_request_answer slc_answer_request(SluiceDemandLoader *loader,
                                            struct slc_demand_resource *resource, uint32_t page,
                                            SluiceResult *result)
@@ -27,7 +17,7 @@ enum slc_request_answer slc_answer_request(SluiceDemandLoader *loader,
         loader->unasked_count++;
         return SLC_REQUEST_POSTPONED;
     }
-    const struct slc_page_request request = request_for(resource, page, false);
+    const struct slc_page_request request = slc_resource_page_request(resource, page, false);
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     loader->unasked_count += *result != SLUICE_SUCCESS;
     if (answer == SLC_REQUEST_LOAD)
@@ -84,7 +74,7 @@ static SluiceResult begin(SluiceDemandLoader *loader, struct slc_demand_resource
                           uint32_t page, bool pinned)
 {
     SluiceResult result;
-    const struct slc_page_request request = request_for(resource, page, pinned);
+    const struct slc_page_request request = slc_resource_page_request(resource, page, pinned);
     if (slc_missed_pages_has(&resource->missed, page)) {
         if (pinned)
             slc_residency_request(loader->residency, &request, &result);

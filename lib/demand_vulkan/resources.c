@@ -186,6 +186,16 @@ SluiceResult sluiceAddDemandResource(SluiceDemandLoader *loader,
     return SLUICE_SUCCESS;
 }
 
+struct slc_page_request slc_resource_page_request(const struct slc_demand_resource *resource,
+                                                  uint32_t page, bool pinned)
+{
+    return (struct slc_page_request){.page = page,
+                                     .class_index = resource->class_index,
+                                     .rank = (uint8_t)resource->info.rank,
+                                     .pinned = pinned,
+                                     .kind = resource->byte_kind};
+}
+
 enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_t index,
                                              uint32_t page, SluiceDemandTicket ticket,
                                              SluiceResult *result)
@@ -201,10 +211,7 @@ enum slc_request_answer slc_resource_request(SluiceDemandLoader *loader, uint32_
         loader->unasked_count++;
         return SLC_REQUEST_POSTPONED;
     }
-    const struct slc_page_request request = {.page = page,
-                                             .class_index = resource->class_index,
-                                             .rank = (uint8_t)resource->info.rank,
-                                             .kind = resource->byte_kind};
+    const struct slc_page_request request = slc_resource_page_request(resource, page, false);
     enum slc_request_answer answer = slc_residency_request(loader->residency, &request, result);
     loader->unasked_count += *result != SLUICE_SUCCESS;
     if (answer != SLC_REQUEST_LOAD)

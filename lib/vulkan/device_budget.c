@@ -1,6 +1,7 @@
 #include "vulkan/device_budget.h"
 
 #include "base/alloc.h"
+#include "base/checked.h"
 
 #include <string.h>
 
@@ -26,11 +27,6 @@ static SluiceResult find_extension(const struct slc_vk *vk, const SluiceAllocati
     return SLUICE_SUCCESS;
 }
 
-static uint64_t min_u64(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Tile memory in use, plus what the heap can spare or less what it lacks. */
 static uint64_t ask(const struct slc_device_budget *device, struct slc_memory_budget *budget)
 {
@@ -42,7 +38,7 @@ static uint64_t ask(const struct slc_device_budget *device, struct slc_memory_bu
     uint64_t all = answer.heapBudget[device->heap], used = answer.heapUsage[device->heap];
     uint64_t tiles = slc_memory_budget_tile_memory(budget);
     if (used + device->step > all)
-        return tiles - min_u64(tiles, used + device->step - all);
+        return tiles - slc_min_u64(tiles, used + device->step - all);
     return tiles + (all - used - device->step);
 }
 
@@ -74,7 +70,8 @@ SluiceResult slc_device_budget_init(struct slc_device_budget *device, const stru
     device->get = (PFN_vkGetPhysicalDeviceMemoryProperties2)get(
         vk->instance, "vkGetPhysicalDeviceMemoryProperties2");
     device->heap = slc_device_memory_heap(caps);
-    device->step = min_u64(MAX_STEP, caps->memory.memoryHeaps[device->heap].size / STEPS_PER_HEAP);
+    device->step =
+        slc_min_u64(MAX_STEP, caps->memory.memoryHeaps[device->heap].size / STEPS_PER_HEAP);
     if (device->get && pthread_mutex_init(&device->mutex, NULL) != 0)
         device->get = NULL;
     if (device->get)

@@ -1,5 +1,7 @@
 #include "vulkan/memory_budget.h"
 
+#include "base/checked.h"
+
 #include <assert.h>
 
 bool slc_memory_is_for_tiles(SluiceDeviceMemoryPurpose purpose)
@@ -38,11 +40,6 @@ void slc_memory_budget_set_device_limit(struct slc_memory_budget *budget, uint64
     pthread_mutex_unlock(&budget->mutex);
 }
 
-static uint64_t smaller(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
-
 static uint64_t tile_memory(const struct slc_memory_budget *budget)
 {
     return budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_IMAGE] +
@@ -54,7 +51,7 @@ static uint64_t tile_memory(const struct slc_memory_budget *budget)
 uint64_t slc_memory_budget_limit(struct slc_memory_budget *budget)
 {
     pthread_mutex_lock(&budget->mutex);
-    uint64_t limit = smaller(budget->limit, budget->device_limit);
+    uint64_t limit = slc_min_u64(budget->limit, budget->device_limit);
     pthread_mutex_unlock(&budget->mutex);
     return limit;
 }
@@ -72,7 +69,7 @@ void slc_memory_budget_get(struct slc_memory_budget *budget,
 {
     SluiceVulkanContextStatistics *s = statistics;
     pthread_mutex_lock(&budget->mutex);
-    s->memoryBudget = smaller(budget->limit, budget->device_limit);
+    s->memoryBudget = slc_min_u64(budget->limit, budget->device_limit);
     s->tileMemorySize = tile_memory(budget);
     s->heapMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_HEAP];
     s->pageMemorySize = budget->used[SLUICE_DEVICE_MEMORY_PURPOSE_PAGES];
@@ -127,7 +124,7 @@ bool slc_memory_client_take(struct slc_memory_client *client, SluiceDeviceMemory
     struct slc_memory_budget *budget = client->budget;
     bool tiles = slc_memory_is_for_tiles(purpose);
     pthread_mutex_lock(&budget->mutex);
-    uint64_t used = tile_memory(budget), limit = smaller(budget->limit, budget->device_limit);
+    uint64_t used = tile_memory(budget), limit = slc_min_u64(budget->limit, budget->device_limit);
     bool fits = !tiles || (used <= limit && size <= limit - used);
     if (fits) {
         budget->used[purpose] += size;
@@ -213,7 +210,7 @@ static uint64_t share_of(uint64_t amount, uint64_t own, uint64_t all)
     if (own >= all || amount == 0)
         return amount;
     uint64_t share = (amount / unit + 1) * (own / unit + 1) / (all / unit + 1) * unit + unit;
-    return smaller(smaller(share, amount), own);
+    return slc_min_u64(slc_min_u64(share, amount), own);
 }
 
 /* What was refused stays visible until the client has begun twice: others, which begin at other
@@ -222,7 +219,7 @@ struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *cli
 {
     struct slc_memory_budget *budget = client->budget;
     pthread_mutex_lock(&budget->mutex);
-    uint64_t used = tile_memory(budget), limit = smaller(budget->limit, budget->device_limit);
+    uint64_t used = tile_memory(budget), limit = slc_min_u64(budget->limit, budget->device_limit);
     uint64_t own = client->tiles + (client->source ? client->source->tiles : 0);
     struct slc_memory_pressure pressure = {.beyond = used > limit ? used - limit : 0};
     for (const struct slc_memory_client *other = budget->clients; other; other = other->next)
@@ -231,7 +228,7 @@ struct slc_memory_pressure slc_memory_client_begin(struct slc_memory_client *cli
                 other->refused > other->refused_before ? other->refused : other->refused_before;
     client->refused_before = client->refused;
     client->refused = 0;
-    pressure.refused = smaller(pressure.refused, own);
+    pressure.refused = slc_min_u64(pressure.refused, own);
     pressure.beyond = share_of(pressure.beyond, own, used);
     pthread_mutex_unlock(&budget->mutex);
     return pressure;

@@ -20,7 +20,7 @@ uint64_t slc_page_chunks_capacity(uint32_t chunk_count, uint32_t max_image_array
     uint64_t most = slc_min_u32(SLC_PAGE_CHUNK_LAYERS, max_image_array_layers), count = 0;
     for (uint32_t i = 0; i < chunk_count; i++) {
         uint64_t layers = count > MIN_LAYERS ? count : MIN_LAYERS;
-        count += layers < most ? layers : most;
+        count += slc_min_u64(layers, most);
     }
     return count;
 }
@@ -113,7 +113,7 @@ static uint32_t layers_left(const struct slc_page_chunks *chunks)
         return UINT32_MAX;
     uint64_t used = chunks->memory.total_size;
     uint64_t left = chunks->max_size > used ? (chunks->max_size - used) / SLC_TILE_SIZE : 0;
-    return left < MIN_LAYERS ? 0 : (uint32_t)(left < UINT32_MAX ? left : UINT32_MAX);
+    return left < MIN_LAYERS ? 0 : (uint32_t)slc_min_u64(left, UINT32_MAX);
 }
 
 uint32_t slc_page_chunks_room(const struct slc_page_chunks *chunks, uint64_t tick)
@@ -122,7 +122,7 @@ uint32_t slc_page_chunks_room(const struct slc_page_chunks *chunks, uint64_t tic
     for (uint32_t i = 0; i < chunks->count; i++)
         most += chunks->at[i].state == SLC_CHUNK_FREE ? chunks->max_layer_count : 0;
     uint32_t left = slc_page_chunks_is_refused(chunks, tick) ? 0 : layers_left(chunks);
-    return most < left ? (uint32_t)most : left;
+    return (uint32_t)slc_min_u64(most, left);
 }
 
 bool slc_page_chunks_can_grow(const struct slc_page_chunks *chunks, uint64_t tick)

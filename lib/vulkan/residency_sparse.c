@@ -342,16 +342,11 @@ static uint64_t completed_value(const struct slc_residency *residency)
     return const_sparse(residency)->completed_value;
 }
 
-static uint64_t min_u64(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
-
 static uint64_t retire_limit(const struct slc_residency *residency, uint64_t completed_frame)
 {
     const struct sparse_residency *s = const_sparse(residency);
     uint64_t first = s->pending_count ? s->pending[s->pending_first].frame : UINT64_MAX;
-    return min_u64(completed_frame, first - 1);
+    return slc_min_u64(completed_frame, first - 1);
 }
 
 struct slot_memory {
@@ -398,7 +393,7 @@ static VkSparseMemoryBind page_bind(const struct sparse_residency *s,
     const struct slot_memory heap = slot_memory(s, run);
     uint64_t tail = layout->tail_offset + image->layer * layout->tail_stride;
     return (VkSparseMemoryBind){.resourceOffset = tail + offset,
-                                .size = min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
+                                .size = slc_min_u64(SLC_TILE_SIZE, layout->tail_size - offset),
                                 .memory = heap.memory,
                                 .memoryOffset = heap.offset};
 }

@@ -12,11 +12,6 @@ static uint64_t without(uint64_t amount, uint64_t taken)
     return amount > taken ? amount - taken : 0;
 }
 
-static uint64_t min_u64(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
-
 static uint64_t div_up(uint64_t a, uint64_t b)
 {
     return a / b + (a % b > 0);
@@ -45,10 +40,10 @@ static uint32_t choose_target(const SluiceVulkanStreamer *s,
     if (refused) {
         uint64_t needed = needed_heaps(s, stats);
         target = without(live, div_up(refused, size));
-        target = target > needed ? target : min_u64(needed, live);
+        target = target > needed ? target : slc_min_u64(needed, live);
     }
     if (beyond)
-        target = min_u64(target, without(live, div_up(beyond, size)));
+        target = slc_min_u64(target, without(live, div_up(beyond, size)));
     if (!pressure->beyond && target == live)
         return 0; /* a target would keep new heaps from coming before the last ones are freed */
     return target ? (uint32_t)target : 1;

@@ -130,11 +130,10 @@ static SluiceResult create_residency(SluiceVulkanStreamer *s)
 /* Makes heaps smaller if one heap of heapTileCapacity tiles is larger than any limit allows. */
 static void fit_heaps(SluiceVulkanStreamer *s)
 {
-    uint64_t limit = slc_device_memory_size(&s->caps);
-    uint64_t budget = slc_memory_budget_limit(&s->context->budget);
-    limit = budget < limit ? budget : limit;
-    if (s->caps.max_allocation_size && s->caps.max_allocation_size < limit)
-        limit = s->caps.max_allocation_size;
+    uint64_t limit =
+        slc_min_u64(slc_device_memory_size(&s->caps), slc_memory_budget_limit(&s->context->budget));
+    if (s->caps.max_allocation_size)
+        limit = slc_min_u64(limit, s->caps.max_allocation_size);
     uint64_t most = limit / SLC_TILE_SIZE, given = s->info.heapTileCapacity;
     if (!s->residency->interface->going_size || given <= most)
         return;

@@ -449,11 +449,11 @@ static bool is_over(const SluiceVulkanStreamer *s, const struct slc_texture *fir
 /* The application may destroy it now, and make another one at the same address. */
 static void forget_source(SluiceVulkanStreamer *s, const SluiceImageSource *source)
 {
-    for (uint32_t i = 0; i < s->texture_high && source; i++)
-        if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
-            return;
     if (!source)
         return;
+    for (uint32_t i = 0; i < s->texture_high; i++)
+        if (s->textures[i].state != SLC_TEXTURE_FREE && s->textures[i].source == source)
+            return;
     sluiceDropTileLoaderStatistics(s->loader, source); /* nothing of it is under way */
 }
 

@@ -2,7 +2,7 @@
 #include "vulkan/tile_upload.h"
 
 #include "base/alloc.h"
-#include "base/checked.h"
+#include "vulkan/load_reads.h"
 #include "vulkan/load_units.h"
 
 #include <assert.h>
@@ -31,13 +31,7 @@ static uint32_t unit_copies(const SluiceVulkanStreamer *s, uint32_t index,
         }
         return packed->rect_count;
     }
-    const SluiceStreamedTextureDesc *desc = &texture->image.desc;
-    const SluiceTile *tile = &unit->tile;
-    uint32_t x = tile->x * desc->tileWidth, y = tile->y * desc->tileHeight;
-    SluiceImageRegion region = {
-        tile->mipLevel, x, y,
-        slc_min_u32(desc->tileWidth, slc_mip_size(desc->width, tile->mipLevel) - x),
-        slc_min_u32(desc->tileHeight, slc_mip_size(desc->height, tile->mipLevel) - y)};
+    const SluiceImageRegion region = slc_tile_region(texture, &unit->tile);
     copies[0] = copy_of(base, &region, texture->layer);
     return 1;
 }
